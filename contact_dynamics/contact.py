@@ -1,0 +1,65 @@
+"""Contacts of a body with the world: where, along which normal, with which friction and restitution.
+
+A contact is a point of the body on a flat of the world. The normal points into the body.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.tolerances import UNIT_LENGTH_TOLERANCE
+from contact_dynamics.validation import FloatArray, check_array
+
+MOST_CONTACTS: Final = 10_000
+"""Longest list of contacts accepted: far above any real contact set, far below what would stall a service."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ContactSet:
+    """Contacts of one body in space; contact i is row i of each array.
+
+    Raises:
+        InvalidFieldError: arrays of unequal length, a number that is not finite, a normal that is not unit, mu < 0, or
+            e outside [0, 1].
+        TooLargeError: more than `MOST_CONTACTS` contacts.
+    """
+
+    p_WC_W: FloatArray  # (n, 3), m, contact points, world
+    normals_W: FloatArray  # (n, 3), unit, into the body, world axes
+    frictions: FloatArray  # (n,), Coulomb's mu, >= 0
+    restitutions: FloatArray  # (n,), e, in [0, 1]
+    surfaces: tuple[str, ...] = ()  # the surface that each contact touches; empty: not known
+
+    def __post_init__(self) -> None:
+        """Check every array and normalise the normals to rounding."""
+        n = len(self.frictions)
+        if n > MOST_CONTACTS:
+            raise TooLargeError("contacts", f"{n} contacts", f"at most {MOST_CONTACTS}")
+        points = check_array("contacts.positions", self.p_WC_W, (n, 3))
+        normals = check_array("contacts.normals", self.normals_W, (n, 3))
+        frictions = check_array("contacts.frictions", self.frictions, (n,))
+        restitutions = check_array("contacts.restitutions", self.restitutions, (n,))
+        lengths = np.linalg.norm(normals, axis=1)
+        for i in np.flatnonzero(abs(lengths - 1.0) > UNIT_LENGTH_TOLERANCE)[:1]:
+            raise InvalidFieldError(f"contacts.normals[{i}]", normals[i].tolist(), "a unit vector")
+        for i in np.flatnonzero(frictions < 0.0)[:1]:
+            raise InvalidFieldError(f"contacts.frictions[{i}]", frictions[i], "a number >= 0")
+        for i in np.flatnonzero((restitutions < 0.0) | (restitutions > 1.0))[:1]:
+            raise InvalidFieldError(f"contacts.restitutions[{i}]", restitutions[i], "a number in [0, 1]")
+        if self.surfaces and len(self.surfaces) != n:
+            raise InvalidFieldError("contacts.surface_names", f"{len(self.surfaces)} names", f"{n} names, or none")
+        normals = normals / lengths[:, None]
+        normals.flags.writeable = False
+        object.__setattr__(self, "p_WC_W", points)
+        object.__setattr__(self, "normals_W", normals)
+        object.__setattr__(self, "frictions", frictions)
+        object.__setattr__(self, "restitutions", restitutions)
+        object.__setattr__(self, "surfaces", tuple(self.surfaces))
+
+    def __len__(self) -> int:
+        """Return the number of contacts."""
+        return len(self.frictions)

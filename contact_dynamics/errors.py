@@ -1,0 +1,67 @@
+"""What misuse raises: one root, one class a cause, each message naming the field, the value and what is allowed.
+
+An expected physical outcome (separating, inconsistent, ambiguous) is a result, never one of these.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+
+class ContactDynamicsError(Exception):
+    """Root of all errors that this project raises on purpose."""
+
+
+class InvalidFieldError(ContactDynamicsError, ValueError):
+    """A field holds a value that is not allowed: NaN, a negative mass, a quaternion that is not unit, ..."""
+
+    def __init__(self, field: str, found: object, allowed: str) -> None:
+        super().__init__(f"{field}: found {_short(found)}, allowed is {allowed}")
+        self.field = field
+        self.found = found
+        self.allowed = allowed
+
+
+class TooLargeError(InvalidFieldError):
+    """A list is longer than the stated limit."""
+
+
+class OutOfPlaneError(InvalidFieldError):
+    """A planar question about a state, body or contact that leaves the plane of motion by more than the tolerance."""
+
+
+class SeparatingContactError(InvalidFieldError):
+    """An impact was asked for at a contact whose bodies move apart."""
+
+
+class NoContactError(ContactDynamicsError):
+    """A question about contacts at a state in which nothing touches, or will touch."""
+
+
+class UnknownBodyError(ContactDynamicsError):
+    """A name that is not among the configured bodies."""
+
+
+class NoStateError(ContactDynamicsError):
+    """No state of the body is known, or none at the time asked for."""
+
+
+class StaleStateError(ContactDynamicsError):
+    """The newest state is older than the configured limit."""
+
+
+class FrameMismatchError(ContactDynamicsError):
+    """A message's frame is not the one expected."""
+
+
+class NotSupportedError(ContactDynamicsError):
+    """A question that the interface can carry and this version does not answer; the message says which part."""
+
+
+_LONGEST_SHOWN: Final = 120
+
+
+def _short(value: object) -> str:
+    text = repr(value) if isinstance(value, str) else str(value)
+    text = " ".join(text.split())
+    return text if len(text) <= _LONGEST_SHOWN else text[: _LONGEST_SHOWN - 3] + "..."

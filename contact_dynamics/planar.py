@@ -1,0 +1,116 @@
+"""The plane: a planar body, its motion and its contacts (Mason, lectures 26 and 27).
+
+Coordinates are those of the plane of motion, x and y, with the centre of mass as the origin of all positions. A contact's
+tangent is its normal turned by -90 degrees: for normal (0, 1) it is +x. *Right* is positive tangential, *left* negative. The
+cross product of r and f is r_x f_y - r_y f_x, so that a positive moment turns x towards y.
+
+Numbers are plain floats, because one planar answer is cheaper without arrays.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.tolerances import UNIT_LENGTH_TOLERANCE
+from contact_dynamics.validation import check_finite, check_not_negative, check_positive, check_within
+
+Vector2: TypeAlias = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanarBody:
+    """Mass and scalar angular inertia of a planar body.
+
+    Raises:
+        InvalidFieldError: either is not a finite number > 0.
+    """
+
+    mass: float  # kg
+    inertia: float  # kg m^2, about the centre of mass; m rho^2 with rho the radius of gyration
+
+    def __post_init__(self) -> None:
+        """Check both fields."""
+        object.__setattr__(self, "mass", check_positive("mass", self.mass))
+        object.__setattr__(self, "inertia", check_positive("inertia", self.inertia))
+
+    @property
+    def radius_of_gyration(self) -> float:
+        """Return rho in I = m rho^2, m (lecture 25, eq. 13)."""
+        return math.sqrt(self.inertia / self.mass)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanarVelocity:
+    """Velocity of a planar body.
+
+    Raises:
+        InvalidFieldError: a number is not finite.
+    """
+
+    v: Vector2  # m/s, of the centre of mass
+    w: float  # rad/s, positive from x to y
+
+    def __post_init__(self) -> None:
+        """Check both fields."""
+        object.__setattr__(self, "v", check_vector2("linear_velocity", self.v))
+        object.__setattr__(self, "w", check_finite("angular_velocity", self.w))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanarWrench:
+    """Force and moment applied to a planar body, besides those of its contacts.
+
+    Raises:
+        InvalidFieldError: a number is not finite.
+    """
+
+    f: Vector2  # N
+    moment: float = 0.0  # N m, about the centre of mass
+
+    def __post_init__(self) -> None:
+        """Check both fields."""
+        object.__setattr__(self, "f", check_vector2("force", self.f))
+        object.__setattr__(self, "moment", check_finite("torque", self.moment))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanarContact:
+    """A point of the body on a flat of the world.
+
+    Raises:
+        InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, or e outside [0, 1].
+    """
+
+    r: Vector2  # m, from the centre of mass to the contact
+    normal: Vector2  # unit, into the body
+    friction: float  # Coulomb's mu, >= 0
+    restitution: float = 0.0  # e, in [0, 1]; contact modes do not use it
+
+    def __post_init__(self) -> None:
+        """Check all fields and normalise the normal to rounding."""
+        object.__setattr__(self, "r", check_vector2("contact position", self.r))
+        n_x, n_y = check_vector2("contact normal", self.normal)
+        length = math.hypot(n_x, n_y)
+        if abs(length - 1.0) > UNIT_LENGTH_TOLERANCE:
+            raise InvalidFieldError("contact normal", self.normal, "a unit vector")
+        object.__setattr__(self, "normal", (n_x / length, n_y / length))
+        object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
+        object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
+
+    @property
+    def tangent(self) -> Vector2:
+        """Return the unit tangent: the normal turned by -90 degrees."""
+        n_x, n_y = self.normal
+        return (n_y, -n_x)
+
+
+def check_vector2(field: str, value: Vector2) -> Vector2:
+    """Return ``value`` as a pair of finite floats, or raise `InvalidFieldError`."""
+    try:
+        x, y = value
+    except (TypeError, ValueError):
+        raise InvalidFieldError(field, value, "two finite numbers") from None
+    return (check_finite(field, x), check_finite(field, y))

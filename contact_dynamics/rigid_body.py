@@ -1,0 +1,121 @@
+"""A rigid body: its mass properties, its state, and what follows from the two (Mason, lectures 24 and 25).
+
+Frames: W is the world; B is the body's, with its origin at the centre of mass. A body whose published frame has its
+origin elsewhere is converted where its messages are (`msg_adapters`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, TRIANGLE_TOLERANCE
+from contact_dynamics.validation import FloatArray, check_array, check_positive, check_unit
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MassProperties:
+    """Mass and angular inertia of a rigid body (lecture 24, "Angular inertia").
+
+    Raises:
+        InvalidFieldError: mass not > 0; inertia not symmetric, not positive definite, or with principal moments that no
+            distribution of mass has (I1 + I2 >= I3).
+    """
+
+    mass: float  # kg, > 0
+    I_B: FloatArray  # (3, 3), kg m^2, about the centre of mass, in body axes
+
+    def __post_init__(self) -> None:
+        """Check both fields."""
+        object.__setattr__(self, "mass", check_positive("mass", self.mass))
+        object.__setattr__(self, "I_B", _check_inertia("inertia", self.I_B))
+
+    def inertia_in_world(self, R_WB: FloatArray) -> FloatArray:
+        """Return the angular inertia in world axes, (3, 3), kg m^2 (lecture 25, eq. 11)."""
+        return R_WB @ self.I_B @ R_WB.T
+
+    def angular_inertia_about(self, axis_B: FloatArray) -> float:
+        """Return the scalar angular inertia n^T I n about a unit axis through the centre of mass (lecture 25, eq. 12)."""
+        return float(axis_B @ self.I_B @ axis_B)
+
+    def radius_of_gyration(self, axis_B: FloatArray) -> float:
+        """Return k in I_n = m k^2, in m, about a unit axis through the centre of mass (lecture 25, eq. 13)."""
+        return math.sqrt(self.angular_inertia_about(axis_B) / self.mass)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class BodyState:
+    """Where a body is and how it moves at one time.
+
+    Raises:
+        InvalidFieldError: a number is not finite, or the quaternion is not unit.
+    """
+
+    p_WB_W: FloatArray  # (3,), m, centre of mass in the world
+    q_WB: FloatArray  # (4,), unit quaternion x, y, z, w: body coordinates into world coordinates
+    v_WB_W: FloatArray  # (3,), m/s, velocity of the centre of mass, world axes
+    w_WB_W: FloatArray  # (3,), rad/s, angular velocity, world axes
+    stamp_ns: int = 0  # ns, the time of this state, on whatever clock the caller uses
+
+    def __post_init__(self) -> None:
+        """Check all fields; the quaternion is normalised to rounding."""
+        object.__setattr__(self, "p_WB_W", check_array("position", self.p_WB_W, (3,)))
+        object.__setattr__(self, "q_WB", check_unit("orientation", self.q_WB, 4))
+        object.__setattr__(self, "v_WB_W", check_array("linear_velocity", self.v_WB_W, (3,)))
+        object.__setattr__(self, "w_WB_W", check_array("angular_velocity", self.w_WB_W, (3,)))
+
+    @property
+    def R_WB(self) -> FloatArray:
+        """Rotation matrix, (3, 3), body coordinates into world coordinates."""
+        return rotation_matrix(self.q_WB)
+
+    def velocity_of_point(self, p_WP_W: FloatArray) -> FloatArray:
+        """Return the velocity, (..., 3), m/s, world axes, of body points now at ``p_WP_W``, (..., 3): v + w x r."""
+        velocity: FloatArray = self.v_WB_W + np.cross(self.w_WB_W, p_WP_W - self.p_WB_W)
+        return velocity
+
+
+def momentum(body: MassProperties, state: BodyState) -> FloatArray:
+    """Return the linear momentum m v, (3,), kg m/s, world axes (lecture 24)."""
+    return body.mass * state.v_WB_W
+
+
+def angular_momentum(body: MassProperties, state: BodyState) -> FloatArray:
+    """Return L = I w about the centre of mass, (3,), kg m^2/s, world axes (lecture 24)."""
+    return body.inertia_in_world(state.R_WB) @ state.w_WB_W
+
+
+def kinetic_energy(body: MassProperties, state: BodyState) -> float:
+    """Return the kinetic energy of translation and rotation, J (lecture 24; lecture 25, eq. 23)."""
+    translation = 0.5 * body.mass * float(state.v_WB_W @ state.v_WB_W)
+    return translation + 0.5 * float(state.w_WB_W @ angular_momentum(body, state))
+
+
+def rotation_matrix(q: FloatArray) -> FloatArray:
+    """Return the (3, 3) rotation matrix of a unit quaternion x, y, z, w."""
+    x, y, z, w = q.tolist()
+    return np.array(
+        [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+        ]
+    )
+
+
+def _check_inertia(field: str, value: FloatArray) -> FloatArray:
+    inertia = check_array(field, value, (3, 3))
+    scale = float(np.abs(inertia).max())
+    if float(np.abs(inertia - inertia.T).max()) > SYMMETRY_TOLERANCE * scale:
+        raise InvalidFieldError(field, inertia.tolist(), "a symmetric matrix")
+    moments = np.linalg.eigvalsh(inertia)
+    if moments[0] <= 0.0:
+        raise InvalidFieldError(field, f"principal moments {moments.tolist()}", "a positive definite matrix")
+    if moments[0] + moments[1] < moments[2] * (1.0 - TRIANGLE_TOLERANCE):
+        raise InvalidFieldError(
+            field, f"principal moments {moments.tolist()}", "moments that a body can have (I1 + I2 >= I3)"
+        )
+    return inertia

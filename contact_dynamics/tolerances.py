@@ -1,0 +1,32 @@
+"""Every threshold of the project: its name, its unit, and why it has that size.
+
+A threshold that a caller may want to change is a default here and an argument or parameter there.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+UNIT_LENGTH_TOLERANCE: Final = 1e-3
+"""Dimensionless. A quaternion or normal whose norm is off by more is refused, not repaired.
+
+Quaternions that went through float32 or four printed decimals are off by at most 2e-4; one that was never normalised, or
+has its components in another order than expected with one missing, is off by far more.
+"""
+
+SYMMETRY_TOLERANCE: Final = 1e-9
+"""Relative to the largest entry. An inertia matrix that is less symmetric than this was not meant as one."""
+
+TRIANGLE_TOLERANCE: Final = 1e-6
+"""Relative to the largest principal moment. I1 + I2 >= I3 holds with equality for flat bodies, and measured or rounded
+moments of a flat body miss it by their last printed digit."""
+
+VELOCITY_TOLERANCE: Final = 1e-9
+"""m/s. A contact's velocity below it counts as zero where no other tolerance is asked for: far above the rounding of
+velocities of up to 1e4 m/s, far below what any sensor resolves. Measured states need their noise level instead."""
+
+ACCELERATION_TOLERANCE: Final = 1e-9
+"""Relative to the largest acceleration in the problem. Guards the cancellation of contact and applied forces."""
+
+DISTANCE_TOLERANCE: Final = 1e-6
+"""m. A vertex within it of a surface touches, where no other tolerance is asked for."""
