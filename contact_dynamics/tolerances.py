@@ -30,3 +30,14 @@ ACCELERATION_TOLERANCE: Final = 1e-9
 
 DISTANCE_TOLERANCE: Final = 1e-6
 """m. A vertex within it of a surface touches, where no other tolerance is asked for."""
+
+ENERGY_TOLERANCE: Final = 1e-12
+"""Relative to the energy that an impact exchanges. A gain above it is a law that creates energy, not rounding, which is some
+1e-15 of the terms that energy is summed from."""
+
+OUT_OF_PLANE_SPEED: Final = 1e-6
+"""m/s. Motion out of the plane of a planar question that still counts as none, where no other tolerance is asked for."""
+
+OUT_OF_PLANE_RATIO: Final = 1e-2
+"""Dimensionless: the sine of the angle (0.6 degrees) by which normals, forces and principal axes may lean out of a plane of
+motion. Motion capture resolves 0.1 degrees. The planar answer is then wrong by a part in 1e4, the cosine's second order."""

@@ -1,0 +1,103 @@
+"""The world that questions are asked about: bodies with shapes, the surfaces they meet, and gravity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError, TooLargeError, UnknownBodyError
+from contact_dynamics.rigid_body import MassProperties
+from contact_dynamics.validation import FloatArray, check_array, check_not_negative, check_unit, check_within
+
+STANDARD_GRAVITY_W: Final = (0.0, 0.0, -9.80665)
+"""m/s^2, world axes, z up (REP 103); the conventional value of the third CGPM, 1901."""
+
+MOST_VERTICES: Final = 10_000
+"""Longest list of vertices accepted: above it a convex shape should be simplified, not searched."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Body:
+    """A rigid body that questions name.
+
+    Raises:
+        InvalidFieldError: a number is not finite, or an array has another shape.
+        TooLargeError: more than `MOST_VERTICES` vertices.
+    """
+
+    name: str
+    mass_properties: MassProperties
+    p_FB_F: FloatArray = field(default_factory=lambda: np.zeros(3))  # (3,), m, centre of mass in the published frame F
+    vertices_B: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))  # (k, 3), m, corners of a convex shape, body axes
+
+    def __post_init__(self) -> None:
+        """Check both arrays."""
+        object.__setattr__(self, "p_FB_F", check_array("center_of_mass", self.p_FB_F, (3,)))
+        vertices = check_array("vertices", self.vertices_B, (None, 3))
+        if len(vertices) > MOST_VERTICES:
+            raise TooLargeError("vertices", f"{len(vertices)} vertices", f"at most {MOST_VERTICES}")
+        object.__setattr__(self, "vertices_B", vertices)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Surface:
+    """A flat of the world: the free side is where its normal points.
+
+    Raises:
+        InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, or e outside [0, 1].
+    """
+
+    name: str
+    p_WS_W: FloatArray  # (3,), m, a point of the surface, world
+    normal_W: FloatArray  # (3,), unit, into the free side, world axes
+    friction: float  # Coulomb's mu, >= 0, between this surface and any body
+    restitution: float  # e, in [0, 1], likewise
+
+    def __post_init__(self) -> None:
+        """Check all fields."""
+        object.__setattr__(self, "p_WS_W", check_array("point", self.p_WS_W, (3,)))
+        object.__setattr__(self, "normal_W", check_unit("normal", self.normal_W, 3))
+        object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
+        object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
+
+    def gaps(self, p_WP_W: FloatArray) -> FloatArray:
+        """Return the heights, (...), m, of points, (..., 3), above the surface; negative below it."""
+        heights: FloatArray = (p_WP_W - self.p_WS_W) @ self.normal_W
+        return heights
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class World:
+    """Bodies by name, surfaces, and gravity.
+
+    Raises:
+        InvalidFieldError: two bodies of one name, or gravity not three finite numbers.
+    """
+
+    bodies: tuple[Body, ...] = ()
+    surfaces: tuple[Surface, ...] = ()
+    gravity_W: FloatArray = field(default_factory=lambda: np.array(STANDARD_GRAVITY_W))  # (3,), m/s^2, world axes
+
+    def __post_init__(self) -> None:
+        """Check gravity and that names are unique."""
+        object.__setattr__(self, "gravity_W", check_array("gravity", self.gravity_W, (3,)))
+        names = [body.name for body in self.bodies]
+        if len(set(names)) < len(names):
+            raise InvalidFieldError("bodies", names, "names that differ")
+
+    def body(self, name: str) -> Body:
+        """Return the body of that name, or raise `UnknownBodyError`, which lists those that are known."""
+        for body in self.bodies:
+            if body.name == name:
+                return body
+        known = ", ".join(repr(body.name) for body in self.bodies) or "none"
+        message = f"body_name: found {name!r}, allowed are the configured bodies: {known}"
+        raise UnknownBodyError(message)
+
+
+def box_vertices(size: tuple[float, float, float]) -> FloatArray:
+    """Return the 8 corners, (8, 3), m, of a box with those full side lengths, centred on the origin."""
+    signs = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+    return signs * (0.5 * check_array("size", size, (3,)))
