@@ -1,0 +1,158 @@
+"""Routh's construction of a planar impact in impulse space, in closed form (Mason, lecture 27; Routh 1860).
+
+Model: one contact with Coulomb friction; position does not change during the impact; the normal impulse p
+grows from 0 and plays the part of time. The contact's velocity is affine in the impulse (lecture 27, eq. 8),
+
+    v_t = v_t0 + a I_t + b p,        v_n = v_n0 + b I_t + c p,
+
+so the path (I_t, p) is straight while the contact slides one way or sticks, and bends at most once: where it
+meets the sticking line v_t = 0 (eq. 9) it goes on along that line if friction can hold it there, |b| <= mu a,
+and slides back if not. Compression ends on the line v_n = 0 (eq. 10). After the bend v_n always grows,
+because a c > b^2, so every path ends.
+
+Where sliding itself drives the contact into compression (c < s mu b, s the sign of v_t: the lecture's sliding
+rod, after Painleve 1895) v_n falls first; such a path always meets the sticking line, and needs no approach
+speed to begin with.
+
+One slip in the lecture: the compression impulse of an approaching particle is -m v_n, which its formulas
+write as m v_n.
+
+Everything here is plain floats in contact axes, tangent and normal; `planar` and `pair` put bodies around it,
+and `batch` repeats the same operations in the same order on arrays.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final, NamedTuple
+
+from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
+
+LARGEST_FRICTION: Final = 1e100
+"""A coefficient above it is taken as equal to it: no path differs in any digit, and mu a cannot overflow."""
+
+
+class InverseInertia(NamedTuple):
+    """The contact's response to impulse: the symmetric matrix [[a, b], [b, c]] of lecture 27, eq. 8, in
+    1/kg."""
+
+    a: float  # 1/kg, tangential velocity per tangential impulse, > 0
+    b: float  # 1/kg, either per the other
+    c: float  # 1/kg, normal velocity per normal impulse, > 0
+    det: float  # 1/kg^2, a c - b^2 > 0, formed without that subtraction
+
+
+class ImpulsePath(NamedTuple):
+    """One impulse path in contact axes. Tangential impulses belong to the normal impulse named beside
+    them."""
+
+    outcome: ImpactOutcome  # what the contact did
+    jams: bool  # whether sliding drove the contact into compression
+    p_stop: float  # N s, normal impulse at which sliding stops; infinite: never
+    t_stop: float  # N s
+    p_compression: float  # N s, normal impulse at the end of compression
+    t_compression: float  # N s
+    p_end: float  # N s, total normal impulse
+    t_end: float  # N s
+    v_t: float  # m/s, tangential velocity of the contact afterwards
+    v_n: float  # m/s, normal velocity of the contact afterwards, >= 0
+
+
+def inverse_inertia(mass: float, inertia: float, r_t: float, r_n: float) -> InverseInertia:
+    """Return the response at a contact at (r_t, r_n), m, from the centre of mass (lecture 27, eq. 8)."""
+    per_mass = 1.0 / mass
+    return InverseInertia(
+        per_mass + r_n * r_n / inertia,
+        -(r_t * r_n) / inertia,
+        per_mass + r_t * r_t / inertia,
+        per_mass * (per_mass + (r_t * r_t + r_n * r_n) / inertia),
+    )
+
+
+def impulse_path(
+    v_t: float, v_n: float, response: InverseInertia, friction: float, restitution: float, law: RestitutionLaw
+) -> ImpulsePath:
+    """Return the path of a contact that starts at (``v_t``, ``v_n``), m/s, with ``v_n`` <= 0.
+
+    An exact 0 means a contact that does not slide or does not approach; tolerances are the caller's.
+    """
+    a, b, c, det = response
+    mu = friction if friction < LARGEST_FRICTION else LARGEST_FRICTION
+    holds = abs(b) <= mu * a
+    if v_t == 0.0 and holds:
+        s, p_stop = 0.0, 0.0
+    else:
+        s = math.copysign(1.0, b if v_t == 0.0 else v_t)
+        slowing = mu * a - s * b
+        p_stop = abs(v_t) / slowing if slowing > 0.0 else math.inf
+    rate_1 = c - s * mu * b
+    jams = s != 0.0 and rate_1 < 0.0
+    if v_n == 0.0 and not jams:
+        return ImpulsePath(ImpactOutcome.NO_IMPULSE, False, math.inf, 0.0, 0.0, 0.0, 0.0, 0.0, v_t, 0.0)
+
+    # After the stop: the rate of v_n, and v_n at the stop.
+    rate_2 = det / a if holds else c + s * mu * b
+    v_stop = v_n + rate_1 * p_stop if p_stop < math.inf else math.inf
+    stops_early = v_stop <= 0.0
+    if stops_early:
+        p_c = p_stop - v_stop / rate_2
+        rate = rate_2
+    else:
+        p_c = -v_n / rate_1
+        rate = rate_1
+
+    # The end, if the path does not bend during restitution.
+    taken = 0.0
+    if law == RestitutionLaw.POISSON:
+        gain = restitution * p_c
+        v_end = rate * gain
+    elif law == RestitutionLaw.NEWTON:
+        v_end = restitution * -v_n
+        gain = v_end / rate
+    else:
+        # Twice the work that compression took: the area under the path of v_n over p.
+        taken = -(v_n + v_stop) * p_stop - v_stop * (p_c - p_stop) if stops_early else -v_n * p_c
+        gain = restitution * math.sqrt(taken / rate)
+        v_end = rate * gain
+    p_end = p_c + gain
+
+    stops_late = not stops_early and p_end > p_stop
+    if stops_late:
+        if law == RestitutionLaw.POISSON:
+            v_end = v_stop + rate_2 * (p_end - p_stop)
+        elif law == RestitutionLaw.NEWTON:
+            p_end = p_stop + (v_end - v_stop) / rate_2
+        else:
+            rest = restitution * restitution * taken - v_stop * (p_stop - p_c)
+            after = rest / (v_stop + math.sqrt(v_stop * v_stop + rate_2 * rest))
+            p_end = p_stop + after
+            v_end = v_stop + rate_2 * after
+
+    # The tangential impulse: on the cone's edge, on the sticking line, or on the way back.
+    s_mu = s * mu
+    t_stop = 0.0
+    t_c = -s_mu * p_c
+    t_end = -s_mu * p_end
+    v_t_end = v_t + a * t_end + b * p_end
+    if stops_early or stops_late:
+        t_stop = -s_mu * p_stop
+        if holds:
+            t_end = -(v_t + b * p_end) / a
+            v_t_end = 0.0
+            if stops_early:
+                t_c = -(v_t + b * p_c) / a
+        else:
+            t_end = s_mu * (p_end - p_stop - p_stop)
+            v_t_end = v_t + a * t_end + b * p_end
+            if stops_early:
+                t_c = s_mu * (p_c - p_stop - p_stop)
+
+    if s == 0.0:
+        outcome = ImpactOutcome.STICKS_THROUGHOUT
+    elif stops_early:
+        outcome = ImpactOutcome.STICKS_IN_COMPRESSION if holds else ImpactOutcome.REVERSES_IN_COMPRESSION
+    elif stops_late:
+        outcome = ImpactOutcome.STICKS_IN_RESTITUTION if holds else ImpactOutcome.REVERSES_IN_RESTITUTION
+    else:
+        outcome = ImpactOutcome.SLIDES
+    return ImpulsePath(outcome, jams, p_stop, t_stop, p_c, t_c, p_end, t_end, v_t_end, v_end)
