@@ -1,0 +1,191 @@
+"""The server's parameters: each declared once, with its description and range, and read into domain types.
+
+The commented file `config/server.yaml` is what a user edits; a test holds the two together.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
+from rclpy.exceptions import ParameterUninitializedException
+from rclpy.parameter import Parameter
+
+from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
+from contact_dynamics.rigid_body import MassProperties
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE, OUT_OF_PLANE_SPEED, VELOCITY_TOLERANCE
+from contact_dynamics.world import STANDARD_GRAVITY_W, Body, Surface, World, box_vertices
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+T = TypeVar("T")
+
+
+class ConfigurationError(ContactDynamicsError):
+    """A parameter is missing or not allowed; the message names it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StateTopics:
+    """Where a body's states are published: one Odometry topic, or a pose and a twist topic."""
+
+    body_name: str
+    odometry: str  # topic of nav_msgs/Odometry; empty: the other two
+    pose: str  # topic of geometry_msgs/PoseStamped
+    twist: str  # topic of geometry_msgs/TwistStamped
+    frame: str  # the body's frame
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ServerParameters:
+    """All that configures the server."""
+
+    world: World
+    topics: tuple[StateTopics, ...]
+    world_frame: str
+    state_timeout: float  # s
+    state_history: float  # s
+    velocity_tolerance: float  # m/s
+    distance_tolerance: float  # m
+    out_of_plane_tolerance: float  # m/s
+    horizon: float  # s
+    rate: float  # Hz
+    log: bool
+    log_directory: str
+
+
+def read_server_parameters(node: Node) -> ServerParameters:
+    """Declare and read every parameter.
+
+    Raises:
+        ConfigurationError: a parameter is missing, has another type, or a value that is not allowed; it is named.
+    """
+    reader = _Reader(node)
+    body_names = reader.read("bodies", [""], "Names of the bodies that questions can name.")
+    surface_names = reader.read("surfaces", [""], "Names of the flats of the world.")
+    bodies = [_read_body(reader, name) for name in body_names if name]
+    gravity = reader.read("gravity", list(STANDARD_GRAVITY_W), "Acceleration of gravity, m/s^2, world axes: x, y, z.")
+    return ServerParameters(
+        world=reader.build(
+            "gravity",
+            lambda: World(
+                bodies=tuple(body for body, _ in bodies),
+                surfaces=tuple(_read_surface(reader, name) for name in surface_names if name),
+                gravity_W=np.array(gravity),
+            ),
+        ),
+        topics=tuple(topics for _, topics in bodies),
+        world_frame=reader.read("world_frame", "world", "Frame that states are published in and answers are given in."),
+        state_timeout=reader.read(
+            "state_timeout", 0.5, "Oldest newest state, s, that a question about now is answered with.", (1e-3, 1e6)
+        ),
+        state_history=reader.read("state_history", 5.0, "How long states are kept for questions about the past, s.", (0.0, 1e4)),
+        velocity_tolerance=reader.read(
+            "velocity_tolerance", VELOCITY_TOLERANCE, "Speed below which a contact counts as at rest, m/s.", (0.0, 1e3)
+        ),
+        distance_tolerance=reader.read(
+            "distance_tolerance", DISTANCE_TOLERANCE, "Gap below which a vertex counts as touching, m.", (0.0, 1e3)
+        ),
+        out_of_plane_tolerance=reader.read(
+            "out_of_plane_tolerance", OUT_OF_PLANE_SPEED, "Motion out of the plane that still counts as planar, m/s.", (0.0, 1e3)
+        ),
+        horizon=reader.read("horizon", 2.0, "How far ahead a first contact is looked for, s.", (0.0, 1e4)),
+        rate=reader.read("rate", 100.0, "Samples a second of trajectories, Hz.", (1e-6, 1e6)),
+        log=reader.read("log", default=True, description="Log every state, request and response to MCAP."),
+        log_directory=reader.read("log_directory", "", "Folder to put the log's folder into. Empty: where the server starts."),
+    )
+
+
+def _read_body(reader: _Reader, name: str) -> tuple[Body, StateTopics]:
+    key = f"body.{name}"
+    mass = reader.read(f"{key}.mass", Parameter.Type.DOUBLE, "Mass, kg.")
+    inertia = reader.read(
+        f"{key}.inertia",
+        Parameter.Type.DOUBLE_ARRAY,
+        "Angular inertia about the centre of mass, kg m^2, in the axes of the body's frame: ixx, iyy, izz, ixy, ixz, iyz.",
+    )
+    if len(inertia) != 6:
+        message = f"{key}.inertia: found {len(inertia)} numbers, allowed are 6: ixx, iyy, izz, ixy, ixz, iyz"
+        raise ConfigurationError(message)
+    ixx, iyy, izz, ixy, ixz, iyz = inertia
+    center_of_mass = np.array(
+        reader.read(f"{key}.center_of_mass", [0.0, 0.0, 0.0], "Centre of mass in the body's frame, m: x, y, z.")
+    )
+    box = reader.read(f"{key}.box", [0.0], "Full side lengths of a box centred on the body's frame, m: x, y, z.")
+    corners = reader.read(
+        f"{key}.vertices", [0.0], "Corners of a convex shape in the body's frame, m: x, y, z of one after the other."
+    )
+    vertices_F = np.zeros((0, 3))
+    if len(box) == 3:
+        vertices_F = reader.build(f"{key}.box", lambda: box_vertices(tuple(box)))
+    elif len(corners) >= 3 and len(corners) % 3 == 0:
+        vertices_F = np.array(corners).reshape(-1, 3)
+    elif len(box) > 1 or len(corners) > 1:
+        field, found = ("box", box) if len(box) > 1 else ("vertices", corners)
+        message = f"{key}.{field}: found {len(found)} numbers, allowed are three for the box, or three for each vertex"
+        raise ConfigurationError(message)
+    body = reader.build(
+        key,
+        lambda: Body(
+            name=name,
+            mass_properties=MassProperties(mass=mass, I_B=np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])),
+            p_FB_F=center_of_mass,
+            vertices_B=vertices_F - center_of_mass,
+        ),
+    )
+    topics = StateTopics(
+        body_name=name,
+        odometry=reader.read(f"{key}.odometry_topic", "", "Topic of the body's states as nav_msgs/Odometry. Empty: not used."),
+        pose=reader.read(f"{key}.pose_topic", "", "Topic of the body's geometry_msgs/PoseStamped. Empty: not used."),
+        twist=reader.read(f"{key}.twist_topic", "", "Topic of the body's geometry_msgs/TwistStamped. Empty: not used."),
+        frame=reader.read(f"{key}.frame", name, "Frame of the body, which the pose is of."),
+    )
+    if bool(topics.pose) != bool(topics.twist):
+        message = f"{key}.pose_topic and {key}.twist_topic: found one of them, allowed are both or none"
+        raise ConfigurationError(message)
+    return body, topics
+
+
+def _read_surface(reader: _Reader, name: str) -> Surface:
+    key = f"surface.{name}"
+    point = reader.read(f"{key}.point", [0.0, 0.0, 0.0], "A point of the surface, m, world: x, y, z.")
+    normal = reader.read(f"{key}.normal", [0.0, 0.0, 1.0], "Unit normal into the free side, world axes: x, y, z.")
+    friction = reader.read(f"{key}.friction", Parameter.Type.DOUBLE, "Coulomb's friction coefficient with any body, >= 0.")
+    restitution = reader.read(f"{key}.restitution", Parameter.Type.DOUBLE, "Coefficient of restitution with any body, 0 to 1.")
+    return reader.build(
+        key,
+        lambda: Surface(
+            name=name, p_WS_W=np.array(point), normal_W=np.array(normal), friction=friction, restitution=restitution
+        ),
+    )
+
+
+class _Reader:
+    """Declares a parameter and returns its value; turns whatever is wrong into a `ConfigurationError` that names it."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+
+    def read(self, name: str, default: Any, description: str, bounds: tuple[float, float] | None = None) -> Any:
+        """Return the value of a read-only parameter; a `Parameter.Type` in place of the default makes it mandatory."""
+        ranges = [FloatingPointRange(from_value=bounds[0], to_value=bounds[1])] if bounds else []
+        descriptor = ParameterDescriptor(description=description, read_only=True, floating_point_range=ranges)
+        try:
+            return self._node.declare_parameter(name, default, descriptor).value
+        except ParameterUninitializedException:
+            message = f"{name}: found nothing, needed is: {description}"
+        except Exception as error:  # noqa: BLE001  rclpy raises several unrelated types for a wrong type or range
+            message = f"{name}: {error} ({description})"
+        raise ConfigurationError(message)
+
+    @staticmethod
+    def build(name: str, make: Any) -> Any:
+        """Return what ``make`` builds; what it refuses is reported under the parameter's name."""
+        try:
+            return make()
+        except InvalidFieldError as error:
+            message = f"{name}.{error}"
+            raise ConfigurationError(message) from None

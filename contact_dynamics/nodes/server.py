@@ -1,0 +1,135 @@
+"""The server: one process with the three services, one store of states, and the log.
+
+It watches published states and answers `~/predict_contact_mode`, `~/predict_impact` and `~/predict_tumbling`. Drawing happens
+in another process (`visualizer`), which listens to the service events that this node publishes.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+import traceback
+from typing import TYPE_CHECKING, Any
+
+import rclpy
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from rclpy.experimental import EventsExecutor
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from rclpy.service_introspection import ServiceIntrospectionState
+
+from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.nodes.log import Log, new_log_folder
+from contact_dynamics.nodes.parameters import ConfigurationError, read_server_parameters
+from contact_dynamics.nodes.predict_contact_mode import predict_contact_mode
+from contact_dynamics.nodes.predict_impact import predict_impact
+from contact_dynamics.nodes.predict_tumbling import predict_tumbling
+from contact_dynamics.nodes.state_store import StateStore
+from contact_dynamics.nodes.state_subscriptions import STATE_QOS, subscribe_to_states
+from contact_dynamics.nodes.subject import Knowledge
+from msg_adapters.status import report_error
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+NODE_NAME = "contact_dynamics"
+EVENT_QOS = QoSProfile(depth=1000)
+"""Of the service events. Deep, because the log must lose none while a long answer keeps this process busy."""
+
+SERVICE_QOS = QoSProfile(depth=1000)
+"""Of the services. With the usual depth of 10, replies get lost when several clients ask at once."""
+
+_SPIN_S = 0.1
+_SERVICES = (
+    (PredictContactMode, "PredictContactMode", "predict_contact_mode", predict_contact_mode),
+    (PredictImpact, "PredictImpact", "predict_impact", predict_impact),
+    (PredictTumbling, "PredictTumbling", "predict_tumbling", predict_tumbling),
+)
+
+
+class Server(Node):
+    """The node `contact_dynamics`."""
+
+    def __init__(self, **node_options: Any) -> None:
+        """Read the parameters, begin the log, subscribe and serve.
+
+        Raises:
+            ConfigurationError: a parameter is missing or not allowed.
+        """
+        super().__init__(NODE_NAME, **node_options)
+        parameters = read_server_parameters(self)
+        states = StateStore(history=parameters.state_history, timeout=parameters.state_timeout)
+        self._knowledge = Knowledge(
+            parameters=parameters, states=states, now_ns=lambda: self.get_clock().now().nanoseconds
+        )
+        folder = new_log_folder(parameters.log_directory) if parameters.log else None
+        self._log = Log(folder, run=self._run_description(), on_problem=self.get_logger().error)
+        for topics in parameters.topics:
+            types = subscribe_to_states(
+                self,
+                topics,
+                world_frame=parameters.world_frame,
+                p_FB_F=parameters.world.body(topics.body_name).p_FB_F,
+                states=states,
+                record=self._log.record,
+            )
+            for topic, type_name in types.items():
+                self._log.add_topic(topic, type_name, STATE_QOS)
+        for service_type, type_name, name, answer in _SERVICES:
+            self._serve(service_type, type_name, name, answer)
+        self._log.start()
+        bodies = ", ".join(body.name for body in parameters.world.bodies) or "none"
+        self.get_logger().info(f"ready: bodies {bodies}; log {folder or 'off'}")
+
+    def close(self) -> None:
+        """Finish the log and say where it is."""
+        print(f"[{NODE_NAME}] {self._log.close()}", flush=True)
+
+    def _serve(self, service_type: type[Any], type_name: str, name: str, answer: Callable[..., None]) -> None:
+        def handle(request: Any, response: Any) -> Any:
+            start = time.perf_counter()
+            try:
+                answer(request, response, self._knowledge)
+            except ContactDynamicsError as error:
+                response = service_type.Response()
+                report_error(response, error)
+            except Exception as error:  # noqa: BLE001  a fault in one answer must not end the service
+                self.get_logger().error(f"{name} failed:\n{traceback.format_exc()}")
+                response = service_type.Response()
+                report_error(response, error)
+            response.computation_time = time.perf_counter() - start
+            return response
+
+        service = self.create_service(service_type, f"~/{name}", handle, qos_profile=SERVICE_QOS)
+        service.configure_introspection(self.get_clock(), EVENT_QOS, ServiceIntrospectionState.CONTENTS)
+        events = f"{service.service_name}/_service_event"
+        self._log.add_topic(events, f"contact_dynamics_interfaces/srv/{type_name}_Event", EVENT_QOS)
+        self.create_subscription(
+            service_type.Event, events, lambda data: self._log.record(events, data), EVENT_QOS, raw=True
+        )
+
+    def _run_description(self) -> dict[str, str]:
+        names = sorted(self._parameters)
+        return {name: str(self._parameters[name].value) for name in names}
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the server until it is told to stop; return the exit code."""
+    rclpy.init(args=args)
+    try:
+        server = Server()
+    except (ConfigurationError, OSError) as error:
+        print(f"[{NODE_NAME}] configuration: {error}", file=sys.stderr, flush=True)
+        rclpy.try_shutdown()
+        return 2
+    executor = EventsExecutor()
+    executor.add_node(server)
+    try:
+        while rclpy.ok():
+            executor.spin_once(timeout_sec=_SPIN_S)
+    except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
+        pass
+    finally:
+        server.close()
+        rclpy.try_shutdown()
+    return 0

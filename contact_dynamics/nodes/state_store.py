@@ -1,0 +1,73 @@
+"""The published states of each body, newest last, for as long as questions about the past are answered."""
+
+from __future__ import annotations
+
+from bisect import bisect_right, insort
+from typing import TYPE_CHECKING
+
+from contact_dynamics.errors import NoStateError, StaleStateError
+
+if TYPE_CHECKING:
+    from contact_dynamics.rigid_body import BodyState
+
+_NS_PER_S = 1e9
+
+
+class StateStore:
+    """States by body, sorted by their stamps; older ones than the history are dropped as new ones come."""
+
+    def __init__(self, *, history: float, timeout: float) -> None:
+        """Keep ``history`` seconds of states; refuse one that is older than ``timeout`` seconds when asked about now."""
+        self._history_ns = round(history * _NS_PER_S)
+        self._timeout_ns = round(timeout * _NS_PER_S)
+        self._states: dict[str, list[BodyState]] = {}
+
+    def add(self, body_name: str, state: BodyState) -> None:
+        """Keep a state."""
+        states = self._states.setdefault(body_name, [])
+        insort(states, state, key=_stamp)
+        oldest = states[-1].stamp_ns - self._history_ns
+        if states[0].stamp_ns < oldest:
+            del states[: bisect_right(states, oldest - 1, key=_stamp)]
+
+    def newest(self, body_name: str, *, now_ns: int) -> BodyState:
+        """Return the newest state.
+
+        Raises:
+            NoStateError: none was published yet.
+            StaleStateError: it is older than the timeout.
+        """
+        states = self._states.get(body_name)
+        if not states:
+            message = f"state of {body_name!r}: none was published yet"
+            raise NoStateError(message)
+        return self._fresh(body_name, states[-1], now_ns)
+
+    def at(self, body_name: str, stamp_ns: int) -> BodyState:
+        """Return the newest state with at most that stamp.
+
+        Raises:
+            NoStateError: none that old is kept.
+            StaleStateError: it is older than ``stamp_ns`` by more than the timeout.
+        """
+        states = self._states.get(body_name, [])
+        index = bisect_right(states, stamp_ns, key=_stamp)
+        if index == 0:
+            kept = f"the oldest kept has {states[0].stamp_ns} ns" if states else "none was published yet"
+            message = f"state of {body_name!r} at {stamp_ns} ns: {kept}"
+            raise NoStateError(message)
+        return self._fresh(body_name, states[index - 1], stamp_ns)
+
+    def _fresh(self, body_name: str, state: BodyState, asked_ns: int) -> BodyState:
+        age_ns = asked_ns - state.stamp_ns
+        if age_ns > self._timeout_ns:
+            message = (
+                f"state of {body_name!r}: the newest is {age_ns / _NS_PER_S:.3f} s old, "
+                f"allowed is at most {self._timeout_ns / _NS_PER_S:g} s (parameter state_timeout)"
+            )
+            raise StaleStateError(message)
+        return state
+
+
+def _stamp(state: BodyState) -> int:
+    return state.stamp_ns

@@ -1,0 +1,155 @@
+"""What a request is about: the body, its state and its contacts, as the request says or as the server knows them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from contact_dynamics.contact_geometry import find_contacts
+from contact_dynamics.errors import InvalidFieldError, NoContactError, TooLargeError
+from contact_dynamics.validation import check_not_negative
+from contact_dynamics.world import Body
+from msg_adapters.body_state import body_state_from_msg, body_state_to_msg
+from msg_adapters.contacts import contacts_from_msg
+from msg_adapters.frames import origin_of_published_frame, state_of_center_of_mass, velocity_of_published_frame
+from msg_adapters.geometry import mass_properties_from_msg
+from msg_adapters.stamps import stamp_ns_from_msg
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
+    from geometry_msgs.msg import Inertia
+
+    from contact_dynamics.contact import ContactSet
+    from contact_dynamics.nodes.parameters import ServerParameters
+    from contact_dynamics.nodes.state_store import StateStore
+    from contact_dynamics.rigid_body import BodyState
+
+_LONGEST_NAME = 256
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Knowledge:
+    """What the server knows when it is asked."""
+
+    parameters: ServerParameters
+    states: StateStore
+    now_ns: Callable[[], int]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Subject:
+    """The body that a question is about, with the mass properties and the state that were taken."""
+
+    body: Body
+    state: BodyState
+    world_frame: str
+
+    def state_to_msg(self, state: BodyState) -> BodyStateMsg:
+        """Return a state of this body as a message."""
+        return body_state_to_msg(state, body_name=self.body.name, world_frame=self.world_frame, p_FB_F=self.body.p_FB_F)
+
+
+def subject_of(request: Any, knowledge: Knowledge) -> Subject:
+    """Return the body and the state that a request of any of the three services names or carries.
+
+    Raises:
+        ContactDynamicsError: the body is unknown, its state unknown or stale, or a number not allowed.
+    """
+    parameters = knowledge.parameters
+    body = _body_of(request.body_name, request.inertia, knowledge)
+    if request.state_source == request.STATE_EXPLICIT:
+        state = body_state_from_msg(request.state, world_frame=parameters.world_frame, p_FB_F=body.p_FB_F)
+    elif request.state_source == request.STATE_PUBLISHED:
+        if not request.body_name:
+            raise InvalidFieldError("body_name", request.body_name, "the name of a configured body, or an explicit state")
+        state = _published_state(request, knowledge)
+        configured = parameters.world.body(request.body_name)
+        if body is not configured:
+            state = _carried_over(state, configured, body)
+    else:
+        raise InvalidFieldError("state_source", request.state_source, "STATE_PUBLISHED (0) or STATE_EXPLICIT (1)")
+    return Subject(body=body, state=state, world_frame=parameters.world_frame)
+
+
+def contacts_of(request: Any, subject: Subject, knowledge: Knowledge) -> ContactSet:
+    """Return the contacts that a request carries, or those that geometry finds.
+
+    Raises:
+        ContactDynamicsError: nothing touches, or a number is not allowed.
+    """
+    if request.contact_source == request.CONTACTS_EXPLICIT:
+        contacts = contacts_from_msg(request.contacts)
+        if len(contacts) == 0:
+            message = "contacts: found none, allowed is at least one"
+            raise NoContactError(message)
+        return contacts
+    if request.contact_source != request.CONTACTS_FROM_GEOMETRY:
+        raise InvalidFieldError(
+            "contact_source", request.contact_source, "CONTACTS_FROM_GEOMETRY (0) or CONTACTS_EXPLICIT (1)"
+        )
+    check_has_shape(subject.body)
+    tolerance = distance_tolerance_of(request, knowledge)
+    contacts = find_contacts(
+        subject.body, subject.state, knowledge.parameters.world.surfaces, distance_tolerance=tolerance
+    )
+    if len(contacts) == 0:
+        message = f"contacts: no vertex of {subject.body.name!r} is within {tolerance:g} m of a surface"
+        raise NoContactError(message)
+    return contacts
+
+
+def check_has_shape(body: Body) -> None:
+    """Raise `NoContactError` where a body has no vertices that could touch anything."""
+    if len(body.vertices_B) == 0:
+        message = f"contacts: body {body.name!r} has no shape to find them from, allowed are explicit contacts"
+        raise NoContactError(message)
+
+
+def distance_tolerance_of(request: Any, knowledge: Knowledge) -> float:
+    """Return the request's distance tolerance, m, or the configured one where it is zero."""
+    return or_configured("distance_tolerance", request.distance_tolerance, knowledge.parameters.distance_tolerance)
+
+
+def velocity_tolerance_of(request: Any, knowledge: Knowledge) -> float:
+    """Return the request's velocity tolerance, m/s, or the configured one where it is zero."""
+    return or_configured("velocity_tolerance", request.velocity_tolerance, knowledge.parameters.velocity_tolerance)
+
+
+def or_configured(field: str, asked: float, configured: float) -> float:
+    """Return what a request asks for, or what is configured where that is zero; negative or NaN raises."""
+    return check_not_negative(field, asked) or configured
+
+
+def _body_of(name: str, inertia: Inertia, knowledge: Knowledge) -> Body:
+    if len(name) > _LONGEST_NAME:
+        raise TooLargeError("body_name", f"{len(name)} characters", f"at most {_LONGEST_NAME}")
+    if not name and inertia.m == 0.0:
+        raise InvalidFieldError("body_name", name, "the name of a configured body, or an inertia of mass > 0")
+    configured = knowledge.parameters.world.body(name) if name else None
+    if configured is not None and inertia.m == 0.0:
+        return configured
+    mass_properties, p_FB_F = mass_properties_from_msg(inertia)
+    vertices_F = configured.vertices_B + configured.p_FB_F if configured is not None else np.zeros((0, 3))
+    return Body(name=name, mass_properties=mass_properties, p_FB_F=p_FB_F, vertices_B=vertices_F - p_FB_F)
+
+
+def _published_state(request: Any, knowledge: Knowledge) -> BodyState:
+    stamp_ns = stamp_ns_from_msg(request.stamp)
+    if stamp_ns == 0:
+        return knowledge.states.newest(request.body_name, now_ns=knowledge.now_ns())
+    return knowledge.states.at(request.body_name, stamp_ns)
+
+
+def _carried_over(state: BodyState, configured: Body, body: Body) -> BodyState:
+    return state_of_center_of_mass(
+        p_WF_W=origin_of_published_frame(state, configured.p_FB_F),
+        q_WF=state.q_WB,
+        v_WF_W=velocity_of_published_frame(state, configured.p_FB_F),
+        w_WF_W=state.w_WB_W,
+        p_FB_F=body.p_FB_F,
+        stamp_ns=state.stamp_ns,
+    )

@@ -1,0 +1,53 @@
+"""`contact_dynamics_interfaces/BodyState` to a body's state and back.
+
+The message's pose is that of the published frame, its velocity that of the centre of mass, both in the world's axes.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
+
+from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.rigid_body import BodyState, rotation_matrix
+from contact_dynamics.validation import check_unit
+from msg_adapters.frames import check_frame, origin_of_published_frame
+from msg_adapters.geometry import pose_to_msg, quaternion_from_msg, vector_from_msg, vector_to_msg
+from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
+
+if TYPE_CHECKING:
+    from contact_dynamics.validation import FloatArray
+
+
+def body_state_from_msg(msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArray) -> BodyState:
+    """Return the state of the body whose centre of mass is at ``p_FB_F``, (3,), m, in its published frame.
+
+    Raises:
+        FrameMismatchError: `header.frame_id` is neither empty nor the world frame.
+        InvalidFieldError: a number is not finite, or the quaternion is not unit.
+        NotSupportedError: the state has a covariance, which nothing uses yet.
+    """
+    check_frame("state.header.frame_id", msg.header.frame_id or world_frame, world_frame)
+    if len(msg.covariance) > 0:
+        message = "state.covariance: found numbers, allowed is none: covariances are not used in this version"
+        raise NotSupportedError(message)
+    q_WB = check_unit("state.pose.orientation", quaternion_from_msg(msg.pose.orientation), 4)
+    return BodyState(
+        p_WB_W=vector_from_msg(msg.pose.position) + rotation_matrix(q_WB) @ p_FB_F,
+        q_WB=q_WB,
+        v_WB_W=vector_from_msg(msg.linear_velocity),
+        w_WB_W=vector_from_msg(msg.angular_velocity),
+        stamp_ns=stamp_ns_from_msg(msg.header.stamp),
+    )
+
+
+def body_state_to_msg(state: BodyState, *, body_name: str, world_frame: str, p_FB_F: FloatArray) -> BodyStateMsg:
+    """Return the state as a message."""
+    msg = BodyStateMsg(body_name=body_name)
+    msg.header.stamp = stamp_to_msg(state.stamp_ns)
+    msg.header.frame_id = world_frame
+    msg.pose = pose_to_msg(origin_of_published_frame(state, p_FB_F), state.q_WB)
+    msg.linear_velocity = vector_to_msg(state.v_WB_W)
+    msg.angular_velocity = vector_to_msg(state.w_WB_W)
+    return msg

@@ -1,0 +1,51 @@
+"""Between the frame that is published and the one the physics uses.
+
+F is the body's published frame, B the physics' one: same axes, origin at the centre of mass. W is the world. The published
+point moves with F's origin, so that a velocity must be carried over to the centre of mass: v_B = v_F + w x p_FB.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.errors import FrameMismatchError
+from contact_dynamics.rigid_body import BodyState, rotation_matrix
+from contact_dynamics.validation import check_unit
+
+if TYPE_CHECKING:
+    from contact_dynamics.validation import FloatArray
+
+
+def check_frame(field: str, found: str, expected: str) -> None:
+    """Raise `FrameMismatchError` where a message's frame is not the one expected."""
+    if found != expected:
+        message = f"{field}: found {found!r}, allowed is {expected!r}"
+        raise FrameMismatchError(message)
+
+
+def state_of_center_of_mass(
+    *, p_WF_W: FloatArray, q_WF: FloatArray, v_WF_W: FloatArray, w_WF_W: FloatArray, p_FB_F: FloatArray, stamp_ns: int
+) -> BodyState:
+    """Return the state of B from pose and velocity of F's origin, all in world axes.
+
+    Raises:
+        InvalidFieldError: a number is not finite, or the quaternion is not unit.
+    """
+    q_WB = check_unit("orientation", q_WF, 4)
+    p_FB_W = rotation_matrix(q_WB) @ p_FB_F
+    return BodyState(
+        p_WB_W=p_WF_W + p_FB_W, q_WB=q_WB, v_WB_W=v_WF_W + np.cross(w_WF_W, p_FB_W), w_WB_W=w_WF_W, stamp_ns=stamp_ns
+    )
+
+
+def origin_of_published_frame(state: BodyState, p_FB_F: FloatArray) -> FloatArray:
+    """Return the position of F's origin, (3,), m, world."""
+    origin: FloatArray = state.p_WB_W - state.R_WB @ p_FB_F
+    return origin
+
+
+def velocity_of_published_frame(state: BodyState, p_FB_F: FloatArray) -> FloatArray:
+    """Return the velocity of F's origin, (3,), m/s, world axes."""
+    return state.velocity_of_point(origin_of_published_frame(state, p_FB_F))

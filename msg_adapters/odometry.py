@@ -1,0 +1,60 @@
+"""`nav_msgs/Odometry` to a body's state and back.
+
+The pose is that of the child frame in `header.frame_id`; the twist is in the child frame's axes and at its origin (REP 105 and
+the message's own comment). Covariances are not read: nothing uses them yet.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from nav_msgs.msg import Odometry
+
+from contact_dynamics.rigid_body import rotation_matrix
+from contact_dynamics.validation import check_unit
+from msg_adapters.frames import (
+    check_frame,
+    origin_of_published_frame,
+    state_of_center_of_mass,
+    velocity_of_published_frame,
+)
+from msg_adapters.geometry import pose_to_msg, quaternion_from_msg, vector_from_msg, vector_to_msg
+from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
+
+if TYPE_CHECKING:
+    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.validation import FloatArray
+
+
+def body_state_from_odometry(msg: Odometry, *, world_frame: str, p_FB_F: FloatArray) -> BodyState:
+    """Return the state of the body whose centre of mass is at ``p_FB_F``, (3,), m, in the child frame.
+
+    Raises:
+        FrameMismatchError: `header.frame_id` is not the world frame.
+        InvalidFieldError: a number is not finite, or the quaternion is not unit.
+    """
+    check_frame("header.frame_id", msg.header.frame_id, world_frame)
+    q_WF = check_unit("pose.pose.orientation", quaternion_from_msg(msg.pose.pose.orientation), 4)
+    R_WF = rotation_matrix(q_WF)
+    return state_of_center_of_mass(
+        p_WF_W=vector_from_msg(msg.pose.pose.position),
+        q_WF=q_WF,
+        v_WF_W=R_WF @ vector_from_msg(msg.twist.twist.linear),
+        w_WF_W=R_WF @ vector_from_msg(msg.twist.twist.angular),
+        p_FB_F=p_FB_F,
+        stamp_ns=stamp_ns_from_msg(msg.header.stamp),
+    )
+
+
+def odometry_from_body_state(state: BodyState, *, world_frame: str, child_frame: str, p_FB_F: FloatArray) -> Odometry:
+    """Return the state as a message: the twist in the child frame, at its origin."""
+    R_FW = state.R_WB.T
+    msg = Odometry(child_frame_id=child_frame)
+    msg.header.stamp = stamp_to_msg(state.stamp_ns)
+    msg.header.frame_id = world_frame
+    msg.pose.pose = pose_to_msg(origin_of_published_frame(state, p_FB_F), state.q_WB)
+    msg.twist.twist.linear = vector_to_msg(R_FW @ velocity_of_published_frame(state, p_FB_F))
+    msg.twist.twist.angular = vector_to_msg(R_FW @ state.w_WB_W)
+    return msg
+
+

@@ -1,0 +1,30 @@
+"""Time at the border: `builtin_interfaces/Time` and int nanoseconds, never float seconds (which lose 21 ns of today's date)."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from builtin_interfaces.msg import Time
+
+NS_PER_S: Final = 1_000_000_000
+
+
+def stamp_ns_from_msg(msg: Time) -> int:
+    """Return a stamp in ns."""
+    return int(msg.sec) * NS_PER_S + int(msg.nanosec)
+
+
+def stamp_to_msg(stamp_ns: int) -> Time:
+    """Return a stamp in ns as a message."""
+    sec, nanosec = divmod(int(stamp_ns), NS_PER_S)
+    return Time(sec=sec, nanosec=nanosec)
+
+
+def seconds_between(earlier_ns: int, later_ns: int) -> float:
+    """Return the duration in s between two stamps in ns."""
+    return (later_ns - earlier_ns) / NS_PER_S
+
+
+def ns_after(stamp_ns: int, seconds: float) -> int:
+    """Return the stamp, ns, that is a duration in s after another, to the nearest ns."""
+    return stamp_ns + round(seconds * NS_PER_S)

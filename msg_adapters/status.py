@@ -1,0 +1,40 @@
+"""Errors to the status codes of the services: one meaning at one offset within each service's own range."""
+
+from __future__ import annotations
+
+from typing import Final, Protocol
+
+from contact_dynamics import errors
+
+_CODE_NAMES: Final[tuple[tuple[type[errors.ContactDynamicsError], str], ...]] = (
+    # Subclasses before the classes that they refine.
+    (errors.TooLargeError, "TOO_LARGE"),
+    (errors.OutOfPlaneError, "OUT_OF_PLANE"),
+    (errors.SeparatingContactError, "SEPARATING"),
+    (errors.InvalidFieldError, "INVALID_FIELD"),
+    (errors.NoContactError, "NO_CONTACT"),
+    (errors.UnknownBodyError, "UNKNOWN_BODY"),
+    (errors.NoStateError, "NO_STATE"),
+    (errors.StaleStateError, "STALE_STATE"),
+    (errors.FrameMismatchError, "FRAME_MISMATCH"),
+    (errors.NotSupportedError, "NOT_SUPPORTED"),
+)
+
+
+class Response(Protocol):
+    """What every response has."""
+
+    status: int
+    message: str
+
+
+def report_error(response: Response, error: Exception) -> None:
+    """Write an error into a response: its code, and a message that says what was found and what is allowed."""
+    for error_type, code_name in _CODE_NAMES:
+        code = getattr(response, code_name, None)
+        if isinstance(error, error_type) and code is not None:
+            response.status = code
+            response.message = str(error)
+            return
+    response.status = response.INTERNAL_ERROR  # type: ignore[attr-defined]
+    response.message = f"{type(error).__name__}: {error}"

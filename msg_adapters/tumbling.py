@@ -1,0 +1,29 @@
+"""Trajectories and Poinsot's picture to messages."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
+
+from msg_adapters.contacts import flat
+from msg_adapters.stamps import stamp_to_msg
+
+if TYPE_CHECKING:
+    from contact_dynamics.tumbling import Trajectory
+    from contact_dynamics.validation import FloatArray
+
+
+def trajectory_to_msg(
+    trajectory: Trajectory, *, stamp_ns: int, world_frame: str, p_FB_F: FloatArray
+) -> TrajectoryMsg:
+    """Return a trajectory, whose times count from ``stamp_ns``, with positions of the published frame F."""
+    msg = TrajectoryMsg()
+    msg.header.stamp = stamp_to_msg(stamp_ns)
+    msg.header.frame_id = world_frame
+    msg.times = flat(trajectory.times)
+    msg.positions = flat(trajectory.origin_positions(p_FB_F))
+    msg.orientations = flat(trajectory.q_WB)
+    msg.linear_velocities = flat(trajectory.v_WB_W)
+    msg.angular_velocities = flat(trajectory.w_WB_W)
+    return msg
