@@ -1,0 +1,79 @@
+# One command per job; each makes the environment that it needs first, and a second call finds it made.
+
+SHELL := /bin/sh
+VENV := .venv
+BIN := $(VENV)/bin
+MADE := $(VENV)/.made
+PIP := $(BIN)/python -m pip --disable-pip-version-check
+
+# A ROS or a Python environment that the calling shell has sourced stays out of this one.
+unexport AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH LD_LIBRARY_PATH RMW_IMPLEMENTATION
+unexport PYTHONHOME PYTHONPATH VIRTUAL_ENV
+# Set by the ROS wheels when they have started Python anew with their libraries; inherited, they would not do it again.
+unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
+# A user-wide `pip install --user` as the default does not work inside a virtual environment.
+export PIP_USER := 0
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.PHONY: help demo test test-slow lint types bench setup venv clean FORCE
+
+help: ## print this
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | while IFS='	' read -r name text; do \
+	    printf '  make %-10s %s\n' "$$name" "$$text"; done
+	@echo "  PYTHON=python3.12 chooses the Python (3.10 to 3.14) that $(VENV) is made with."
+
+demo: $(MADE)/package $(MADE)/interfaces ## play a toss and compare predictions with it; VIEW=1 opens the viewer, TOSS=path plays another
+	@$(BIN)/contact-dynamics demo $(if $(VIEW),--view) $(if $(TOSS),--toss "$(TOSS)")
+
+test: lint types $(MADE)/test ## lint, types and the tests
+	@$(BIN)/python -m pytest
+
+test-slow: $(MADE)/test ## the sweeps that are too slow for `make test`
+	@$(BIN)/python -m pytest -m slow
+
+lint: $(MADE)/test ## ruff
+	@$(BIN)/ruff check
+
+types: $(MADE)/test ## mypy
+	@$(BIN)/mypy
+
+bench: $(MADE)/bench ## measure speed and accuracy, peers beside us
+	@$(BIN)/python -m benchmarks
+
+setup venv: $(MADE)/package $(MADE)/interfaces ## make the environment in .venv and nothing else
+
+clean: ## remove the environment and what the tools left behind
+	rm -rf $(VENV) build install log *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache demo_output
+
+# Each file in $(MADE) says that a step is done; its prerequisites say what makes the step due again.
+
+$(MADE)/python: FORCE
+	@setup/make_venv.sh $(VENV) $(if $(filter-out undefined,$(origin PYTHON)),"$(PYTHON)")
+
+$(MADE)/wheels: requirements/core.txt requirements/jazzy.txt requirements/build.txt requirements/constraints.txt $(MADE)/python
+	@echo "Installing ROS 2 Jazzy and what else runs (about 1 GB; a minute or two)."
+	@$(PIP) install --quiet -c requirements/constraints.txt -r requirements/core.txt -r requirements/jazzy.txt -r requirements/build.txt
+	@touch $@
+
+INTERFACES := contact_dynamics_interfaces
+# The folders themselves count too: their time changes when a file goes.
+$(MADE)/interfaces: $(addprefix $(INTERFACES)/,CMakeLists.txt package.xml msg srv) $(wildcard $(INTERFACES)/*/*.msg $(INTERFACES)/*/*.srv) \
+                    cmake/wheel_paths.cmake setup/build_interfaces.sh $(MADE)/wheels
+	@setup/build_interfaces.sh $(VENV)
+	@touch $@
+
+# The Python sources are used where they are; the rest is installed as a copy.
+$(MADE)/package: setup.py package.xml pyproject.toml $(wildcard config launch config/* launch/* executables/* resource/*) $(MADE)/wheels
+	@$(PIP) install --quiet --no-deps --no-build-isolation --editable .
+	@touch $@
+
+$(MADE)/test: requirements/test.txt $(MADE)/package $(MADE)/interfaces
+	@echo "Installing what the tests need."
+	@$(PIP) install --quiet -c requirements/constraints.txt -r requirements/test.txt
+	@touch $@
+
+$(MADE)/bench: requirements/bench.txt $(MADE)/test
+	@echo "Installing what the benchmarks need."
+	@$(PIP) install --quiet -c requirements/constraints.txt -r requirements/bench.txt
+	@touch $@

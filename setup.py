@@ -1,0 +1,53 @@
+"""Packaging for pip and for colcon.
+
+The version and what describes the package stand once, in package.xml; the dependencies once, in requirements/.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+from setuptools import find_packages, setup
+
+# colcon may run this file through a link in its build folder, beside which requirements/ is missing.
+HERE = Path(__file__).resolve().parent
+MANIFEST = ET.parse(HERE / "package.xml").getroot()
+MAINTAINER = MANIFEST.find("maintainer")
+NAME = MANIFEST.findtext("name")
+
+
+def requirements(kind: str) -> list[str]:
+    """The lines of one file of requirements/, without comments."""
+    lines = (HERE / "requirements" / f"{kind}.txt").read_text(encoding="utf-8").splitlines()
+    return [line for line in lines if line and not line.startswith("#")]
+
+
+def files(pattern: str) -> list[str]:
+    """The paths that match, relative to this file, which is how setuptools wants data files."""
+    return sorted(str(path.relative_to(HERE)) for path in HERE.glob(pattern))
+
+
+setup(
+    name=NAME,
+    version=MANIFEST.findtext("version"),
+    description=MANIFEST.findtext("description"),
+    maintainer=MAINTAINER.text,
+    maintainer_email=MAINTAINER.get("email"),
+    license=MANIFEST.findtext("license"),
+    python_requires=">=3.10",
+    packages=find_packages(include=[f"{NAME}*", "msg_adapters*"], exclude=[f"{NAME}_interfaces*"]),
+    package_data={"": ["py.typed", "*.csv", "*.npz"]},
+    zip_safe=False,
+    install_requires=requirements("core"),
+    extras_require={kind: requirements(kind) for kind in ("jazzy", "test", "bench")},
+    entry_points={"console_scripts": ["contact-dynamics = contact_dynamics.command_line:main"]},
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
+        (f"share/{NAME}", ["package.xml"]),
+        (f"share/{NAME}/config", files("config/*.yaml")),
+        (f"share/{NAME}/launch", files("launch/*.launch.py")),
+        # Where `ros2 run` looks.  As console scripts, names like `server` would end up in the bin folder of any pip install.
+        (f"lib/{NAME}", files("executables/*")),
+    ],
+)

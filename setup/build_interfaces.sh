@@ -1,0 +1,50 @@
+#!/bin/sh
+# Builds contact_dynamics_interfaces with the rosidl generators of a virtual environment, and installs it there.
+# usage: build_interfaces.sh VENV
+set -eu
+
+here=$(cd "$(dirname "$0")/.." && pwd)
+venv=$(cd "$1" && pwd)
+source=$here/contact_dynamics_interfaces
+build=$venv/build/contact_dynamics_interfaces
+log=$build/build.log
+
+# The machine's own program if it is new enough, else the one on PyPI.
+program() { # name, oldest version that serves, requirement for pip
+    found=$("$1" --version 2>/dev/null | sed -n '1s/[^0-9]*\([0-9.]*\).*/\1/p') || found=""
+    if [ -n "$found" ] && printf '%s\n%s\n' "$2" "$found" | sort -V -C; then
+        command -v "$1"
+    else
+        [ -x "$venv/bin/$1" ] || "$venv/bin/python" -m pip install --quiet --disable-pip-version-check "$3" >&2
+        echo "$venv/bin/$1"
+    fi
+}
+
+run() {
+    if ! "$@" >>"$log" 2>&1; then
+        tail -n 40 "$log" >&2
+        echo "Building contact_dynamics_interfaces failed; the whole log is $log" >&2
+        exit 1
+    fi
+}
+
+# 3.21: the property that lists a folder's imported targets (cmake/wheel_paths.cmake).
+cmake=$(program cmake 3.21 'cmake>=3.28,<4')
+ninja=$(program ninja 1.10 'ninja>=1.11')
+
+echo "Building contact_dynamics_interfaces."
+mkdir -p "$build"
+: >"$log"
+export AMENT_PREFIX_PATH="$venv" CMAKE_PREFIX_PATH="$venv"
+run "$cmake" -G Ninja -S "$source" -B "$build" \
+    -DCMAKE_MAKE_PROGRAM="$ninja" \
+    -DCMAKE_PROJECT_INCLUDE="$here/cmake/wheel_paths.cmake" \
+    -DCMAKE_INSTALL_PREFIX="$venv" \
+    -DPython3_EXECUTABLE="$venv/bin/python" \
+    -DBUILD_TESTING=OFF
+run "$cmake" --build "$build"
+# What a former version of the interfaces installed must not stay behind it.
+if [ -e "$build/install_manifest.txt" ]; then
+    xargs -d '\n' rm -f <"$build/install_manifest.txt"
+fi
+run "$cmake" --install "$build"
