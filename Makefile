@@ -20,7 +20,7 @@ export PIP_USER := 0
 
 help: ## print this
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | while IFS='	' read -r name text; do \
-	    printf '  make %-10s %s\n' "$$name" "$$text"; done
+	    printf '  make %-9s  %s\n' "$$name" "$$text"; done
 	@echo "  PYTHON=python3.12 chooses the Python (3.10 to 3.14) that $(VENV) is made with."
 
 demo: $(MADE)/package $(MADE)/interfaces ## play a toss and compare predictions with it; VIEW=1 opens the viewer, TOSS=path plays another
@@ -41,7 +41,8 @@ types: $(MADE)/test ## mypy
 bench: $(MADE)/bench ## measure speed and accuracy, peers beside us
 	@$(BIN)/python -m benchmarks
 
-setup venv: $(MADE)/package $(MADE)/interfaces ## make the environment in .venv and nothing else
+setup: $(MADE)/package $(MADE)/interfaces ## make the environment in .venv and nothing else
+venv: setup
 
 clean: ## remove the environment and what the tools left behind
 	rm -rf $(VENV) build install log *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache demo_output
@@ -63,9 +64,16 @@ $(MADE)/interfaces: $(addprefix $(INTERFACES)/,CMakeLists.txt package.xml msg sr
 	@setup/build_interfaces.sh $(VENV)
 	@touch $@
 
-# The Python sources are used where they are; the rest is installed as a copy.
-$(MADE)/package: setup.py package.xml pyproject.toml $(wildcard config launch config/* launch/* executables/* resource/*) $(MADE)/wheels
+# Installed in place: a change of the sources, the configuration or the launch files is seen at once.  pip leaves out the
+# data files of such an install, so they are linked to where ROS looks for them.
+SHARE := $(VENV)/share/contact_dynamics
+INDEX := $(VENV)/share/ament_index/resource_index/packages
+$(MADE)/package: setup.py package.xml pyproject.toml Makefile $(MADE)/wheels
 	@$(PIP) install --quiet --no-deps --no-build-isolation --editable .
+	@mkdir -p $(SHARE) $(INDEX)
+	@ln -sfn $(CURDIR)/config $(CURDIR)/launch $(CURDIR)/package.xml $(SHARE)/
+	@ln -sfn $(CURDIR)/resource/contact_dynamics $(INDEX)/
+	@ln -sfn $(CURDIR)/executables $(VENV)/lib/contact_dynamics
 	@touch $@
 
 $(MADE)/test: requirements/test.txt $(MADE)/package $(MADE)/interfaces

@@ -1,6 +1,6 @@
 """Packaging for pip and for colcon.
 
-The version and what describes the package stand once, in package.xml; the dependencies once, in requirements/.
+The version and what describes the package stand once, in package.xml; the dependencies, in requirements/.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ setup(
         (f"share/{NAME}", ["package.xml"]),
         (f"share/{NAME}/config", files("config/*.yaml")),
         (f"share/{NAME}/launch", files("launch/*.launch.py")),
-        # Where `ros2 run` looks.  As console scripts, names like `server` would end up in the bin folder of any pip install.
+        # Where `ros2 run` looks.  As console scripts, names like `server` would stand in the bin folder of all.
         (f"lib/{NAME}", files("executables/*")),
     ],
 )

@@ -11,7 +11,8 @@ version_of() {
     "$1" -c 'import sys; print("%d.%d" % sys.version_info[:2])' 2>/dev/null || echo none
 }
 
-if [ -e "$stamp" ]; then
+# The programs inside name their folder, so an environment that was moved or copied does not serve.
+if [ -e "$stamp" ] && [ "$(cat "$stamp")" = "$(cd "$venv" && pwd)" ]; then
     present=$(version_of "$venv/bin/python")
     # An interpreter that was not asked for by name is only the first environment's default.
     wanted=${asked:+$(version_of "$asked")}
@@ -33,4 +34,4 @@ fi
 echo "Making $venv with Python $(version_of "${asked:-python3}")."
 mkdir -p "$venv/.made"
 "${asked:-python3}" -m venv "$venv"
-touch "$stamp"
+(cd "$venv" && pwd) >"$stamp"
