@@ -47,7 +47,7 @@ setup(
         (f"share/{NAME}", ["package.xml"]),
         (f"share/{NAME}/config", files("config/*.yaml")),
         (f"share/{NAME}/launch", files("launch/*.launch.py")),
-        # Where `ros2 run` looks.  As console scripts, names like `server` would stand in the bin folder of all.
+        # Where `ros2 run` looks.  As console scripts, names like `server` would stand in every bin folder.
         (f"lib/{NAME}", files("executables/*")),
     ],
 )
