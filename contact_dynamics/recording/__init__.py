@@ -1,0 +1,30 @@
+"""The log: every state received and every request and response, in MCAP as rosbag2 of Jazzy lays it out.
+
+Writing: `BagWriter` (one thread), `Recorder` (beside a server). Reading: `BagReader`, `service_calls`,
+`decode`.
+"""
+
+from contact_dynamics.recording.bag_reader import BagReader, LoggedMessage
+from contact_dynamics.recording.bag_writer import BagWriter
+from contact_dynamics.recording.decoding import decode
+from contact_dynamics.recording.errors import DamagedLogWarning, LogExistsError, LogFailedError, NotALogError
+from contact_dynamics.recording.qos import OfferedQos
+from contact_dynamics.recording.recorder import Recorder, RecorderStatus
+from contact_dynamics.recording.service_calls import EVENT_TOPIC_SUFFIX, ServiceCall, service_calls
+
+__all__ = [
+    "EVENT_TOPIC_SUFFIX",
+    "BagReader",
+    "BagWriter",
+    "DamagedLogWarning",
+    "LogExistsError",
+    "LogFailedError",
+    "LoggedMessage",
+    "NotALogError",
+    "OfferedQos",
+    "Recorder",
+    "RecorderStatus",
+    "ServiceCall",
+    "decode",
+    "service_calls",
+]

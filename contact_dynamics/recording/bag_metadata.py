@@ -1,0 +1,93 @@
+"""``metadata.yaml`` of a bag as rosbag2 of Jazzy writes it (version 9); the MCAP file holds it too.
+
+Written by hand, since the form is fixed and short: strings as JSON writes them, which is YAML too.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+METADATA_FILE: Final = "metadata.yaml"
+RUN_RECORD: Final = "contact_dynamics"  # the MCAP metadata record that says how the run was made
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TopicSummary:
+    """What ``metadata.yaml`` says of one topic."""
+
+    name: str  # with its leading slash
+    type_name: str  # "package/msg/Name" or "package/srv/Name_Event"
+    type_hash: str  # "RIHS01_..." or empty
+    qos: tuple[str, ...]  # lines of a YAML list of profiles, `qos_lines`
+    message_count: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BagSummary:
+    """What ``metadata.yaml`` says of a bag of one file."""
+
+    file_name: str  # relative to the folder
+    start_ns: int  # log time of the earliest message, ns since the epoch
+    end_ns: int  # log time of the latest message, ns since the epoch
+    topics: Sequence[TopicSummary]
+    custom_data: Mapping[str, str]  # what the writer says of the run
+
+
+def metadata_lines(bag: BagSummary) -> list[str]:
+    """Return the YAML of the bag's metadata: the text of the MCAP record named ``rosbag2``."""
+    message_count = sum(topic.message_count for topic in bag.topics)
+    span = [
+        "duration:",
+        f"  nanoseconds: {bag.end_ns - bag.start_ns}",
+        "starting_time:",
+        f"  nanoseconds_since_epoch: {bag.start_ns}",
+        f"message_count: {message_count}",
+    ]
+    return [
+        "version: 9",
+        "storage_identifier: mcap",
+        *span,
+        f"topics_with_message_count:{'' if bag.topics else ' []'}",
+        *(line for topic in bag.topics for line in _indented(_topic_lines(topic))),
+        'compression_format: ""',
+        'compression_mode: ""',
+        "relative_file_paths:",
+        f"  - {_quoted(bag.file_name)}",
+        "files:",
+        f"  - path: {_quoted(bag.file_name)}",
+        *_indented(_indented(span)),
+        f"custom_data:{'' if bag.custom_data else ' ~'}",
+        *(f"  {_quoted(key)}: {_quoted(value)}" for key, value in bag.custom_data.items()),
+        "ros_distro: jazzy",
+    ]
+
+
+def metadata_file_text(bag: BagSummary) -> str:
+    """Return the text of ``metadata.yaml``: the same lines under rosbag2's outermost key."""
+    return "\n".join(["rosbag2_bagfile_information:", *_indented(metadata_lines(bag)), ""])
+
+
+def _topic_lines(topic: TopicSummary) -> list[str]:
+    return [
+        "- topic_metadata:",
+        f"    name: {_quoted(topic.name)}",
+        f"    type: {_quoted(topic.type_name)}",
+        "    serialization_format: cdr",
+        "    offered_qos_profiles:",
+        *(f"      {line}" for line in topic.qos),
+        f"    type_description_hash: {_quoted(topic.type_hash)}",
+        f"  message_count: {topic.message_count}",
+    ]
+
+
+def _indented(lines: Sequence[str]) -> list[str]:
+    return [f"  {line}" for line in lines]
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)

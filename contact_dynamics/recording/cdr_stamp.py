@@ -1,0 +1,74 @@
+"""Stamps and identities read straight out of serialised messages (CDR), without a message class.
+
+CDR is four bytes of encapsulation, of which the second says the byte order, then the fields, each aligned to
+its own size counted from the fifth byte. A message that begins with a ``std_msgs/Header`` or a time thus has
+int32 seconds and uint32 nanoseconds at bytes 4 and 8; a service event begins with
+``service_msgs/ServiceEventInfo``: uint8 event type at 4, stamp at 8 and 12, 16 bytes of client identity at
+16, int64 sequence number at 36 (aligned to 8).
+"""
+
+from __future__ import annotations
+
+import enum
+import struct
+from dataclasses import dataclass
+from typing import Any, Final
+
+from contact_dynamics.errors import InvalidFieldError
+
+_NS_PER_S: Final = 1_000_000_000
+_LITTLE_ENDIAN: Final = 1
+_LEADING_STAMP: Final = {True: struct.Struct("<4xiI"), False: struct.Struct(">4xiI")}
+_EVENT_INFO: Final = {True: struct.Struct("<4xB3xiI16s4xq"), False: struct.Struct(">4xB3xiI16s4xq")}
+
+
+class EventType(enum.IntEnum):
+    """What a service event reports; the values of ``service_msgs/ServiceEventInfo``."""
+
+    REQUEST_SENT = 0
+    REQUEST_RECEIVED = 1
+    RESPONSE_SENT = 2
+    RESPONSE_RECEIVED = 3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EventInfo:
+    """Who asked what when: the head of a service event."""
+
+    event_type: EventType  # whether it tells of a request or a response, at the client or the server
+    stamp_ns: int  # ns since the epoch of the clock given to configure_introspection
+    client_gid: bytes  # 16 bytes, the client within this session
+    sequence_number: int  # of the request among those of that client
+
+
+def leading_stamp_ns(data: bytes) -> int:
+    """Return the stamp, in ns, of a serialised message that begins with a ``std_msgs/Header`` or a time."""
+    seconds, nanoseconds = _unpack(_LEADING_STAMP, data)
+    return int(seconds) * _NS_PER_S + int(nanoseconds)
+
+
+def event_info(data: bytes) -> EventInfo:
+    """Return the head of a serialised service event."""
+    kind, seconds, nanoseconds, gid, sequence_number = _unpack(_EVENT_INFO, data)
+    try:
+        event_type = EventType(kind)
+    except ValueError:
+        raise InvalidFieldError("event_type", kind, "0 to 3") from None
+    return EventInfo(
+        event_type=event_type,
+        stamp_ns=seconds * _NS_PER_S + nanoseconds,
+        client_gid=gid,
+        sequence_number=sequence_number,
+    )
+
+
+def event_stamp_ns(data: bytes) -> int:
+    """Return the stamp, in ns, of a serialised service event."""
+    return event_info(data).stamp_ns
+
+
+def _unpack(layout: dict[bool, struct.Struct], data: bytes) -> tuple[Any, ...]:
+    try:
+        return layout[data[1] == _LITTLE_ENDIAN].unpack_from(data)
+    except (IndexError, struct.error):
+        raise InvalidFieldError("data", f"{len(data)} bytes", "a serialised message of this type") from None

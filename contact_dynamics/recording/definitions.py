@@ -1,0 +1,140 @@
+"""What a message type looks like: its full text in ROS's notation and its hash, from the ament prefixes.
+
+A log explains itself by carrying, for each type, the `.msg` text followed by that of each type it is built of
+(MCAP's encoding ``ros2msg``: a line of 80 ``=``, a line ``MSG: package/Type``, the text). Read from
+``share/<package>/{msg,srv}/`` of the folders in ``AMENT_PREFIX_PATH`` and of this Python's own prefix, which
+is where the packages from wheels live. Needs no ROS library.
+
+The event type of a service, ``package/srv/Name_Event``, has no file. Its text is put together here from the
+`.srv` as a message with the fields ``info``, ``request``, ``response``, the form that most readers decode:
+rosbag2 itself writes the `.srv` text as it is, which only rosbag2 understands.
+
+Not covered: types defined by `.idl` alone (no such type is logged here), actions.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from contact_dynamics.errors import InvalidFieldError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+EVENT_SUFFIX: Final = "_Event"
+
+_TYPE_NAME: Final = re.compile(r"([a-z][a-z0-9_]*)/(msg|srv)/([A-Z][A-Za-z0-9]*)(_Event)?")
+# Type, bounds, and the start of the name: lower case in a field, upper case in a constant.
+_FIELD: Final = re.compile(r"\s*([A-Za-z]\w*(?:/[A-Za-z]\w*)?)(?:<=\d+)?(?:\[[^\]]*\])?\s+[a-z]")
+_SRV_SEPARATOR: Final = re.compile(r"^---[ \t]*\r?$", re.MULTILINE)
+_SEPARATOR: Final = "=" * 80
+_PRIMITIVES: Final = frozenset(
+    {"bool", "byte", "char", "float32", "float64", "string", "wstring"}
+    | {f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)}
+)
+_STAMP_FIRST: Final = frozenset({"std_msgs/Header", "builtin_interfaces/Time"})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TypeDefinition:
+    """One message type as a log describes it."""
+
+    type_name: str  # "package/msg/Name" or "package/srv/Name_Event"
+    text: str  # its fields, then each type it is built of, in MCAP's ros2msg form
+    type_hash: str  # "RIHS01_..." of REP 2011; empty where no .json stands beside the text
+    begins_with_stamp: bool  # the first field is a std_msgs/Header or a time
+
+    @property
+    def is_service_event(self) -> bool:
+        """Whether messages of this type are the requests and responses of a service."""
+        return self.type_name.endswith(EVENT_SUFFIX)
+
+
+def ament_prefixes() -> tuple[Path, ...]:
+    """Return the installation prefixes to search: those of ``AMENT_PREFIX_PATH``, then this Python's own."""
+    listed = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
+    return tuple(Path(entry) for entry in [*listed, sys.prefix] if entry)
+
+
+def find_definition(type_name: str, *, prefixes: Sequence[Path] | None = None) -> TypeDefinition:
+    """Return the definition of ``package/msg/Name`` or ``package/srv/Name_Event``.
+
+    Raises:
+        InvalidFieldError: not such a name, or the type or one it is built of stands in none of the prefixes.
+    """
+    match = _TYPE_NAME.fullmatch(type_name)
+    if match is None or (match[2] == "srv") != (match[4] is not None):
+        raise InvalidFieldError("type_name", type_name, "'package/msg/Name' or 'package/srv/Name_Event'")
+    package, folder, name = match[1], match[2], match[3]
+    shares = _Shares(ament_prefixes() if prefixes is None else prefixes)
+    if folder == "srv":
+        root, sections = _service_event(shares, package, name)
+    else:
+        root, sections = shares.read(package, f"msg/{name}.msg"), {}
+    for text in [root, *sections.values()]:
+        _add_dependencies(shares, package, text, sections)
+    parts = [root, *(f"{_SEPARATOR}\nMSG: {dependency}\n{text}" for dependency, text in sections.items())]
+    return TypeDefinition(
+        type_name=type_name,
+        text="\n".join(part.rstrip("\n") + "\n" for part in parts),
+        type_hash=shares.type_hash(package, f"{folder}/{name}.json", type_name),
+        begins_with_stamp=next(iter(_field_types(root, package)), "") in _STAMP_FIRST,
+    )
+
+
+def _service_event(shares: _Shares, package: str, name: str) -> tuple[str, dict[str, str]]:
+    request_text, response_text = _SRV_SEPARATOR.split(shares.read(package, f"srv/{name}.srv"), maxsplit=1)
+    request, response = f"{package}/{name}_Request", f"{package}/{name}_Response"
+    root = f"service_msgs/ServiceEventInfo info\n{request}[<=1] request\n{response}[<=1] response\n"
+    return root, {request: request_text, response: response_text.lstrip("\n")}
+
+
+def _add_dependencies(shares: _Shares, package: str, text: str, sections: dict[str, str]) -> None:
+    """Add to ``sections`` each type that ``text`` names and that is not there yet, then those of these."""
+    for dependency in _field_types(text, package):
+        if "/" in dependency and dependency not in sections:
+            owner, name = dependency.split("/")
+            sections[dependency] = shares.read(owner, f"msg/{name}.msg")
+            _add_dependencies(shares, owner, sections[dependency], sections)
+
+
+def _field_types(text: str, package: str) -> Iterable[str]:
+    """Yield the type of each field: a primitive's name, or ``package/Type``."""
+    for line in text.splitlines():
+        match = _FIELD.match(line)
+        if match is not None:
+            name = match[1]
+            yield name if name in _PRIMITIVES or "/" in name else f"{package}/{name}"
+
+
+class _Shares:
+    """The ``share`` folders of the prefixes, nearest first."""
+
+    def __init__(self, prefixes: Sequence[Path]) -> None:
+        self._prefixes = prefixes
+
+    def read(self, package: str, file: str) -> str:
+        path = self._find(package, file)
+        if path is None:
+            searched = os.pathsep.join(str(prefix) for prefix in self._prefixes)
+            raise InvalidFieldError(
+                "type_name", f"{package}/{file}", f"a file under share/ of one of {searched}"
+            )
+        return path.read_text(encoding="utf-8")
+
+    def type_hash(self, package: str, file: str, type_name: str) -> str:
+        path = self._find(package, file)
+        if path is None:
+            return ""
+        hashes = json.loads(path.read_text(encoding="utf-8"))["type_hashes"]
+        return next((str(entry["hash_string"]) for entry in hashes if entry["type_name"] == type_name), "")
+
+    def _find(self, package: str, file: str) -> Path | None:
+        candidates = (prefix / "share" / package / file for prefix in self._prefixes)
+        return next((path for path in candidates if path.is_file()), None)

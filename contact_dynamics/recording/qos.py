@@ -1,0 +1,55 @@
+"""Quality of service in the words of rosbag2: YAML maps with all nine keys (a partial one is fatal there).
+
+Takes rclpy's ``QoSProfile`` as it is, by its attributes alone, so that writing a log needs no rclpy;
+`OfferedQos` stands in where there is none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+_NS_PER_S: Final = 1_000_000_000
+_FOREVER_NS: Final = 2**63 - 1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OfferedQos:
+    """A quality of service without rclpy; the defaults are those of an ordinary publisher."""
+
+    history: str = "keep_last"  # keep_last, keep_all, system_default, unknown
+    depth: int = 10  # messages kept, for keep_last
+    reliability: str = "reliable"  # reliable, best_effort, system_default, best_available, unknown
+    durability: str = "volatile"  # volatile, transient_local, system_default, best_available, unknown
+    deadline: int = _FOREVER_NS  # ns
+    lifespan: int = _FOREVER_NS  # ns
+    liveliness: str = "automatic"  # automatic, manual_by_topic, system_default, best_available, unknown
+    liveliness_lease_duration: int = _FOREVER_NS  # ns
+    avoid_ros_namespace_conventions: bool = False  # topic name used as it is
+
+
+def qos_lines(qos: Any) -> list[str]:
+    """Return the lines of a YAML list of one profile: rclpy's ``QoSProfile`` or an `OfferedQos`."""
+    return [
+        f"- history: {_word(qos.history)}",
+        f"  depth: {qos.depth}",
+        f"  reliability: {_word(qos.reliability)}",
+        f"  durability: {_word(qos.durability)}",
+        "  deadline:",
+        *_duration_lines(qos.deadline),
+        "  lifespan:",
+        *_duration_lines(qos.lifespan),
+        f"  liveliness: {_word(qos.liveliness)}",
+        "  liveliness_lease_duration:",
+        *_duration_lines(qos.liveliness_lease_duration),
+        f"  avoid_ros_namespace_conventions: {'true' if qos.avoid_ros_namespace_conventions else 'false'}",
+    ]
+
+
+def _word(policy: Any) -> str:
+    return str(policy if isinstance(policy, str) else policy.name).lower()
+
+
+def _duration_lines(duration: Any) -> list[str]:
+    nanoseconds = duration if isinstance(duration, int) else duration.nanoseconds
+    return [f"    sec: {nanoseconds // _NS_PER_S}", f"    nsec: {nanoseconds % _NS_PER_S}"]

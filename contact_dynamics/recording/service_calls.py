@@ -1,0 +1,69 @@
+"""Requests and responses of a log brought together, by client and sequence number.
+
+Of the four events that a call can leave, the server's two count here: request received, response sent. Those
+of the client (request sent, response received) tell the same contents again where a client is introspected as
+well.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Final
+
+from contact_dynamics.recording.cdr_stamp import EventType, event_info
+from contact_dynamics.recording.decoding import decode
+from contact_dynamics.recording.definitions import EVENT_SUFFIX
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from contact_dynamics.recording.bag_reader import LoggedMessage
+
+EVENT_TOPIC_SUFFIX: Final = "/_service_event"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ServiceCall:
+    """One call of a service as its server logged it."""
+
+    service: str  # with its leading slash
+    service_type: str  # "package/srv/Name"
+    client_gid: bytes  # 16 bytes, the client within its session
+    sequence_number: int  # of the request among those of that client
+    request_event: LoggedMessage | None = None  # None: the log begins later
+    response_event: LoggedMessage | None = None  # None: never answered, or the log ends earlier
+
+    def request(self) -> Any:
+        """Return the request as a ROS message; None where the log does not have it."""
+        return _content(self.request_event, "request")
+
+    def response(self) -> Any:
+        """Return the response as a ROS message; None where the log does not have it."""
+        return _content(self.response_event, "response")
+
+
+def service_calls(messages: Iterable[LoggedMessage]) -> Iterator[ServiceCall]:
+    """Yield each call when its response is met, and at the end those without one."""
+    waiting: dict[tuple[str, bytes, int], ServiceCall] = {}
+    for message in messages:
+        if not message.topic.endswith(EVENT_TOPIC_SUFFIX):
+            continue
+        info = event_info(message.data)
+        key = (message.topic, info.client_gid, info.sequence_number)
+        call = waiting.get(key) or ServiceCall(
+            service=message.topic.removesuffix(EVENT_TOPIC_SUFFIX),
+            service_type=message.type_name.removesuffix(EVENT_SUFFIX),
+            client_gid=info.client_gid,
+            sequence_number=info.sequence_number,
+        )
+        if info.event_type is EventType.REQUEST_RECEIVED:
+            waiting[key] = replace(call, request_event=message)
+        elif info.event_type is EventType.RESPONSE_SENT:
+            waiting.pop(key, None)
+            yield replace(call, response_event=message)
+    yield from waiting.values()
+
+
+def _content(event: LoggedMessage | None, part: str) -> Any:
+    contents = [] if event is None else getattr(decode(event), part)
+    return contents[0] if contents else None  # empty where introspection gave metadata only
