@@ -64,15 +64,18 @@ $(MADE)/interfaces: $(addprefix $(INTERFACES)/,CMakeLists.txt package.xml msg sr
 	@setup/build_interfaces.sh $(VENV)
 	@touch $@
 
-# Installed in place: a change of the sources, the configuration or the launch files is seen at once.  pip leaves out the
-# data files of such an install, so they are linked to where ROS looks for them.
+# Installed in place, so a change of the sources is seen at once.  pip leaves out the data files of such an install:
+# they are linked to where ROS looks for them, one by one, because `ros2 launch` does not follow a linked folder.
 SHARE := $(VENV)/share/contact_dynamics
 INDEX := $(VENV)/share/ament_index/resource_index/packages
-$(MADE)/package: setup.py package.xml pyproject.toml Makefile $(MADE)/wheels
+$(MADE)/package: setup.py package.xml pyproject.toml Makefile $(wildcard config launch config/*.yaml launch/*.launch.py) $(MADE)/wheels
 	@$(PIP) install --quiet --no-deps --no-build-isolation --editable .
-	@mkdir -p $(SHARE) $(INDEX)
-	@ln -sfn $(CURDIR)/config $(CURDIR)/launch $(CURDIR)/package.xml $(SHARE)/
-	@ln -sfn $(CURDIR)/resource/contact_dynamics $(INDEX)/
+	@rm -rf $(SHARE)
+	@mkdir -p $(SHARE)/config $(SHARE)/launch $(INDEX)
+	@ln -sf $(CURDIR)/package.xml $(SHARE)/
+	@ln -sf $(CURDIR)/config/*.yaml $(SHARE)/config/
+	@ln -sf $(CURDIR)/launch/*.launch.py $(SHARE)/launch/
+	@ln -sf $(CURDIR)/resource/contact_dynamics $(INDEX)/
 	@ln -sfn $(CURDIR)/executables $(VENV)/lib/contact_dynamics
 	@touch $@
 
