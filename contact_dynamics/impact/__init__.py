@@ -1,13 +1,16 @@
 """Impact (Mason, lecture 27): what a body's velocity is after it strikes.
 
-In reading order: the laws and outcomes (`law`), Routh's construction in the plane (`routh`, `planar`,
-`result`).
+In reading order: the laws and outcomes (`law`); the plane, with Routh's construction (`routh`, `planar`,
+`result`); space, where sliding swerves (`sliding`, `series`, `stopping`, `progress`, `swerve`, `spatial`,
+`spatial_result`).
 """
 
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.impact.planar import planar_impact
 from contact_dynamics.impact.result import PlanarImpact
 from contact_dynamics.impact.routh import ImpulsePath, InverseInertia
+from contact_dynamics.impact.spatial import spatial_impact
+from contact_dynamics.impact.spatial_result import SpatialImpact
 
 __all__ = [
     "ImpactOutcome",
@@ -16,5 +19,7 @@ __all__ = [
     "PathEvent",
     "PlanarImpact",
     "RestitutionLaw",
+    "SpatialImpact",
     "planar_impact",
+    "spatial_impact",
 ]

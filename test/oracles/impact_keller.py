@@ -1,0 +1,38 @@
+"""Keller's equations for one contact in space, integrated by SciPy in the normal impulse, for paths that slide throughout.
+
+State: the body's own velocity, 6 numbers, and nothing else; the contact's velocity and the friction follow from it at every
+evaluation. Valid while the contact slides, since the direction of friction is undefined at a stop.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+
+def body_velocity_after(
+    mass: float,
+    inertia: np.ndarray,
+    v: np.ndarray,
+    w: np.ndarray,
+    arm: np.ndarray,
+    normal: np.ndarray,
+    mu: float,
+    normal_impulse: float,
+) -> tuple[np.ndarray, float]:
+    """Return the body's velocity, (6,), after sliding through ``normal_impulse``, and the least sliding speed met."""
+    inverse = np.linalg.inv(inertia)
+    slowest = [np.inf]
+
+    def rate(_: float, y: np.ndarray) -> np.ndarray:
+        contact = y[:3] + np.cross(y[3:], arm)
+        sliding = contact - normal * (normal @ contact)
+        speed = np.linalg.norm(sliding)
+        slowest[0] = min(slowest[0], float(speed))
+        force = normal - mu * sliding / speed
+        return np.concatenate([force / mass, inverse @ np.cross(arm, force)])
+
+    solution = solve_ivp(
+        rate, (0.0, normal_impulse), np.concatenate([v, w]), method="DOP853", rtol=1e-13, atol=1e-15
+    )
+    return solution.y[:, -1], slowest[0]
