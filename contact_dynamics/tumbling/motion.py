@@ -1,0 +1,270 @@
+"""Free motion of a rigid body: torque-free tumbling in closed form, ballistic centre of mass (lecture 25).
+
+Nothing is stepped: any time, past or future, costs the same, and the error does not grow with the number of
+revolutions. The constants are found in extended precision from the exact values of the doubles given; where
+the body or the motion is degenerate (sphere, axis of symmetry, principal axis, separatrix) or nearly so, the
+same formulas hold.
+
+Frames: W the world, B the body at its centre of mass, P the principal axes in Jacobi's order, L the world
+turned so that its z axis lies along the angular momentum.
+
+Not covered: torque, drag, gravity gradients. The answer for given doubles is exact to rounding, but near the
+middle axis it changes much when they do: `contact_dynamics.poinsot` says how much.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from decimal import Decimal, localcontext
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.tumbling.attitude_form import AttitudeForm, attitude_form
+from contact_dynamics.tumbling.polhode import Spin, Tumble, tumble_or_spin
+from contact_dynamics.tumbling.principal_frame import EXACT, PrincipalFrame, principal_frame
+from contact_dynamics.tumbling.quaternions import (
+    Quaternion,
+    conjugate,
+    from_rows,
+    from_z_onto,
+    left_matrix,
+    normalised,
+    product,
+    right_matrix,
+    rotated,
+)
+from contact_dynamics.tumbling.regime import Regime, regime_of
+from contact_dynamics.validation import FloatArray, check_array, check_finite
+from contact_dynamics.world import STANDARD_GRAVITY_W
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+NANOSECONDS: Final = 1_000_000_000
+
+CHUNK: Final = 8192
+"""Samples at a time: their intermediate arrays stay in the processor's cache."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Trajectory:
+    """A motion at n times; row i belongs to ``seconds[i]``."""
+
+    seconds: FloatArray  # (n,), s after the stamp of the state that the motion began with
+    p_WB_W: FloatArray  # (n, 3), m, centre of mass in the world
+    q_WB: FloatArray  # (n, 4), unit, x y z w, body to world; of q and -q the one nearer to the row before
+    v_WB_W: FloatArray  # (n, 3), m/s, velocity of the centre of mass, world axes
+    w_WB_W: FloatArray  # (n, 3), rad/s, angular velocity, world axes
+
+    def __len__(self) -> int:
+        """Return the number of samples."""
+        return len(self.seconds)
+
+
+class Sample(NamedTuple):
+    """A motion at one time, in plain floats: what `BodyState` holds, without the cost of its arrays."""
+
+    p_WB_W: tuple[float, float, float]  # m
+    q_WB: tuple[float, float, float, float]  # x y z w
+    v_WB_W: tuple[float, float, float]  # m/s
+    w_WB_W: tuple[float, float, float]  # rad/s
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FreeMotion:
+    """Where a body without torque is at any time; made by `free_motion`."""
+
+    body: MassProperties
+    state: BodyState  # at time 0
+    gravity_W: FloatArray  # (3,), m/s^2, world axes
+    frame: PrincipalFrame  # principal moments and axes of the body
+    rotation: Spin | Tumble  # constants of the rotation
+    form: AttitudeForm  # attitude about L as a function of time
+    q_WL: Quaternion
+    q_PB: Quaternion
+    w_along: float  # rad/s, component of the angular velocity along L, constant
+    w_across: tuple[float, float]  # rad/s, L (1/I_1 - 1/I_2) and L (1/I_3 - 1/I_2)
+
+    @property
+    def regime(self) -> Regime:
+        """What kind of rotation it is."""
+        return regime_of(self.frame, self.rotation)
+
+    def sample(self, seconds: float) -> Sample:
+        """Return the motion at one time, s after the state's stamp, in plain floats."""
+        alpha, beta = _cayley_klein(self.form, seconds)
+        q_LP = (beta.imag, -beta.real, alpha.imag, alpha.real)
+        across = self._across(alpha, beta)
+        w_W = rotated(self.q_WL, (across.real, across.imag, self.w_along))
+        q_WB = product(product(self.q_WL, q_LP), self.q_PB)
+        p, v, g = self.state.p_WB_W.tolist(), self.state.v_WB_W.tolist(), self.gravity_W.tolist()
+        half = 0.5 * seconds
+        return Sample(
+            (
+                p[0] + seconds * (v[0] + half * g[0]),
+                p[1] + seconds * (v[1] + half * g[1]),
+                p[2] + seconds * (v[2] + half * g[2]),
+            ),
+            q_WB,
+            (v[0] + seconds * g[0], v[1] + seconds * g[1], v[2] + seconds * g[2]),
+            w_W,
+        )
+
+    def _across(self, alpha: complex, beta: complex) -> complex:
+        """Return w_x + i w_y of the angular velocity in L's axes, rad/s, for alpha and i beta."""
+        # sum over i of L l_i (1 / I_i - 1 / I_2) times axis i, with l = L / |L| in P, l_1 = 2 Re(alpha beta*).
+        l_1 = 2.0 * (alpha.real * beta.real + alpha.imag * beta.imag)
+        l_3 = abs(alpha) ** 2 - abs(beta) ** 2
+        first, third = self.w_across
+        return first * l_1 * (alpha * alpha - beta * beta) - 2.0 * third * l_3 * alpha * beta
+
+    def state_at(self, seconds: float) -> BodyState:
+        """Return the body's state at one time, s after the state's stamp.
+
+        Raises:
+            InvalidFieldError: the time is not finite.
+        """
+        sample = self.sample(check_finite("time", seconds))
+        return BodyState(
+            p_WB_W=np.array(sample.p_WB_W),
+            q_WB=np.array(sample.q_WB),
+            v_WB_W=np.array(sample.v_WB_W),
+            w_WB_W=np.array(sample.w_WB_W),
+            stamp_ns=self.state.stamp_ns + round(seconds * NANOSECONDS),
+        )
+
+    def at(self, seconds: ArrayLike) -> Trajectory:
+        """Return the motion at times (n,), s after the state's stamp, of any sign and in any order.
+
+        Raises:
+            InvalidFieldError: the times are not a flat list of finite numbers.
+        """
+        times = check_array("times", seconds, (None,))
+        n = len(times)
+        q_WB, w_WB_W = np.empty((n, 4)), np.empty((n, 3))
+        onto_W = left_matrix(self.q_WL) @ right_matrix(self.q_PB)
+        R_LW = np.array([rotated(self.q_WL, axis) for axis in np.eye(3).tolist()])
+        for start in range(0, n, CHUNK):
+            chunk = slice(start, start + CHUNK)
+            self._attitudes(times[chunk], onto_W.T, R_LW, q_WB[chunk], w_WB_W[chunk])
+        _make_continuous(q_WB, self.state.q_WB)
+        elapsed = times[:, None]
+        return Trajectory(
+            seconds=times,
+            p_WB_W=self.state.p_WB_W + elapsed * (self.state.v_WB_W + (0.5 * elapsed) * self.gravity_W),
+            q_WB=q_WB,
+            v_WB_W=self.state.v_WB_W + elapsed * self.gravity_W,
+            w_WB_W=w_WB_W,
+        )
+
+    def _attitudes(
+        self, times: FloatArray, onto_W: FloatArray, R_LW: FloatArray, q: FloatArray, w_WB: FloatArray
+    ) -> None:
+        """Fill (n, 4) quaternions and (n, 3) angular velocities."""
+        A_re, A_im, B_re, B_im, tangent = self.form.points(times)
+        norm2 = A_re * A_re + A_im * A_im + B_re * B_re + B_im * B_im
+        scale = 1.0 / np.sqrt(norm2 * (1.0 + tangent * tangent))
+        tangent *= scale
+        q_LP = np.empty((4, len(times)))  # alpha = w + i z; x + i y = -i (b + i c)
+        x, y, z, w = q_LP
+        np.subtract(A_re * scale, A_im * tangent, out=w)
+        np.add(A_im * scale, A_re * tangent, out=z)
+        np.add(B_im * scale, B_re * tangent, out=x)
+        b = np.subtract(B_re * scale, B_im * tangent)
+        np.negative(b, out=y)
+        np.matmul(q_LP.T, onto_W, out=q)
+        # As `_across`, in real parts.
+        ww, xx, bb, zz = w * w, x * x, b * b, z * z
+        first = (2.0 * self.w_across[0]) * (w * b + z * x)
+        third = (2.0 * self.w_across[1]) * ((ww + zz) - (bb + xx))
+        w_L = np.empty((3, len(times)))
+        np.subtract(first * ((ww - zz) - (bb - xx)), third * (w * b - z * x), out=w_L[0])
+        np.subtract((2.0 * first) * (w * z - b * x), third * (w * x + z * b), out=w_L[1])
+        w_L[2] = self.w_along
+        np.matmul(w_L.T, R_LW, out=w_WB)
+
+
+def free_motion(
+    body: MassProperties, state: BodyState, *, gravity_W: ArrayLike = STANDARD_GRAVITY_W
+) -> FreeMotion:
+    """Return the motion of a body without torque, in uniform gravity, from its state at one time.
+
+    Gravity is (3,), m/s^2, world axes.
+
+    Raises:
+        InvalidFieldError: gravity is not three finite numbers.
+    """
+    gravity = check_array("gravity", gravity_W, (3,))
+    frame = principal_frame(body.I_B)
+    q_WB = normalised(state.q_WB.tolist())
+    with localcontext(EXACT):
+        w_W = [Decimal(x) for x in state.w_WB_W.tolist()]
+        rotation = tumble_or_spin(frame, _into_body([Decimal(x) for x in state.q_WB.tolist()], w_W))
+        form = attitude_form(rotation)
+        if isinstance(rotation, Spin):
+            along, across = float(rotation.rate), (0.0, 0.0)
+            q_WL = from_z_onto([float(x / rotation.rate) for x in w_W]) if rotation.rate else _IDENTITY
+            q_PB = product(conjugate(q_WL), q_WB)
+        else:
+            I1, I2, I3 = rotation.moments
+            # w . L / |L| = L (l_1^2 / I_1 + l_2^2 / I_2 + l_3^2 / I_3), at u = 0
+            along = float(rotation.L * (rotation.a2 / I1 + rotation.c2 / I3))
+            across = float(rotation.L * (I2 - I1) / (I1 * I2)), float(rotation.L * (I2 - I3) / (I2 * I3))
+            q_PB = from_rows([[float(x) for x in axis] for axis in rotation.axes_B])
+            alpha, beta = _cayley_klein(form, 0.0)
+            q_LP = (beta.imag, -beta.real, alpha.imag, alpha.real)
+            q_WL = normalised(product(q_WB, conjugate(product(q_LP, q_PB))))
+    return FreeMotion(
+        body=body,
+        state=state,
+        gravity_W=gravity,
+        frame=frame,
+        rotation=rotation,
+        form=form,
+        q_WL=q_WL,
+        q_PB=q_PB,
+        w_along=along,
+        w_across=across,
+    )
+
+
+_IDENTITY: Final = (0.0, 0.0, 0.0, 1.0)
+
+
+def _cayley_klein(form: AttitudeForm, seconds: float) -> tuple[complex, complex]:
+    """Return alpha and i beta of the attitude of P in L, |alpha|^2 + |beta|^2 = 1."""
+    A_re, A_im, B_re, B_im, tangent = form.point(seconds)
+    scale = 1.0 / math.sqrt(
+        (A_re * A_re + A_im * A_im + B_re * B_re + B_im * B_im) * (1.0 + tangent * tangent)
+    )
+    factor = complex(scale, scale * tangent)
+    return factor * complex(A_re, A_im), factor * complex(B_re, B_im)
+
+
+def _into_body(q: list[Decimal], w_W: list[Decimal]) -> list[Decimal]:
+    """Return R^T w for the rotation of a quaternion that is unit to rounding, as if it were exactly so."""
+    x, y, z, s = q
+    a, b, c = w_W
+    imaginary2 = x * x + y * y + z * z
+    norm2 = imaginary2 + s * s
+    scale, along, across = s * s - imaginary2, 2 * (x * a + y * b + z * c), 2 * s
+    return [
+        (scale * a + along * x - across * (y * c - z * b)) / norm2,
+        (scale * b + along * y - across * (z * a - x * c)) / norm2,
+        (scale * c + along * z - across * (x * b - y * a)) / norm2,
+    ]
+
+
+def _make_continuous(q: FloatArray, first: FloatArray) -> None:
+    """Choose of q and -q, one attitude, the one nearer to the row before, and at first to ``first``."""
+    if len(q) == 0:
+        return
+    signs = np.empty(len(q))
+    signs[0] = q[0] @ first
+    np.einsum("ij,ij->i", q[1:], q[:-1], out=signs[1:])
+    np.copysign(1.0, signs, out=signs)
+    np.cumprod(signs, out=signs)
+    q *= signs[:, None]
