@@ -1,0 +1,72 @@
+"""Velocities as a tracking system has them: from the measured poses alone, and from the past alone.
+
+Model: over the last few frames each coordinate of the position, and each of the rotation vector relative to
+the newest orientation, is a quadratic of time. Least squares gives the three coefficients; the velocity is
+the slope of the quadratic **at the newest frame**, so that the estimate belongs to the stamp of its sample. A
+quadratic because its slope at the end of the window has no lag under constant acceleration, such as
+gravity's; a straight line would be half a window late.
+
+The price is noise: for n frames spaced dt with white noise sigma, the slope's standard deviation at the end
+is sigma / dt * sqrt(12 (2n - 1)(8n - 11) / (n (n^2 - 1)(n^2 - 4))), close to sigma / dt * sqrt(192 / n^3).
+
+Not covered: a window that spans an impact averages what was before with what is after; such estimates are
+wrong by up to the jump itself until the window has passed. A body that turns by half a turn within one window
+has no rotation vector.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.demo.rotation_vectors import rotation_vectors_from
+
+if TYPE_CHECKING:
+    from contact_dynamics.validation import FloatArray
+
+WINDOW: Final = 0.05
+"""s. Long enough to average the noise of motion capture, short against the flights to be predicted."""
+
+FEWEST_FRAMES: Final = 5
+"""Frames. Through three a quadratic goes exactly, noise and all; five more than halve the slope's noise."""
+
+
+def frames_in_window(rate: float, window: float = WINDOW) -> int:
+    """Return how many frames at ``rate`` (Hz) the estimate looks back over, the newest included."""
+    return max(FEWEST_FRAMES, round(rate * window))
+
+
+def causal_velocities(
+    times: FloatArray, p_W: FloatArray, q: FloatArray, *, frames: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return linear and angular velocity, (n, 3) each, m/s and rad/s, world axes, of the tracked frame.
+
+    Row k uses rows k - frames + 1 to k of ``times``, (n,), s; ``p_W``, (n, 3), m; and ``q``, (n, 4), x y z w,
+    body to world. While fewer frames have been seen, those serve, down to `FEWEST_FRAMES`; the rows before
+    that are NaN.
+    """
+    v_W = np.full((len(times), 3), np.nan)
+    w_W = np.full((len(times), 3), np.nan)
+    for newest in range(FEWEST_FRAMES - 1, len(times)):
+        window = slice(max(0, newest + 1 - frames), newest + 1)
+        ago = times[window] - times[newest]
+        powers = np.column_stack([np.ones_like(ago), ago, ago * ago])
+        coordinates = np.column_stack(
+            [p_W[window] - p_W[newest], rotation_vectors_from(q[newest], q[window])]
+        )
+        slopes = np.linalg.lstsq(powers, coordinates, rcond=None)[0][1]
+        v_W[newest], w_W[newest] = slopes[:3], slopes[3:]
+    return v_W, w_W
+
+
+def slope_noise(*, frames: int, rate: float, noise: float) -> float:
+    """Return the standard deviation of one component of the estimate, in units of ``noise`` per second.
+
+    ``noise`` is the standard deviation of one coordinate of the poses (m or rad), white from frame to frame
+    at ``rate`` (Hz).
+    """
+    n = float(frames)
+    variance = 12.0 * (2.0 * n - 1.0) * (8.0 * n - 11.0) / (n * (n * n - 1.0) * (n * n - 4.0))
+    return noise * rate * math.sqrt(variance)
