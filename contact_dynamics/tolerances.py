@@ -61,3 +61,7 @@ ROW_TOLERANCE: Final = 1e-9
 coincide, in the enumeration of modes as in their dynamics. Contact rows carry some 1e-15 of rounding, a
 hundred times that for contacts far from the centre of mass; what is built from two planes that meet at 1e-5
 is still right within it."""
+
+GRAZING_DEPTH: Final = 1e-9
+"""m. A vertex that dips into a plane by less, and rises again, may be overlooked by the search for the first contact; deeper
+ones never are. Far below what any sensor or surface resolves, and large enough that the search cannot creep."""

@@ -16,6 +16,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
+from contact_dynamics.contact_modes.dynamics import solve_mode
+from contact_dynamics.contact_modes.enumeration import kinematic_cells
+from contact_dynamics.contact_modes.problem import planar_problem
 from contact_dynamics.contact_modes.result import (
     ConsistentMode,
     ContactModeAnswer,
@@ -24,13 +27,14 @@ from contact_dynamics.contact_modes.result import (
     verdict_on,
 )
 from contact_dynamics.contact_modes.single import single_contact_modes
-from contact_dynamics.errors import NotSupportedError, TooLargeError
+from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_not_negative
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from contact_dynamics.contact_modes.problem import PlanarProblem
     from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, Vector2
 
 MOST_CONTACTS: Final = 1000
@@ -84,7 +88,11 @@ def planar_contact_modes(
                 body, contacts[0], wrench, v_t=velocities[0][0], w=w, accuracy=accuracy
             )
         else:
-            raise NotSupportedError("contact modes of several contacts")
+            problem = planar_problem(
+                body, velocity, contacts, velocities, wrench, velocity_tolerance=v_tolerance
+            )
+            modes, refused = _judge_all(problem, accuracy)
+            a_tolerance = accuracy * problem.largest_acceleration
     found = tuple(modes)
     return ContactModeAnswer(
         verdict=ModeVerdict.IMPACT if approaching else verdict_on(found),
@@ -95,6 +103,18 @@ def planar_contact_modes(
         velocity_tolerance=v_tolerance,
         acceleration_tolerance=a_tolerance,
     )
+
+
+def _judge_all(problem: PlanarProblem, accuracy: float) -> tuple[list[ConsistentMode], list[RefusedMode]]:
+    consistent: list[ConsistentMode] = []
+    refused: list[RefusedMode] = []
+    for mode, cell in sorted(kinematic_cells(problem).items()):
+        outcome = solve_mode(problem, mode, cell, accuracy)
+        if isinstance(outcome, ConsistentMode):
+            consistent.append(outcome)
+        else:
+            refused.append(outcome)
+    return consistent, refused
 
 
 def _contact_velocity(velocity: PlanarVelocity, contact: PlanarContact, tolerance: float) -> Vector2:

@@ -1,0 +1,232 @@
+"""Polyhedral convex cones in R^3: from half-spaces to extreme rays, with what touches what.
+
+The double description method (Motzkin and others 1953), in three dimensions, where the rays of a pointed cone
+stand in a cycle: half-spaces are cut away one by one, and each ray keeps the set of rows on which it lies, as
+the bits of an integer. Degenerate cones (half-spaces, wedges, planes, sectors, single rays, the origin) come
+out as such, because ties are decided by one tolerance and remembered as bits, never recomputed.
+
+A cone's dual has the rows as generators: the rays found here are then its facets. So this one construction
+serves the faces of the accelerations that do not penetrate, and the cones of wrenches.
+
+Plain floats: the sets are small, and most rows change nothing, which costs three multiplications a ray.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+Vector3: TypeAlias = tuple[float, float, float]
+
+_AXES: tuple[Vector3, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+class Sector(NamedTuple):
+    """A two-dimensional cone spanned by two rays less than 180 degrees apart, all of it on some rows."""
+
+    start: Vector3  # unit
+    end: Vector3  # unit
+    tight: int  # bit set of the rows that vanish on it
+
+
+class PolyhedralCone:
+    """The cone {x : row . x >= 0 for every row} as lineality space plus extreme rays."""
+
+    __slots__ = ("_tolerance", "lineality", "rays", "rows", "tight")
+
+    rows: Sequence[Vector3]  # unit, as given
+    lineality: list[Vector3]  # orthonormal basis of the lines that the cone contains
+    rays: list[Vector3]  # unit extreme rays, orthogonal to the lineality; three or more stand in a cycle
+    tight: list[int]  # for each ray, the bit set of the rows that vanish on it
+
+    def __init__(self, rows: Sequence[Vector3], *, tolerance: float) -> None:
+        """Cut with each of ``rows``, which are unit; below ``tolerance`` a row vanishes on a unit vector."""
+        self.lineality = list(_AXES)
+        self.rays = []
+        self.tight = []
+        self.rows = rows
+        self._tolerance = tolerance
+        for index, row in enumerate(rows):
+            self._cut(row, index)
+
+    @property
+    def all_rows(self) -> int:
+        """Return the bit set of all rows: those that vanish on the lineality space and at the origin."""
+        return (1 << len(self.rows)) - 1
+
+    @property
+    def has_interior(self) -> bool:
+        """Return whether the cone is three-dimensional."""
+        if len(self.lineality) + len(self.rays) < 3:
+            return False
+        common = self.all_rows
+        for tight in self.tight:
+            common &= tight
+        return common == 0
+
+    def edges(self) -> list[tuple[Vector3, int]]:
+        """Return rays that contain every one-dimensional face, each with its tight rows.
+
+        Lines are given by two opposite rays; a plane by two such lines in it.
+        """
+        lines = [(sign, self.all_rows) for line in self.lineality for sign in (line, opposite(line))]
+        if len(self.lineality) == 3:
+            return []
+        return lines + list(zip(self.rays, self.tight, strict=True))
+
+    def sectors(self) -> list[Sector]:
+        """Return sectors that cover every two-dimensional face. Half-planes and planes come in several."""
+        lines = self.lineality
+        rays = self.rays
+        if not lines:
+            count = len(rays)
+            pairs = [(i, (i + 1) % count) for i in range(count)] if count > 2 else [(0, 1)][: count // 2]
+            return [Sector(rays[i], rays[j], self.tight[i] & self.tight[j]) for i, j in pairs]
+        if len(lines) == 1:
+            line = lines[0]
+            return [
+                Sector(start, ray, tight)
+                for ray, tight in zip(rays, self.tight, strict=True)
+                for start in (line, opposite(line))
+            ]
+        if len(lines) == 2:
+            one, two = lines
+            turn = (one, two, opposite(one), opposite(two), one)
+            return [Sector(turn[i], turn[i + 1], self.all_rows) for i in range(4)]
+        return []
+
+    def _cut(self, row: Vector3, index: int) -> None:
+        if self.lineality and self._cut_lineality(row, index):
+            return
+        x, y, z = row
+        heights = [x * ray[0] + y * ray[1] + z * ray[2] for ray in self.rays]
+        if not heights:
+            return
+        tolerance = self._tolerance
+        lowest = min(heights)
+        if lowest > tolerance:
+            return
+        bit = 1 << index
+        if lowest >= -tolerance:
+            for i, height in enumerate(heights):
+                if height <= tolerance:
+                    self.tight[i] |= bit
+            return
+        self._cut_rays(heights, index)
+
+    def _cut_lineality(self, row: Vector3, index: int) -> bool:
+        """Cut a row that does not vanish on the lineality space: one line becomes a ray."""
+        parts = [dot(row, line) for line in self.lineality]
+        length = math.sqrt(sum(part * part for part in parts))
+        if length <= self._tolerance:
+            return False
+        ray = normalised(_combination(parts, self.lineality))
+        self.lineality = _complement(self.lineality, ray)
+        rise = dot(row, ray)
+        bit = 1 << index
+        for i, other in enumerate(self.rays):
+            drop = dot(row, other) / rise
+            self.rays[i] = normalised(
+                (other[0] - drop * ray[0], other[1] - drop * ray[1], other[2] - drop * ray[2])
+            )
+            self.tight[i] |= bit
+        self.rays.append(ray)
+        self.tight.append(bit - 1)
+        return True
+
+    def _cut_rays(self, heights: list[float], index: int) -> None:
+        """Drop the rays below the row, and put new ones where an edge of the cycle crosses it."""
+        tolerance = self._tolerance
+        bit = 1 << index
+        rays: list[Vector3] = []
+        tight: list[int] = []
+        count = len(heights)
+        for i, height in enumerate(heights):
+            if height >= -tolerance:
+                rays.append(self.rays[i])
+                tight.append(self.tight[i] | bit if height <= tolerance else self.tight[i])
+            j = (i + 1) % count
+            if (height > tolerance and heights[j] < -tolerance) or (
+                height < -tolerance and heights[j] > tolerance
+            ):
+                if count == 2 and i == 1:  # two rays have one edge, already crossed
+                    break
+                common = self.tight[i] & self.tight[j]
+                rays.append(self._crossing(i, j, heights, index, common))
+                tight.append(common | bit)
+        self.rays = rays
+        self.tight = tight
+
+    def _crossing(self, i: int, j: int, heights: list[float], index: int, common: int) -> Vector3:
+        """Return where the edge between rays i and j meets the row: as a combination, then sharpened."""
+        one, two = abs(heights[j]), abs(heights[i])
+        a, b = self.rays[i], self.rays[j]
+        rough = normalised((one * a[0] + two * b[0], one * a[1] + two * b[1], one * a[2] + two * b[2]))
+        if self.lineality:
+            edge = self.lineality[0]
+        elif common:
+            edge = self.rows[(common & -common).bit_length() - 1]
+        else:
+            return rough
+        sharp = cross(edge, self.rows[index])
+        length = math.sqrt(dot(sharp, sharp))
+        along = dot(sharp, rough)
+        if abs(along) < 0.5 * length or length <= self._tolerance:
+            return rough
+        length = math.copysign(length, along)
+        return (sharp[0] / length, sharp[1] / length, sharp[2] / length)
+
+
+def dot(a: Vector3, b: Vector3) -> float:
+    """Return the inner product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a: Vector3, b: Vector3) -> Vector3:
+    """Return the cross product."""
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def opposite(a: Vector3) -> Vector3:
+    """Return the vector the other way."""
+    return (-a[0], -a[1], -a[2])
+
+
+def normalised(a: Vector3) -> Vector3:
+    """Return the unit vector along ``a``, which is not zero."""
+    length = math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
+    return (a[0] / length, a[1] / length, a[2] / length)
+
+
+def bits(mask: int) -> list[int]:
+    """Return the positions of the bits that are set, in order."""
+    found = []
+    while mask:
+        lowest = mask & -mask
+        found.append(lowest.bit_length() - 1)
+        mask ^= lowest
+    return found
+
+
+def _combination(parts: Sequence[float], vectors: Sequence[Vector3]) -> Vector3:
+    x = y = z = 0.0
+    for part, vector in zip(parts, vectors, strict=True):
+        x += part * vector[0]
+        y += part * vector[1]
+        z += part * vector[2]
+    return (x, y, z)
+
+
+def _complement(basis: list[Vector3], unit: Vector3) -> list[Vector3]:
+    """Return an orthonormal basis of what is orthogonal to ``unit`` in the span of ``basis``."""
+    if len(basis) == 1:
+        return []
+    if len(basis) == 2:
+        normal = cross(basis[0], basis[1])
+        return [normalised(cross(normal, unit))]
+    least = min(_AXES, key=lambda axis: abs(dot(axis, unit)))
+    first = normalised(cross(unit, least))
+    return [first, cross(unit, first)]

@@ -1,0 +1,167 @@
+"""The planar contact problem in coordinates where accelerations and wrenches live in one space (lecture 26).
+
+With the radius of gyration rho as the unit of length of rotations, an acceleration is q = (a_x, a_y, rho
+alpha) and a wrench is w = (f_x, f_y, moment / rho), so that Newton's law is m q = w, contact forces included.
+The accelerations of a contact's point along its normal and its tangent are
+
+    a_n = N . q + b_n,  a_t = T . q + b_t,  N = (n, r x n / rho),  T = (t, r x t / rho),  b = -w^2 r . (n, t),
+
+and the same rows are the wrenches of a unit normal and a unit tangential force.
+
+A moving body: velocities within tolerance count as zero, and the motion that remains is the velocity's part
+that moves no contact along its normal, nor one at rest along its tangent. Where that part turns, all rows of
+touching contacts are orthogonal to it (their normals meet at the centre of rotation), so that the affine
+problem has a line of symmetry, and what is left is a cone in three dimensions again: two of acceleration and
+one that stands for the centripetal terms.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+from contact_dynamics.contact_modes.cone import Vector3, cross, dot, normalised
+from contact_dynamics.tolerances import ROW_TOLERANCE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, Vector2
+
+
+class ContactRow(NamedTuple):
+    """One touching contact."""
+
+    contact: int  # in the caller's order
+    N: Vector3  # normal row, not unit
+    T: Vector3  # tangent row, not unit
+    b_n: float  # m/s^2
+    b_t: float  # m/s^2
+    size_n: float  # |N|
+    size_t: float  # |T|
+    slides: float  # -1 moves left, +1 right, 0 at rest
+    friction: float
+
+
+class Lift(NamedTuple):
+    """The line of symmetry of a body that turns about its contacts, and coordinates across it."""
+
+    line: Vector3  # unit, the velocity
+    across: tuple[Vector3, Vector3]  # unit, orthogonal to it and to each other
+    scale: float  # m/s^2, the largest |b|: the third coordinate's unit
+
+
+class PlanarProblem(NamedTuple):
+    """Everything the enumeration and the dynamics of modes need."""
+
+    contacts: Sequence[PlanarContact]  # touching or not
+    mass: float  # kg
+    rho: float  # m, radius of gyration
+    w: Vector3  # N, applied wrench
+    rows: list[ContactRow]  # the touching contacts
+    omega: float  # rad/s, angular velocity that the contacts allow
+    lift: Lift | None  # None: centripetal terms vanish, the problem is a cone as it stands
+
+    @property
+    def largest_acceleration(self) -> float:
+        """Return what accelerations are compared with, m/s^2: the applied wrench's, plus the centripetal."""
+        return _size(self.w) / self.mass + (self.lift.scale if self.lift else 0.0)
+
+
+def planar_problem(
+    body: PlanarBody,
+    velocity: PlanarVelocity,
+    contacts: Sequence[PlanarContact],
+    contact_velocities: Sequence[Vector2],
+    wrench: PlanarWrench,
+    *,
+    velocity_tolerance: float,
+) -> PlanarProblem:
+    """Return the problem of the contacts whose normal velocity in ``contact_velocities`` is an exact 0.
+
+    An angular velocity that moves no contact relative to the centre of mass by more than
+    ``velocity_tolerance``, m/s, counts as zero.
+    """
+    rho = body.radius_of_gyration
+    touching: list[tuple[int, Vector3, Vector3, float, PlanarContact]] = []
+    resting: list[Vector3] = []
+    for index, (contact, (v_t, v_n)) in enumerate(zip(contacts, contact_velocities, strict=True)):
+        if v_n != 0.0:
+            continue
+        n_x, n_y = contact.normal
+        r_x, r_y = contact.r
+        N = (n_x, n_y, (r_x * n_y - r_y * n_x) / rho)
+        T = (n_y, -n_x, -(r_x * n_x + r_y * n_y) / rho)
+        touching.append((index, N, T, v_t, contact))
+        resting.append(normalised(N))
+        if v_t == 0.0:
+            resting.append(normalised(T))
+    twist = _unhindered((velocity.v[0], velocity.v[1], rho * velocity.w), resting)
+    reach = max((math.hypot(*contact.r) for contact in contacts), default=0.0) / rho
+    turns = abs(twist[2]) * reach > velocity_tolerance and abs(twist[2]) > ROW_TOLERANCE * _size(twist)
+    omega = twist[2] / rho if turns else 0.0
+    square = omega * omega
+    rows = []
+    largest = 0.0
+    for index, N, T, v_t, contact in touching:
+        b_n = square * T[2] * rho  # T's moment arm is -r.n, N's is r.t
+        b_t = -square * N[2] * rho
+        largest = max(largest, abs(b_n), abs(b_t))
+        slides = (v_t > 0.0) - (v_t < 0.0)
+        rows.append(
+            ContactRow(
+                index,
+                N,
+                T,
+                b_n,
+                b_t,
+                _size(N),
+                _size(T),
+                float(slides),
+                contact.friction,
+            )
+        )
+    return PlanarProblem(
+        contacts=contacts,
+        mass=body.mass,
+        rho=rho,
+        w=(wrench.f[0], wrench.f[1], wrench.moment / rho),
+        rows=rows,
+        omega=omega,
+        lift=_lift(twist, largest) if largest > 0.0 else None,
+    )
+
+
+def _unhindered(twist: Vector3, resting: list[Vector3]) -> Vector3:
+    """Return the part of ``twist`` orthogonal to all ``resting`` rows."""
+    if twist == (0.0, 0.0, 0.0) or not resting:
+        return twist
+    first = resting[0]
+    apart = max((cross(first, row) for row in resting), key=lambda normal: dot(normal, normal))
+    if dot(apart, apart) <= ROW_TOLERANCE * ROW_TOLERANCE:
+        along = dot(twist, first)
+        return (twist[0] - along * first[0], twist[1] - along * first[1], twist[2] - along * first[2])
+    line = normalised(apart)
+    if any(abs(dot(line, row)) > ROW_TOLERANCE for row in resting):
+        return (0.0, 0.0, 0.0)
+    along = dot(twist, line)
+    return (along * line[0], along * line[1], along * line[2])
+
+
+def _lift(twist: Vector3, scale: float) -> Lift:
+    line = normalised(twist)
+    least = min(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), key=lambda axis: abs(dot(axis, line)))
+    one = normalised(cross(line, least))
+    return Lift(line, (one, cross(line, one)), scale)
+
+
+def _size(a: Vector3) -> float:
+    return math.sqrt(dot(a, a))
+
+
+def lifted(lift: Lift | None, row: Vector3, offset: float) -> Vector3:
+    """Return the row of ``row . q + offset`` in the coordinates of the problem's cone."""
+    if lift is None:
+        return row
+    one, two = lift.across
+    return (dot(row, one), dot(row, two), offset / lift.scale)
