@@ -63,5 +63,5 @@ hundred times that for contacts far from the centre of mass; what is built from 
 is still right within it."""
 
 GRAZING_DEPTH: Final = 1e-9
-"""m. A vertex that dips into a plane by less, and rises again, may be overlooked by the search for the first contact; deeper
-ones never are. Far below what any sensor or surface resolves, and large enough that the search cannot creep."""
+"""m. A vertex that dips into a plane by less, and rises again, may be overlooked by the search for the first
+contact; deeper ones never are. Far below what sensors resolve, and enough for the search not to creep."""

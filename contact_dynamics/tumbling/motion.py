@@ -115,7 +115,7 @@ class FreeMotion:
 
     def _across(self, alpha: complex, beta: complex) -> complex:
         """Return w_x + i w_y of the angular velocity in L's axes, rad/s, for alpha and i beta."""
-        # sum over i of L l_i (1 / I_i - 1 / I_2) times axis i, with l = L / |L| in P, l_1 = 2 Re(alpha beta*).
+        # The sum of L l_i (1 / I_i - 1 / I_2) times axis i, with l = L / |L| in P, l_1 = 2 Re(alpha beta*).
         l_1 = 2.0 * (alpha.real * beta.real + alpha.imag * beta.imag)
         l_3 = abs(alpha) ** 2 - abs(beta) ** 2
         first, third = self.w_across
