@@ -1,0 +1,137 @@
+"""The services' answers, as messages, to what the picture shows and says of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from contact_dynamics_interfaces.msg import Poinsot
+from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
+
+from contact_dynamics.contact_modes import ModeVerdict
+from contact_dynamics.impact.law import ImpactOutcome
+from contact_dynamics.rigid_body import rotation_matrix
+from contact_dynamics.tumbling import Trajectory
+from contact_dynamics.viewing.contact_modes import ContactModesPicture
+from contact_dynamics.viewing.impact import ImpactPicture
+from msg_adapters.body_state import body_state_from_msg
+from msg_adapters.contacts import contacts_from_msg
+from msg_adapters.geometry import vector_from_msg
+from msg_adapters.stamps import ns_after, stamp_ns_from_msg
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.viewing.picture import Picture
+
+REGIMES: Final = {
+    Poinsot.UNKNOWN: "a torque acts",
+    Poinsot.AT_REST: "it does not rotate",
+    Poinsot.SPHERICAL: "its moments are equal: it spins steadily",
+    Poinsot.PRINCIPAL_AXIS: "it spins steadily about a principal axis",
+    Poinsot.AXISYMMETRIC: "it precesses steadily",
+    Poinsot.ABOUT_MINOR_AXIS: "it tumbles about its minor axis",
+    Poinsot.ABOUT_MAJOR_AXIS: "it tumbles about its major axis",
+    Poinsot.SEPARATRIX: "it turns over once, on the separatrix",
+}
+"""In words, by the constant of `Poinsot.msg`."""
+
+
+def show_tumbling(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns: int) -> None:
+    """Show an answer of `~/predict_tumbling`; ``now_ns`` stands for a state without stamp."""
+    state = _state(response.state, p_FB_F)
+    stamp_ns = state.stamp_ns or now_ns
+    name = response.state.body_name
+    trajectory = trajectory_from_msg(response.trajectory, p_FB_F=p_FB_F)
+    picture.show_trajectory(name, trajectory, stamp_ns=stamp_ns)
+    regime = REGIMES.get(response.poinsot.regime, "")
+    if response.event == PredictTumbling.Response.NONE:
+        seconds = trajectory.seconds[-1] if len(trajectory) else 0.0
+        event = f"{len(trajectory)} samples, the last in {seconds:.4g} s"
+    else:
+        what = response.event_surface or "the plane"
+        point = _numbers(vector_from_msg(response.event_point))
+        speed = np.linalg.norm(vector_from_msg(response.event_velocity))
+        event = f"reaches {what} in {response.event_time:.4g} s at ({point}) m with {speed:.3g} m/s"
+    text = f"{event}; {regime} ({response.computation_time * 1e3:.2g} ms)"
+    picture.tell(f"Tumbling of {name or 'a body'}", text, stamp_ns=stamp_ns)
+
+
+def show_impact(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns: int) -> None:
+    """Show an answer of `~/predict_impact`, at the time of the state that it was computed from."""
+    state = _state(response.state_before, p_FB_F)
+    stamp_ns = ns_after(state.stamp_ns, -response.time_to_contact) if state.stamp_ns else now_ns
+    name = response.state_before.body_name
+    impact = response.impact
+    contacts = contacts_from_msg(response.contacts)
+    impulses = rows(impact.impulses)
+    after = vector_from_msg(impact.state_after.linear_velocity)
+    is_planar = response.problem == PredictImpact.Request.PLANAR
+    shown = ImpactPicture(
+        state=state,
+        v_after_W=after,
+        contacts=contacts,
+        impulses_W=impulses,
+        path_W=rows(impact.path),
+        path_events=tuple(impact.path_events),
+        path_contacts=tuple(impact.path_contacts) or (0,) * len(impact.path_events),
+        plane_normal_W=vector_from_msg(response.plane_normal) if is_planar else None,
+    )
+    picture.show_impact(name, shown, stamp_ns=stamp_ns)
+    outcome = ImpactOutcome(impact.outcome).name.replace("_", " ").lower()
+    lost = impact.kinetic_energy_before - impact.kinetic_energy_after
+    warning = "; **the law creates energy: do not trust it**" if impact.creates_energy else ""
+    text = (
+        f"in {response.time_to_contact:.4g} s, {outcome}: velocity ({_numbers(state.v_WB_W)}) becomes "
+        f"({_numbers(after)}) m/s, impulse {np.linalg.norm(impulses.sum(axis=0)):.3g} N s, {lost:.3g} J lost{warning} "
+        f"({response.computation_time * 1e3:.2g} ms)"
+    )
+    picture.tell(f"Impact of {name or 'a body'}", text, stamp_ns=stamp_ns)
+
+
+def show_contact_modes(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns: int) -> None:
+    """Show an answer of `~/predict_contact_mode`."""
+    stamp_ns = stamp_ns_from_msg(response.state.header.stamp) or now_ns
+    name = response.state.body_name
+    contacts = contacts_from_msg(response.contacts)
+    modes = tuple(mode.mode for mode in response.modes)
+    forces = rows(response.modes[0].contact_forces) if modes else np.zeros((len(contacts), 3))
+    shown = ContactModesPicture(contacts=contacts, modes=modes, forces_W=forces)
+    picture.show_contact_modes(name, shown, stamp_ns=stamp_ns)
+    verdict = ModeVerdict(response.verdict).name.lower()
+    refused = f"; refused {', '.join(response.refused_modes)}" if response.refused_modes else ""
+    text = f"{verdict}: {', '.join(modes) or 'no mode'}{refused} ({response.computation_time * 1e3:.2g} ms)"
+    picture.tell(f"Contact mode of {name or 'a body'}", text, stamp_ns=stamp_ns)
+
+
+def show_error(picture: Picture, title: str, response: Any, *, now_ns: int) -> None:
+    """Show that a question was refused."""
+    picture.tell(title, f"refused ({response.status}): {response.message}", stamp_ns=now_ns, is_error=True)
+
+
+def trajectory_from_msg(msg: Any, *, p_FB_F: FloatArray) -> Trajectory:
+    """Return a trajectory of the centre of mass from one of the published frame."""
+    orientations = np.array(msg.orientations).reshape(-1, 4)
+    offsets = [rotation_matrix(q) @ p_FB_F for q in orientations] if np.any(p_FB_F) else np.zeros(3)
+    return Trajectory(
+        seconds=np.array(msg.times),
+        p_WB_W=rows(msg.positions) + np.reshape(offsets, (-1, 3)),
+        q_WB=orientations,
+        v_WB_W=rows(msg.linear_velocities),
+        w_WB_W=rows(msg.angular_velocities),
+    )
+
+
+def rows(numbers: Sequence[float]) -> FloatArray:
+    """Return flat numbers as vectors, (n, 3)."""
+    return np.array(numbers, dtype=np.float64).reshape(-1, 3)
+
+
+def _state(msg: Any, p_FB_F: FloatArray) -> BodyState:
+    return body_state_from_msg(msg, world_frame=msg.header.frame_id, p_FB_F=p_FB_F)
+
+
+def _numbers(vector: FloatArray) -> str:
+    return ", ".join(f"{number:.3g}" for number in vector.tolist())

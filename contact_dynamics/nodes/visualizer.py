@@ -1,0 +1,204 @@
+"""The visualizer: shows bodies, surfaces, contacts and every answer of a server in rerun, live or to a file.
+
+It is a process of its own: it listens to the bodies' states and to the service events that the server publishes, and
+nothing goes back. It takes the server's parameters, which describe bodies, surfaces and topics, and its own
+(`config/visualizer.yaml`). A drawing that fails is told once, and the rest goes on.
+"""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import rclpy
+import rerun as rr
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rclpy.clock import Clock, ClockType
+from rclpy.experimental import EventsExecutor
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from service_msgs.msg import ServiceEventInfo
+
+from contact_dynamics.nodes.arguments import ros_arguments
+from contact_dynamics.nodes.parameters import ConfigurationError, read_server_parameters
+from contact_dynamics.nodes.pictured_answers import show_contact_modes, show_error, show_impact, show_tumbling
+from contact_dynamics.nodes.state_store import StateStore
+from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
+from contact_dynamics.viewing.picture import Picture
+from contact_dynamics.viewing.sinks import DEFAULT_PORT, OpenRecording, Sinks, ViewerMode
+from msg_adapters.stamps import stamp_ns_from_msg
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from contact_dynamics.rigid_body import BodyState
+
+NODE_NAME: Final = "contact_dynamics_visualizer"
+
+EVENT_QOS: Final = QoSProfile(depth=1000)
+"""Of the service events: deep, so that a burst of questions is drawn in full."""
+
+DRAW_PERIOD_S: Final = 0.05
+"""States are drawn in batches, because a batch costs what a single state does."""
+
+_SPIN_S: Final = 0.1
+_ANSWERS: Final = (
+    (PredictTumbling, "predict_tumbling", show_tumbling),
+    (PredictImpact, "predict_impact", show_impact),
+    (PredictContactMode, "predict_contact_mode", show_contact_modes),
+)
+
+
+class Visualizer(Node):
+    """The node `contact_dynamics_visualizer`."""
+
+    def __init__(self, *, strict: bool = False, **node_options: Any) -> None:
+        """Read the parameters, open the sinks, draw the scene and listen.
+
+        Args:
+            strict: let errors in drawing raise, instead of telling each kind once.
+            node_options: of `rclpy.node.Node`.
+
+        Raises:
+            ConfigurationError: a parameter is missing or not allowed.
+            OSError: the file cannot be written.
+        """
+        super().__init__(NODE_NAME, **node_options)
+        rr.set_strict_mode(True)  # noqa: FBT003  rerun's own signature; else it warns and draws half
+        self._strict = strict
+        self._told: set[str] = set()
+        parameters = read_server_parameters(self)
+        self._world = parameters.world
+        server, surface_side, sinks = _read_own_parameters(self)
+        self._recording = OpenRecording(sinks, on_problem=self.get_logger().warning)
+        self._picture = Picture(self._recording.stream, self._world, surface_side=surface_side)
+        self._states = _WaitingStates()
+        for topics in parameters.topics:
+            subscribe_to_states(
+                self,
+                topics,
+                world_frame=parameters.world_frame,
+                p_FB_F=parameters.world.body(topics.body_name).p_FB_F,
+                states=self._states,
+                record=lambda _topic, _data: None,
+            )
+        for service_type, name, show in _ANSWERS:
+            self._listen(service_type, f"{server}/{name}", show)
+        self.create_timer(DRAW_PERIOD_S, self.draw_states, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self.get_logger().info(f"ready: draws {server} to {self._recording.description}")
+
+    def draw_states(self) -> None:
+        """Draw the states that came since the last time."""
+        for body_name, states in self._states.take().items():
+            self._guarded("states", lambda name=body_name, new=states: self._picture.add_states(name, new))
+
+    def close(self) -> None:
+        """Draw what is left and close the sinks."""
+        self.draw_states()
+        self._recording.close()
+
+    def _listen(self, service_type: Any, service: str, show: Callable[..., None]) -> None:
+        def receive(event: Any) -> None:
+            if event.info.event_type == ServiceEventInfo.RESPONSE_SENT and event.response:
+                self._guarded(service, lambda: self._show(service, event, show))
+
+        self.create_subscription(service_type.Event, f"{service}/_service_event", receive, EVENT_QOS)
+
+    def _show(self, service: str, event: Any, show: Callable[..., None]) -> None:
+        response = event.response[0]
+        self.draw_states()
+        now_ns = self._picture.newest_stamp_ns() or stamp_ns_from_msg(event.info.stamp)
+        if response.status != response.OK:
+            show_error(self._picture, service, response, now_ns=now_ns)
+            return
+        state = response.state_before if hasattr(response, "state_before") else response.state
+        offsets = [body.p_FB_F for body in self._world.bodies if body.name == state.body_name]
+        show(self._picture, response, p_FB_F=offsets[0] if offsets else np.zeros(3), now_ns=now_ns)
+
+    def _guarded(self, kind: str, draw: Callable[[], None]) -> None:
+        try:
+            draw()
+        except Exception:
+            if self._strict:
+                raise
+            if kind not in self._told:
+                self._told.add(kind)
+                self.get_logger().warning(f"cannot draw {kind}; not told again:\n{traceback.format_exc()}")
+
+
+class _WaitingStates(StateStore):
+    """Keeps the states that are not drawn yet."""
+
+    def __init__(self) -> None:
+        super().__init__(history=0.0, timeout=0.0)
+        self._waiting: dict[str, list[BodyState]] = {}
+
+    def add(self, body_name: str, state: BodyState) -> None:
+        self._waiting.setdefault(body_name, []).append(state)
+
+    def take(self) -> dict[str, list[BodyState]]:
+        waiting, self._waiting = self._waiting, {}
+        return {name: sorted(states, key=lambda state: state.stamp_ns) for name, states in waiting.items()}
+
+
+def _read_own_parameters(node: Node) -> tuple[str, float, Sinks]:
+    def read(name: str, default: Any, description: str, **ranges: Any) -> Any:
+        try:
+            descriptor = ParameterDescriptor(description=description, read_only=True, **ranges)
+            return node.declare_parameter(name, default, descriptor).value
+        except Exception as error:  # noqa: BLE001  rclpy raises several unrelated types for a wrong type or range
+            message = f"{name}: {error} ({description})"
+            raise ConfigurationError(message) from None
+
+    server = read("server", "/contact_dynamics", "Full name of the server node whose answers are drawn.")
+    side = read(
+        "surface_side",
+        2.0,
+        "Side of the square that a surface is drawn as, m.",
+        floating_point_range=[FloatingPointRange(from_value=1e-3, to_value=1e4)],
+    )
+    rrd_path = read("rrd_path", "", "File to draw into, which is replaced. Empty: none.")
+    spawn = read("spawn", False, "Start rerun's viewer, unless one listens at the port already.")  # noqa: FBT003
+    serve = read("serve", False, "Serve the picture at the port, for viewers that connect.")  # noqa: FBT003
+    url = read("connect", "", "URL of a viewer to draw in, as rerun+http://127.0.0.1:9876/proxy. Empty: none.")
+    port = read(
+        "port",
+        DEFAULT_PORT,
+        "Port of this machine that the viewer which is started listens at, or that the picture is served at.",
+        integer_range=[IntegerRange(from_value=1, to_value=65535)],
+    )
+    chosen = [name for name, on in (("spawn", spawn), ("serve", serve), ("connect", bool(url))) if on]
+    if len(chosen) > 1:
+        message = f"{' and '.join(chosen)}: found {len(chosen)} ways to a viewer, allowed is one"
+        raise ConfigurationError(message)
+    if not chosen and not rrd_path:
+        message = "rrd_path, spawn, serve, connect: found none, needed is somewhere to draw to"
+        raise ConfigurationError(message)
+    viewer = ViewerMode(chosen[0]) if chosen else ViewerMode.NONE
+    return server, side, Sinks(rrd_path=rrd_path, viewer=viewer, port=port, url=url)
+
+
+def main(arguments: list[str]) -> int:
+    """Run the visualizer until it is told to stop; return the exit code."""
+    description = "Show bodies, contacts and predictions in rerun, live or to a file."
+    rclpy.init(args=ros_arguments("visualizer", description, arguments))
+    try:
+        visualizer = Visualizer()
+    except (ConfigurationError, OSError) as error:
+        print(f"[{NODE_NAME}] configuration: {error}", file=sys.stderr, flush=True)
+        rclpy.try_shutdown()
+        return 2
+    executor = EventsExecutor()
+    executor.add_node(visualizer)
+    try:
+        while rclpy.ok():
+            executor.spin_once(timeout_sec=_SPIN_S)
+    except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
+        pass
+    finally:
+        visualizer.close()
+        rclpy.try_shutdown()
+    return 0

@@ -1,0 +1,101 @@
+"""How the views are arranged: the scene, impulse space, curves over time, and answers in words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import rerun as rr
+import rerun.blueprint as rrb
+
+from contact_dynamics.viewing import palette
+from contact_dynamics.viewing.entities import (
+    ANSWER_LOG,
+    HEIGHT,
+    IMPULSE_SPACE,
+    LEGEND,
+    NEWEST_ANSWERS,
+    SCENE,
+    SPEED,
+    TIMELINE,
+    trail_entity,
+)
+from contact_dynamics.viewing.scene import tangents
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.validation import FloatArray
+
+LOWEST_DISTANCE: Final = 0.5
+"""m. The eye comes no nearer to what it looks at."""
+
+_DISTANCE: Final = 1.15  # of the eye, relative to the diagonal of what it shows
+_ELEVATION: Final = 0.33  # of the eye above what it looks at, relative to its horizontal distance
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Eye:
+    """Where the scene is looked at from."""
+
+    position_W: FloatArray  # (3,), m, world
+    target_W: FloatArray  # (3,), m, world
+    up_W: FloatArray  # (3,), unit, world axes
+
+
+def eye_on(points_W: FloatArray, *, up_W: FloatArray) -> Eye:
+    """Return an eye that sees all points, (n, 3), m, world, from the side of their longest horizontal extent."""
+    low, high = points_W.min(axis=0), points_W.max(axis=0)
+    target = 0.5 * (low + high)
+    level = points_W - np.outer(points_W @ up_W, up_W)
+    travel = level[-1] - level[0]
+    side = np.cross(travel, up_W) if float(np.linalg.norm(travel)) > 1e-3 else -tangents(up_W)[1]
+    side = side / np.linalg.norm(side)
+    distance = max(LOWEST_DISTANCE, _DISTANCE * float(np.linalg.norm(high - low)))
+    return Eye(position_W=target + distance * (side + _ELEVATION * up_W), target_W=target, up_W=up_W)
+
+
+def make_blueprint(body_names: Sequence[str], *, eye: Eye | None) -> rrb.Blueprint:
+    """Return the arrangement; without an eye the viewer looks at all that there is."""
+    always = rrb.VisibleTimeRanges(
+        timeline=TIMELINE, start=rrb.TimeRangeBoundary.infinite(), end=rrb.TimeRangeBoundary.cursor_relative()
+    )
+    controls = None
+    if eye is not None:
+        controls = rrb.EyeControls3D(
+            kind=rrb.Eye3DKind.Orbital, position=eye.position_W, look_target=eye.target_W, eye_up=eye.up_W
+        )
+    scene = rrb.Spatial3DView(
+        origin="/",
+        contents=f"{SCENE}/**",
+        name="Scene",
+        background=rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor),
+        line_grid=False,
+        eye_controls=controls,
+        overrides={trail_entity(name): always for name in body_names},
+    )
+    return rrb.Blueprint(
+        rrb.Horizontal(
+            scene,
+            rrb.Vertical(
+                rrb.Spatial2DView(
+                    origin=IMPULSE_SPACE,
+                    name="Impulse space (tangential, normal impulse)",
+                    background=palette.BACKGROUND,
+                ),
+                rrb.TimeSeriesView(origin=HEIGHT, name="Height of the centre of mass, m"),
+                rrb.TimeSeriesView(origin=SPEED, name="Speed of the centre of mass, m/s"),
+                rrb.Tabs(
+                    rrb.TextDocumentView(origin=NEWEST_ANSWERS, name="Newest answers"),
+                    rrb.TextLogView(origin=ANSWER_LOG, name="All answers"),
+                    rrb.TextDocumentView(origin=LEGEND, name="Legend"),
+                ),
+                row_shares=[4, 2.5, 2.5, 3],
+            ),
+            column_shares=[3, 2],
+        ),
+        rrb.BlueprintPanel(state=rrb.PanelState.Collapsed),
+        rrb.SelectionPanel(state=rrb.PanelState.Collapsed),
+        rrb.TimePanel(state=rrb.PanelState.Collapsed, timeline=TIMELINE, play_state="Following"),
+    )

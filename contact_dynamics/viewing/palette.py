@@ -1,0 +1,64 @@
+"""What each colour means, everywhere: red, green, blue and opacity, 0 to 255."""
+
+from __future__ import annotations
+
+from typing import Final, TypeAlias
+
+Color: TypeAlias = tuple[int, int, int, int]
+
+MEASURED: Final[Color] = (120, 170, 215, 255)
+"""Blue grey: what was measured. The body, its trail, its height and speed."""
+
+MEASURED_EDGE: Final[Color] = (35, 60, 85, 255)
+"""Edges of the body."""
+
+PREDICTED: Final[Color] = (255, 160, 40, 255)
+"""Orange: where the body was predicted to be."""
+
+IMPACT: Final[Color] = (240, 60, 70, 255)
+"""Red: the impulse, and the velocity after it."""
+
+BEFORE_IMPACT: Final[Color] = (250, 215, 90, 255)
+"""Yellow: the velocity before an impact."""
+
+FRICTION_CONE: Final[Color] = (190, 120, 235, 90)
+"""Translucent violet: the forces and impulses that friction allows."""
+
+NORMAL: Final[Color] = (230, 230, 230, 255)
+"""White: contact normals."""
+
+SEPARATE: Final[Color] = (90, 205, 235, 255)
+"""Cyan: a contact that separates (`s`)."""
+
+SLIDE: Final[Color] = (235, 95, 200, 255)
+"""Pink: a contact that slides (`l`, `r`)."""
+
+FIXED: Final[Color] = (95, 210, 105, 255)
+"""Green: a contact that stays fixed (`f`, or `c` without a sliding direction)."""
+
+UNDECIDED: Final[Color] = (255, 255, 255, 255)
+"""White: a contact whose letter differs between the consistent modes, or that has none."""
+
+SURFACE: Final[Color] = (150, 160, 150, 70)
+"""Translucent grey: a surface of the world."""
+
+SURFACE_GRID: Final[Color] = (170, 180, 170, 70)
+"""Lines on it, 0.1 m apart unless the legend of the surface says otherwise."""
+
+STICKING_LINE: Final[Color] = (95, 210, 105, 255)
+"""Green, in impulse space: impulses after which the contact does not slide."""
+
+COMPRESSION_LINE: Final[Color] = (90, 205, 235, 255)
+"""Cyan, in impulse space: impulses after which the contact does not approach."""
+
+BACKGROUND: Final[Color] = (24, 27, 32, 255)
+"""Behind the 3D view and impulse space."""
+
+LETTER_COLORS: Final[dict[str, Color]] = {"s": SEPARATE, "l": SLIDE, "r": SLIDE, "f": FIXED, "c": FIXED}
+"""By the letter of a contact's mode."""
+
+
+def translucent(color: Color, opacity: float) -> Color:
+    """Return the colour with that opacity, 0 to 1."""
+    red, green, blue, _ = color
+    return (red, green, blue, round(255 * opacity))

@@ -1,0 +1,134 @@
+"""The whole picture of a world and of what is asked about it, drawn into one recording as it happens."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import rerun as rr
+
+from contact_dynamics.viewing.blueprint import eye_on, make_blueprint
+from contact_dynamics.viewing.contact_modes import draw_contact_modes
+from contact_dynamics.viewing.entities import ANSWER_LOG, LEGEND, NEWEST_ANSWERS
+from contact_dynamics.viewing.impact import draw_impact
+from contact_dynamics.viewing.impulse_space import draw_impulse_space
+from contact_dynamics.viewing.legend import LEGEND_TEXT
+from contact_dynamics.viewing.measured import draw_prediction_at, draw_states, set_time, style_series
+from contact_dynamics.viewing.scene import draw_axes, draw_body, draw_surface
+from contact_dynamics.viewing.shape import Shape, convex_shape
+from contact_dynamics.viewing.trajectory import draw_trajectory
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.tumbling import Trajectory
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.viewing.contact_modes import ContactModesPicture
+    from contact_dynamics.viewing.impact import ImpactPicture
+    from contact_dynamics.world import World
+
+_UNKNOWN: Final = np.zeros((0, 3))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Prediction:
+    begin_ns: int
+    trajectory: Trajectory
+
+
+class Picture:
+    """Draws into a recording. Times are stamps in ns; a body that is not of the world is drawn without a shape."""
+
+    def __init__(self, recording: rr.RecordingStream, world: World, *, surface_side: float) -> None:
+        """Draw the surfaces, as squares of ``surface_side``, m, and the bodies."""
+        self._recording = recording
+        self._world = world
+        self._surface_side = surface_side
+        self._shapes: dict[str, Shape] = {body.name: convex_shape(body.vertices_B) for body in world.bodies}
+        self._newest: dict[str, BodyState] = {}
+        self._predictions: dict[str, _Prediction] = {}
+        self._answers: dict[str, str] = {}
+        self._framed = False
+        gravity = float(np.linalg.norm(world.gravity_W))
+        self._up_W = -world.gravity_W / gravity if gravity > 0.0 else np.array([0.0, 0.0, 1.0])
+        self._draw_scene()
+
+    def add_states(self, body_name: str, states: Sequence[BodyState]) -> None:
+        """Draw measured states, in the order of their stamps."""
+        if not states:
+            return
+        before = self._newest.get(body_name)
+        draw_states(self._recording, body_name, states, before=before, up_W=self._up_W)
+        prediction = self._predictions.get(body_name)
+        if prediction is not None:
+            draw_prediction_at(
+                self._recording,
+                body_name,
+                [state.stamp_ns for state in states],
+                trajectory=prediction.trajectory,
+                begin_ns=prediction.begin_ns,
+                up_W=self._up_W,
+            )
+        self._newest[body_name] = states[-1]
+
+    def show_trajectory(self, body_name: str, trajectory: Trajectory, *, stamp_ns: int) -> None:
+        """Draw where the body was predicted to be from a stamp on."""
+        set_time(self._recording, stamp_ns)
+        draw_trajectory(self._recording, body_name, self._shape(body_name), trajectory)
+        self._predictions[body_name] = _Prediction(begin_ns=stamp_ns, trajectory=trajectory)
+        if len(trajectory) > 0:
+            self._frame(trajectory.p_WB_W)
+
+    def show_impact(self, body_name: str, impact: ImpactPicture, *, stamp_ns: int) -> None:
+        """Draw a predicted impact in the scene and in impulse space."""
+        set_time(self._recording, stamp_ns)
+        draw_impact(self._recording, body_name, self._shape(body_name), impact)
+        if len(impact.path_W) > 0:
+            masses = [body.mass_properties for body in self._world.bodies if body.name == body_name]
+            draw_impulse_space(self._recording, masses[0] if masses else None, impact)
+
+    def show_contact_modes(self, body_name: str, modes: ContactModesPicture, *, stamp_ns: int) -> None:
+        """Draw an answer about contact modes."""
+        set_time(self._recording, stamp_ns)
+        draw_contact_modes(self._recording, body_name, self._shape(body_name), modes)
+
+    def tell(self, title: str, text: str, *, stamp_ns: int, is_error: bool = False) -> None:
+        """Write an answer in words: to the log of all, and as the newest one under its title (both Markdown)."""
+        set_time(self._recording, stamp_ns)
+        level = rr.TextLogLevel.WARN if is_error else rr.TextLogLevel.INFO
+        self._recording.log(ANSWER_LOG, rr.TextLog(f"{title}: {text}", level=level))
+        self._answers[title] = text
+        document = "\n\n".join(f"**{title}**: {text}" for title, text in self._answers.items())
+        self._recording.log(NEWEST_ANSWERS, rr.TextDocument(document, media_type=rr.MediaType.MARKDOWN))
+
+    def newest_stamp_ns(self) -> int | None:
+        """Return the stamp of the newest measured state, if there is one."""
+        return max((state.stamp_ns for state in self._newest.values()), default=None)
+
+    def _draw_scene(self) -> None:
+        draw_axes(self._recording, self._up_W)
+        for surface in self._world.surfaces:
+            draw_surface(self._recording, surface, center_W=surface.p_WS_W, side=self._surface_side)
+        for name, shape in self._shapes.items():
+            draw_body(self._recording, name, shape)
+            style_series(self._recording, name)
+        self._recording.log(LEGEND, rr.TextDocument(LEGEND_TEXT, media_type=rr.MediaType.MARKDOWN), static=True)
+        self._recording.send_blueprint(make_blueprint(list(self._shapes), eye=None))
+
+    def _shape(self, body_name: str) -> Shape:
+        if body_name not in self._shapes:
+            self._shapes[body_name] = convex_shape(_UNKNOWN)
+            draw_body(self._recording, body_name, self._shapes[body_name])
+        return self._shapes[body_name]
+
+    def _frame(self, points_W: FloatArray) -> None:
+        """Look at the first trajectory, and put the ground below it; later ones leave the view to whoever looks."""
+        if self._framed:
+            return
+        self._framed = True
+        center = 0.5 * (points_W.min(axis=0) + points_W.max(axis=0))
+        for surface in self._world.surfaces:
+            draw_surface(self._recording, surface, center_W=center, side=self._surface_side)
+        self._recording.send_blueprint(make_blueprint(list(self._shapes), eye=eye_on(points_W, up_W=self._up_W)))

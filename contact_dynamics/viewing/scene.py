@@ -1,0 +1,98 @@
+"""What stands still or is drawn once: surfaces as patches of ground, and the shapes of the bodies."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import rerun as rr
+
+from contact_dynamics.viewing import palette
+from contact_dynamics.viewing.entities import SCENE, SURFACES, body_entity, entity, trail_entity
+
+if TYPE_CHECKING:
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.viewing.shape import Shape
+    from contact_dynamics.world import Surface
+
+GRID_SPACING: Final = 0.1
+"""m between the lines on a surface; wider by tens where that would be more than `MOST_GRID_LINES` lines."""
+
+MOST_GRID_LINES: Final = 100
+
+_EDGE_WIDTH: Final = -1.5  # negative: points of the screen
+_GRID_WIDTH: Final = -0.6
+_TRAIL_WIDTH: Final = -1.5
+
+
+def draw_axes(recording: rr.RecordingStream, up_W: FloatArray) -> None:
+    """Tell the viewer which of the world's axes is nearest to up."""
+    axis = int(np.abs(up_W).argmax())
+    names = ("RIGHT_HAND_X", "RIGHT_HAND_Y", "RIGHT_HAND_Z")
+    sign = "UP" if up_W[axis] > 0.0 else "DOWN"
+    recording.log(SCENE, getattr(rr.ViewCoordinates, f"{names[axis]}_{sign}"), static=True)
+
+
+def draw_surface(recording: rr.RecordingStream, surface: Surface, *, center_W: FloatArray, side: float) -> None:
+    """Draw a square of a surface with that side, m, about the surface's point nearest to ``center_W``, (3,), m."""
+    u_W, v_W = tangents(surface.normal_W)
+    p_W = center_W - ((center_W - surface.p_WS_W) @ surface.normal_W) * surface.normal_W
+    spacing = GRID_SPACING
+    while side / spacing > MOST_GRID_LINES:
+        spacing *= 10.0
+    half = 0.5 * side
+    corners = np.array([p_W + a * u_W + b * v_W for a, b in ((-half, -half), (half, -half), (half, half), (-half, half))])
+    lines = [
+        np.array([p_W + a * along + half * across, p_W + a * along - half * across])
+        for along, across in ((u_W, v_W), (v_W, u_W))
+        for a in np.arange(-half, half + 0.5 * spacing, spacing)
+    ]
+    path = entity(SURFACES, surface.name)
+    recording.log(
+        f"{path}/patch",
+        rr.Mesh3D(
+            vertex_positions=corners,
+            triangle_indices=[[0, 1, 2], [0, 2, 3]],
+            vertex_normals=np.tile(surface.normal_W, (4, 1)),
+            albedo_factor=palette.SURFACE,
+        ),
+        static=True,
+    )
+    recording.log(
+        f"{path}/grid",
+        rr.LineStrips3D(lines, colors=palette.SURFACE_GRID, radii=_GRID_WIDTH),
+        static=True,
+    )
+
+
+def draw_body(recording: rr.RecordingStream, body_name: str, shape: Shape) -> None:
+    """Draw a body's shape, which moves with the body's pose; without one, a ball."""
+    path = body_entity(body_name)
+    if len(shape.triangles_B) > 0:
+        recording.log(f"{path}/faces", solid(shape, palette.MEASURED), static=True)
+    if len(shape.edges_B) > 0:
+        edges = rr.LineStrips3D(shape.edges_B, colors=palette.MEASURED_EDGE, radii=_EDGE_WIDTH)
+        recording.log(f"{path}/edges", edges, static=True)
+    else:
+        ball = rr.Points3D([[0.0, 0.0, 0.0]], radii=0.5 * shape.size, colors=palette.MEASURED)
+        recording.log(f"{path}/faces", ball, static=True)
+    trail = rr.LineStrips3D.from_fields(colors=palette.translucent(palette.MEASURED, 0.9), radii=_TRAIL_WIDTH)
+    recording.log(trail_entity(body_name), trail, static=True)
+
+
+def solid(shape: Shape, color: palette.Color) -> rr.Mesh3D:
+    """Return the faces of a shape, in body axes."""
+    return rr.Mesh3D(
+        vertex_positions=shape.triangles_B.reshape(-1, 3),
+        triangle_indices=np.arange(3 * len(shape.triangles_B)).reshape(-1, 3),
+        vertex_normals=np.repeat(shape.normals_B, 3, axis=0),
+        albedo_factor=color,
+    )
+
+
+def tangents(normal_W: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return two unit vectors, (3,), that make a right-handed frame with a unit normal: for z they are x and y."""
+    helper = np.array([1.0, 0.0, 0.0]) if abs(normal_W[0]) < 0.9 else np.array([0.0, 1.0, 0.0])
+    u_W = helper - (helper @ normal_W) * normal_W
+    u_W = u_W / np.linalg.norm(u_W)
+    return u_W, np.cross(normal_W, u_W)
