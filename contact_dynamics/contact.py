@@ -23,7 +23,8 @@ class ContactSet:
     """Contacts of one body in space; contact i is row i of each array.
 
     Raises:
-        InvalidFieldError: arrays of unequal length, a number that is not finite, a normal that is not unit, mu < 0, or
+        InvalidFieldError: arrays of unequal length, a number that is not finite, a normal that is not unit,
+        mu < 0, or
             e outside [0, 1].
         TooLargeError: more than `MOST_CONTACTS` contacts.
     """
@@ -51,7 +52,9 @@ class ContactSet:
         for i in np.flatnonzero((restitutions < 0.0) | (restitutions > 1.0))[:1]:
             raise InvalidFieldError(f"contacts.restitutions[{i}]", restitutions[i], "a number in [0, 1]")
         if self.surfaces and len(self.surfaces) != n:
-            raise InvalidFieldError("contacts.surface_names", f"{len(self.surfaces)} names", f"{n} names, or none")
+            raise InvalidFieldError(
+                "contacts.surface_names", f"{len(self.surfaces)} names", f"{n} names, or none"
+            )
         normals = normals / lengths[:, None]
         normals.flags.writeable = False
         object.__setattr__(self, "p_WC_W", points)

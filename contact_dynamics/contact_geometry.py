@@ -1,7 +1,7 @@
 """Contacts found from geometry: the vertices of a convex body that touch the world's flats at a pose.
 
-A face or an edge that lies flush gives its vertices, which are its extreme points: they carry every force that the whole
-face or edge can. Not covered: smooth shapes, and edges that cross edges.
+A face or an edge that lies flush gives its vertices, which are its extreme points: they carry every force
+that the whole face or edge can. Not covered: smooth shapes, and edges that cross edges.
 """
 
 from __future__ import annotations
@@ -21,12 +21,16 @@ if TYPE_CHECKING:
 
 
 def find_contacts(
-    body: Body, state: BodyState, surfaces: Sequence[Surface], *, distance_tolerance: float = DISTANCE_TOLERANCE
+    body: Body,
+    state: BodyState,
+    surfaces: Sequence[Surface],
+    *,
+    distance_tolerance: float = DISTANCE_TOLERANCE,
 ) -> ContactSet:
     """Return the contacts of a body's vertices with the surfaces, in the order of surfaces, then vertices.
 
-    A vertex touches where its height above the surface is at most ``distance_tolerance`` (m); one below the surface touches,
-    since measured poses penetrate by their noise. The set may be empty.
+    A vertex touches where its height above the surface is at most ``distance_tolerance`` (m); one below the
+    surface touches, since measured poses penetrate by their noise. The set may be empty.
     """
     points = state.p_WB_W + body.vertices_B @ state.R_WB.T
     touching = [np.flatnonzero(surface.gaps(points) <= distance_tolerance) for surface in surfaces]

@@ -1,8 +1,9 @@
 """The plane: a planar body, its motion and its contacts (Mason, lectures 26 and 27).
 
-Coordinates are those of the plane of motion, x and y, with the centre of mass as the origin of all positions. A contact's
-tangent is its normal turned by -90 degrees: for normal (0, 1) it is +x. *Right* is positive tangential, *left* negative. The
-cross product of r and f is r_x f_y - r_y f_x, so that a positive moment turns x towards y.
+Coordinates are those of the plane of motion, x and y, with the centre of mass as the origin of all positions.
+A contact's tangent is its normal turned by -90 degrees: for normal (0, 1) it is +x. *Right* is positive
+tangential, *left* negative. The cross product of r and f is r_x f_y - r_y f_x, so that a positive moment
+turns x towards y.
 
 Numbers are plain floats, because one planar answer is cheaper without arrays.
 """

@@ -1,11 +1,12 @@
 """From space to a plane of motion and back: when a spatial body's question is a planar one, and by how much it is not.
 
-The plane passes through the centre of mass. Seen with its normal towards the eye and a contact's normal up, *right* is right,
-so that turning the plane over swaps left and right.
+The plane passes through the centre of mass. Seen with its normal towards the eye and a contact's normal up,
+*right* is right, so that turning the plane over swaps left and right.
 
-A spatial problem is planar where nothing couples it to the motion out of the plane: velocities lie in the plane, contact
-normals and the applied force too, and the plane's normal is a principal axis. Contacts at different depths project onto one
-plane: their forces are taken to balance about the axes in the plane, as they do where body and contacts are symmetric about it.
+A spatial problem is planar where nothing couples it to the motion out of the plane: velocities lie in the
+plane, contact normals and the applied force too, and the plane's normal is a principal axis. Contacts at
+different depths project onto one plane: their forces are taken to balance about the axes in the plane, as
+they do where body and contacts are symmetric about it.
 """
 
 from __future__ import annotations
@@ -43,7 +44,9 @@ class PlaneOfMotion:
         for direction in (np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])):
             y_W = direction - (direction @ self.normal_W) * self.normal_W
             length = math.sqrt(y_W @ y_W)
-            if length > 0.5:  # of the two candidates one is always longer: sin of its angle to the normal is over 0.7
+            if (
+                length > 0.5
+            ):  # of the two candidates one is always longer: sin of its angle to the normal is over 0.7
                 y_W = y_W / length
                 break
         return np.array([np.cross(y_W, self.normal_W), y_W])
@@ -63,7 +66,9 @@ class PlanarProblem:
     velocity: PlanarVelocity
     contacts: tuple[PlanarContact, ...]
     wrench: PlanarWrench
-    out_of_plane: float  # m/s, the largest speed, at a contact or the centre of mass, that the plane leaves out
+    out_of_plane: (
+        float  # m/s, the largest speed, at a contact or the centre of mass, that the plane leaves out
+    )
 
 
 def project(
@@ -88,7 +93,8 @@ def project(
         speed_tolerance: largest speed out of the plane, m/s, that still counts as planar.
 
     Raises:
-        OutOfPlaneError: velocity, a contact normal, the wrench or the inertia leaves the plane by more than its tolerance.
+        OutOfPlaneError: velocity, a contact normal, the wrench or the inertia leaves the plane by more than
+        its tolerance.
     """
     normal = plane.normal_W
     axes = plane.axes_W
@@ -96,14 +102,20 @@ def project(
     out_of_plane = out_of_plane_speed(plane, state, contacts)
     if out_of_plane > speed_tolerance:
         raise OutOfPlaneError(
-            "state", f"{out_of_plane:.6g} m/s out of the plane with normal {normal.tolist()}", f"at most {speed_tolerance:g} m/s"
+            "state",
+            f"{out_of_plane:.6g} m/s out of the plane with normal {normal.tolist()}",
+            f"at most {speed_tolerance:g} m/s",
         )
     _check_ratio("contact normals", float(np.abs(contacts.normals_W @ normal).max(initial=0.0)), plane)
     _check_ratio("inertia", _inertia_coupling(body, state, normal), plane)
     _check_ratio("applied force", _ratio(abs(force_W @ normal), math.sqrt(force_W @ force_W)), plane)
-    planar_body = PlanarBody(mass=body.mass, inertia=float(normal @ body.inertia_in_world(state.R_WB) @ normal))
+    planar_body = PlanarBody(
+        mass=body.mass, inertia=float(normal @ body.inertia_in_world(state.R_WB) @ normal)
+    )
     torque_in_plane = torque_W - (torque_W @ normal) * normal
-    torque_scale = math.sqrt(torque_W @ torque_W) + planar_body.radius_of_gyration * math.sqrt(force_W @ force_W)
+    torque_scale = math.sqrt(torque_W @ torque_W) + planar_body.radius_of_gyration * math.sqrt(
+        force_W @ force_W
+    )
     _check_ratio("applied torque", _ratio(math.sqrt(torque_in_plane @ torque_in_plane), torque_scale), plane)
     return PlanarProblem(
         plane=plane,
@@ -138,20 +150,29 @@ def best_plane(
 ) -> PlaneOfMotion:
     """Return the plane in which a problem fits best.
 
-    Contact normals and the applied force must lie in it. Where they leave a choice (a body on a floor), the candidates are the
-    axes of the rotation, of the sliding motion and of the torque, and the body's principal axes, each made perpendicular to
-    them; the one with the least motion and inertia coupling out of its plane is taken, an earlier candidate where two are equal.
+    Contact normals and the applied force must lie in it. Where they leave a choice (a body on a floor), the
+    candidates are the axes of the rotation, of the sliding motion and of the torque, and the body's principal
+    axes, each made perpendicular to them; the one with the least motion and inertia coupling out of its plane
+    is taken, an earlier candidate where two are equal.
 
     Raises:
         OutOfPlaneError: contact normals and force span space: no plane contains them.
     """
     fixed = _orthonormal_span([*contacts.normals_W, _normalised(force_W)])
     if len(fixed) > 2:
-        raise OutOfPlaneError("contact normals", "normals and an applied force that span space", "vectors in a common plane")
+        raise OutOfPlaneError(
+            "contact normals", "normals and an applied force that span space", "vectors in a common plane"
+        )
     if len(fixed) == 2:
         return PlaneOfMotion(normal_W=np.cross(fixed[0], fixed[1]))
     principal_axes_W = state.R_WB @ np.linalg.eigh(body.I_B)[1]
-    seeds = [state.w_WB_W, *(np.cross(direction, state.v_WB_W) for direction in fixed), torque_W, *principal_axes_W.T, *np.eye(3)]
+    seeds = [
+        state.w_WB_W,
+        *(np.cross(direction, state.v_WB_W) for direction in fixed),
+        torque_W,
+        *principal_axes_W.T,
+        *np.eye(3),
+    ]
     scale = 1e-9 + math.sqrt(state.v_WB_W @ state.v_WB_W) + math.sqrt(state.w_WB_W @ state.w_WB_W)
     best: tuple[float, PlaneOfMotion] | None = None
     for seed in seeds:
@@ -160,7 +181,9 @@ def best_plane(
         if length <= OUT_OF_PLANE_RATIO * (math.sqrt(seed @ seed) + OUT_OF_PLANE_RATIO):
             continue
         plane = PlaneOfMotion(normal_W=candidate / length)
-        cost = out_of_plane_speed(plane, state, contacts) / scale + _inertia_coupling(body, state, plane.normal_W)
+        cost = out_of_plane_speed(plane, state, contacts) / scale + _inertia_coupling(
+            body, state, plane.normal_W
+        )
         if best is None or cost < best[0] - OUT_OF_PLANE_RATIO:
             best = (cost, plane)
     assert best is not None  # of the three world axes at least two are not parallel to one fixed direction

@@ -1,7 +1,7 @@
 """A rigid body: its mass properties, its state, and what follows from the two (Mason, lectures 24 and 25).
 
-Frames: W is the world; B is the body's, with its origin at the centre of mass. A body whose published frame has its
-origin elsewhere is converted where its messages are (`msg_adapters`).
+Frames: W is the world; B is the body's, with its origin at the centre of mass. A body whose published frame
+has its origin elsewhere is converted where its messages are (`msg_adapters`).
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ class MassProperties:
     """Mass and angular inertia of a rigid body (lecture 24, "Angular inertia").
 
     Raises:
-        InvalidFieldError: mass not > 0; inertia not symmetric, not positive definite, or with principal moments that no
+        InvalidFieldError: mass not > 0; inertia not symmetric, not positive definite, or with principal
+        moments that no
             distribution of mass has (I1 + I2 >= I3).
     """
 
@@ -91,7 +92,12 @@ def angular_momentum(body: MassProperties, state: BodyState) -> FloatArray:
 def kinetic_energy(body: MassProperties, state: BodyState) -> float:
     """Return the kinetic energy of translation and rotation, J (lecture 24; lecture 25, eq. 23)."""
     translation = 0.5 * body.mass * float(state.v_WB_W @ state.v_WB_W)
-    return translation + 0.5 * float(state.w_WB_W @ angular_momentum(body, state))
+    return translation + rotational_energy(body, state)
+
+
+def rotational_energy(body: MassProperties, state: BodyState) -> float:
+    """Return the kinetic energy of rotation, w . L / 2, J (lecture 25, eq. 23)."""
+    return 0.5 * float(state.w_WB_W @ angular_momentum(body, state))
 
 
 def rotation_matrix(q: FloatArray) -> FloatArray:

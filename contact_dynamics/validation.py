@@ -1,6 +1,7 @@
 """The gates at the border of the physics: each returns the value it was given, made safe, or raises by field name.
 
-Only constructors of domain types and public entry points call these; what lies behind them does not check again.
+Only constructors of domain types and public entry points call these; what lies behind them does not check
+again.
 """
 
 from __future__ import annotations
@@ -81,7 +82,9 @@ def check_unit(field: str, value: ArrayLike, length: int) -> FloatArray:
     norm = math.sqrt(math.fsum(x * x for x in array.tolist()))
     if abs(norm - 1.0) > UNIT_LENGTH_TOLERANCE:
         raise InvalidFieldError(
-            field, f"{array.tolist()} of norm {norm:.9g}", f"a unit vector (norm within {UNIT_LENGTH_TOLERANCE:g} of 1)"
+            field,
+            f"{array.tolist()} of norm {norm:.9g}",
+            f"a unit vector (norm within {UNIT_LENGTH_TOLERANCE:g} of 1)",
         )
     unit: FloatArray = array / norm
     unit.flags.writeable = False

@@ -29,8 +29,12 @@ class Body:
 
     name: str
     mass_properties: MassProperties
-    p_FB_F: FloatArray = field(default_factory=lambda: np.zeros(3))  # (3,), m, centre of mass in the published frame F
-    vertices_B: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))  # (k, 3), m, corners of a convex shape, body axes
+    p_FB_F: FloatArray = field(
+        default_factory=lambda: np.zeros(3)
+    )  # (3,), m, centre of mass in the published frame F
+    vertices_B: FloatArray = field(
+        default_factory=lambda: np.zeros((0, 3))
+    )  # (k, 3), m, corners of a convex shape, body axes
 
     def __post_init__(self) -> None:
         """Check both arrays."""
@@ -78,7 +82,9 @@ class World:
 
     bodies: tuple[Body, ...] = ()
     surfaces: tuple[Surface, ...] = ()
-    gravity_W: FloatArray = field(default_factory=lambda: np.array(STANDARD_GRAVITY_W))  # (3,), m/s^2, world axes
+    gravity_W: FloatArray = field(
+        default_factory=lambda: np.array(STANDARD_GRAVITY_W)
+    )  # (3,), m/s^2, world axes
 
     def __post_init__(self) -> None:
         """Check gravity and that names are unique."""

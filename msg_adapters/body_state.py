@@ -1,17 +1,17 @@
 """`contact_dynamics_interfaces/BodyState` to a body's state and back.
 
-The message's pose is that of the published frame, its velocity that of the centre of mass, both in the world's axes.
+The message's pose is that of the published frame, its velocity that of the centre of mass, both in the
+world's axes.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
-
 from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.rigid_body import BodyState, rotation_matrix
 from contact_dynamics.validation import check_unit
+from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 from msg_adapters.frames import check_frame, origin_of_published_frame
 from msg_adapters.geometry import pose_to_msg, quaternion_from_msg, vector_from_msg, vector_to_msg
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
@@ -42,7 +42,9 @@ def body_state_from_msg(msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArr
     )
 
 
-def body_state_to_msg(state: BodyState, *, body_name: str, world_frame: str, p_FB_F: FloatArray) -> BodyStateMsg:
+def body_state_to_msg(
+    state: BodyState, *, body_name: str, world_frame: str, p_FB_F: FloatArray
+) -> BodyStateMsg:
     """Return the state as a message."""
     msg = BodyStateMsg(body_name=body_name)
     msg.header.stamp = stamp_to_msg(state.stamp_ns)

@@ -6,10 +6,10 @@ from array import array
 from typing import TYPE_CHECKING
 
 import numpy as np
-from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
 
 from contact_dynamics.contact import MOST_CONTACTS, ContactSet
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLargeError
+from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
@@ -19,13 +19,15 @@ def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
     """Return the contacts.
 
     Raises:
-        InvalidFieldError: arrays of unequal length, or as `ContactSet`.
-        TooLargeError: more than `MOST_CONTACTS` contacts.
-        NotSupportedError: moving surfaces, or other contact kinds than a point of the body on a flat of the world.
+        InvalidFieldError: arrays of unequal length, or as `ContactSet`. TooLargeError: more than
+        `MOST_CONTACTS` contacts. NotSupportedError: moving surfaces, or other contact kinds than a point of
+        the body on a flat of the world.
     """
     n = len(msg.frictions)
     if max(n, len(msg.positions) // 3, len(msg.normals) // 3) > MOST_CONTACTS:
-        raise TooLargeError("contacts", f"{max(n, len(msg.positions) // 3)} contacts", f"at most {MOST_CONTACTS}")
+        raise TooLargeError(
+            "contacts", f"{max(n, len(msg.positions) // 3)} contacts", f"at most {MOST_CONTACTS}"
+        )
     for field in ("surface_velocities", "surface_accelerations", "body_curvatures", "surface_curvatures"):
         if np.any(np.asarray(getattr(msg, field))):
             raise NotSupportedError(f"contacts.{field}: found numbers, allowed is none in this version")

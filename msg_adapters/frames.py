@@ -1,7 +1,8 @@
 """Between the frame that is published and the one the physics uses.
 
-F is the body's published frame, B the physics' one: same axes, origin at the centre of mass. W is the world. The published
-point moves with F's origin, so that a velocity must be carried over to the centre of mass: v_B = v_F + w x p_FB.
+F is the body's published frame, B the physics' one: same axes, origin at the centre of mass. W is the world.
+The published point moves with F's origin, so that a velocity must be carried over to the centre of mass: v_B
+= v_F + w x p_FB.
 """
 
 from __future__ import annotations
@@ -26,7 +27,13 @@ def check_frame(field: str, found: str, expected: str) -> None:
 
 
 def state_of_center_of_mass(
-    *, p_WF_W: FloatArray, q_WF: FloatArray, v_WF_W: FloatArray, w_WF_W: FloatArray, p_FB_F: FloatArray, stamp_ns: int
+    *,
+    p_WF_W: FloatArray,
+    q_WF: FloatArray,
+    v_WF_W: FloatArray,
+    w_WF_W: FloatArray,
+    p_FB_F: FloatArray,
+    stamp_ns: int,
 ) -> BodyState:
     """Return the state of B from pose and velocity of F's origin, all in world axes.
 
@@ -36,7 +43,11 @@ def state_of_center_of_mass(
     q_WB = check_unit("orientation", q_WF, 4)
     p_FB_W = rotation_matrix(q_WB) @ p_FB_F
     return BodyState(
-        p_WB_W=p_WF_W + p_FB_W, q_WB=q_WB, v_WB_W=v_WF_W + np.cross(w_WF_W, p_FB_W), w_WB_W=w_WF_W, stamp_ns=stamp_ns
+        p_WB_W=p_WF_W + p_FB_W,
+        q_WB=q_WB,
+        v_WB_W=v_WF_W + np.cross(w_WF_W, p_FB_W),
+        w_WB_W=w_WF_W,
+        stamp_ns=stamp_ns,
     )
 
 
@@ -44,6 +55,16 @@ def origin_of_published_frame(state: BodyState, p_FB_F: FloatArray) -> FloatArra
     """Return the position of F's origin, (3,), m, world."""
     origin: FloatArray = state.p_WB_W - state.R_WB @ p_FB_F
     return origin
+
+
+def origins_of_published_frame(p_WB_W: FloatArray, q_WB: FloatArray, p_FB_F: FloatArray) -> FloatArray:
+    """Return the positions of F's origin, (n, 3), m, world, from those of B, (n, 3), and quaternions x y z w, (n, 4)."""
+    if not p_FB_F.any():
+        return p_WB_W
+    vectors, w = q_WB[:, :3], q_WB[:, 3:]
+    twice = 2.0 * np.cross(vectors, p_FB_F)
+    origins: FloatArray = p_WB_W - (p_FB_F + w * twice + np.cross(vectors, twice))
+    return origins
 
 
 def velocity_of_published_frame(state: BodyState, p_FB_F: FloatArray) -> FloatArray:

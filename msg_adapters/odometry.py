@@ -1,7 +1,7 @@
 """`nav_msgs/Odometry` to a body's state and back.
 
-The pose is that of the child frame in `header.frame_id`; the twist is in the child frame's axes and at its origin (REP 105 and
-the message's own comment). Covariances are not read: nothing uses them yet.
+The pose is that of the child frame in `header.frame_id`; the twist is in the child frame's axes and at its
+origin (REP 105 and the message's own comment). Covariances are not read: nothing uses them yet.
 """
 
 from __future__ import annotations
@@ -46,7 +46,9 @@ def body_state_from_odometry(msg: Odometry, *, world_frame: str, p_FB_F: FloatAr
     )
 
 
-def odometry_from_body_state(state: BodyState, *, world_frame: str, child_frame: str, p_FB_F: FloatArray) -> Odometry:
+def odometry_from_body_state(
+    state: BodyState, *, world_frame: str, child_frame: str, p_FB_F: FloatArray
+) -> Odometry:
     """Return the state as a message: the twist in the child frame, at its origin."""
     R_FW = state.R_WB.T
     msg = Odometry(child_frame_id=child_frame)
@@ -56,5 +58,3 @@ def odometry_from_body_state(state: BodyState, *, world_frame: str, child_frame:
     msg.twist.twist.linear = vector_to_msg(R_FW @ velocity_of_published_frame(state, p_FB_F))
     msg.twist.twist.angular = vector_to_msg(R_FW @ state.w_WB_W)
     return msg
-
-

@@ -1,7 +1,7 @@
 """`geometry_msgs/PoseStamped` with `TwistStamped` to a body's state and back.
 
-The pose is that of the body's published frame in the world frame. The twist belongs to that frame's origin, and is expressed in
-the frame that its own header names: the world's, or the body's.
+The pose is that of the body's published frame in the world frame. The twist belongs to that frame's origin,
+and is expressed in the frame that its own header names: the world's, or the body's.
 """
 
 from __future__ import annotations
@@ -33,14 +33,16 @@ def body_state_from_pose_twist(
     """Return the state of the body whose centre of mass is at ``p_FB_F``, (3,), m, in its published frame.
 
     Raises:
-        FrameMismatchError: the pose is not in the world frame, or the twist in neither the world's nor the body's.
-        InvalidFieldError: the stamps differ, a number is not finite, or the quaternion is not unit.
+        FrameMismatchError: the pose is not in the world frame, or the twist in neither the world's nor the
+        body's. InvalidFieldError: the stamps differ, a number is not finite, or the quaternion is not unit.
     """
     check_frame("pose header.frame_id", pose.header.frame_id, world_frame)
     stamp_ns = stamp_ns_from_msg(pose.header.stamp)
     twist_stamp_ns = stamp_ns_from_msg(twist.header.stamp)
     if twist_stamp_ns != stamp_ns:
-        raise InvalidFieldError("twist header.stamp", f"{twist_stamp_ns} ns", f"the pose's stamp, {stamp_ns} ns")
+        raise InvalidFieldError(
+            "twist header.stamp", f"{twist_stamp_ns} ns", f"the pose's stamp, {stamp_ns} ns"
+        )
     q_WF = check_unit("pose.orientation", quaternion_from_msg(pose.pose.orientation), 4)
     v_WF, w_WF = vector_from_msg(twist.twist.linear), vector_from_msg(twist.twist.angular)
     if twist.header.frame_id == body_frame:
@@ -50,11 +52,18 @@ def body_state_from_pose_twist(
         message = f"twist header.frame_id: found {twist.header.frame_id!r}, allowed are {world_frame!r} and {body_frame!r}"
         raise FrameMismatchError(message)
     return state_of_center_of_mass(
-        p_WF_W=vector_from_msg(pose.pose.position), q_WF=q_WF, v_WF_W=v_WF, w_WF_W=w_WF, p_FB_F=p_FB_F, stamp_ns=stamp_ns
+        p_WF_W=vector_from_msg(pose.pose.position),
+        q_WF=q_WF,
+        v_WF_W=v_WF,
+        w_WF_W=w_WF,
+        p_FB_F=p_FB_F,
+        stamp_ns=stamp_ns,
     )
 
 
-def pose_twist_from_body_state(state: BodyState, *, world_frame: str, p_FB_F: FloatArray) -> tuple[PoseStamped, TwistStamped]:
+def pose_twist_from_body_state(
+    state: BodyState, *, world_frame: str, p_FB_F: FloatArray
+) -> tuple[PoseStamped, TwistStamped]:
     """Return the state as two messages of one stamp, the twist at the published frame's origin, in world axes."""
     pose, twist = PoseStamped(), TwistStamped()
     pose.header.stamp = twist.header.stamp = stamp_to_msg(state.stamp_ns)

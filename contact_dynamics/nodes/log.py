@@ -30,7 +30,9 @@ def new_log_folder(directory: str) -> Path:
 class Log:
     """Records bytes under topics that are declared before the first message; without a folder it records nothing."""
 
-    def __init__(self, folder: Path | None, *, run: Mapping[str, str], on_problem: Callable[[str], object]) -> None:
+    def __init__(
+        self, folder: Path | None, *, run: Mapping[str, str], on_problem: Callable[[str], object]
+    ) -> None:
         """Create the folder. Raises `OSError` where it cannot be made: a log that was asked for and fails at the start is told."""
         self._writer = BagWriter(folder, run=run) if folder is not None else None
         self._recorder: Recorder | None = None

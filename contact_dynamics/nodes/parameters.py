@@ -61,13 +61,16 @@ def read_server_parameters(node: Node) -> ServerParameters:
     """Declare and read every parameter.
 
     Raises:
-        ConfigurationError: a parameter is missing, has another type, or a value that is not allowed; it is named.
+        ConfigurationError: a parameter is missing, has another type, or a value that is not allowed; it is
+        named.
     """
     reader = _Reader(node)
     body_names = reader.read("bodies", [""], "Names of the bodies that questions can name.")
     surface_names = reader.read("surfaces", [""], "Names of the flats of the world.")
     bodies = [_read_body(reader, name) for name in body_names if name]
-    gravity = reader.read("gravity", list(STANDARD_GRAVITY_W), "Acceleration of gravity, m/s^2, world axes: x, y, z.")
+    gravity = reader.read(
+        "gravity", list(STANDARD_GRAVITY_W), "Acceleration of gravity, m/s^2, world axes: x, y, z."
+    )
     return ServerParameters(
         world=reader.build(
             "gravity",
@@ -78,24 +81,42 @@ def read_server_parameters(node: Node) -> ServerParameters:
             ),
         ),
         topics=tuple(topics for _, topics in bodies),
-        world_frame=reader.read("world_frame", "world", "Frame that states are published in and answers are given in."),
-        state_timeout=reader.read(
-            "state_timeout", 0.5, "Oldest newest state, s, that a question about now is answered with.", (1e-3, 1e6)
+        world_frame=reader.read(
+            "world_frame", "world", "Frame that states are published in and answers are given in."
         ),
-        state_history=reader.read("state_history", 5.0, "How long states are kept for questions about the past, s.", (0.0, 1e4)),
+        state_timeout=reader.read(
+            "state_timeout",
+            0.5,
+            "Oldest newest state, s, that a question about now is answered with.",
+            (1e-3, 1e6),
+        ),
+        state_history=reader.read(
+            "state_history", 5.0, "How long states are kept for questions about the past, s.", (0.0, 1e4)
+        ),
         velocity_tolerance=reader.read(
-            "velocity_tolerance", VELOCITY_TOLERANCE, "Speed below which a contact counts as at rest, m/s.", (0.0, 1e3)
+            "velocity_tolerance",
+            VELOCITY_TOLERANCE,
+            "Speed below which a contact counts as at rest, m/s.",
+            (0.0, 1e3),
         ),
         distance_tolerance=reader.read(
-            "distance_tolerance", DISTANCE_TOLERANCE, "Gap below which a vertex counts as touching, m.", (0.0, 1e3)
+            "distance_tolerance",
+            DISTANCE_TOLERANCE,
+            "Gap below which a vertex counts as touching, m.",
+            (0.0, 1e3),
         ),
         out_of_plane_tolerance=reader.read(
-            "out_of_plane_tolerance", OUT_OF_PLANE_SPEED, "Motion out of the plane that still counts as planar, m/s.", (0.0, 1e3)
+            "out_of_plane_tolerance",
+            OUT_OF_PLANE_SPEED,
+            "Motion out of the plane that still counts as planar, m/s.",
+            (0.0, 1e3),
         ),
         horizon=reader.read("horizon", 2.0, "How far ahead a first contact is looked for, s.", (0.0, 1e4)),
         rate=reader.read("rate", 100.0, "Samples a second of trajectories, Hz.", (1e-6, 1e6)),
         log=reader.read("log", default=True, description="Log every state, request and response to MCAP."),
-        log_directory=reader.read("log_directory", "", "Folder to put the log's folder into. Empty: where the server starts."),
+        log_directory=reader.read(
+            "log_directory", "", "Folder to put the log's folder into. Empty: where the server starts."
+        ),
     )
 
 
@@ -112,11 +133,17 @@ def _read_body(reader: _Reader, name: str) -> tuple[Body, StateTopics]:
         raise ConfigurationError(message)
     ixx, iyy, izz, ixy, ixz, iyz = inertia
     center_of_mass = np.array(
-        reader.read(f"{key}.center_of_mass", [0.0, 0.0, 0.0], "Centre of mass in the body's frame, m: x, y, z.")
+        reader.read(
+            f"{key}.center_of_mass", [0.0, 0.0, 0.0], "Centre of mass in the body's frame, m: x, y, z."
+        )
     )
-    box = reader.read(f"{key}.box", [0.0], "Full side lengths of a box centred on the body's frame, m: x, y, z.")
+    box = reader.read(
+        f"{key}.box", [0.0], "Full side lengths of a box centred on the body's frame, m: x, y, z."
+    )
     corners = reader.read(
-        f"{key}.vertices", [0.0], "Corners of a convex shape in the body's frame, m: x, y, z of one after the other."
+        f"{key}.vertices",
+        [0.0],
+        "Corners of a convex shape in the body's frame, m: x, y, z of one after the other.",
     )
     vertices_F = np.zeros((0, 3))
     if len(box) == 3:
@@ -131,16 +158,24 @@ def _read_body(reader: _Reader, name: str) -> tuple[Body, StateTopics]:
         key,
         lambda: Body(
             name=name,
-            mass_properties=MassProperties(mass=mass, I_B=np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])),
+            mass_properties=MassProperties(
+                mass=mass, I_B=np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
+            ),
             p_FB_F=center_of_mass,
             vertices_B=vertices_F - center_of_mass,
         ),
     )
     topics = StateTopics(
         body_name=name,
-        odometry=reader.read(f"{key}.odometry_topic", "", "Topic of the body's states as nav_msgs/Odometry. Empty: not used."),
-        pose=reader.read(f"{key}.pose_topic", "", "Topic of the body's geometry_msgs/PoseStamped. Empty: not used."),
-        twist=reader.read(f"{key}.twist_topic", "", "Topic of the body's geometry_msgs/TwistStamped. Empty: not used."),
+        odometry=reader.read(
+            f"{key}.odometry_topic", "", "Topic of the body's states as nav_msgs/Odometry. Empty: not used."
+        ),
+        pose=reader.read(
+            f"{key}.pose_topic", "", "Topic of the body's geometry_msgs/PoseStamped. Empty: not used."
+        ),
+        twist=reader.read(
+            f"{key}.twist_topic", "", "Topic of the body's geometry_msgs/TwistStamped. Empty: not used."
+        ),
         frame=reader.read(f"{key}.frame", name, "Frame of the body, which the pose is of."),
     )
     if bool(topics.pose) != bool(topics.twist):
@@ -152,13 +187,23 @@ def _read_body(reader: _Reader, name: str) -> tuple[Body, StateTopics]:
 def _read_surface(reader: _Reader, name: str) -> Surface:
     key = f"surface.{name}"
     point = reader.read(f"{key}.point", [0.0, 0.0, 0.0], "A point of the surface, m, world: x, y, z.")
-    normal = reader.read(f"{key}.normal", [0.0, 0.0, 1.0], "Unit normal into the free side, world axes: x, y, z.")
-    friction = reader.read(f"{key}.friction", Parameter.Type.DOUBLE, "Coulomb's friction coefficient with any body, >= 0.")
-    restitution = reader.read(f"{key}.restitution", Parameter.Type.DOUBLE, "Coefficient of restitution with any body, 0 to 1.")
+    normal = reader.read(
+        f"{key}.normal", [0.0, 0.0, 1.0], "Unit normal into the free side, world axes: x, y, z."
+    )
+    friction = reader.read(
+        f"{key}.friction", Parameter.Type.DOUBLE, "Coulomb's friction coefficient with any body, >= 0."
+    )
+    restitution = reader.read(
+        f"{key}.restitution", Parameter.Type.DOUBLE, "Coefficient of restitution with any body, 0 to 1."
+    )
     return reader.build(
         key,
         lambda: Surface(
-            name=name, p_WS_W=np.array(point), normal_W=np.array(normal), friction=friction, restitution=restitution
+            name=name,
+            p_WS_W=np.array(point),
+            normal_W=np.array(normal),
+            friction=friction,
+            restitution=restitution,
         ),
     )
 
@@ -169,7 +214,9 @@ class _Reader:
     def __init__(self, node: Node) -> None:
         self._node = node
 
-    def read(self, name: str, default: Any, description: str, bounds: tuple[float, float] | None = None) -> Any:
+    def read(
+        self, name: str, default: Any, description: str, bounds: tuple[float, float] | None = None
+    ) -> Any:
         """Return the value of a read-only parameter; a `Parameter.Type` in place of the default makes it mandatory."""
         ranges = [FloatingPointRange(from_value=bounds[0], to_value=bounds[1])] if bounds else []
         descriptor = ParameterDescriptor(description=description, read_only=True, floating_point_range=ranges)

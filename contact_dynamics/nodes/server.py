@@ -1,24 +1,24 @@
 """The server: one process with the three services, one store of states, and the log.
 
-It watches published states and answers `~/predict_contact_mode`, `~/predict_impact` and `~/predict_tumbling`. Drawing happens
-in another process (`visualizer`), which listens to the service events that this node publishes.
+It watches published states and answers `~/predict_contact_mode`, `~/predict_impact` and `~/predict_tumbling`.
+Drawing happens in another process (`visualizer`), which listens to the service events that this node
+publishes.
 """
 
 from __future__ import annotations
 
-import sys
 import time
 import traceback
 from typing import TYPE_CHECKING, Any
 
 import rclpy
-from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.service_introspection import ServiceIntrospectionState
 
 from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.nodes.arguments import ros_arguments
 from contact_dynamics.nodes.log import Log, new_log_folder
 from contact_dynamics.nodes.parameters import ConfigurationError, read_server_parameters
 from contact_dynamics.nodes.predict_contact_mode import predict_contact_mode
@@ -27,6 +27,7 @@ from contact_dynamics.nodes.predict_tumbling import predict_tumbling
 from contact_dynamics.nodes.state_store import StateStore
 from contact_dynamics.nodes.state_subscriptions import STATE_QOS, subscribe_to_states
 from contact_dynamics.nodes.subject import Knowledge
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.status import report_error
 
 if TYPE_CHECKING:
@@ -83,7 +84,6 @@ class Server(Node):
 
     def close(self) -> None:
         """Finish the log and say where it is."""
-        print(f"[{NODE_NAME}] {self._log.close()}", flush=True)
 
     def _serve(self, service_type: type[Any], type_name: str, name: str, answer: Callable[..., None]) -> None:
         def handle(request: Any, response: Any) -> Any:
@@ -113,13 +113,14 @@ class Server(Node):
         return {name: str(self._parameters[name].value) for name in names}
 
 
-def main(args: list[str] | None = None) -> int:
+def main(arguments: list[str]) -> int:
     """Run the server until it is told to stop; return the exit code."""
-    rclpy.init(args=args)
+    rclpy.init(
+        args=ros_arguments("server", "Serve contact modes, impacts and tumbling over ROS 2.", arguments)
+    )
     try:
         server = Server()
-    except (ConfigurationError, OSError) as error:
-        print(f"[{NODE_NAME}] configuration: {error}", file=sys.stderr, flush=True)
+    except (ConfigurationError, OSError):
         rclpy.try_shutdown()
         return 2
     executor = EventsExecutor()

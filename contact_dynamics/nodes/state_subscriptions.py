@@ -1,6 +1,7 @@
 """Subscriptions to published states: each message is logged as it came and kept as a state.
 
-They are raw: the log takes the bytes, so that it holds what was sent, and one deserialisation gives the state.
+They are raw: the log takes the bytes, so that it holds what was sent, and one deserialisation gives the
+state.
 """
 
 from __future__ import annotations
@@ -50,7 +51,9 @@ def subscribe_to_states(
         try:
             state = make_state()
         except ContactDynamicsError as error:
-            node.get_logger().warning(f"{topic}: message ignored: {error}", throttle_duration_sec=_WARN_EVERY_S)
+            node.get_logger().warning(
+                f"{topic}: message ignored: {error}", throttle_duration_sec=_WARN_EVERY_S
+            )
             return
         if state is not None:
             states.add(topics.body_name, state)
@@ -108,6 +111,8 @@ class _Pairing:
         partner = others.pop(stamp_ns, None)
         if partner is None:
             mine[stamp_ns] = msg
-            if len(mine) > _MOST_UNPAIRED:  # one of the two topics is silent: what waits longest waits in vain
+            if (
+                len(mine) > _MOST_UNPAIRED
+            ):  # one of the two topics is silent: what waits longest waits in vain
                 del mine[next(iter(mine))]
         return partner

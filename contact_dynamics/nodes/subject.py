@@ -13,20 +13,25 @@ from contact_dynamics.validation import check_not_negative
 from contact_dynamics.world import Body
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg
 from msg_adapters.contacts import contacts_from_msg
-from msg_adapters.frames import origin_of_published_frame, state_of_center_of_mass, velocity_of_published_frame
+from msg_adapters.frames import (
+    origin_of_published_frame,
+    state_of_center_of_mass,
+    velocity_of_published_frame,
+)
 from msg_adapters.geometry import mass_properties_from_msg
 from msg_adapters.stamps import stamp_ns_from_msg
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
     from geometry_msgs.msg import Inertia
 
     from contact_dynamics.contact import ContactSet
     from contact_dynamics.nodes.parameters import ServerParameters
     from contact_dynamics.nodes.state_store import StateStore
     from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 
 _LONGEST_NAME = 256
 
@@ -50,7 +55,9 @@ class Subject:
 
     def state_to_msg(self, state: BodyState) -> BodyStateMsg:
         """Return a state of this body as a message."""
-        return body_state_to_msg(state, body_name=self.body.name, world_frame=self.world_frame, p_FB_F=self.body.p_FB_F)
+        return body_state_to_msg(
+            state, body_name=self.body.name, world_frame=self.world_frame, p_FB_F=self.body.p_FB_F
+        )
 
 
 def subject_of(request: Any, knowledge: Knowledge) -> Subject:
@@ -65,13 +72,17 @@ def subject_of(request: Any, knowledge: Knowledge) -> Subject:
         state = body_state_from_msg(request.state, world_frame=parameters.world_frame, p_FB_F=body.p_FB_F)
     elif request.state_source == request.STATE_PUBLISHED:
         if not request.body_name:
-            raise InvalidFieldError("body_name", request.body_name, "the name of a configured body, or an explicit state")
+            raise InvalidFieldError(
+                "body_name", request.body_name, "the name of a configured body, or an explicit state"
+            )
         state = _published_state(request, knowledge)
         configured = parameters.world.body(request.body_name)
         if body is not configured:
             state = _carried_over(state, configured, body)
     else:
-        raise InvalidFieldError("state_source", request.state_source, "STATE_PUBLISHED (0) or STATE_EXPLICIT (1)")
+        raise InvalidFieldError(
+            "state_source", request.state_source, "STATE_PUBLISHED (0) or STATE_EXPLICIT (1)"
+        )
     return Subject(body=body, state=state, world_frame=parameters.world_frame)
 
 
@@ -105,18 +116,33 @@ def contacts_of(request: Any, subject: Subject, knowledge: Knowledge) -> Contact
 def check_has_shape(body: Body) -> None:
     """Raise `NoContactError` where a body has no vertices that could touch anything."""
     if len(body.vertices_B) == 0:
-        message = f"contacts: body {body.name!r} has no shape to find them from, allowed are explicit contacts"
+        message = (
+            f"contacts: body {body.name!r} has no shape to find them from, allowed are explicit contacts"
+        )
         raise NoContactError(message)
 
 
 def distance_tolerance_of(request: Any, knowledge: Knowledge) -> float:
     """Return the request's distance tolerance, m, or the configured one where it is zero."""
-    return or_configured("distance_tolerance", request.distance_tolerance, knowledge.parameters.distance_tolerance)
+    return or_configured(
+        "distance_tolerance", request.distance_tolerance, knowledge.parameters.distance_tolerance
+    )
 
 
 def velocity_tolerance_of(request: Any, knowledge: Knowledge) -> float:
     """Return the request's velocity tolerance, m/s, or the configured one where it is zero."""
-    return or_configured("velocity_tolerance", request.velocity_tolerance, knowledge.parameters.velocity_tolerance)
+    return or_configured(
+        "velocity_tolerance", request.velocity_tolerance, knowledge.parameters.velocity_tolerance
+    )
+
+
+def gravity_of(request: Any, knowledge: Knowledge) -> FloatArray:
+    """Return the acceleration of gravity that a request asks for, (3,), m/s^2, world axes."""
+    if request.gravity == request.GRAVITY_AS_CONFIGURED:
+        return knowledge.parameters.world.gravity_W
+    if request.gravity == request.GRAVITY_NONE:
+        return np.zeros(3)
+    raise InvalidFieldError("gravity", request.gravity, "GRAVITY_AS_CONFIGURED (0) or GRAVITY_NONE (1)")
 
 
 def or_configured(field: str, asked: float, configured: float) -> float:

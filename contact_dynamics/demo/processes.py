@@ -1,0 +1,80 @@
+"""The demo's processes: started in an own corner of ROS, and all stopped whatever happens."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+from typing import TYPE_CHECKING, Final
+
+from typing_extensions import Self
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+    from types import TracebackType
+
+STOP_PATIENCE_S: Final = 10.0
+"""How long a process may take to finish its files after SIGINT before it is killed."""
+
+_DOMAINS: Final = 100  # ROS_DOMAIN_ID 1 to 100 use ports below the ephemeral ones on Linux
+
+
+class Processes:
+    """Child processes of one run; leaving the context stops all of them, the newest first."""
+
+    def __init__(self, log_folder: Path) -> None:
+        """Give every child the same ROS domain on this machine alone, and a file for what it prints."""
+        self._log_folder = log_folder
+        self._running: list[tuple[str, subprocess.Popen[bytes]]] = []
+        self._environment = dict(os.environ)
+        self._environment["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+        self._environment.setdefault("ROS_DOMAIN_ID", str(1 + os.getpid() % _DOMAINS))
+        self._environment["PYTHONUNBUFFERED"] = "1"
+
+    def __enter__(self) -> Self:
+        """Return itself."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Stop what still runs."""
+        self.stop()
+
+    def start(self, verb: str, arguments: Sequence[str], *, show: bool = False) -> subprocess.Popen[bytes]:
+        """Start a verb of the command line; what it prints goes to a file, or is shown."""
+        command = [sys.executable, "-m", "contact_dynamics", verb, *arguments]
+        # A session of its own, so that Ctrl-C reaches the children through us alone: then each closes its
+        # files in order.
+        if show:
+            process = subprocess.Popen(command, env=self._environment, start_new_session=True)
+        else:
+            with (self._log_folder / f"{verb}.txt").open("wb") as output:
+                process = subprocess.Popen(
+                    command,
+                    env=self._environment,
+                    stdout=output,
+                    stderr=subprocess.STDOUT,
+                    start_new_session=True,
+                )
+        self._running.append((verb, process))
+        return process
+
+    def printed_by(self, verb: str) -> str:
+        """Return what a process that is not shown has printed so far."""
+        return (self._log_folder / f"{verb}.txt").read_text(encoding="utf-8", errors="replace")
+
+    def stop(self) -> None:
+        """Ask each process to finish, wait, and kill the one that does not."""
+        while self._running:
+            _, process = self._running.pop()
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    process.wait(STOP_PATIENCE_S)
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()

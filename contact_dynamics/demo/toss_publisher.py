@@ -1,0 +1,105 @@
+"""Publishes a recorded toss as `nav_msgs/Odometry`, at the pace at which it was measured."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from typing import Final
+
+import rclpy
+from nav_msgs.msg import Odometry
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+
+from contact_dynamics.demo.recorded_toss import Toss
+from contact_dynamics.demo.toss import DEFAULT_RECORDING, read_toss
+from contact_dynamics.errors import ContactDynamicsError
+from msg_adapters.odometry import odometry_from_body_state
+
+WORLD_FRAME: Final = "world"
+QOS: Final = QoSProfile(depth=1000)
+
+_DISCOVERY_S: Final = 30.0  # how long to wait for the listeners that were asked for
+_LEAD_S: Final = 0.2  # between the last listener's arrival and the first sample
+
+
+def topic_of(toss: Toss) -> str:
+    """Return the topic that a toss is published on."""
+    return f"/{toss.body.name}/odometry"
+
+
+class TossPublisher(Node):
+    """The node `toss_publisher`."""
+
+    def __init__(self, toss: Toss) -> None:
+        """Advertise the topic."""
+        super().__init__("toss_publisher")
+        self._toss = toss
+        self._publisher = self.create_publisher(Odometry, topic_of(toss), QOS)
+
+    def wait_for_listeners(self, count: int) -> bool:
+        """Return whether that many subscriptions have matched in time."""
+        deadline = time.monotonic() + _DISCOVERY_S
+        while self._publisher.get_subscription_count() < count:
+            if time.monotonic() > deadline:
+                return False
+            time.sleep(0.02)
+        time.sleep(_LEAD_S)
+        return True
+
+    def play(self) -> None:
+        """Publish every sample when its time has come, stamped with that time."""
+        toss = self._toss
+        begin_ns = self.get_clock().now().nanoseconds
+        epoch_ns = begin_ns - round(float(toss.times[0]) * 1e9)
+        for sample in range(len(toss)):
+            state = toss.state(sample, epoch_ns=epoch_ns)
+            msg = odometry_from_body_state(
+                state, world_frame=WORLD_FRAME, child_frame=toss.body.name, p_FB_F=toss.body.p_FB_F
+            )
+            wait_ns = state.stamp_ns - self.get_clock().now().nanoseconds
+            if wait_ns > 0:
+                time.sleep(wait_ns * 1e-9)
+            self._publisher.publish(msg)
+
+    def drain(self) -> None:
+        """Wait until every listener has acknowledged every sample."""
+        self._publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=5))
+
+
+def main(arguments: list[str]) -> int:
+    """Publish one toss; return the exit code."""
+    parser = argparse.ArgumentParser(
+        prog="contact-dynamics toss_publisher", description="Publish a recorded toss as a body's states."
+    )
+    parser.add_argument(
+        "--toss",
+        default=DEFAULT_RECORDING,
+        metavar="PATH",
+        help="recording: our .csv, or cube tosses .npz#INDEX",
+    )
+    parser.add_argument(
+        "--listeners", type=int, default=1, metavar="N", help="wait for so many subscriptions"
+    )
+    given = parser.parse_args(arguments)
+    try:
+        toss = read_toss(given.toss)
+    except (ContactDynamicsError, OSError) as error:
+        print(error, file=sys.stderr)
+        return 2
+    rclpy.init(args=[])
+    publisher = TossPublisher(toss)
+    try:
+        if not publisher.wait_for_listeners(given.listeners):
+            print(f"fewer than {given.listeners} listeners on {topic_of(toss)}", file=sys.stderr)
+            return 1
+        publisher.play()
+        publisher.drain()
+        print(f"published {len(toss)} states on {topic_of(toss)}", flush=True)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        return 130
+    finally:
+        rclpy.try_shutdown()
+    return 0

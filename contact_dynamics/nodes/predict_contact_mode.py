@@ -1,0 +1,79 @@
+"""Answers `~/predict_contact_mode`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from contact_dynamics.contact_modes import planar_contact_modes
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError
+from contact_dynamics.nodes.subject import (
+    contacts_of,
+    distance_tolerance_of,
+    gravity_of,
+    or_configured,
+    subject_of,
+    velocity_tolerance_of,
+)
+from contact_dynamics.plane_of_motion import PlaneOfMotion, best_plane, project
+from contact_dynamics.validation import check_array
+from msg_adapters.contact_mode import write_planar_answer
+from msg_adapters.contacts import contacts_to_msg
+from msg_adapters.geometry import vector_from_msg, vector_to_msg
+
+if TYPE_CHECKING:
+    from contact_dynamics.nodes.subject import Knowledge
+
+_NOT_YET = ("want_margins", "want_wrench_cones", "want_impact")
+
+
+def predict_contact_mode(request: Any, response: Any, knowledge: Knowledge) -> None:
+    """Answer one request, or raise a `ContactDynamicsError` that says what is wrong with it."""
+    if request.problem == request.SPATIAL:
+        message = "problem: found SPATIAL (2), allowed are AUTOMATIC (0) and PLANAR (1) in this version"
+        raise NotSupportedError(message)
+    if request.problem not in (request.AUTOMATIC, request.PLANAR):
+        raise InvalidFieldError("problem", request.problem, "AUTOMATIC (0), PLANAR (1) or SPATIAL (2)")
+    for field in _NOT_YET:
+        if getattr(request, field):
+            raise NotSupportedError(f"{field}: found true, allowed is false in this version")
+    subject = subject_of(request, knowledge)
+    contacts = contacts_of(request, subject, knowledge)
+    body = subject.body.mass_properties
+    force_W = check_array("applied_wrench.force", vector_from_msg(request.applied_wrench.force), (3,))
+    force_W = force_W + body.mass * gravity_of(request, knowledge)
+    torque_W = check_array("applied_wrench.torque", vector_from_msg(request.applied_wrench.torque), (3,))
+    normal = vector_from_msg(request.plane_normal)
+    plane = (
+        PlaneOfMotion(normal_W=normal)
+        if np.any(normal)
+        else best_plane(body, subject.state, contacts, force_W=force_W, torque_W=torque_W)
+    )
+    problem = project(
+        body,
+        subject.state,
+        contacts,
+        plane=plane,
+        force_W=force_W,
+        torque_W=torque_W,
+        speed_tolerance=or_configured(
+            "out_of_plane_tolerance",
+            request.out_of_plane_tolerance,
+            knowledge.parameters.out_of_plane_tolerance,
+        ),
+    )
+    answer = planar_contact_modes(
+        problem.body,
+        problem.velocity,
+        problem.contacts,
+        problem.wrench,
+        velocity_tolerance=velocity_tolerance_of(request, knowledge),
+    )
+    write_planar_answer(response, answer, problem)
+    response.problem = request.PLANAR
+    response.state = subject.state_to_msg(subject.state)
+    response.contacts = contacts_to_msg(contacts)
+    response.plane_normal = vector_to_msg(plane.normal_W)
+    response.out_of_plane = problem.out_of_plane
+    response.distance_tolerance = distance_tolerance_of(request, knowledge)

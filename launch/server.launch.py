@@ -1,0 +1,37 @@
+"""Starts the server, and the visualizer with it where asked: `ros2 launch contact_dynamics server.launch.py view:=true`."""
+
+from __future__ import annotations
+
+from ament_index_python.packages import get_package_share_path
+from launch.actions import DeclareLaunchArgument
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+from launch import LaunchDescription
+
+
+def generate_launch_description() -> LaunchDescription:
+    """Return the nodes and the arguments that configure them."""
+    share = get_package_share_path("contact_dynamics")
+    parameters = LaunchConfiguration("params_file")
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument(
+                "params_file",
+                default_value=str(share / "config" / "server.yaml"),
+                description="Bodies, surfaces, topics and tolerances: copy config/server.yaml and edit the copy.",
+            ),
+            DeclareLaunchArgument(
+                "view", default_value="false", description="Start the visualizer and rerun's viewer."
+            ),
+            Node(package="contact_dynamics", executable="server", output="screen", parameters=[parameters]),
+            Node(
+                package="contact_dynamics",
+                executable="visualizer",
+                output="screen",
+                parameters=[parameters, {"spawn": True}],
+                condition=IfCondition(LaunchConfiguration("view")),
+            ),
+        ]
+    )

@@ -1,0 +1,248 @@
+"""Bad input over the services: each gets its error, which names field, value and what is allowed, and the node serves on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from nav_msgs.msg import Odometry
+from rclpy.qos import QoSProfile
+
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from running_server import Client, server_and_client
+
+SERVICES = (PredictContactMode, PredictImpact, PredictTumbling)
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
+    with server_and_client(Path(tmp_path_factory.mktemp("log"))) as client:
+        yield client
+
+
+def good(service: Any) -> Any:
+    """A request that is answered: a unit body that falls onto, or rests at, one contact below it."""
+    request = service.Request()
+    request.inertia.m = request.inertia.ixx = request.inertia.iyy = request.inertia.izz = 1.0
+    request.state_source = request.STATE_EXPLICIT
+    if service is PredictTumbling:
+        request.times = [0.0, 0.1]
+        return request
+    request.contact_source = request.CONTACTS_EXPLICIT
+    request.contacts.positions = [0.0, 0.0, -1.0]
+    request.contacts.normals = [0.0, 0.0, 1.0]
+    request.contacts.frictions = [0.5]
+    request.contacts.restitutions = [0.5]
+    if service is PredictImpact:
+        request.state.linear_velocity.z = -1.0
+    return request
+
+
+def put(path: str, value: Any) -> Callable[[Any], None]:
+    """Return what sets a field of a request, given as a dotted path."""
+
+    def change(request: Any) -> None:
+        *parents, name = path.split(".")
+        for parent in parents:
+            request = getattr(request, parent)
+        setattr(request, name, value)
+
+    return change
+
+
+EVERY_SERVICE = [
+    (put("inertia.m", -1.0), "INVALID_FIELD", "mass: found -1.0, allowed is a number > 0"),
+    (put("inertia.m", math.nan), "INVALID_FIELD", "mass: found nan"),
+    (put("inertia.m", math.inf), "INVALID_FIELD", "mass: found inf"),
+    (put("inertia.m", 0.0), "INVALID_FIELD", "body_name: found nothing"),
+    (put("inertia.ixx", 3.0), "INVALID_FIELD", "I1 + I2 >= I3"),
+    (put("inertia.ixy", 5.0), "INVALID_FIELD", "positive definite"),
+    (put("inertia.com.x", math.nan), "INVALID_FIELD", "inertia.com"),
+    (
+        put("state.pose.orientation.w", 0.5),
+        "INVALID_FIELD",
+        "state.pose.orientation: found [0.0, 0.0, 0.0, 0.5] of norm 0.5",
+    ),
+    (put("state.pose.orientation.w", 0.0), "INVALID_FIELD", "norm 0"),
+    (put("state.pose.position.x", math.nan), "INVALID_FIELD", "position: found"),
+    (put("state.linear_velocity.y", math.inf), "INVALID_FIELD", "linear_velocity: found"),
+    (put("state.angular_velocity.z", math.nan), "INVALID_FIELD", "angular_velocity: found"),
+    (put("state.header.frame_id", "map"), "FRAME_MISMATCH", "found 'map', allowed is 'world'"),
+    (put("state.covariance", [0.0] * 144), "NOT_SUPPORTED", "state.covariance"),
+    (put("body_name", "cat"), "UNKNOWN_BODY", "found 'cat', allowed are the configured bodies: 'brick'"),
+    (put("body_name", "x" * 1000), "TOO_LARGE", "body_name: found 1000 characters"),
+    (put("state_source", 7), "INVALID_FIELD", "state_source: found 7"),
+    (put("state_source", 0), "INVALID_FIELD", "body_name: found nothing"),
+]
+CONTACTS = [
+    (
+        put("contacts.normals", [0.0, 0.0, 0.0]),
+        "INVALID_FIELD",
+        "contacts.normals[0]: found [0.0, 0.0, 0.0], allowed is a unit",
+    ),
+    (put("contacts.normals", [0.0, math.nan, 1.0]), "INVALID_FIELD", "contacts.normals"),
+    (put("contacts.normals", [0.0, 1.0]), "INVALID_FIELD", "contacts.normals: found 2 numbers, allowed is 3"),
+    (put("contacts.positions", []), "INVALID_FIELD", "contacts.positions: found 0 numbers, allowed is 3"),
+    (
+        put("contacts.frictions", [-0.1]),
+        "INVALID_FIELD",
+        "contacts.frictions[0]: found -0.1, allowed is a number >= 0",
+    ),
+    (put("contacts.frictions", [math.nan]), "INVALID_FIELD", "contacts.frictions"),
+    (
+        put("contacts.restitutions", [1.5]),
+        "INVALID_FIELD",
+        "contacts.restitutions[0]: found 1.5, allowed is a number in [0, 1]",
+    ),
+    (put("contacts.restitutions", [-0.5]), "INVALID_FIELD", "contacts.restitutions[0]"),
+    (
+        put("contacts.frictions", [0.5] * 1_000_000),
+        "TOO_LARGE",
+        "contacts: found 1000000 contacts, allowed is at most 10000",
+    ),
+    (put("contacts.surface_velocities", [1.0, 0.0, 0.0]), "NOT_SUPPORTED", "contacts.surface_velocities"),
+    (put("contacts.kinds", [1]), "NOT_SUPPORTED", "contacts.kinds"),
+    (put("contact_source", 9), "INVALID_FIELD", "contact_source: found 9"),
+    (put("contact_source", 0), "NO_CONTACT", "has no shape"),
+    (put("velocity_tolerance", -1.0), "INVALID_FIELD", "velocity_tolerance: found -1.0"),
+    (put("velocity_tolerance", math.nan), "INVALID_FIELD", "velocity_tolerance: found nan"),
+    (put("problem", 9), "INVALID_FIELD", "problem: found 9"),
+]
+
+
+def out_of_plane(request: Any) -> None:
+    """Spin about an axis in the plane: the contact moves out of it by 1 m/s per rad/s."""
+    request.problem = request.PLANAR
+    request.plane_normal.y = 1.0
+    request.state.angular_velocity.x = 0.25
+
+
+def crooked_plane(request: Any) -> None:
+    """A plane of motion whose normal is not a unit vector."""
+    request.problem = request.PLANAR
+    request.plane_normal.y = 2.0
+
+
+CASES = [
+    *[(service, *case) for service in SERVICES for case in EVERY_SERVICE],
+    *[(service, *case) for service in (PredictContactMode, PredictImpact) for case in CONTACTS],
+    *[
+        (
+            service,
+            out_of_plane,
+            "OUT_OF_PLANE",
+            "state: found 0.25 m/s out of the plane with normal [0.0, 1.0, 0.0]",
+        )
+        for service in (PredictContactMode, PredictImpact)
+    ],
+    (PredictContactMode, put("applied_wrench.force.x", math.nan), "INVALID_FIELD", "applied_wrench.force"),
+    (PredictContactMode, put("problem", 2), "NOT_SUPPORTED", "problem: found SPATIAL"),
+    (PredictContactMode, put("want_margins", True), "NOT_SUPPORTED", "want_margins"),
+    (PredictContactMode, put("gravity", 5), "INVALID_FIELD", "gravity: found 5"),
+    (PredictImpact, put("state.linear_velocity.z", 1.0), "SEPARATING", "v_n = 1 m/s"),
+    (PredictImpact, put("restitution_law", 3), "INVALID_FIELD", "restitution_law: found 3"),
+    (PredictImpact, put("want_covariance", True), "NOT_SUPPORTED", "want_covariance"),
+    (PredictImpact, put("other_body_name", "brick"), "NOT_SUPPORTED", "second body"),
+    (PredictImpact, crooked_plane, "INVALID_FIELD", "plane_normal: found [0.0, 2.0, 0.0] of norm 2"),
+    (
+        PredictTumbling,
+        put("times", [0.0, -0.1]),
+        "INVALID_FIELD",
+        "times[1]: found 0.1 s before times[0], allowed is ascending",
+    ),
+    (
+        PredictTumbling,
+        put("times", [-0.1, 0.1]),
+        "INVALID_FIELD",
+        "times[0]: found -0.1, allowed is a number >= 0",
+    ),
+    (PredictTumbling, put("times", [0.0, math.nan]), "INVALID_FIELD", "times"),
+    (
+        PredictTumbling,
+        put("times", [0.0] * 100_000),
+        "TOO_LARGE",
+        "times: found 100000 samples, allowed is at most 20000",
+    ),
+    (PredictTumbling, put("fit_window", 0.1), "NOT_SUPPORTED", "fit_window"),
+    (PredictTumbling, put("linear_drag", 0.1), "NOT_SUPPORTED", "linear_drag"),
+    (PredictTumbling, put("sampling", 17), "INVALID_FIELD", "sampling: found 17"),
+]
+
+
+@pytest.mark.parametrize(
+    ("service", "change", "code", "words"), CASES, ids=lambda value: getattr(value, "__name__", None)
+)
+def test_bad_input_is_named_and_the_next_good_request_answered(
+    client: Client, service: Any, change: Callable[[Any], None], code: str, words: str
+) -> None:
+    request = good(service)
+    change(request)
+    answer = client.ask(request)
+    assert answer.status == getattr(answer, code), answer.message
+    assert words in answer.message
+    after = client.ask(good(service))
+    assert (after.status, after.message) == (after.OK, "")
+
+
+def bad_rate(request: Any) -> None:
+    request.sampling = request.AT_RATE
+    request.rate = -5.0
+
+
+def too_long(request: Any) -> None:
+    request.sampling = request.AT_RATE
+    request.rate, request.duration = 1000.0, 1e9
+
+
+@pytest.mark.parametrize(
+    ("change", "code", "words"),
+    [(bad_rate, "INVALID_FIELD", "rate: found -5.0"), (too_long, "TOO_LARGE", "1e+12 samples")],
+)
+def test_absurd_sampling(client: Client, change: Callable[[Any], None], code: str, words: str) -> None:
+    request = good(PredictTumbling)
+    change(request)
+    answer = client.ask(request)
+    assert answer.status == getattr(answer, code)
+    assert words in answer.message
+
+
+@pytest.mark.parametrize("service", SERVICES)
+def test_no_state_published_yet(client: Client, service: Any) -> None:
+    answer = client.ask(service.Request(body_name="brick"))
+    assert answer.status == answer.NO_STATE
+    assert "state of 'brick': none was published yet" in answer.message
+
+
+def test_states_that_are_stale_or_make_no_sense(client: Client) -> None:
+    """A stale state is refused with its age; one with a NaN or in another frame is not taken for a state at all."""
+    publisher = client.node.create_publisher(Odometry, "/brick/odometry", QoSProfile(depth=10))
+    client.spin_until(lambda: publisher.get_subscription_count() > 0)
+    nonsense = Odometry()
+    nonsense.header.frame_id = "world"
+    nonsense.header.stamp = client.node.get_clock().now().to_msg()
+    nonsense.twist.twist.linear.x = math.nan
+    elsewhere = Odometry()
+    elsewhere.header.stamp = nonsense.header.stamp
+    elsewhere.header.frame_id = "map"
+    old = Odometry()
+    old.header.frame_id = "world"
+    old.header.stamp.sec = nonsense.header.stamp.sec - 3
+    publisher.publish(nonsense)
+    publisher.publish(elsewhere)
+    publisher.publish(old)
+    request = PredictTumbling.Request(body_name="brick", times=[0.1])
+    answers: list[Any] = []
+
+    def stale() -> bool:
+        answers.append(client.ask(request))
+        return answers[-1].status == answers[-1].STALE_STATE
+
+    client.spin_until(stale)
+    assert all(answer.status in (answer.NO_STATE, answer.STALE_STATE) for answer in answers)
+    assert "s old, allowed is at most 0.5 s (parameter state_timeout)" in answers[-1].message
+    asked = PredictTumbling.Request(body_name="brick", times=[0.1])
+    asked.stamp = old.header.stamp
+    assert client.ask(asked).status == 0

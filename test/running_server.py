@@ -1,0 +1,129 @@
+"""A real server in its own process and a real client in this one, for the tests of nodes."""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import rclpy
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+
+ROOT = Path(__file__).parents[1]
+DOMAIN_ID = 1 + os.getpid() % 100  # of this test run alone; above 101 the ports collide with ephemeral ones
+PATIENCE_S = 30.0
+SERVICES = {
+    PredictContactMode: "/contact_dynamics/predict_contact_mode",
+    PredictImpact: "/contact_dynamics/predict_impact",
+    PredictTumbling: "/contact_dynamics/predict_tumbling",
+}
+
+
+def environment() -> dict[str, str]:
+    """What processes of this test run are started with."""
+    return {
+        **os.environ,
+        "ROS_DOMAIN_ID": str(DOMAIN_ID),
+        "ROS_PYTHON_CHECK_FIELDS": "1",
+        "PYTHONUNBUFFERED": "1",
+    }
+
+
+@contextmanager
+def process(verb: str, *arguments: str, ready: str = "") -> Iterator[subprocess.Popen[str]]:
+    """Start a verb of the command line; wait until it prints ``ready``; stop it with SIGINT and expect that it obeys."""
+    command = [sys.executable, "-m", "contact_dynamics", verb, *arguments]
+    started = subprocess.Popen(
+        command, cwd=ROOT, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
+    try:
+        if ready:
+            wait_for(started, ready)
+        yield started
+    finally:
+        started.send_signal(signal.SIGINT)
+        try:
+            started.wait(PATIENCE_S)
+        except subprocess.TimeoutExpired:
+            started.kill()
+            raise
+        finally:
+            assert started.stdout is not None
+            started.stdout.close()
+
+
+def wait_for(started: subprocess.Popen[str], text: str) -> str:
+    """Return what a process printed up to the line that holds ``text``."""
+    assert started.stdout is not None
+    printed = ""
+    deadline = time.monotonic() + PATIENCE_S
+    while text not in printed:
+        readable, _, _ = select.select([started.stdout], [], [], max(0.0, deadline - time.monotonic()))
+        line = started.stdout.readline() if readable else ""
+        assert line, f"{started.args} did not print {text!r}:\n{printed}"
+        printed += line
+    return printed
+
+
+class Client:
+    """A node that calls the three services and publishes."""
+
+    def __init__(self) -> None:
+        self._context = Context()
+        rclpy.init(context=self._context, domain_id=DOMAIN_ID)
+        self.node = Node("test_client", context=self._context)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.node)
+        qos = QoSProfile(depth=1000)
+        self._clients = {
+            service: self.node.create_client(service, name, qos_profile=qos)
+            for service, name in SERVICES.items()
+        }
+        for client in self._clients.values():
+            assert client.wait_for_service(PATIENCE_S)
+
+    def ask(self, request: Any) -> Any:
+        """Call the service that a request belongs to; return the response."""
+        service = next(service for service in SERVICES if isinstance(request, service.Request))
+        future = self._clients[service].call_async(request)
+        self.spin_until(future.done)
+        return future.result()
+
+    def spin_until(self, done: Any) -> None:
+        """Spin until ``done()``; fail after a while."""
+        deadline = time.monotonic() + PATIENCE_S
+        while not done():
+            assert time.monotonic() < deadline, "no answer"
+            self._executor.spin_once(timeout_sec=0.1)
+
+    def close(self) -> None:
+        """Leave the domain."""
+        self._executor.shutdown()
+        self.node.destroy_node()
+        rclpy.shutdown(context=self._context)
+
+
+@contextmanager
+def server_and_client(
+    log_directory: Path, *, params_file: Path = ROOT / "config" / "server.yaml"
+) -> Iterator[Client]:
+    """Run a server with the commented configuration, logging to ``log_directory``, and a client beside it."""
+    arguments = ("--params-file", str(params_file), "--ros-args", "-p", f"log_directory:={log_directory}")
+    with process("server", *arguments, ready="ready"):
+        client = Client()
+        try:
+            yield client
+        finally:
+            client.close()
