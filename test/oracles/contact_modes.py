@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import gcd
+from math import gcd, inf
 
 Row = tuple[Fraction, ...]  # coefficients, then the constant
 
@@ -96,14 +96,32 @@ def consistent_modes(case: ExactCase, kinematic: set[str]) -> set[str]:
     return {mode for mode in kinematic if _forces_exist(case, mode)}
 
 
+def uniqueness(case: ExactCase, mode: str) -> tuple[bool, bool]:
+    """Return whether the forces and the motion of a consistent mode are the only ones."""
+    zero, positive, wrenches, _ = _in_forces(case, mode)
+    count = len(wrenches)
+    each = [tuple(Fraction(int(i == j)) for j in range(count)) for i in range(count)]
+    motion = [tuple(wrench[k] for wrench in wrenches) for k in range(3)]
+    return (
+        not any(varies(row, zero, positive) for row in each),
+        not any(varies(row, zero, positive) for row in motion),
+    )
+
+
 def _forces_exist(case: ExactCase, mode: str) -> bool:
+    zero, positive, _, _ = _in_forces(case, mode)
+    return best_slack(zero, positive) > 0
+
+
+def _in_forces(case: ExactCase, mode: str) -> tuple[list, list, list, tuple]:
+    """Return the mode's rows in terms of its edge forces, what those do to the motion, and the free motion."""
     zero, positive, wrenches = [], [], []
     for contact, letter in zip(case.contacts, mode, strict=True):
         rows, strict_rows, edges = letter_conditions(case, contact, letter)
         zero += rows
         positive += strict_rows
         (x, y), (n_x, n_y) = contact.r, contact.normal
-        for f_t, f_n in edges:
+        for f_t, f_n in dict.fromkeys(edges):
             f_x, f_y = f_t * n_y + f_n * n_x, -f_t * n_x + f_n * n_y
             wrenches.append((f_x / case.mass, f_y / case.mass, (x * f_y - y * f_x) / case.inertia))
     free = (case.force[0] / case.mass, case.force[1] / case.mass, case.moment / case.inertia)
@@ -112,7 +130,7 @@ def _forces_exist(case: ExactCase, mode: str) -> bool:
         constant = sum(a * b for a, b in zip(row, free, strict=False)) + row[3]
         return (*(sum(a * b for a, b in zip(row, wrench, strict=False)) for wrench in wrenches), constant)
 
-    return best_slack([in_forces(row) for row in zero], [in_forces(row) for row in positive]) > 0
+    return [in_forces(row) for row in zero], [in_forces(row) for row in positive], wrenches, free
 
 
 def has_solution(zero: list[Row], positive: list[Row]) -> bool:
@@ -154,56 +172,80 @@ def _whole(row: list) -> tuple[int, ...]:
 def best_slack(zero: list[Row], positive: list[Row]) -> Fraction:
     """Return the largest t <= 1 for which some x >= 0 has all ``zero`` rows 0 and all ``positive`` rows >= t.
 
-    -1: none has even t = 0. The simplex method with Bland's rule, on x, t, the slacks and the artificials.
+    -1: none has even t = 0.
     """
     n = len((zero or positive or [(Fraction(0),)])[0]) - 1
-    columns = n + 1 + len(positive) + 1
-    table: list[list[Fraction]] = []
-    for row in zero:
-        table.append([*row[:-1], *[Fraction(0)] * (columns - n), -row[-1]])
-    for i, row in enumerate(positive):
-        slacks = [Fraction(0)] * (len(positive) + 1)
-        slacks[i] = Fraction(-1)
-        table.append([*row[:-1], Fraction(-1), *slacks, -row[-1]])
-    last = [Fraction(0)] * columns + [Fraction(1)]
-    last[n] = last[columns - 1] = Fraction(1)
-    table.append(last)
-    for row in table:
-        if row[-1] < 0:
-            row[:] = [-value for value in row]
+    equations = [[*row[:-1], Fraction(0), *_slacks(positive, None), Fraction(0), row[-1]] for row in zero]
+    equations += [
+        [*row[:-1], Fraction(-1), *_slacks(positive, i), Fraction(0), row[-1]]
+        for i, row in enumerate(positive)
+    ]
+    equations.append(
+        [*[Fraction(0)] * n, Fraction(1), *_slacks(positive, None), Fraction(1), Fraction(-1)]
+    )
+    objective = [Fraction(0)] * (len(equations[0]) - 1)
+    objective[n] = Fraction(1)
+    best = maximum(objective, equations)
+    return Fraction(-1) if best is None else best
+
+
+def varies(objective: Row, zero: list[Row], positive: list[Row]) -> bool:
+    """Whether ``objective`` . x takes several values over x >= 0 with ``zero`` rows 0, ``positive`` rows >= 0."""
+    equations = [[*row[:-1], *_slacks(positive, None), row[-1]] for row in zero]
+    equations += [[*row[:-1], *_slacks(positive, i), row[-1]] for i, row in enumerate(positive)]
+    if not equations:
+        return any(value != 0 for value in objective)
+    padded = [*objective, *[Fraction(0)] * len(positive)]
+    return maximum(padded, equations) != -maximum([-value for value in padded], equations)
+
+
+def _slacks(positive: list[Row], own: int | None) -> list[Fraction]:
+    return [Fraction(-1 if i == own else 0) for i in range(len(positive))]
+
+
+def maximum(objective: list[Fraction], equations: list[list[Fraction]]) -> Fraction | float | None:
+    """Return the largest objective . x over x >= 0 with every equation's (coefficients, constant) . (x, 1) = 0.
+
+    None: no such x; infinite: no bound. The simplex method with Bland's rule and artificial unknowns.
+    """
+    columns = len(objective)
+    table = [[*row[:-1], -row[-1]] for row in equations]
+    table = [[-value for value in row] if row[-1] < 0 else row for row in table]
     basis = []
     for i, row in enumerate(table):
         row[-1:-1] = [Fraction(int(i == j)) for j in range(len(table))]
         basis.append(columns + i)
-    _simplex(table, basis, [Fraction(0)] * columns + [Fraction(-1)] * len(table))
+    _simplex(table, basis, [Fraction(0)] * columns + [Fraction(-1)] * len(table), len(table) + columns)
     if any(basis[i] >= columns and table[i][-1] != 0 for i in range(len(table))):
-        return Fraction(-1)
-    objective = [Fraction(0)] * (columns + len(table))
-    objective[n] = Fraction(1)
+        return None
     for i in range(len(table)):  # an artificial that stays in the basis at zero must not grow
-        if basis[i] >= columns:
-            entering = next((j for j in range(columns) if table[i][j] != 0), None)
-            if entering is not None:
-                _pivot(table, basis, i, entering)
-    _simplex(table, basis, objective, allowed=columns)
-    return sum((objective[basis[i]] * table[i][-1] for i in range(len(table))), Fraction(0))
+        entering = next((j for j in range(columns) if table[i][j] != 0), None)
+        if basis[i] >= columns and entering is not None:
+            _pivot(table, basis, i, entering)
+    padded = objective + [Fraction(0)] * len(table)
+    if not _simplex(table, basis, padded, columns):
+        return inf
+    return sum((padded[basis[i]] * table[i][-1] for i in range(len(table))), Fraction(0))
 
 
-def _simplex(table: list, basis: list[int], objective: list[Fraction], allowed: int | None = None) -> None:
-    width = allowed if allowed is not None else len(objective)
+def _simplex(table: list, basis: list[int], objective: list[Fraction], allowed: int) -> bool:
+    """Improve until nothing does; False: without bound."""
     while True:
-        entering = None
-        for j in range(width):
-            gain = objective[j] - sum(objective[basis[i]] * table[i][j] for i in range(len(table)))
-            if gain > 0:
-                entering = j
-                break
+        entering = next((j for j in range(allowed) if _gain(table, basis, objective, j) > 0), None)
         if entering is None:
-            return
+            return True
         ratios = [
             (row[-1] / row[entering], basis[i], i) for i, row in enumerate(table) if row[entering] > 0
         ]
+        if not ratios:
+            return False
         _pivot(table, basis, min(ratios)[2], entering)
+
+
+def _gain(table: list, basis: list[int], objective: list[Fraction], column: int) -> Fraction:
+    return objective[column] - sum(
+        objective[basis[i]] * row[column] for i, row in enumerate(table) if row[column] != 0
+    )
 
 
 def _pivot(table: list, basis: list[int], at: int, entering: int) -> None:
