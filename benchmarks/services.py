@@ -127,7 +127,7 @@ def _questions() -> list[tuple[str, str, Any]]:
     impact.contacts.frictions = impact.contacts.frictions[:1]
     impact.contacts.restitutions = impact.contacts.restitutions[:1]
     impact.state.linear_velocity.z = -1.0
-    impact.state.angular_velocity.x, impact.state.angular_velocity.y = 2.0, 3.0
+    impact.state.angular_velocity.x, impact.state.angular_velocity.y = 2.0, -3.0
     landing = PredictImpact.Request(body_name="brick", state_source=PredictImpact.Request.STATE_EXPLICIT)
     _tossed(landing.state)
     one, many, contact = (

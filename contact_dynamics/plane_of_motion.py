@@ -12,16 +12,21 @@ they do where body and contacts are symmetric about it.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from contact_dynamics.contact import ContactSet
 from contact_dynamics.errors import OutOfPlaneError
 from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, Vector2
-from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.rigid_body import BodyState, MassProperties, cross_matrix
 from contact_dynamics.tolerances import OUT_OF_PLANE_RATIO, OUT_OF_PLANE_SPEED
 from contact_dynamics.validation import FloatArray, check_unit
+
+_STEEP: Final = 0.8
+"""Cosine to the world's up above which a normal counts as upright: then its angle to the world's x is over 36 degrees."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -40,16 +45,17 @@ class PlaneOfMotion:
 
     @property
     def axes_W(self) -> FloatArray:
-        """Return x and y, (2, 3), world axes: y is the world's up as seen in the plane, or the world's x if that is its normal."""
-        for direction in (np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])):
-            y_W = direction - (direction @ self.normal_W) * self.normal_W
-            length = math.sqrt(y_W @ y_W)
-            if (
-                length > 0.5
-            ):  # of the two candidates one is always longer: sin of its angle to the normal is over 0.7
-                y_W = y_W / length
-                break
-        return np.array([np.cross(y_W, self.normal_W), y_W])
+        """Return x and y, (2, 3), world axes: y is the world's up as seen in the plane.
+
+        Where the world's up is the normal, y is the world's x.
+        """
+        n_x, n_y, n_z = self.normal_W.tolist()
+        along, up = (n_z, (0.0, 0.0, 1.0)) if abs(n_z) < _STEEP else (n_x, (1.0, 0.0, 0.0))
+        y_x, y_y, y_z = up[0] - along * n_x, up[1] - along * n_y, up[2] - along * n_z
+        length = math.sqrt(y_x * y_x + y_y * y_y + y_z * y_z)
+        y_x, y_y, y_z = y_x / length, y_y / length, y_z / length
+        x = (y_y * n_z - y_z * n_y, y_z * n_x - y_x * n_z, y_x * n_y - y_y * n_x)
+        return np.array([x, (y_x, y_y, y_z)])
 
     def lift(self, vector: Vector2) -> FloatArray:
         """Return a vector of the plane, (x, y), in world axes, (3,)."""
@@ -142,18 +148,26 @@ def out_of_plane_speed(plane: PlaneOfMotion, state: BodyState, contacts: Contact
     v_out = (state.v_WB_W @ normal) * normal
     w_out = state.w_WB_W - (state.w_WB_W @ normal) * normal
     r_W = np.vstack([np.zeros(3), contacts.p_WC_W - state.p_WB_W])
-    return float(np.linalg.norm(v_out + np.cross(w_out, r_W), axis=1).max())
+    left_out = v_out + r_W @ cross_matrix(w_out).T
+    return math.sqrt(float(np.einsum("ij,ij->i", left_out, left_out).max()))
 
 
 def best_plane(
-    body: MassProperties, state: BodyState, contacts: ContactSet, *, force_W: FloatArray, torque_W: FloatArray
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    *,
+    force_W: FloatArray,
+    torque_W: FloatArray,
+    speed_tolerance: float = OUT_OF_PLANE_SPEED,
 ) -> PlaneOfMotion:
-    """Return the plane in which a problem fits best.
+    """Return a plane in which a problem is planar, or the one in which it nearly is.
 
     Contact normals and the applied force must lie in it. Where they leave a choice (a body on a floor), the
-    candidates are the axes of the rotation, of the sliding motion and of the torque, and the body's principal
-    axes, each made perpendicular to them; the one with the least motion and inertia coupling out of its plane
-    is taken, an earlier candidate where two are equal.
+    candidates are normal to the rotation's axis, to the sliding motion, to the torque, to each of the body's
+    principal axes and to the world's, made to contain them. The first that leaves out no motion above
+    ``speed_tolerance`` (m/s) and couples no inertia beyond `OUT_OF_PLANE_RATIO` is taken; if none does, the
+    one that leaves out least.
 
     Raises:
         OutOfPlaneError: contact normals and force span space: no plane contains them.
@@ -164,30 +178,34 @@ def best_plane(
             "contact normals", "normals and an applied force that span space", "vectors in a common plane"
         )
     if len(fixed) == 2:
-        return PlaneOfMotion(normal_W=np.cross(fixed[0], fixed[1]))
-    principal_axes_W = state.R_WB @ np.linalg.eigh(body.I_B)[1]
-    seeds = [
-        state.w_WB_W,
-        *(np.cross(direction, state.v_WB_W) for direction in fixed),
-        torque_W,
-        *principal_axes_W.T,
-        *np.eye(3),
-    ]
-    scale = 1e-9 + math.sqrt(state.v_WB_W @ state.v_WB_W) + math.sqrt(state.w_WB_W @ state.w_WB_W)
+        return PlaneOfMotion(normal_W=cross_matrix(fixed[0]) @ fixed[1])
     best: tuple[float, PlaneOfMotion] | None = None
-    for seed in seeds:
-        candidate = seed - sum(((seed @ direction) * direction for direction in fixed), np.zeros(3))
-        length = math.sqrt(candidate @ candidate)
-        if length <= OUT_OF_PLANE_RATIO * (math.sqrt(seed @ seed) + OUT_OF_PLANE_RATIO):
+    for seed in _axis_candidates(body, state, fixed, torque_W):
+        across = seed - sum(((seed @ direction) * direction for direction in fixed), np.zeros(3))
+        length = math.sqrt(across @ across)
+        if length <= OUT_OF_PLANE_RATIO * math.sqrt(seed @ seed):
             continue
-        plane = PlaneOfMotion(normal_W=candidate / length)
-        cost = out_of_plane_speed(plane, state, contacts) / scale + _inertia_coupling(
-            body, state, plane.normal_W
-        )
-        if best is None or cost < best[0] - OUT_OF_PLANE_RATIO:
-            best = (cost, plane)
-    assert best is not None  # of the three world axes at least two are not parallel to one fixed direction
+        plane = PlaneOfMotion(normal_W=across / length)
+        speed = out_of_plane_speed(plane, state, contacts)
+        coupling = _inertia_coupling(body, state, plane.normal_W)
+        if speed <= speed_tolerance and coupling <= OUT_OF_PLANE_RATIO:
+            return plane
+        if best is None or speed < best[0]:
+            best = (speed, plane)
+    if best is None:  # cannot be: of the world's axes at least two are not parallel to one direction
+        raise OutOfPlaneError("plane_normal", "no candidate", "an explicit normal")
     return best[1]
+
+
+def _axis_candidates(
+    body: MassProperties, state: BodyState, fixed: list[FloatArray], torque_W: FloatArray
+) -> Iterator[FloatArray]:
+    yield state.w_WB_W
+    for direction in fixed:
+        yield cross_matrix(direction) @ state.v_WB_W
+    yield torque_W
+    yield from (state.R_WB @ np.linalg.eigh(body.I_B)[1]).T
+    yield from np.eye(3)
 
 
 def _inertia_coupling(body: MassProperties, state: BodyState, normal_W: FloatArray) -> float:

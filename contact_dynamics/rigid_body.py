@@ -74,8 +74,8 @@ class BodyState:
         return rotation_matrix(self.q_WB)
 
     def velocity_of_point(self, p_WP_W: FloatArray) -> FloatArray:
-        """Return the velocity, (..., 3), m/s, world axes, of body points now at ``p_WP_W``, (..., 3): v + w x r."""
-        velocity: FloatArray = self.v_WB_W + np.cross(self.w_WB_W, p_WP_W - self.p_WB_W)
+        """Return the velocities, (..., 3), m/s, world axes, of body points now at ``p_WP_W``: v + w x r."""
+        velocity: FloatArray = self.v_WB_W + (p_WP_W - self.p_WB_W) @ cross_matrix(self.w_WB_W).T
         return velocity
 
 
@@ -110,6 +110,12 @@ def rotation_matrix(q: FloatArray) -> FloatArray:
             [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
         ]
     )
+
+
+def cross_matrix(vector: FloatArray) -> FloatArray:
+    """Return the (3, 3) matrix R of the cross product, R a = vector x a (lecture 27, eq. 7)."""
+    x, y, z = vector.tolist()
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def _check_inertia(field: str, value: FloatArray) -> FloatArray:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.errors import FrameMismatchError
-from contact_dynamics.rigid_body import BodyState, rotation_matrix
+from contact_dynamics.rigid_body import BodyState, cross_matrix, rotation_matrix
 from contact_dynamics.validation import check_unit
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def state_of_center_of_mass(
     return BodyState(
         p_WB_W=p_WF_W + p_FB_W,
         q_WB=q_WB,
-        v_WB_W=v_WF_W + np.cross(w_WF_W, p_FB_W),
+        v_WB_W=v_WF_W + cross_matrix(w_WF_W) @ p_FB_W,
         w_WB_W=w_WF_W,
         stamp_ns=stamp_ns,
     )

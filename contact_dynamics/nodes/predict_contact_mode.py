@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from contact_dynamics.contact_modes import planar_contact_modes
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.nodes.subject import (
     contacts_of,
     distance_tolerance_of,
     gravity_of,
-    or_configured,
+    planar_problem_of,
     subject_of,
     velocity_tolerance_of,
 )
-from contact_dynamics.plane_of_motion import PlaneOfMotion, best_plane, project
 from contact_dynamics.validation import check_array
 from msg_adapters.contact_mode import write_planar_answer
 from msg_adapters.contacts import contacts_to_msg
@@ -44,24 +41,8 @@ def predict_contact_mode(request: Any, response: Any, knowledge: Knowledge) -> N
     force_W = check_array("applied_wrench.force", vector_from_msg(request.applied_wrench.force), (3,))
     force_W = force_W + body.mass * gravity_of(request, knowledge)
     torque_W = check_array("applied_wrench.torque", vector_from_msg(request.applied_wrench.torque), (3,))
-    normal = vector_from_msg(request.plane_normal)
-    plane = (
-        PlaneOfMotion(normal_W=normal)
-        if np.any(normal)
-        else best_plane(body, subject.state, contacts, force_W=force_W, torque_W=torque_W)
-    )
-    problem = project(
-        body,
-        subject.state,
-        contacts,
-        plane=plane,
-        force_W=force_W,
-        torque_W=torque_W,
-        speed_tolerance=or_configured(
-            "out_of_plane_tolerance",
-            request.out_of_plane_tolerance,
-            knowledge.parameters.out_of_plane_tolerance,
-        ),
+    problem = planar_problem_of(
+        request, subject.body, subject.state, contacts, knowledge, force_W=force_W, torque_W=torque_W
     )
     answer = planar_contact_modes(
         problem.body,
@@ -74,6 +55,6 @@ def predict_contact_mode(request: Any, response: Any, knowledge: Knowledge) -> N
     response.problem = request.PLANAR
     response.state = subject.state_to_msg(subject.state)
     response.contacts = contacts_to_msg(contacts)
-    response.plane_normal = vector_to_msg(plane.normal_W)
+    response.plane_normal = vector_to_msg(problem.plane.normal_W)
     response.out_of_plane = problem.out_of_plane
     response.distance_tolerance = distance_tolerance_of(request, knowledge)

@@ -16,12 +16,12 @@ from contact_dynamics.nodes.subject import (
     contacts_of,
     distance_tolerance_of,
     or_configured,
+    planar_problem_of,
     subject_of,
     velocity_tolerance_of,
 )
-from contact_dynamics.plane_of_motion import PlaneOfMotion, best_plane, project
 from msg_adapters.contacts import contacts_to_msg
-from msg_adapters.geometry import vector_from_msg, vector_to_msg
+from msg_adapters.geometry import vector_to_msg
 from msg_adapters.impact import planar_impact_to_msg, spatial_impact_to_msg
 
 if TYPE_CHECKING:
@@ -129,23 +129,8 @@ def _in_plane(
     knowledge: Knowledge,
 ) -> ImpactMsg:
     body = subject.body.mass_properties
-    normal = vector_from_msg(request.plane_normal)
-    plane = (
-        PlaneOfMotion(normal_W=normal)
-        if np.any(normal)
-        else best_plane(body, before, contacts, force_W=_NO_WRENCH, torque_W=_NO_WRENCH)
-    )
-    tolerance = or_configured(
-        "out_of_plane_tolerance", request.out_of_plane_tolerance, knowledge.parameters.out_of_plane_tolerance
-    )
-    problem = project(
-        body,
-        before,
-        contacts,
-        plane=plane,
-        force_W=_NO_WRENCH,
-        torque_W=_NO_WRENCH,
-        speed_tolerance=tolerance,
+    problem = planar_problem_of(
+        request, subject.body, before, contacts, knowledge, force_W=_NO_WRENCH, torque_W=_NO_WRENCH
     )
     impact = planar_impact(
         problem.body,
@@ -154,7 +139,7 @@ def _in_plane(
         law=law,
         velocity_tolerance=velocity_tolerance_of(request, knowledge),
     )
-    response.plane_normal = vector_to_msg(plane.normal_W)
+    response.plane_normal = vector_to_msg(problem.plane.normal_W)
     response.out_of_plane = problem.out_of_plane
     return planar_impact_to_msg(
         impact, problem, contact=0, body=body, before=before, state_to_msg=subject.state_to_msg

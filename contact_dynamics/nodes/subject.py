@@ -9,6 +9,7 @@ import numpy as np
 
 from contact_dynamics.contact_geometry import find_contacts
 from contact_dynamics.errors import InvalidFieldError, NoContactError, TooLargeError
+from contact_dynamics.plane_of_motion import PlanarProblem, PlaneOfMotion, best_plane, project
 from contact_dynamics.validation import check_not_negative
 from contact_dynamics.world import Body
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg
@@ -18,7 +19,7 @@ from msg_adapters.frames import (
     state_of_center_of_mass,
     velocity_of_published_frame,
 )
-from msg_adapters.geometry import mass_properties_from_msg
+from msg_adapters.geometry import mass_properties_from_msg, vector_from_msg
 from msg_adapters.stamps import stamp_ns_from_msg
 
 if TYPE_CHECKING:
@@ -134,6 +135,34 @@ def velocity_tolerance_of(request: Any, knowledge: Knowledge) -> float:
     return or_configured(
         "velocity_tolerance", request.velocity_tolerance, knowledge.parameters.velocity_tolerance
     )
+
+
+def planar_problem_of(
+    request: Any,
+    body: Body,
+    state: BodyState,
+    contacts: ContactSet,
+    knowledge: Knowledge,
+    *,
+    force_W: FloatArray,
+    torque_W: FloatArray,
+) -> PlanarProblem:
+    """Return a problem in the plane of motion that a request names, or in the one that fits best.
+
+    Raises:
+        ContactDynamicsError: the plane's normal is not unit, or something leaves the plane by too much.
+    """
+    tolerance = or_configured(
+        "out_of_plane_tolerance", request.out_of_plane_tolerance, knowledge.parameters.out_of_plane_tolerance
+    )
+    normal = vector_from_msg(request.plane_normal)
+    inputs: dict[str, Any] = {"force_W": force_W, "torque_W": torque_W, "speed_tolerance": tolerance}
+    plane = (
+        PlaneOfMotion(normal_W=normal)
+        if normal.any()
+        else best_plane(body.mass_properties, state, contacts, **inputs)
+    )
+    return project(body.mass_properties, state, contacts, plane=plane, **inputs)
 
 
 def gravity_of(request: Any, knowledge: Knowledge) -> FloatArray:
