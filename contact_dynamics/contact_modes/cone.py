@@ -138,30 +138,32 @@ class PolyhedralCone:
         return True
 
     def _cut_rays(self, heights: list[float], index: int) -> None:
-        """Drop the rays below the row, and put new ones where an edge of the cycle crosses it."""
+        """Drop the run of rays below the row, and put new ones where its edges cross the row."""
         tolerance = self._tolerance
         bit = 1 << index
-        rays: list[Vector3] = []
-        tight: list[int] = []
-        count = len(heights)
+        top = heights.index(max(heights))
+        heights = heights[top:] + heights[:top]
+        self.rays = rays = self.rays[top:] + self.rays[:top]
+        self.tight = tight = self.tight[top:] + self.tight[:top]
         for i, height in enumerate(heights):
-            if height >= -tolerance:
-                rays.append(self.rays[i])
-                tight.append(self.tight[i] | bit if height <= tolerance else self.tight[i])
-            j = (i + 1) % count
-            if (height > tolerance and heights[j] < -tolerance) or (
-                height < -tolerance and heights[j] > tolerance
-            ):
-                if count == 2 and i == 1:  # two rays have one edge, already crossed
-                    break
-                common = self.tight[i] & self.tight[j]
-                rays.append(self._crossing(i, j, heights, index, common))
-                tight.append(common | bit)
-        self.rays = rays
-        self.tight = tight
+            if -tolerance <= height <= tolerance:
+                tight[i] |= bit
+        below = [i for i, height in enumerate(heights) if height < -tolerance]
+        first, last = below[0], below[-1]
+        edges = []
+        if heights[first - 1] > tolerance and first > 0:
+            edges.append((first - 1, first))
+        after = (last + 1) % len(heights)
+        if heights[after] > tolerance and len(heights) > 2:
+            edges.append((last, after))
+        crossings = [self._crossing(a, b, heights, index) for a, b in edges]
+        common = [tight[a] & tight[b] | bit for a, b in edges]
+        self.rays = rays[:first] + crossings + rays[last + 1 :]
+        self.tight = tight[:first] + common + tight[last + 1 :]
 
-    def _crossing(self, i: int, j: int, heights: list[float], index: int, common: int) -> Vector3:
+    def _crossing(self, i: int, j: int, heights: list[float], index: int) -> Vector3:
         """Return where the edge between rays i and j meets the row: as a combination, then sharpened."""
+        common = self.tight[i] & self.tight[j]
         one, two = abs(heights[j]), abs(heights[i])
         a, b = self.rays[i], self.rays[j]
         rough = normalised((one * a[0] + two * b[0], one * a[1] + two * b[1], one * a[2] + two * b[2]))

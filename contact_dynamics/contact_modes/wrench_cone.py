@@ -147,9 +147,11 @@ class ModeWrenches:
     def _uniqueness(self, acting: list[Vector3]) -> tuple[bool, bool]:
         """Return whether forces and motion are unique, ``acting`` being all generators that can act."""
         motions: list[tuple[float, ...]] = [self._with_height(ray) for ray in self._rays]
+        height: tuple[float, ...] = ()
         if self._problem.lift is not None:
-            motions.append((*self._problem.lift.line, 0.0))
-        forces: list[tuple[float, ...]] = [(*normalised(generator), 0.0) for generator in acting]
+            height = (0.0,)
+            motions.append((*self._problem.lift.line, *height))
+        forces: list[tuple[float, ...]] = [(*normalised(generator), *height) for generator in acting]
         motion_rank, force_rank = len(orthonormal(motions)), len(orthonormal(forces))
         total = len(orthonormal(motions + forces))
         return total == motion_rank + len(acting), total == motion_rank + force_rank
@@ -175,7 +177,7 @@ class ModeWrenches:
     def _with_height(self, ray: Vector3) -> tuple[float, ...]:
         lift = self._problem.lift
         if lift is None:
-            return (*ray, 0.0)
+            return ray
         one, two = lift.across
         return (*(ray[0] * x + ray[1] * y for x, y in zip(one, two, strict=True)), ray[2])
 

@@ -46,7 +46,7 @@ class ExactCase:
             along.append((d_x, d_y, x * d_y - y * d_x, -square * (x * d_x + y * d_y)))
         return along[0], along[1]
 
-    def forces(self, contact: ExactContact, letter: str, v_t: Fraction) -> list[tuple[Fraction, Fraction]]:
+    def forces(self, contact: ExactContact, letter: str) -> list[tuple[Fraction, Fraction]]:
         """Return the edges (f_t, f_n) of the forces that a letter allows."""
         mu, one = contact.friction, Fraction(1)
         return {"s": [], "l": [(mu, one)], "r": [(-mu, one)], "f": [(mu, one), (-mu, one)]}[letter]
@@ -56,7 +56,7 @@ def letter_conditions(case: ExactCase, contact: ExactContact, letter: str) -> tu
     """Return rows that are zero, rows that are > 0, in (a_x, a_y, alpha, 1), and force edges; None: never."""
     v_t, v_n = case.contact_velocity(contact)
     a_t, a_n = case.acceleration_rows(contact)
-    edges = case.forces(contact, letter, v_t)
+    edges = case.forces(contact, letter)
     if v_n < 0:
         return None
     if v_n > 0:
@@ -114,7 +114,7 @@ def _forces_exist(case: ExactCase, mode: str) -> bool:
 
 
 def _in_forces(case: ExactCase, mode: str) -> tuple[list, list, list, tuple]:
-    """Return the mode's rows in terms of its edge forces, what those do to the motion, and the free motion."""
+    """Return the mode's rows in terms of its edge forces, their accelerations, and the free one."""
     zero, positive, wrenches = [], [], []
     for contact, letter in zip(case.contacts, mode, strict=True):
         rows, strict_rows, edges = letter_conditions(case, contact, letter)
@@ -180,9 +180,7 @@ def best_slack(zero: list[Row], positive: list[Row]) -> Fraction:
         [*row[:-1], Fraction(-1), *_slacks(positive, i), Fraction(0), row[-1]]
         for i, row in enumerate(positive)
     ]
-    equations.append(
-        [*[Fraction(0)] * n, Fraction(1), *_slacks(positive, None), Fraction(1), Fraction(-1)]
-    )
+    equations.append([*[Fraction(0)] * n, Fraction(1), *_slacks(positive, None), Fraction(1), Fraction(-1)])
     objective = [Fraction(0)] * (len(equations[0]) - 1)
     objective[n] = Fraction(1)
     best = maximum(objective, equations)
@@ -190,7 +188,7 @@ def best_slack(zero: list[Row], positive: list[Row]) -> Fraction:
 
 
 def varies(objective: Row, zero: list[Row], positive: list[Row]) -> bool:
-    """Whether ``objective`` . x takes several values over x >= 0 with ``zero`` rows 0, ``positive`` rows >= 0."""
+    """Whether ``objective`` . x varies over x >= 0 with ``zero`` rows 0 and ``positive`` rows >= 0."""
     equations = [[*row[:-1], *_slacks(positive, None), row[-1]] for row in zero]
     equations += [[*row[:-1], *_slacks(positive, i), row[-1]] for i, row in enumerate(positive)]
     if not equations:
@@ -204,7 +202,8 @@ def _slacks(positive: list[Row], own: int | None) -> list[Fraction]:
 
 
 def maximum(objective: list[Fraction], equations: list[list[Fraction]]) -> Fraction | float | None:
-    """Return the largest objective . x over x >= 0 with every equation's (coefficients, constant) . (x, 1) = 0.
+    """Return the largest objective . x over x >= 0 with (coefficients, constant) . (x, 1) = 0 in each
+    equation.
 
     None: no such x; infinite: no bound. The simplex method with Bland's rule and artificial unknowns.
     """
@@ -234,9 +233,7 @@ def _simplex(table: list, basis: list[int], objective: list[Fraction], allowed: 
         entering = next((j for j in range(allowed) if _gain(table, basis, objective, j) > 0), None)
         if entering is None:
             return True
-        ratios = [
-            (row[-1] / row[entering], basis[i], i) for i, row in enumerate(table) if row[entering] > 0
-        ]
+        ratios = [(row[-1] / row[entering], basis[i], i) for i, row in enumerate(table) if row[entering] > 0]
         if not ratios:
             return False
         _pivot(table, basis, min(ratios)[2], entering)
