@@ -1,9 +1,10 @@
 """How far an impact has come while the normal impulse grows, for paths that are not known in advance.
 
-Compression is wherever the contact approaches, restitution wherever it leaves. What the restitution law compares (Poisson:
-normal impulse; energetic: work of the normal impulse) is collected in compression and given back in restitution; Newton's law
-only looks at the normal velocity. In space the sliding direction swerves, so that a contact can approach once more before its
-restitution is over: what the second compression collects is added to what was left of the first.
+Compression is wherever the contact approaches, restitution wherever it leaves. What the restitution law
+compares (Poisson: normal impulse; energetic: work of the normal impulse) is collected in compression and
+given back in restitution; Newton's law only looks at the normal velocity. In space the sliding direction
+swerves, so that a contact can approach once more before its restitution is over: what the second compression
+collects is added to what was left of the first.
 """
 
 from __future__ import annotations
@@ -66,7 +67,7 @@ class Progress:
         return gone
 
     def go_curved(self, series: SlidingSeries, begin: float, end: float) -> float:
-        """Advance along ``series`` from parameter ``begin`` to ``end``, between which v_n rises or falls throughout.
+        """Advance along ``series`` from ``begin`` to ``end``, between which v_n rises or falls throughout.
 
         Returns:
             The parameter reached; less than ``end`` where the impact was over before.
@@ -93,9 +94,9 @@ class Progress:
         return s
 
     def jump(self, impulse: Impulse, v_n: float, work: float) -> bool:
-        """Advance by ``impulse`` at once to normal velocity ``v_n``, unless compression or the impact ends on the way.
+        """Advance by ``impulse`` at once, to ``v_n``, unless compression or the impact ends on the way.
 
-        Between, v_n rises or falls throughout.
+        On the way v_n rises or falls throughout.
 
         Returns:
             Whether it did.
@@ -145,7 +146,11 @@ class Progress:
         work = series.gain(series.normal_work, begin, end) if self.law == RestitutionLaw.ENERGETIC else 0.0
         self._account(p, work)
         i1, i2, i_n = self.impulse
-        self.impulse = (i1 + series.gain(series.t1, begin, end), i2 + series.gain(series.t2, begin, end), i_n + p)
+        self.impulse = (
+            i1 + series.gain(series.t1, begin, end),
+            i2 + series.gain(series.t2, begin, end),
+            i_n + p,
+        )
         self.v_n = series.value(series.normal_velocity, end)
         return end
 

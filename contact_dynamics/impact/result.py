@@ -1,5 +1,4 @@
-"""What an impact at one planar contact comes to: the velocities afterwards, and the path in impulse space as
-evidence."""
+"""What an impact at one planar contact comes to: velocities afterwards, and the impulse path as evidence."""
 
 from __future__ import annotations
 
@@ -13,8 +12,7 @@ from contact_dynamics.tolerances import ENERGY_TOLERANCE
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlanarImpact:
-    """The answer to one planar impact. Contact axes are tangent, normal; the impulse is the one that acts on
-    the body."""
+    """The answer to one planar impact; contact axes are tangent, normal, and impulses act on the body."""
 
     law: RestitutionLaw  # the restitution law that was asked for
     velocity: PlanarVelocity  # m/s, rad/s, of the body afterwards, axes of the plane
@@ -77,8 +75,7 @@ class PlanarImpact:
 
     @property
     def energy_change(self) -> float:
-        """Return the change of kinetic energy, J: the impulse times the contact's mean velocity before and
-        after."""
+        """Return the change of kinetic energy, J: the impulse times the contact's mean velocity."""
         path = self.contact_path
         v_t, v_n = self.velocity_before_C
         return 0.5 * (path.t_end * (v_t + path.v_t) + path.p_end * (v_n + path.v_n))

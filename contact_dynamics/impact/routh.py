@@ -33,8 +33,7 @@ LARGEST_FRICTION: Final = 1e100
 
 
 class InverseInertia(NamedTuple):
-    """The contact's response to impulse: the symmetric matrix [[a, b], [b, c]] of lecture 27, eq. 8, in
-    1/kg."""
+    """The contact's response to impulse: the symmetric matrix [[a, b], [b, c]] of lecture 27, eq. 8."""
 
     a: float  # 1/kg, tangential velocity per tangential impulse, > 0
     b: float  # 1/kg, either per the other
@@ -43,8 +42,7 @@ class InverseInertia(NamedTuple):
 
 
 class ImpulsePath(NamedTuple):
-    """One impulse path in contact axes. Tangential impulses belong to the normal impulse named beside
-    them."""
+    """One impulse path in contact axes; a tangential impulse belongs to the normal one before it."""
 
     outcome: ImpactOutcome  # what the contact did
     jams: bool  # whether sliding drove the contact into compression
@@ -69,7 +67,7 @@ def inverse_inertia(mass: float, inertia: float, r_t: float, r_n: float) -> Inve
     )
 
 
-def impulse_path(
+def impulse_path(  # noqa: C901, PLR0912, PLR0915, PLR0917 - one computation; each call costs a tenth of it
     v_t: float, v_n: float, response: InverseInertia, friction: float, restitution: float, law: RestitutionLaw
 ) -> ImpulsePath:
     """Return the path of a contact that starts at (``v_t``, ``v_n``), m/s, with ``v_n`` <= 0.
@@ -77,7 +75,7 @@ def impulse_path(
     An exact 0 means a contact that does not slide or does not approach; tolerances are the caller's.
     """
     a, b, c, det = response
-    mu = friction if friction < LARGEST_FRICTION else LARGEST_FRICTION
+    mu = min(friction, LARGEST_FRICTION)
     holds = abs(b) <= mu * a
     if v_t == 0.0 and holds:
         s, p_stop = 0.0, 0.0
@@ -88,7 +86,7 @@ def impulse_path(
     rate_1 = c - s * mu * b
     jams = s != 0.0 and rate_1 < 0.0
     if v_n == 0.0 and not jams:
-        return ImpulsePath(ImpactOutcome.NO_IMPULSE, False, math.inf, 0.0, 0.0, 0.0, 0.0, 0.0, v_t, 0.0)
+        return ImpulsePath(ImpactOutcome.NO_IMPULSE, jams, math.inf, 0.0, 0.0, 0.0, 0.0, 0.0, v_t, 0.0)
 
     # After the stop: the rate of v_n, and v_n at the stop.
     rate_2 = det / a if holds else c + s * mu * b

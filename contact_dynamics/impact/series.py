@@ -1,6 +1,7 @@
 """A stretch of a swerving impulse path as power series, from its own recurrences.
 
-With a parameter s that runs as ds = dp/|u| the sliding equations (`sliding`) lose their singularity at the stop,
+With a parameter s that runs as ds = dp/|u| the sliding equations (`sliding`) lose their singularity at the
+stop,
 
     du/ds = |u| k - mu L u,    dp/ds = |u|,    dI/ds = -mu u,    dv_n/ds = k_n |u| - mu k . u,
 
@@ -22,7 +23,8 @@ ORDER: Final = 16
 """Degree of the series. Higher means longer and dearer stretches: 12 to 24 cost the same within a fifth."""
 
 TRUNCATION: Final = 1e-14
-"""Relative. The last term of u may be this part of |u| where a stretch ends; the terms left out are smaller."""
+"""Relative. The last term of u may be this part of |u| where a stretch ends; the terms left out are
+smaller."""
 
 _MOST_ITERATIONS: Final = 100
 
@@ -30,14 +32,24 @@ _MOST_ITERATIONS: Final = 100
 class SlidingSeries:
     """One stretch of the path: polynomials in the parameter s, kg, valid from 0 to ``length``.
 
-    Lists hold coefficients of rising powers; `value` evaluates them. Impulses and work count from the start of the
-    stretch.
+    Lists hold coefficients of rising powers; `value` evaluates them. Impulses and work count from the start
+    of the stretch.
     """
 
-    __slots__ = ("length", "normal_impulse", "normal_velocity", "normal_work", "speed", "t1", "t2", "u1", "u2")
+    __slots__ = (
+        "length",
+        "normal_impulse",
+        "normal_velocity",
+        "normal_work",
+        "speed",
+        "t1",
+        "t2",
+        "u1",
+        "u2",
+    )
 
     def __init__(self, law: SlidingLaw, u: tuple[float, float], v_n: float, *, with_work: bool) -> None:
-        """Expand about the state ``u``, ``v_n``, m/s, with |u| > 0; the work of the normal impulse only on demand."""
+        """Expand about the state ``u``, ``v_n``, m/s, with |u| > 0; the normal work only on demand."""
         k1, k2, kn, mu = law.k1, law.k2, law.kn, law.mu
         m1, m2 = mu * law.l1, mu * law.l2
         u1, u2 = [u[0]], [u[1]]
@@ -76,7 +88,7 @@ class SlidingSeries:
         return self.value(series, end) - (self.value(series, begin) if begin != 0.0 else 0.0)
 
     def crossing(self, series: list[float], level: float, begin: float, end: float) -> float:
-        """Return where a polynomial that is monotone in [``begin``, ``end``] and crosses ``level`` there does so.
+        """Return where a polynomial crosses ``level`` between ``begin`` and ``end``; it is monotone there.
 
         Newton's method inside a bracket that bisection keeps.
         """

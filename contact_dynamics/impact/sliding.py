@@ -1,17 +1,18 @@
 """How a contact in space slides under a growing normal impulse (Routh 1860; Keller 1986).
 
-Tangential axes are the principal ones of the tangential block of the contact's inverse inertia, so that with the normal
-impulse p, the tangential velocity u and friction -mu u/|u| per unit of normal impulse
+Tangential axes are the principal ones of the tangential block of the contact's inverse inertia, so that with
+the normal impulse p, the tangential velocity u and friction -mu u/|u| per unit of normal impulse
 
     du/dp = k - mu L u/|u|,     dv_n/dp = k_n - mu k . u/|u|,     L = diag(l_1, l_2).
 
-The sliding direction turns at the rate (its component across u)/|u|. That component is the derivative, along the circle of
-directions, of E = k . d - mu/2 d.L d: so directions climb E, there are two or four directions that stay as they are
-(*invariant* ones), every other maximum of E, and no path circles for ever.
+The sliding direction turns at the rate (its component across u)/|u|. That component is the derivative, along
+the circle of directions, of E = k . d - mu/2 d.L d: so directions climb E, there are two or four directions
+that stay as they are (*invariant* ones), every other maximum of E, and no path circles for ever.
 
-A contact that has stopped stays if friction can hold it, |L^-1 k| <= mu. If not, it leaves in the one direction d that it can
-keep while speeding up, (mu L + g) d = k with g > 0: the length of (mu L + g)^-1 k falls from above 1 to 0 as g grows from 0,
-so there is exactly one. In that phase dv_n/dp > mu g > 0, since the inverse inertia is positive definite.
+A contact that has stopped stays if friction can hold it, |L^-1 k| <= mu. If not, it leaves in the one
+direction d that it can keep while speeding up, (mu L + g) d = k with g > 0: the length of (mu L + g)^-1 k
+falls from above 1 to 0 as g grows from 0, so there is exactly one. In that phase dv_n/dp > mu g > 0, since
+the inverse inertia is positive definite.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ class SlidingLaw(NamedTuple):
         return self.k2 * d1 - self.k1 * d2 + self.mu * (self.l1 - self.l2) * d1 * d2
 
     def attraction(self, d1: float, d2: float) -> float:
-        """Return the derivative of `turning` along the circle; negative where near-by directions come closer."""
+        """Return the derivative of `turning` in the angle; negative where near-by directions come closer."""
         return self.mu * (self.l1 - self.l2) * (d1 * d1 - d2 * d2) - self.k1 * d1 - self.k2 * d2
 
     def lifting(self, d1: float, d2: float) -> float:
@@ -65,7 +66,7 @@ class SlidingLaw(NamedTuple):
         return -self.mu * d1, -self.mu * d2, self.lifting(d1, d2), speeding
 
     def escape(self) -> tuple[float, float, float]:
-        """Return the one direction in which a contact that friction cannot hold leaves, and d|u|/dp along it."""
+        """Return the one direction in which a contact that is not held leaves, and d|u|/dp along it."""
         m1, m2 = self.mu * self.l1, self.mu * self.l2
         g = max(0.0, abs(self.k1) - m1, abs(self.k2) - m2)
         # Newton's method on 1/|d| - 1, concave and rising: it comes from the left and does not overshoot.

@@ -1,11 +1,12 @@
 """Impact of one body in space at one contact with the fixed world (lecture 27 carried to space; Keller 1986).
 
-Model: as in the plane (`planar`): rigid, without duration, Coulomb friction, the contact's force alone. In space
-the sliding direction swerves while the impulse grows, and the path is an ordinary differential equation in the
-normal impulse (`sliding`, `series`, `swerve`), solved to rounding; where the direction stays, in closed form.
+Model: as in the plane (`planar`): rigid, without duration, Coulomb friction, the contact's force alone. In
+space the sliding direction swerves while the impulse grows, and the path is an ordinary differential equation
+in the normal impulse (`sliding`, `series`, `swerve`), solved to rounding; where the direction stays, in
+closed form.
 
-Not covered: torsional friction and rolling resistance (the contact transmits a force, no moment), several contacts
-(`several`), two moving bodies (`pair`).
+Not covered: torsional friction and rolling resistance (the contact transmits a force, no moment), several
+contacts (`several`), two moving bodies (`pair`).
 """
 
 from __future__ import annotations
@@ -52,7 +53,8 @@ def spatial_impact(
         friction: Coulomb's mu, >= 0.
         restitution: e, in [0, 1].
         law: What the coefficient of restitution means.
-        velocity_tolerance: m/s, >= 0. A normal or tangential velocity of the contact within it counts as zero.
+        velocity_tolerance: m/s, >= 0. A normal or tangential velocity of the contact within it counts as
+            zero.
 
     Raises:
         SeparatingContactError: the contact's normal velocity is above the tolerance.
@@ -97,7 +99,7 @@ def spatial_impact(
 
 
 def contact_inverse_inertia(body: MassProperties, state: BodyState, arm: FloatArray) -> FloatArray:
-    """Return the change of a body point's velocity per impulse there, (3, 3), 1/kg, world axes (lecture 27, eq. 7).
+    """Return the change of a point's velocity per impulse there, (3, 3), 1/kg, world (lecture 27, eq. 7).
 
     Args:
         body: Mass and angular inertia.
@@ -106,7 +108,7 @@ def contact_inverse_inertia(body: MassProperties, state: BodyState, arm: FloatAr
     """
     x, y, z = arm.tolist()
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    inverse = cross.T @ np.linalg.solve(body.inertia_in_world(state.R_WB), cross)
+    inverse: FloatArray = cross.T @ np.linalg.solve(body.inertia_in_world(state.R_WB), cross)
     inverse = 0.5 * (inverse + inverse.T)
     inverse[np.diag_indices(3)] += 1.0 / body.mass
     return inverse
@@ -115,7 +117,7 @@ def contact_inverse_inertia(body: MassProperties, state: BodyState, arm: FloatAr
 def principal_contact_axes(
     inverse_inertia_W: FloatArray, normal: FloatArray, friction: float
 ) -> tuple[FloatArray, SlidingLaw]:
-    """Return contact axes, (3, 3), as columns: principal tangents and normal, world; and the sliding law in them."""
+    """Return contact axes as columns, (3, 3), world (principal tangents, normal), and the law in them."""
     n_x, n_y, n_z = normal.tolist()
     # Any tangent to begin with: across the axis that is farthest from the normal.
     if abs(n_x) <= abs(n_y) and abs(n_x) <= abs(n_z):
@@ -127,7 +129,11 @@ def principal_contact_axes(
     length = math.hypot(*first)
     a = np.array(first) / length
     b = _cross(normal, a)
-    a_a, a_b, b_b = float(a @ inverse_inertia_W @ a), float(a @ inverse_inertia_W @ b), float(b @ inverse_inertia_W @ b)
+    a_a, a_b, b_b = (
+        float(a @ inverse_inertia_W @ a),
+        float(a @ inverse_inertia_W @ b),
+        float(b @ inverse_inertia_W @ b),
+    )
     angle = 0.5 * math.atan2(2.0 * a_b, a_a - b_b)
     c, s = math.cos(angle), math.sin(angle)
     axes = np.column_stack((c * a + s * b, c * b - s * a, normal))

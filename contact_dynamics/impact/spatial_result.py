@@ -20,7 +20,7 @@ class SpatialImpact:
     state: BodyState  # afterwards: the pose of before, new velocities
     impulse_W: FloatArray  # (3,), N s, total
     compression_W: FloatArray  # (3,), N s, up to the end of compression
-    path_W: FloatArray  # (k, 3), N s, points of the impulse path; straight between them where no SAMPLE is between
+    path_W: FloatArray  # (k, 3), N s, points of the impulse path; those at a SAMPLE lie on a curve
     path_events: tuple[PathEvent, ...]  # (k,), what each point stands for
     velocity_before_W: FloatArray  # (3,), m/s, of the contact
     velocity_after_W: FloatArray  # (3,), m/s, of the contact

@@ -1,12 +1,14 @@
 """How much normal impulse brings a swerving contact to its stop, without following it there.
 
-A contact that stops does so in an invariant direction f with g < 0 that attracts its neighbours (`sliding`; g = d|u|/dp,
-h = |u| times the rate of turning). Near f, with x the angle from it, the impulse that is left until the stop is |u| F(x), and
-what friction dissipates on the way is mu |u|^2 G(x). Along the path d|u| : dx : dp = g : h/|u| : 1, so that
+A contact that stops does so in an invariant direction f with g < 0 that attracts its neighbours (`sliding`; g
+= d|u|/dp, h = |u| times the rate of turning). Near f, with x the angle from it, the impulse that is left
+until the stop is |u| F(x), and what friction dissipates on the way is mu |u|^2 G(x). Along the path d|u| : dx
+: dp = g : h/|u| : 1, so that
 
     h F' + g F = -1,        h G' + 2 g G = -1,
 
-whose solutions that are regular at f are power series with the recurrence below; both converge as far as the next zero of h.
+whose solutions that are regular at f are power series with the recurrence below; both converge as far as the
+next zero of h.
 """
 
 from __future__ import annotations
@@ -19,7 +21,8 @@ if TYPE_CHECKING:
     from contact_dynamics.impact.sliding import SlidingLaw
 
 TERMS: Final = 24
-"""Terms of the series. With the limit on the last of them it reaches a third to a half of the way to the next zero of h."""
+"""Terms of the series. With the limit on the last of them it reaches a third to a half of the way to the next
+zero of h."""
 
 LAST_TERM: Final = 1e-15
 """Relative to the sum. What is left out is of the size of the last term."""
@@ -37,9 +40,10 @@ class Stop(NamedTuple):
 
 
 def stop_ahead(sliding: SlidingLaw, u1: float, u2: float, *, with_work: bool) -> Stop | None:
-    """Return the stop ahead of a contact that slides with (``u1``, ``u2``), m/s; None where the series does not tell.
+    """Return the stop ahead of a contact that slides with (``u1``, ``u2``), m/s.
 
-    Dissipation is only worked out where ``with_work`` asks for it, and NaN otherwise.
+    None where there is none near, or the series does not converge. Dissipation is only
+    worked out where ``with_work`` asks for it, and NaN otherwise.
     """
     speed = math.hypot(u1, u2)
     angle = math.atan2(u2, u1)
@@ -93,7 +97,9 @@ def _regular_solution(g: list[float], h: list[float], x: float, power: float) ->
     slope: list[float] = []  # coefficients of F'
     total, x_n = f[0], 1.0
     for m in range(1, TERMS + 1):
-        known = power * sum(map(mul, g[1 : m + 1], reversed(f))) + sum(map(mul, h[2 : m + 1], reversed(slope)))
+        known = power * sum(map(mul, g[1 : m + 1], reversed(f))) + sum(
+            map(mul, h[2 : m + 1], reversed(slope))
+        )
         f.append(-known / (m * h[1] + power * g[0]))
         slope.append(m * f[m])
         x_n *= x

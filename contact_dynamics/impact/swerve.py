@@ -1,8 +1,8 @@
 """The impulse path of one contact in space, from the first touch to the end of restitution.
 
-Phases: sliding that swerves (`series`), or slides straight where its direction is invariant; after a stop, sticking or leaving
-in the one admissible direction, both straight (`sliding`). The straight ones are closed forms: a central or spherical impact,
-a planar impact embedded in space, and every impact after its stop.
+Phases: sliding that swerves (`series`), or slides straight where its direction is invariant; after a stop,
+sticking or leaving in the one admissible direction, both straight (`sliding`). The straight ones are closed
+forms: a central or spherical impact, a planar impact embedded in space, and every impact after its stop.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from contact_dynamics.impact.sliding import SlidingLaw
 from contact_dynamics.impact.stopping import Stop, stop_ahead
 
 STRAIGHT: Final = 1e-12
-"""Dimensionless, of the sliding law's scale. A direction that turns more slowly is invariant: what turns it is the rounding of
-contact axes and inertia, some 1e-15, which an unstable direction would amplify."""
+"""Dimensionless, of the sliding law's scale. A direction that turns more slowly is invariant: what turns it
+is the rounding of contact axes and inertia, some 1e-15, which an unstable direction would amplify."""
 
 STOPPED: Final = 1e-13
-"""Dimensionless, of the first sliding speed. The error in impulse from going the rest of the way straight is below this part of
-the impulse that stops the contact."""
+"""Dimensionless, of the first sliding speed. The error in impulse from going the rest of the way straight is
+below this part of the impulse that stops the contact."""
 
 _MOST_STRETCHES: Final = 2000
 
@@ -42,7 +42,7 @@ class SpatialPath(NamedTuple):
 def trace(
     sliding: SlidingLaw, u: tuple[float, float], v_n: float, *, restitution: float, law: RestitutionLaw
 ) -> SpatialPath:
-    """Return the path of a contact that starts with sliding velocity ``u`` and normal velocity ``v_n`` <= 0, m/s.
+    """Return the path of a contact that starts with ``u``, tangential, and ``v_n`` <= 0, normal, m/s.
 
     An exact 0 means a contact that does not slide or does not approach; tolerances are the caller's.
     """
@@ -52,11 +52,11 @@ def trace(
     progress = Progress(law, restitution, v_n)
     if v_n == 0.0 and not jams:
         none = progress.impulse
-        return SpatialPath(ImpactOutcome.NO_IMPULSE, False, progress.path, none, none, u, 0.0)
+        return SpatialPath(ImpactOutcome.NO_IMPULSE, jams, progress.path, none, none, u, 0.0)
     if speed > 0.0:
         u = _slide(sliding, u, progress)
         if progress.over:
-            return _path(ImpactOutcome.SLIDES, jams, progress, u)
+            return _path(ImpactOutcome.SLIDES, progress, u, jams=jams)
         in_compression = progress.compressing
         progress.sample(PathEvent.SLIDING_STOPS)
     i1, i2, lifting, speeding = sliding.after_stop()
@@ -68,13 +68,17 @@ def trace(
     if speed == 0.0:
         outcome = ImpactOutcome.STICKS_THROUGHOUT if speeding == 0.0 else ImpactOutcome.SLIDES
     elif speeding == 0.0:
-        outcome = ImpactOutcome.STICKS_IN_COMPRESSION if in_compression else ImpactOutcome.STICKS_IN_RESTITUTION
+        outcome = (
+            ImpactOutcome.STICKS_IN_COMPRESSION if in_compression else ImpactOutcome.STICKS_IN_RESTITUTION
+        )
     else:
-        outcome = ImpactOutcome.REVERSES_IN_COMPRESSION if in_compression else ImpactOutcome.REVERSES_IN_RESTITUTION
-    return _path(outcome, jams, progress, u)
+        outcome = (
+            ImpactOutcome.REVERSES_IN_COMPRESSION if in_compression else ImpactOutcome.REVERSES_IN_RESTITUTION
+        )
+    return _path(outcome, progress, u, jams=jams)
 
 
-def _path(outcome: ImpactOutcome, jams: bool, progress: Progress, u: tuple[float, float]) -> SpatialPath:
+def _path(outcome: ImpactOutcome, progress: Progress, u: tuple[float, float], *, jams: bool) -> SpatialPath:
     return SpatialPath(outcome, jams, progress.path, progress.compression, progress.impulse, u, progress.v_n)
 
 
@@ -96,7 +100,7 @@ def _slide(sliding: SlidingLaw, u: tuple[float, float], progress: Progress) -> t
             if stop is not None and _jump(sliding, u, stop, lifting, progress):
                 return (0.0, 0.0)
         series = SlidingSeries(sliding, u, progress.v_n, with_work=with_work)
-        u = _slide_along(sliding, series, progress, lifting)
+        u = _slide_along(series, progress, lifting)
         if progress.over:
             return u
         progress.sample()
@@ -127,9 +131,7 @@ def _slide_straight(
     return (d[0] * final, d[1] * final)
 
 
-def _slide_along(
-    sliding: SlidingLaw, series: SlidingSeries, progress: Progress, lifting: float
-) -> tuple[float, float]:
+def _slide_along(series: SlidingSeries, progress: Progress, lifting: float) -> tuple[float, float]:
     """Advance along one stretch, split where v_n turns."""
     end = series.length
     rate = [c * (n + 1) for n, c in enumerate(series.normal_velocity[1:])]

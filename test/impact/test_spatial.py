@@ -1,4 +1,4 @@
-"""One contact in space: two independent integrations, closed forms, the plane inside it, and what every answer must obey."""
+"""One contact in space: two independent integrations, closed forms, the plane inside it, properties."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from oracles import impact_increments, impact_keller
 
 from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact import (
@@ -21,6 +20,7 @@ from contact_dynamics.impact import (
 )
 from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity
 from contact_dynamics.rigid_body import BodyState, MassProperties, kinetic_energy
+from oracles import impact_increments, impact_keller
 
 UP = np.array([0.0, 0.0, 1.0])
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
@@ -40,7 +40,7 @@ def random_body(rng: np.random.Generator, *, slender: float = 3.0) -> MassProper
 
 
 def random_problem(seed: int) -> dict[str, object]:
-    """Draw a body with an approaching contact; sliding speed, friction and restitution each in its own scale."""
+    """Draw a body with an approaching contact; speeds, arm and friction each in its own scale."""
     rng = np.random.default_rng(seed)
     body = random_body(rng)
     quaternion = rng.normal(size=4)
@@ -74,7 +74,7 @@ def solve(problem: dict[str, object], law: RestitutionLaw = RestitutionLaw.POISS
 # Independent integrations.
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", [seed for seed in range(40) if seed not in {5, 38}])
 def test_agrees_with_keller_integrated_in_the_normal_impulse(seed: int) -> None:
     problem = random_problem(seed)
     body, state, normal = problem["body"], problem["state"], problem["n_W"]
@@ -82,18 +82,15 @@ def test_agrees_with_keller_integrated_in_the_normal_impulse(seed: int) -> None:
     if answer.outcome is not ImpactOutcome.SLIDES:
         problem["friction"] *= 0.05
         answer = solve(problem)
-    assume_slides = answer.outcome is ImpactOutcome.SLIDES
-    if not assume_slides:
-        pytest.skip("stops even with a twentieth of the friction")
     after, slowest = impact_keller.body_velocity_after(
-        body.mass,
-        body.inertia_in_world(state.R_WB),
-        state.v_WB_W,
-        state.w_WB_W,
-        problem["p_WC_W"] - state.p_WB_W,
-        normal,
-        problem["friction"],
-        float(answer.impulse_W @ normal),
+        mass=body.mass,
+        inertia=body.inertia_in_world(state.R_WB),
+        v=state.v_WB_W,
+        w=state.w_WB_W,
+        arm=problem["p_WC_W"] - state.p_WB_W,
+        normal=normal,
+        mu=problem["friction"],
+        normal_impulse=float(answer.impulse_W @ normal),
     )
     # The oracle's own error grows as the sliding speed that it divides by gets small.
     scale = float(abs(after).max())
@@ -102,48 +99,48 @@ def test_agrees_with_keller_integrated_in_the_normal_impulse(seed: int) -> None:
     assert answer.state.w_WB_W == pytest.approx(after[3:], abs=tolerance)
 
 
-def outcome_examples(wanted: int) -> list[tuple[int, ImpactOutcome]]:
-    """Return seeds of random problems, ``wanted`` for every outcome class that they reach."""
-    found: dict[ImpactOutcome, list[int]] = {}
-    for seed in range(400):
-        seeds = found.setdefault(solve(random_problem(seed)).outcome, [])
-        if len(seeds) < wanted:
-            seeds.append(seed)
-    return [(seed, outcome) for outcome, seeds in sorted(found.items()) for seed in seeds]
-
-
 @pytest.mark.parametrize("law", RestitutionLaw)
-def test_converges_to_increments_in_every_outcome_class(law: RestitutionLaw) -> None:
-    examples = outcome_examples(1)
-    assert {outcome for _, outcome in examples} == {
-        ImpactOutcome.SLIDES,
-        ImpactOutcome.STICKS_IN_COMPRESSION,
-        ImpactOutcome.STICKS_IN_RESTITUTION,
-        ImpactOutcome.REVERSES_IN_COMPRESSION,
-        ImpactOutcome.REVERSES_IN_RESTITUTION,
-    }
-    for seed, _ in examples:
-        problem = random_problem(seed)
-        state = problem["state"]
-        answer = solve(problem, law)
-        body = impact_increments.Body(
-            problem["body"].mass, problem["body"].inertia_in_world(state.R_WB), state.v_WB_W, state.w_WB_W
-        )
-        scale = float(np.linalg.norm(answer.impulse_W))
-        errors = []
-        for steps in (250, 1000):
-            increments = impact_increments.impact(
-                body,
-                problem["p_WC_W"] - state.p_WB_W,
-                problem["n_W"],
-                problem["friction"],
-                problem["restitution"],
-                law.name.lower(),
-                scale / steps,
-            )
-            errors.append(float(np.linalg.norm(increments - answer.impulse_W)) / scale)
-        # First order: an error of a few increments, which falls with them.
-        assert errors[1] < 6.0 / 1000, (seed, errors)
+@pytest.mark.parametrize(
+    ("seed", "outcome"),
+    [
+        (0, ImpactOutcome.SLIDES),
+        (3, ImpactOutcome.STICKS_IN_COMPRESSION),
+        (14, ImpactOutcome.STICKS_IN_RESTITUTION),
+        (113, ImpactOutcome.REVERSES_IN_COMPRESSION),
+        (43, ImpactOutcome.REVERSES_IN_RESTITUTION),
+    ],
+)
+def test_agrees_with_increments_in_every_outcome_class(
+    seed: int, outcome: ImpactOutcome, law: RestitutionLaw
+) -> None:
+    problem = random_problem(seed)
+    problem["friction"] *= 0.2
+    problem["restitution"] = 1.0
+    assert solve(problem).outcome is outcome
+    answer = solve(problem, law)
+    size = float(np.linalg.norm(answer.impulse_W))
+    errors = [
+        np.linalg.norm(increments(problem, law, size / n) - answer.impulse_W) / size for n in (200, 800)
+    ]
+    # First order: an error of a few increments, which falls with them.
+    assert errors[0] < 5.0 / 200
+    assert errors[1] < 5.0 / 800
+
+
+def increments(problem: dict[str, object], law: RestitutionLaw, increment: float) -> np.ndarray:
+    state = problem["state"]
+    body = impact_increments.Body(
+        problem["body"].mass, problem["body"].inertia_in_world(state.R_WB), state.v_WB_W, state.w_WB_W
+    )
+    return impact_increments.impact(
+        body,
+        problem["p_WC_W"] - state.p_WB_W,
+        problem["n_W"],
+        mu=problem["friction"],
+        e=problem["restitution"],
+        law=law.name.lower(),
+        increment=increment,
+    )
 
 
 # Closed forms.
@@ -151,15 +148,13 @@ def test_converges_to_increments_in_every_outcome_class(law: RestitutionLaw) -> 
 
 @pytest.mark.parametrize(("friction", "grips"), [(0.1, False), (0.9, True)])
 def test_sphere_with_spin(friction: float, grips: bool) -> None:  # noqa: FBT001
-    """A solid sphere of radius 1 and mass 1, I = 2/5: the tangential inverse mass is 7/2, and nothing couples.
+    """A solid sphere of radius 1, I = 2/5: the tangential inverse mass is 7/2, and nothing couples.
 
     Friction's impulse is mu (1 + e) |v_n| against the slide, or 2/7 of the slide where that is less.
     """
     body = MassProperties(mass=1.0, I_B=0.4 * np.eye(3))
     state = BodyState(p_WB_W=UP, q_WB=IDENTITY, v_WB_W=[1.0, 2.0, -1.5], w_WB_W=[0.3, -0.8, 5.0])
-    answer = spatial_impact(
-        body, state, p_WC_W=[0.0, 0.0, 0.0], n_W=UP, friction=friction, restitution=0.6
-    )
+    answer = spatial_impact(body, state, p_WC_W=[0.0, 0.0, 0.0], n_W=UP, friction=friction, restitution=0.6)
     slide = np.array([1.0 + 0.8, 2.0 + 0.3, 0.0])
     slip_speed = np.linalg.norm(slide)
     tangential = min(friction * 1.6 * 1.5, slip_speed * 2.0 / 7.0)
@@ -172,12 +167,10 @@ def test_sphere_with_spin(friction: float, grips: bool) -> None:  # noqa: FBT001
 
 
 def test_eccentric_rod_drop_without_friction() -> None:
-    """A thin rod of length 2 that falls level and strikes with its end: I_n = (1 + e) v / (1/m + 1/I), by momentum alone."""
+    """A thin level rod of length 2 strikes with its end: I_n = (1 + e) v / (1/m + 1/I), by momentum alone."""
     body = MassProperties(mass=1.0, I_B=np.diag([1e-6, 1.0 / 3.0, 1.0 / 3.0]))
     state = BodyState(p_WB_W=[0.0, 0.0, 0.0], q_WB=IDENTITY, v_WB_W=[0.0, 0.0, -2.0], w_WB_W=np.zeros(3))
-    answer = spatial_impact(
-        body, state, p_WC_W=[1.0, 0.0, 0.0], n_W=UP, friction=0.0, restitution=0.5
-    )
+    answer = spatial_impact(body, state, p_WC_W=[1.0, 0.0, 0.0], n_W=UP, friction=0.0, restitution=0.5)
     assert answer.impulse_W == pytest.approx([0.0, 0.0, 1.5 * 2.0 / 4.0], rel=1e-14)
     assert answer.state.w_WB_W == pytest.approx([0.0, -0.75 * 3.0, 0.0], rel=1e-14)
 
@@ -209,11 +202,15 @@ def test_planar_problems_have_planar_answers(law: RestitutionLaw, seed: int) -> 
     body = MassProperties(
         mass=mass, I_B=turn @ np.diag([other * inertia, (1.0 - 0.5 * other) * inertia, inertia]) @ turn.T
     )
-    state = BodyState(
-        p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=turn @ [*v, 0.0], w_WB_W=turn @ [0.0, 0.0, w]
-    )
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=turn @ [*v, 0.0], w_WB_W=turn @ [0.0, 0.0, w])
     answer = spatial_impact(
-        body, state, p_WC_W=turn @ [*r, 0.0], n_W=turn @ [0.0, 1.0, 0.0], friction=friction, restitution=e, law=law
+        body,
+        state,
+        p_WC_W=turn @ [*r, 0.0],
+        n_W=turn @ [0.0, 1.0, 0.0],
+        friction=friction,
+        restitution=e,
+        law=law,
     )
     assert answer.outcome is flat.outcome
     assert answer.jams == flat.jams
@@ -263,10 +260,17 @@ def test_laws_mean_what_they_say(law: RestitutionLaw, seed: int) -> None:
     assume(answer.path_events.count(PathEvent.COMPRESSION_ENDS) == 1)
     normal, e = problem["n_W"], problem["restitution"]
     if law is RestitutionLaw.POISSON:
-        assert answer.restitution_W @ normal == pytest.approx(e * (answer.compression_W @ normal), rel=1e-9, abs=1e-14)
+        assert answer.restitution_W @ normal == pytest.approx(
+            e * (answer.compression_W @ normal), rel=1e-9, abs=1e-14
+        )
     elif law is RestitutionLaw.NEWTON:
-        assert answer.velocity_after_W @ normal == pytest.approx(-e * (answer.velocity_before_W @ normal), rel=1e-9, abs=1e-12)
-    at_end = problem["state"].velocity_of_point(problem["p_WC_W"]) + answer.inverse_inertia_W @ answer.compression_W
+        assert answer.velocity_after_W @ normal == pytest.approx(
+            -e * (answer.velocity_before_W @ normal), rel=1e-9, abs=1e-12
+        )
+    at_end = (
+        problem["state"].velocity_of_point(problem["p_WC_W"])
+        + answer.inverse_inertia_W @ answer.compression_W
+    )
     assert at_end @ normal == pytest.approx(0.0, abs=1e-10 * float(np.linalg.norm(at_end) + 1.0))
 
 
@@ -285,41 +289,44 @@ def test_turned_and_mirrored_problems_have_turned_and_mirrored_answers(seed: int
         **problem,
         "body": MassProperties(mass=body.mass, I_B=0.5 * (inertia + inertia.T)),
         "state": BodyState(
-            p_WB_W=turn @ state.p_WB_W, q_WB=IDENTITY, v_WB_W=turn @ state.v_WB_W, w_WB_W=sign * (turn @ state.w_WB_W)
+            p_WB_W=turn @ state.p_WB_W,
+            q_WB=IDENTITY,
+            v_WB_W=turn @ state.v_WB_W,
+            w_WB_W=sign * (turn @ state.w_WB_W),
         ),
         "p_WC_W": turn @ problem["p_WC_W"],
         "n_W": turn @ problem["n_W"],
     }
     answer, other = solve(problem), solve(image)
-    # Paths that pass close to a stop amplify rounding: that is the problem's, so the bound is far above rounding.
-    assert other.impulse_W == pytest.approx(turn @ answer.impulse_W, abs=1e-7 * float(np.linalg.norm(answer.impulse_W)))
+    # Paths that pass close to a stop amplify rounding: that is the problem's, so the bound is far above
+    # rounding.
+    assert other.impulse_W == pytest.approx(
+        turn @ answer.impulse_W, abs=1e-7 * float(np.linalg.norm(answer.impulse_W))
+    )
 
 
 # Special cases by name.
 
 
-def test_a_swerving_contact_can_be_compressed_twice() -> None:
-    """It swerves into a direction that jams while restitution is under way; found by search, and checked by increments."""
-    found = []
-    for seed in range(4000):
-        problem = random_problem(seed)
-        problem["friction"] *= 3.0
-        problem["restitution"] = 1.0
-        answer = solve(problem)
-        if answer.path_events.count(PathEvent.COMPRESSION_ENDS) == 2:
-            found.append((problem, answer))
-            break
-    assert found
-    problem, answer = found[0]
-    state = problem["state"]
-    body = impact_increments.Body(
-        problem["body"].mass, problem["body"].inertia_in_world(state.R_WB), state.v_WB_W, state.w_WB_W
-    )
+@pytest.mark.parametrize("law", RestitutionLaw)
+def test_a_swerving_contact_can_be_compressed_twice(law: RestitutionLaw) -> None:
+    """It swerves into a direction that jams while restitution is under way; found by search."""
+    normal = np.array([-0.07, 0.99, -0.14])
+    problem = {
+        "body": MassProperties(mass=1.0, I_B=np.diag([0.023, 0.098, 0.105])),
+        "state": BodyState(
+            p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[-1.7, -1.15, -0.17], w_WB_W=np.zeros(3)
+        ),
+        "p_WC_W": np.array([0.42, -1.05, 0.79]),
+        "n_W": normal / np.linalg.norm(normal),
+        "friction": 0.72,
+        "restitution": 1.0,
+    }
+    answer = solve(problem, law)
+    assert answer.path_events.count(PathEvent.COMPRESSION_ENDS) == 2
     size = float(np.linalg.norm(answer.impulse_W))
-    increments = impact_increments.impact(
-        body, problem["p_WC_W"] - state.p_WB_W, problem["n_W"], problem["friction"], 1.0, "poisson", size / 2000
-    )
-    assert increments == pytest.approx(answer.impulse_W, abs=5e-3 * size)
+    # First order, and errors at the first end of compression have grown by the second.
+    assert increments(problem, law, size / 1500) == pytest.approx(answer.impulse_W, abs=10 / 1500 * size)
 
 
 def test_resting_contact_gets_no_impulse_unless_it_jams() -> None:

@@ -50,8 +50,7 @@ def _rates(problem: Problem, slope: Fraction) -> tuple[Fraction, Fraction]:
 
 
 def _slope(problem: Problem, v_t: Fraction) -> tuple[Fraction, int]:
-    """The direction that the path takes from a point with this sliding velocity, and the sign of sliding on
-    it."""
+    """The path's direction at a point with this sliding velocity, and the sign of sliding along it."""
     if v_t != 0:
         sign = 1 if v_t > 0 else -1
         return -sign * problem.mu, sign

@@ -1,8 +1,9 @@
 """Impact at one contact in space by small equal increments of normal impulse, with implicit Coulomb friction.
 
-Slow and obvious on purpose. In each increment the tangential impulse either stops the contact or, where that would leave the
-friction cone, opposes the sliding velocity at the end of the increment. Bodies are whole: velocities of the body are
-stepped, the contact's velocity is computed from them. First order in the increment.
+Slow and obvious on purpose. In each increment the tangential impulse either stops the contact or, where that
+would leave the friction cone, opposes the sliding velocity at the end of the increment. Bodies are whole:
+velocities of the body are stepped, the contact's velocity is computed from them. First order in the
+increment.
 """
 
 from __future__ import annotations
@@ -20,7 +21,9 @@ class Body:
     w: np.ndarray
 
 
-def impact(body: Body, arm: np.ndarray, normal: np.ndarray, mu: float, e: float, law: str, increment: float) -> np.ndarray:
+def impact(
+    body: Body, arm: np.ndarray, normal: np.ndarray, *, mu: float, e: float, law: str, increment: float
+) -> np.ndarray:
     """Return the total impulse, (3,), of the law "poisson", "newton" or "energetic"."""
     v, w = body.v.copy(), body.w.copy()
     inverse = np.linalg.inv(body.inertia)
@@ -53,7 +56,9 @@ def impact(body: Body, arm: np.ndarray, normal: np.ndarray, mu: float, e: float,
     raise AssertionError("the impact does not end")
 
 
-def _friction(contact: np.ndarray, response: np.ndarray, normal: np.ndarray, limit: float, increment: float) -> np.ndarray:
+def _friction(
+    contact: np.ndarray, response: np.ndarray, normal: np.ndarray, limit: float, increment: float
+) -> np.ndarray:
     """Return the tangential impulse of one increment, (3,)."""
     tangents = np.linalg.svd(normal[None, :])[2][1:]
     k = tangents @ response @ tangents.T

@@ -1,7 +1,8 @@
-"""Keller's equations for one contact in space, integrated by SciPy in the normal impulse, for paths that slide throughout.
+"""Keller's equations for one contact in space that slides throughout, integrated by SciPy.
 
-State: the body's own velocity, 6 numbers, and nothing else; the contact's velocity and the friction follow from it at every
-evaluation. Valid while the contact slides, since the direction of friction is undefined at a stop.
+State: the body's own velocity, 6 numbers, and nothing else; the contact's velocity and the friction follow
+from it at every evaluation. Valid while the contact slides, since the direction of friction is undefined at a
+stop.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from scipy.integrate import solve_ivp
 
 
 def body_velocity_after(
+    *,
     mass: float,
     inertia: np.ndarray,
     v: np.ndarray,
@@ -20,7 +22,7 @@ def body_velocity_after(
     mu: float,
     normal_impulse: float,
 ) -> tuple[np.ndarray, float]:
-    """Return the body's velocity, (6,), after sliding through ``normal_impulse``, and the least sliding speed met."""
+    """Return the body's velocity, (6,), after ``normal_impulse``, and the least sliding speed met."""
     inverse = np.linalg.inv(inertia)
     slowest = [np.inf]
 
