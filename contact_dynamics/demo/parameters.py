@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.demo.toss_publisher import WORLD_FRAME, topic_of
 
@@ -13,7 +13,11 @@ if TYPE_CHECKING:
     from contact_dynamics.demo.recorded_toss import Toss
 
 
-def write_parameters(path: Path, toss: Toss, *, distance_tolerance: float, log_directory: Path) -> None:
+TOUCHING: Final = 0.003
+"""m. Corners this near the surface touch it: so well are tracked frame, shape and surface known together."""
+
+
+def write_parameters(path: Path, toss: Toss, *, log_directory: Path) -> None:
     """Write the file that configures server and visualizer; JSON, which every YAML reader reads."""
     name, surface = toss.body.name, toss.surface
     (ixx, ixy, ixz), (_, iyy, iyz), (_, _, izz) = toss.body.mass_properties.I_B.tolist()
@@ -31,9 +35,9 @@ def write_parameters(path: Path, toss: Toss, *, distance_tolerance: float, log_d
         f"surface.{surface.name}.friction": surface.friction,
         f"surface.{surface.name}.restitution": surface.restitution,
         # Measured states: what lies within their noise counts as none.
-        "velocity_tolerance": 5.0 * toss.velocity_noise,
-        "distance_tolerance": distance_tolerance,
-        "out_of_plane_tolerance": 5.0 * toss.velocity_noise,
+        "velocity_tolerance": 5.0 * toss.contact_speed_noise,
+        "distance_tolerance": TOUCHING,
+        "out_of_plane_tolerance": 5.0 * toss.contact_speed_noise,
         "log_directory": str(log_directory),
     }
     path.write_text(json.dumps({"/**": {"ros__parameters": parameters}}, indent=2) + "\n", encoding="utf-8")

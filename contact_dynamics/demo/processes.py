@@ -29,10 +29,11 @@ class Processes:
         """Give every child the same ROS domain on this machine alone, and a file for what it prints."""
         self._log_folder = log_folder
         self._running: list[tuple[str, subprocess.Popen[bytes]]] = []
-        self._environment = dict(os.environ)
-        self._environment["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
-        self._environment.setdefault("ROS_DOMAIN_ID", str(1 + os.getpid() % _DOMAINS))
-        self._environment["PYTHONUNBUFFERED"] = "1"
+        self.ros_environment = {
+            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+            "ROS_DOMAIN_ID": str(1 + os.getpid() % _DOMAINS),
+        }
+        self._environment = {**os.environ, **self.ros_environment, "PYTHONUNBUFFERED": "1"}
 
     def __enter__(self) -> Self:
         """Return itself."""
@@ -44,24 +45,30 @@ class Processes:
         """Stop what still runs."""
         self.stop()
 
-    def start(self, verb: str, arguments: Sequence[str], *, show: bool = False) -> subprocess.Popen[bytes]:
-        """Start a verb of the command line; what it prints goes to a file, or is shown."""
+    def start(self, verb: str, arguments: Sequence[str]) -> subprocess.Popen[bytes]:
+        """Start a verb of the command line; what it prints goes to a file."""
         command = [sys.executable, "-m", "contact_dynamics", verb, *arguments]
-        # A session of its own, so that Ctrl-C reaches the children through us alone: then each closes its
-        # files in order.
-        if show:
-            process = subprocess.Popen(command, env=self._environment, start_new_session=True)
-        else:
-            with (self._log_folder / f"{verb}.txt").open("wb") as output:
-                process = subprocess.Popen(
-                    command,
-                    env=self._environment,
-                    stdout=output,
-                    stderr=subprocess.STDOUT,
-                    start_new_session=True,
-                )
+        with (self._log_folder / f"{verb}.txt").open("wb") as output:
+            # A session of its own: Ctrl-C reaches the children through us alone, and each closes its files in
+            # order.
+            process = subprocess.Popen(
+                command,
+                env=self._environment,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
         self._running.append((verb, process))
         return process
+
+    def all_alive(self) -> bool:
+        """Return True, or raise `RuntimeError` where a process has failed."""
+        for verb, process in self._running:
+            if process.poll() not in {None, 0}:
+                raise RuntimeError(
+                    f"{verb} ended with exit code {process.returncode}:\n{self.printed_by(verb)}"
+                )
+        return True
 
     def printed_by(self, verb: str) -> str:
         """Return what a process that is not shown has printed so far."""

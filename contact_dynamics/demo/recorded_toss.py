@@ -9,6 +9,7 @@ up.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -93,3 +94,9 @@ class Toss:
     def angular_velocity_noise(self) -> float:
         """Standard deviation of one component of the estimated angular velocity with a full window, rad/s."""
         return slope_noise(frames=frames_in_window(self.rate), rate=self.rate, noise=self.orientation_noise)
+
+    @property
+    def contact_speed_noise(self) -> float:
+        """Standard deviation of the estimated velocity of the farthest corner, m/s, in its worst direction."""
+        reach = float(np.linalg.norm(self.body.vertices_B, axis=1).max(initial=0.0))
+        return math.hypot(self.velocity_noise, reach * self.angular_velocity_noise)

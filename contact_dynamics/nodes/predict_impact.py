@@ -92,7 +92,10 @@ def _strike(request: Any, subject: Subject, knowledge: Knowledge) -> tuple[float
         velocity_tolerance=velocity_tolerance_of(request, knowledge),
     )
     if landing is None:
-        message = f"contacts: {subject.body.name!r} strikes no surface within the horizon of {horizon:g} s"
+        message = (
+            f"contacts: within the horizon of {horizon:g} s no vertex of {subject.body.name!r} strikes a surface "
+            f"faster than the velocity tolerance of {velocity_tolerance_of(request, knowledge):g} m/s"
+        )
         raise NoContactError(message)
     return landing.seconds, landing.state, landing.contacts
 

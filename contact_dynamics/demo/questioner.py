@@ -1,0 +1,172 @@
+"""Asks the server about a toss while it happens, as a robot would: at meaningful moments, from what was published so far."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import rclpy
+from nav_msgs.msg import Odometry
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+
+from contact_dynamics.demo.toss_publisher import QOS, WORLD_FRAME, topic_of
+from contact_dynamics.demo.velocity_estimate import WINDOW
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from msg_adapters.odometry import body_state_from_odometry
+from msg_adapters.stamps import NS_PER_S
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from contact_dynamics.demo.recorded_toss import Toss
+    from contact_dynamics.rigid_body import BodyState
+
+ANSWER_S: Final = 2.0
+"""How long an answer may take. A robot that waits longer has lost the body."""
+
+LAST_MOMENT: Final = 0.025
+"""s before the predicted landing at which the impact is asked for: late, and early enough to act on."""
+
+SILENCE_S: Final = 1.0
+"""The toss is over when no state has come for so long."""
+
+REST_FRAMES: Final = 2
+"""A body that was slow for so many frames is asked for its contact mode; a velocity looks back over `WINDOW`."""
+
+REST_DEVIATIONS: Final = 3.0
+"""Slow is what cannot be told from rest: within so many standard deviations of the velocities' noise."""
+
+_START_S: Final = 30.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Asked:
+    """One question with its answer."""
+
+    time: float  # s, on the recording's clock, of the newest state when it was asked
+    response: Any  # the service's response
+    round_trip: float  # s
+
+
+class Questioner(Node):
+    """The node `demo`: listens to a body's states and asks."""
+
+    def __init__(self, toss: Toss) -> None:
+        """Subscribe, and look for the services."""
+        super().__init__("demo")
+        self._toss = toss
+        self._epoch_ns: int | None = None
+        self._now = 0.0
+        self._heard = time.monotonic()
+        self._recent: deque[BodyState] = deque(maxlen=REST_FRAMES)
+        self._executor = SingleThreadedExecutor()
+        self._executor.add_node(self)
+        self._askers = {
+            service: self.create_client(service, f"/contact_dynamics/{name}", qos_profile=QOS)
+            for service, name in (
+                (PredictTumbling, "predict_tumbling"),
+                (PredictImpact, "predict_impact"),
+                (PredictContactMode, "predict_contact_mode"),
+            )
+        }
+        self.create_subscription(Odometry, topic_of(toss), self._receive, QOS)
+        self.received = 0
+        self.flights: list[Asked] = []
+        self.impacts: list[Asked] = []
+        self.modes: list[Asked] = []
+
+    def wait_for_server(self) -> None:
+        """Wait until all services are there; raise `TimeoutError` where they do not come."""
+        for client in self._askers.values():
+            if not client.wait_for_service(_START_S):
+                message = f"the server does not serve {client.srv_name}"
+                raise TimeoutError(message)
+
+    def watch(self, playing: Callable[[], bool]) -> None:
+        """Listen and ask until the toss is over."""
+        self._heard = time.monotonic() + _START_S  # until the first state, as long as a start may take
+        landing: float | None = None  # predicted, s on the recording's clock
+        blind_until = (
+            0.0  # velocities look back over WINDOW: no question before that much flight has been seen
+        )
+        while playing() or time.monotonic() - self._heard < SILENCE_S:
+            if not self._spin():
+                continue
+            if self._at_rest() and not self.modes:
+                self._ask_contact_mode()
+            elif landing is not None and self._now >= landing - LAST_MOMENT:
+                self._ask_impact()
+                blind_until = landing + 1.5 * WINDOW
+                landing = None
+            elif landing is None and self._now >= max(blind_until, WINDOW) and not self.modes:
+                landing = self._ask_landing()
+                if landing is None:
+                    blind_until = self._now + WINDOW
+        if self.received and not self.modes:  # recordings may end as soon as the body does not move
+            self._ask_contact_mode()
+
+    def _receive(self, msg: Odometry) -> None:
+        state = body_state_from_odometry(msg, world_frame=WORLD_FRAME, p_FB_F=self._toss.body.p_FB_F)
+        if self._epoch_ns is None:
+            self._epoch_ns = state.stamp_ns - round(float(self._toss.times[0]) * NS_PER_S)
+        self._now = (state.stamp_ns - self._epoch_ns) / NS_PER_S
+        self._recent.append(state)
+        self._heard = time.monotonic()
+        self.received += 1
+
+    def _spin(self) -> bool:
+        """Return whether a state has come."""
+        before = self.received
+        self._executor.spin_once(timeout_sec=0.1)
+        return self.received > before
+
+    def _at_rest(self) -> bool:
+        slow = REST_DEVIATIONS * self._toss.velocity_noise
+        slow_spin = REST_DEVIATIONS * self._toss.angular_velocity_noise
+        return len(self._recent) == REST_FRAMES and all(
+            abs(state.v_WB_W).max() < slow and abs(state.w_WB_W).max() < slow_spin for state in self._recent
+        )
+
+    def _ask_landing(self) -> float | None:
+        request = PredictTumbling.Request(body_name=self._toss.body.name, rate=self._toss.rate)
+        request.sampling = request.UNTIL_CONTACT
+        asked = self._ask(request)
+        landing = self.seconds_of(asked.response.state.header.stamp) + float(asked.response.event_time)
+        if not landing - self._now > LAST_MOMENT:  # NaN, where it does not land; or too late to ask on
+            return None
+        self.flights.append(asked)
+        return landing
+
+    def _ask_impact(self) -> None:
+        request = PredictImpact.Request(body_name=self._toss.body.name)
+        self.impacts.append(self._ask(request))
+
+    def _ask_contact_mode(self) -> None:
+        request = PredictContactMode.Request(body_name=self._toss.body.name)
+        self.modes.append(self._ask(request))
+
+    def seconds_of(self, stamp: Any) -> float:
+        """Return a stamp on the recording's clock, s."""
+        return (stamp.sec * NS_PER_S + stamp.nanosec - (self._epoch_ns or 0)) / NS_PER_S
+
+    def _ask(self, request: Any) -> Asked:
+        client = next(
+            self._askers[service] for service in self._askers if isinstance(request, service.Request)
+        )
+        start, now = time.monotonic(), self._now
+        future = client.call_async(request)
+        while not future.done():
+            if time.monotonic() - start > ANSWER_S:
+                message = f"no answer from {client.srv_name} within {ANSWER_S:g} s"
+                raise TimeoutError(message)
+            self._executor.spin_once(timeout_sec=0.1)
+        return Asked(time=now, response=future.result(), round_trip=time.monotonic() - start)
+
+    def close(self) -> None:
+        """Leave ROS."""
+        self._executor.shutdown()
+        self.destroy_node()
+        rclpy.try_shutdown()
