@@ -5,6 +5,7 @@ A contact is a point of the body on a flat of the world. The normal points into 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -66,3 +67,14 @@ class ContactSet:
     def __len__(self) -> int:
         """Return the number of contacts."""
         return len(self.frictions)
+
+    def subset(self, indices: Sequence[int]) -> ContactSet:
+        """Return the contacts of those indices, in their order."""
+        chosen = list(indices)
+        return ContactSet(
+            p_WC_W=self.p_WC_W[chosen],
+            normals_W=self.normals_W[chosen],
+            frictions=self.frictions[chosen],
+            restitutions=self.restitutions[chosen],
+            surfaces=tuple(self.surfaces[i] for i in chosen) if self.surfaces else (),
+        )

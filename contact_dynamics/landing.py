@@ -1,4 +1,4 @@
-"""When and how a free body next strikes the world's surfaces: its flight, the first contact, and the contacts there."""
+"""When and how a free body's flight ends: the first contact with the world's surfaces, and all contacts there."""
 
 from __future__ import annotations
 
@@ -21,12 +21,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Landing:
-    """The first strike of a body."""
+    """The end of a free flight: the body touches."""
 
-    seconds: float  # s after the state's stamp; 0 where the body touches and approaches already
-    state: BodyState  # just before the strike
-    contacts: ContactSet  # that strike; more than one where an edge or a face does
+    seconds: float  # s after the state's stamp; 0 where it touches already
+    state: BodyState  # just then
+    contacts: ContactSet  # that touch and do not leave; more than one where an edge or a face lands
     velocities_W: FloatArray  # (n, 3), m/s, of the body's points at the contacts, world axes
+    strikes: bool  # whether one of them approaches faster than the velocity tolerance: an impact
 
 
 def next_landing(
@@ -38,40 +39,52 @@ def next_landing(
     distance_tolerance: float = DISTANCE_TOLERANCE,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> Landing | None:
-    """Return the first strike within ``horizon`` (s), or None.
+    """Return where a body's flight ends within ``horizon`` (s), or None.
 
-    A body that touches already strikes at once where a contact approaches faster than ``velocity_tolerance``
-    (m/s). One that touches and rests or leaves does not: what counts then is where it comes down again.
+    A vertex within ``distance_tolerance`` (m) of a surface touches it. A body that touches flies only if each of
+    its contacts leaves faster than ``velocity_tolerance`` (m/s); then what counts is where it comes down again.
     """
-    at_once = _striking(body, state, world, distance_tolerance, velocity_tolerance)
-    if at_once is not None:
-        return Landing(seconds=0.0, state=state, contacts=at_once[0], velocities_W=at_once[1])
+    now = _touching(body, state, world, distance_tolerance)
+    if now is not None and (now.approach <= velocity_tolerance).any():
+        return now.landing(0.0, state, velocity_tolerance)
     motion = free_motion(body.mass_properties, state, gravity_W=world.gravity_W)
-    strikes = [
+    arrivals = [
         found.seconds
         for surface in world.surfaces
         if (
             found := first_contact(motion, body.vertices_B, surface.p_WS_W, surface.normal_W, horizon=horizon)
         )
     ]
-    if not strikes:
+    if not arrivals:
         return None
-    seconds = min(strikes)
+    seconds = min(arrivals)
     then = motion.state_at(seconds)
-    struck = _striking(body, then, world, distance_tolerance, velocity_tolerance)
-    if struck is None:  # a grazing touch, slower than the tolerance
-        return None
-    return Landing(seconds=seconds, state=then, contacts=struck[0], velocities_W=struck[1])
+    touching = _touching(body, then, world, max(distance_tolerance, DISTANCE_TOLERANCE))
+    return None if touching is None else touching.landing(seconds, then, velocity_tolerance)
 
 
-def _striking(
-    body: Body, state: BodyState, world: World, distance_tolerance: float, velocity_tolerance: float
-) -> tuple[ContactSet, FloatArray] | None:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Touching:
+    contacts: ContactSet
+    velocities_W: FloatArray  # (n, 3), m/s
+    approach: FloatArray  # (n,), m/s, normal velocities, negative towards the surface
+
+    def landing(self, seconds: float, state: BodyState, velocity_tolerance: float) -> Landing:
+        """Return the landing of the contacts that do not leave."""
+        stay = np.flatnonzero(self.approach <= velocity_tolerance)
+        return Landing(
+            seconds=seconds,
+            state=state,
+            contacts=self.contacts.subset(stay.tolist()),
+            velocities_W=self.velocities_W[stay],
+            strikes=bool((self.approach < -velocity_tolerance).any()),
+        )
+
+
+def _touching(body: Body, state: BodyState, world: World, distance_tolerance: float) -> _Touching | None:
     contacts = find_contacts(body, state, world.surfaces, distance_tolerance=distance_tolerance)
     if len(contacts) == 0:
         return None
     velocities = state.velocity_of_point(contacts.p_WC_W)
-    approaching = np.einsum("ni,ni->n", velocities, contacts.normals_W) < -velocity_tolerance
-    if not approaching.any():
-        return None
-    return contacts, velocities
+    approach = np.einsum("ni,ni->n", velocities, contacts.normals_W)
+    return _Touching(contacts=contacts, velocities_W=velocities, approach=approach)

@@ -92,9 +92,12 @@ def _strike(request: Any, subject: Subject, knowledge: Knowledge) -> tuple[float
         velocity_tolerance=velocity_tolerance_of(request, knowledge),
     )
     if landing is None:
+        message = f"contacts: {subject.body.name!r} touches no surface within the horizon of {horizon:g} s"
+        raise NoContactError(message)
+    if not landing.strikes:
         message = (
-            f"contacts: within the horizon of {horizon:g} s no vertex of {subject.body.name!r} strikes a surface "
-            f"faster than the velocity tolerance of {velocity_tolerance_of(request, knowledge):g} m/s"
+            f"contacts: {subject.body.name!r} touches {landing.contacts.surfaces[0]!r} and does not approach it by "
+            f"more than {velocity_tolerance_of(request, knowledge):g} m/s (~/predict_contact_mode says what follows)"
         )
         raise NoContactError(message)
     return landing.seconds, landing.state, landing.contacts
