@@ -97,6 +97,6 @@ class Toss:
 
     @property
     def contact_speed_noise(self) -> float:
-        """Standard deviation of the estimated velocity of the farthest corner, m/s, in its worst direction."""
+        """Standard deviation of the farthest corner's estimated velocity, m/s, in its worst direction."""
         reach = float(np.linalg.norm(self.body.vertices_B, axis=1).max(initial=0.0))
         return math.hypot(self.velocity_noise, reach * self.angular_velocity_noise)

@@ -61,21 +61,22 @@ def fly(
     *,
     moments: ArrayLike = (1.0, 1.0, 1.0),
     gravity: float = 9.81,
-    step: float = 2e-4,
+    step: float = 1e-3,
 ) -> Motion:
     """The motion at ``times``, of either sign; the state given is the one at time 0.
 
-    ``moments``: principal moments about the body's axes. With steps of 0.2 ms the orientation of a body at
-    20 rad/s is off by less than 1e-9 rad after half a second.
+    ``moments``: principal moments about the body's axes. With steps of 1 ms the orientation of a body at
+    20 rad/s is off by less than 1e-7 rad after half a second.
     """
     moments, p, v = np.asarray(moments, float), np.asarray(p), np.asarray(v)
     down = np.array([0.0, 0.0, -gravity])
-    start = np.concatenate([[q_xyzw[3], *q_xyzw[:3]], matrix(q_xyzw).T @ np.asarray(w_W)])
+    y = np.concatenate([[q_xyzw[3], *q_xyzw[:3]], matrix(q_xyzw).T @ np.asarray(w_W)])
+    clock = 0.0
     rows = []
     for time in np.asarray(times).tolist():
-        y = start.copy()
-        count = max(1, math.ceil(abs(time) / step))
-        h = time / count
+        count = max(1, math.ceil(abs(time - clock) / step))
+        h = (time - clock) / count
+        clock = time
         for _ in range(count):
             k1 = rate(y, moments)
             k2 = rate(y + 0.5 * h * k1, moments)
