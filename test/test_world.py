@@ -1,0 +1,130 @@
+"""The world and the contacts that geometry finds in it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from contact_dynamics.contact import MOST_CONTACTS, ContactSet
+from contact_dynamics.contact_geometry import find_contacts
+from contact_dynamics.errors import InvalidFieldError, TooLargeError, UnknownBodyError
+from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.world import MOST_VERTICES, Body, Surface, World, box_vertices
+
+STUFF = MassProperties(mass=1.0, I_B=np.eye(3))
+BOX = Body(name="box", mass_properties=STUFF, vertices_B=box_vertices((2.0, 4.0, 6.0)))
+
+
+def surface(name: str, point: tuple[float, float, float], normal: tuple[float, float, float]) -> Surface:
+    return Surface(
+        name=name, p_WS_W=np.array(point), normal_W=np.array(normal), friction=0.5, restitution=0.25
+    )
+
+
+FLOOR = surface("floor", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+WALL = surface("wall", (1.0, 0.0, 0.0), (-1.0, 0.0, 0.0))
+
+
+def at(p: tuple[float, float, float], q: np.ndarray | None = None) -> BodyState:
+    upright = np.array([0.0, 0.0, 0.0, 1.0]) if q is None else q
+    return BodyState(p_WB_W=np.array(p), q_WB=upright, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3))
+
+
+def test_a_face_flush_on_the_floor_touches_with_its_four_corners() -> None:
+    contacts = find_contacts(BOX, at((5.0, 0.0, 3.0)), [FLOOR])
+    assert len(contacts) == 4
+    assert {tuple(point) for point in contacts.p_WC_W.tolist()} == {
+        (x, y, 0.0) for x in (4.0, 6.0) for y in (-2.0, 2.0)
+    }
+    assert contacts.surfaces == ("floor",) * 4
+    assert contacts.frictions.tolist() == [0.5] * 4
+    assert contacts.restitutions.tolist() == [0.25] * 4
+    np.testing.assert_array_equal(contacts.normals_W, [[0.0, 0.0, 1.0]] * 4)
+
+
+def test_edges_corners_and_two_surfaces_at_once() -> None:
+    on_an_edge = Rotation.from_euler("x", math.atan2(4.0, 6.0)).as_quat()
+    assert len(find_contacts(BOX, at((0.0, 0.0, math.sqrt(13.0)), on_an_edge), [FLOOR])) == 2
+    in_the_corner = find_contacts(BOX, at((0.0, 0.0, 3.0)), [FLOOR, WALL])
+    assert in_the_corner.surfaces == ("floor",) * 4 + ("wall",) * 4
+    assert len(find_contacts(BOX, at((0.0, 0.0, 30.0)), [FLOOR])) == 0
+    assert len(find_contacts(BOX, at((0.0, 0.0, 3.0)), [])) == 0
+
+
+@given(gap=st.floats(-0.1, 0.1), tolerance=st.floats(0.0, 0.05))
+def test_the_tolerance_decides_what_touches(gap: float, tolerance: float) -> None:
+    found = find_contacts(BOX, at((0.0, 0.0, 3.0 + gap)), [FLOOR], distance_tolerance=tolerance)
+    height = (3.0 + gap) - 3.0
+    assert len(found) == (4 if height <= tolerance else 0)
+
+
+def contacts(**changes: object) -> ContactSet:
+    good = {
+        "p_WC_W": np.zeros((2, 3)),
+        "normals_W": np.array([[0.0, 0.0, 1.0]] * 2),
+        "frictions": np.array([0.5, 0.0]),
+        "restitutions": np.array([0.0, 1.0]),
+    }
+    return ContactSet(**{**good, **changes})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"frictions": np.array([0.5, -0.1])}, r"contacts\.frictions\[1\]: found -0.1"),
+        ({"restitutions": np.array([1.1, 0.0])}, r"contacts\.restitutions\[0\]: found 1.1"),
+        ({"normals_W": np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0]])}, r"contacts\.normals\[1\]"),
+        ({"normals_W": np.array([[0.0, 0.0, 1.0]])}, r"contacts\.normals: found shape \(1, 3\)"),
+        ({"p_WC_W": np.full((2, 3), math.nan)}, r"contacts\.positions"),
+        ({"surfaces": ("floor",)}, "surface_names: found 1 names"),
+    ],
+)
+def test_contacts_that_make_no_sense_are_refused(changes: dict[str, object], words: str) -> None:
+    with pytest.raises(InvalidFieldError, match=words):
+        contacts(**changes)
+
+
+def test_absurd_sizes_are_refused_before_they_are_copied() -> None:
+    with pytest.raises(TooLargeError, match=f"at most {MOST_CONTACTS}"):
+        contacts(frictions=np.zeros(MOST_CONTACTS + 1))
+    with pytest.raises(TooLargeError, match=f"at most {MOST_VERTICES}"):
+        Body(name="sponge", mass_properties=STUFF, vertices_B=np.zeros((MOST_VERTICES + 1, 3)))
+
+
+def test_a_subset_keeps_rows_together() -> None:
+    second = contacts(surfaces=("floor", "wall")).subset([1])
+    assert (second.surfaces, second.frictions.tolist(), second.restitutions.tolist()) == (
+        ("wall",),
+        [0.0],
+        [1.0],
+    )
+
+
+def test_an_unknown_body_is_refused_with_those_that_are_known() -> None:
+    world = World(bodies=(BOX,))
+    assert world.body("box") is BOX
+    with pytest.raises(UnknownBodyError, match="found 'cat', allowed are the configured bodies: 'box'"):
+        world.body("cat")
+    with pytest.raises(InvalidFieldError, match="names that differ"):
+        World(bodies=(BOX, BOX))
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [("friction", -1.0), ("restitution", 2.0), ("normal_W", np.zeros(3)), ("p_WS_W", np.zeros(2))],
+)
+def test_a_surface_that_makes_no_sense_is_refused(field: str, value: object) -> None:
+    good = {
+        "name": "s",
+        "p_WS_W": np.zeros(3),
+        "normal_W": np.array([0.0, 0.0, 1.0]),
+        "friction": 0.5,
+        "restitution": 0.5,
+    }
+    with pytest.raises(InvalidFieldError):
+        Surface(**{**good, field: value})
