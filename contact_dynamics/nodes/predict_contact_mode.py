@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from contact_dynamics.contact_modes import planar_contact_modes
+from contact_dynamics.contact_modes import ModeVerdict, planar_contact_modes
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
+from contact_dynamics.impact import planar_impact
 from contact_dynamics.nodes.subject import (
     contacts_of,
     distance_tolerance_of,
@@ -18,11 +19,14 @@ from contact_dynamics.validation import check_array
 from msg_adapters.contact_mode import write_planar_answer
 from msg_adapters.contacts import contacts_to_msg
 from msg_adapters.geometry import vector_from_msg, vector_to_msg
+from msg_adapters.impact import planar_impact_to_msg
 
 if TYPE_CHECKING:
-    from contact_dynamics.nodes.subject import Knowledge
+    from contact_dynamics.nodes.subject import Knowledge, Subject
+    from contact_dynamics.plane_of_motion import PlanarProblem
+    from contact_dynamics_interfaces.msg import Impact as ImpactMsg
 
-_NOT_YET = ("want_margins", "want_wrench_cones", "want_impact")
+_NOT_YET = ("want_margins", "want_wrench_cones")
 
 
 def predict_contact_mode(request: Any, response: Any, knowledge: Knowledge) -> None:
@@ -52,9 +56,29 @@ def predict_contact_mode(request: Any, response: Any, knowledge: Knowledge) -> N
         velocity_tolerance=velocity_tolerance_of(request, knowledge),
     )
     write_planar_answer(response, answer, problem)
+    if request.want_impact and answer.verdict in {ModeVerdict.INCONSISTENT, ModeVerdict.IMPACT}:
+        response.impact = [_settling_impact(subject, problem, answer.velocity_tolerance)]
     response.problem = request.PLANAR
     response.state = subject.state_to_msg(subject.state)
     response.contacts = contacts_to_msg(contacts)
     response.plane_normal = vector_to_msg(problem.plane.normal_W)
     response.out_of_plane = problem.out_of_plane
     response.distance_tolerance = distance_tolerance_of(request, knowledge)
+
+
+def _settling_impact(subject: Subject, problem: PlanarProblem, velocity_tolerance: float) -> ImpactMsg:
+    """Return the impact that an approaching or inconsistent contact comes to (lecture 26's last remark)."""
+    if len(problem.contacts) > 1:
+        message = f"want_impact: found {len(problem.contacts)} contacts, allowed is 1 in this version"
+        raise NotSupportedError(message)
+    impact = planar_impact(
+        problem.body, problem.velocity, problem.contacts[0], velocity_tolerance=velocity_tolerance
+    )
+    return planar_impact_to_msg(
+        impact,
+        problem,
+        contact=0,
+        body=subject.body.mass_properties,
+        before=subject.state,
+        state_to_msg=subject.state_to_msg,
+    )

@@ -58,6 +58,21 @@ def test_1_inconsistent_rod(client: Client) -> None:
     assert factor == pytest.approx(-0.2376043, abs=PRINTED)
 
 
+def test_1_the_inconsistency_is_settled_as_an_impact_when_asked(client: Client) -> None:
+    request = PredictContactMode.Request(want_impact=True)
+    planar_request(request, ROD, math.tan(ALPHA))
+    request.state.linear_velocity.x = -1.0
+    answer = client.ask(request)
+    assert answer.verdict == answer.INCONSISTENT
+    (impact,) = answer.impact
+    assert impact.jams
+    assert impact.impulses[2] > 0.0
+    assert impact.kinetic_energy_after < impact.kinetic_energy_before
+    assert impact.contact_velocities_after[2] >= 0.0
+    request.state.linear_velocity.x = 0.0  # at rest it is consistent, and there is nothing to settle
+    assert list(client.ask(request).impact) == []
+
+
 @pytest.mark.parametrize(("mu", "verdict"), [(0.5179492 - 1e-6, "l"), (0.5179492 + 1e-6, "")])
 def test_1_threshold_of_friction(client: Client, mu: float, verdict: str) -> None:
     request = PredictContactMode.Request()
