@@ -1,9 +1,12 @@
 """Contact modes (Mason, lecture 26): does the body, at each contact, separate, slide or stay fixed?
 
-In reading order: verdicts and evidence (`result`), one contact in closed form (`single`), any planar set
-(`planar`).
+In reading order: verdicts and evidence (`result`); one contact in closed form (`single`); any planar set
+(`planar`), stated as a cone (`problem`, `cone`), its modes enumerated (`enumeration`) and judged (`dynamics`,
+`wrench_cone`, `least_force`); applied wrenches of each mode (`wrench_sets`), their map and margins
+(`margins`); equilibrium, jamming and wedging (`statics`).
 """
 
+from contact_dynamics.contact_modes.margins import ModeMargin, planar_mode_map, planar_mode_margins
 from contact_dynamics.contact_modes.planar import planar_contact_modes
 from contact_dynamics.contact_modes.result import (
     ConsistentMode,
@@ -12,12 +15,22 @@ from contact_dynamics.contact_modes.result import (
     Refusal,
     RefusedMode,
 )
+from contact_dynamics.contact_modes.statics import Certainty, PlanarStatics, planar_statics
+from contact_dynamics.contact_modes.wrench_sets import ModeWrenchSet, WrenchHalfSpace
 
 __all__ = [
+    "Certainty",
     "ConsistentMode",
     "ContactModeAnswer",
+    "ModeMargin",
     "ModeVerdict",
+    "ModeWrenchSet",
+    "PlanarStatics",
     "Refusal",
     "RefusedMode",
+    "WrenchHalfSpace",
     "planar_contact_modes",
+    "planar_mode_map",
+    "planar_mode_margins",
+    "planar_statics",
 ]

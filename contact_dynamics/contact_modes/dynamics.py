@@ -20,8 +20,25 @@ from contact_dynamics.contact_modes.wrench_cone import ModeWrenches, contact_gen
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from contact_dynamics.contact_modes.problem import ContactRow, PlanarProblem
     from contact_dynamics.planar import Vector2
+
+
+def judge_all(
+    problem: PlanarProblem, cells: Mapping[str, Cell], accuracy: float
+) -> tuple[list[ConsistentMode], list[RefusedMode]]:
+    """Return the consistent and the refused modes among ``cells``, in alphabetical order."""
+    consistent: list[ConsistentMode] = []
+    refused: list[RefusedMode] = []
+    for mode, cell in sorted(cells.items()):
+        outcome = solve_mode(problem, mode, cell, accuracy)
+        if isinstance(outcome, ConsistentMode):
+            consistent.append(outcome)
+        else:
+            refused.append(outcome)
+    return consistent, refused
 
 
 def solve_mode(
@@ -163,7 +180,9 @@ def _consistent(
     all_forces: list[Vector2] = [(0.0, 0.0)] * len(problem.contacts)
     for (position, letter), (f_t, f_n) in zip(cell.letters, forces, strict=True):
         index = problem.rows[position].contact
-        all_forces[index] = (f_t, f_n) if f_n > 0.0 else (0.0, 0.0)
+        edge = problem.rows[position].friction * f_n
+        if f_n > 0.0:  # rounding at the cone's apex and edges is taken out
+            all_forces[index] = (max(-edge, min(edge, f_t)), f_n)
         # What the mode says is zero is zero, without rounding.
         accelerations[index] = (0.0 if letter == FIXED else accelerations[index][0], 0.0)
     forces_unique, motion_unique = unique

@@ -14,11 +14,11 @@ Does not cover: a flat of the body on a point of the world, moving surfaces, ela
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
-from contact_dynamics.contact_modes.dynamics import solve_mode
+from contact_dynamics.contact_modes.dynamics import judge_all
 from contact_dynamics.contact_modes.enumeration import kinematic_cells
-from contact_dynamics.contact_modes.problem import planar_problem
+from contact_dynamics.contact_modes.problem import contact_velocities, planar_problem
 from contact_dynamics.contact_modes.result import (
     ConsistentMode,
     ContactModeAnswer,
@@ -27,18 +27,13 @@ from contact_dynamics.contact_modes.result import (
     verdict_on,
 )
 from contact_dynamics.contact_modes.single import single_contact_modes
-from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_not_negative
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.contact_modes.problem import PlanarProblem
-    from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, Vector2
-
-MOST_CONTACTS: Final = 1000
-"""Longest list of contacts accepted: the mode strings of n contacts are about 4 n^2 letters."""
+    from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 
 
 def planar_contact_modes(
@@ -57,7 +52,7 @@ def planar_contact_modes(
     Args:
         body: Mass and angular inertia.
         velocity: Of the body.
-        contacts: At most `MOST_CONTACTS`; any may coincide, oppose or repeat another.
+        contacts: At most `problem.MOST_CONTACTS`; any may coincide, oppose or repeat another.
         wrench: Applied to the body besides its contact forces, gravity included.
         velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero.
         acceleration_tolerance: Relative to the largest acceleration in the problem, >= 0: what counts as
@@ -65,15 +60,13 @@ def planar_contact_modes(
 
     Raises:
         InvalidFieldError: a tolerance is negative.
-        TooLargeError: more than `MOST_CONTACTS` contacts.
+        TooLargeError: more than `problem.MOST_CONTACTS` contacts.
 
     Source: lecture 26, table and "Basic approach".
     """
     v_tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     accuracy = check_not_negative("acceleration_tolerance", acceleration_tolerance)
-    if len(contacts) > MOST_CONTACTS:
-        raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MOST_CONTACTS}")
-    velocities = tuple(_contact_velocity(velocity, contact, v_tolerance) for contact in contacts)
+    velocities = contact_velocities(velocity, contacts, v_tolerance)
     approaching = tuple(i for i, (_, v_n) in enumerate(velocities) if v_n < 0.0)
     w = _angular_velocity(velocity, contacts, v_tolerance)
     modes: list[ConsistentMode] = []
@@ -91,7 +84,7 @@ def planar_contact_modes(
             problem = planar_problem(
                 body, velocity, contacts, velocities, wrench, velocity_tolerance=v_tolerance
             )
-            modes, refused = _judge_all(problem, accuracy)
+            modes, refused = judge_all(problem, kinematic_cells(problem), accuracy)
             a_tolerance = accuracy * problem.largest_acceleration
     found = tuple(modes)
     return ContactModeAnswer(
@@ -103,27 +96,6 @@ def planar_contact_modes(
         velocity_tolerance=v_tolerance,
         acceleration_tolerance=a_tolerance,
     )
-
-
-def _judge_all(problem: PlanarProblem, accuracy: float) -> tuple[list[ConsistentMode], list[RefusedMode]]:
-    consistent: list[ConsistentMode] = []
-    refused: list[RefusedMode] = []
-    for mode, cell in sorted(kinematic_cells(problem).items()):
-        outcome = solve_mode(problem, mode, cell, accuracy)
-        if isinstance(outcome, ConsistentMode):
-            consistent.append(outcome)
-        else:
-            refused.append(outcome)
-    return consistent, refused
-
-
-def _contact_velocity(velocity: PlanarVelocity, contact: PlanarContact, tolerance: float) -> Vector2:
-    n_x, n_y = contact.normal
-    c_x = velocity.v[0] - velocity.w * contact.r[1]
-    c_y = velocity.v[1] + velocity.w * contact.r[0]
-    v_t = c_x * n_y - c_y * n_x
-    v_n = c_x * n_x + c_y * n_y
-    return (0.0 if abs(v_t) <= tolerance else v_t, 0.0 if abs(v_n) <= tolerance else v_n)
 
 
 def _angular_velocity(velocity: PlanarVelocity, contacts: Sequence[PlanarContact], tolerance: float) -> float:

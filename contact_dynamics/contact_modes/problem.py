@@ -18,15 +18,20 @@ one that stands for the centripetal terms.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.contact_modes.cone import Vector3, cross, dot, normalised
+from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, Vector2
+
+
+MOST_CONTACTS: Final = 1000
+"""Longest list of contacts accepted: the mode strings of n contacts are about 4 n^2 letters."""
 
 
 class ContactRow(NamedTuple):
@@ -66,6 +71,28 @@ class PlanarProblem(NamedTuple):
     def largest_acceleration(self) -> float:
         """Return what accelerations are compared with, m/s^2: the applied wrench's, plus the centripetal."""
         return _size(self.w) / self.mass + (self.lift.scale if self.lift else 0.0)
+
+
+def contact_velocities(
+    velocity: PlanarVelocity, contacts: Sequence[PlanarContact], tolerance: float
+) -> tuple[Vector2, ...]:
+    """Return (v_t, v_n), m/s, of each contact, with values within ``tolerance`` as an exact 0.
+
+    Raises:
+        TooLargeError: more than `MOST_CONTACTS` contacts.
+    """
+    if len(contacts) > MOST_CONTACTS:
+        raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MOST_CONTACTS}")
+    (v_x, v_y), w = velocity.v, velocity.w
+    found = []
+    for contact in contacts:
+        n_x, n_y = contact.normal
+        c_x = v_x - w * contact.r[1]
+        c_y = v_y + w * contact.r[0]
+        v_t = c_x * n_y - c_y * n_x
+        v_n = c_x * n_x + c_y * n_y
+        found.append((0.0 if abs(v_t) <= tolerance else v_t, 0.0 if abs(v_n) <= tolerance else v_n))
+    return tuple(found)
 
 
 def planar_problem(

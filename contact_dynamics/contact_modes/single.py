@@ -151,7 +151,9 @@ def _fixed(axes: _ContactAxes) -> _Solution | _Failure:
     excess = abs(f_t) - axes.friction * f_n
     if excess > tolerance * (1.0 + axes.friction):
         return _Failure(Refusal.OUTSIDE_CONE, excess)
-    return _Solution(f_t, max(f_n, 0.0), 0.0, 0.0, unique=True)
+    f_n = max(f_n, 0.0)
+    edge = axes.friction * f_n  # rounding at the cone's apex and edges is taken out
+    return _Solution(max(-edge, min(edge, f_t)), f_n, 0.0, 0.0, unique=True)
 
 
 def _mode(

@@ -64,12 +64,29 @@ class ModeWrenches:
         for index, (c_x, c_y, c_z) in enumerate(self._generators):
             reaction = lifted(lift, (-c_x, -c_y, -c_z), 0.0)
             length = math.sqrt(dot(reaction, reaction))
-            if length > ROW_TOLERANCE:
+            if length > ROW_TOLERANCE * math.sqrt(c_x * c_x + c_y * c_y + c_z * c_z):
                 self._seen.append((index, length))
                 columns.append((reaction[0] / length, reaction[1] / length, reaction[2] / length))
         self.dual = PolyhedralCone(columns, tolerance=ROW_TOLERANCE)
         self._target = lifted(lift, problem.w, problem.mass * lift.scale * lift.scale if lift else 0.0)
         self._common = self.dual.all_rows
+
+    def generated_by(self) -> tuple[list[Vector3], list[Vector3]]:
+        """Return vertices, N, and rays whose averages and positive combinations are the mode's wrenches."""
+        lift = self._problem.lift
+        rays = [(-x, -y, -z) for x, y, z in self._generators]
+        if lift is None:
+            return [(0.0, 0.0, 0.0)], [*self._rays, *rays]
+        rays += [lift.line, opposite(lift.line)]
+        vertices = []
+        for ray in self._rays:
+            x, y, z, height = self._with_height(ray)
+            if height > ROW_TOLERANCE:
+                factor = self._problem.mass * lift.scale / height
+                vertices.append((factor * x, factor * y, factor * z))
+            else:
+                rays.append((x, y, z))
+        return vertices, rays
 
     def half_spaces(self) -> list[HalfSpace]:
         """Return the closure of the wrenches that can bring the mode about as half-spaces; empty: all can."""

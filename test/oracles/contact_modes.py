@@ -202,9 +202,9 @@ def _slacks(positive: list[Row], own: int | None) -> list[Fraction]:
 
 
 def maximum(objective: list[Fraction], equations: list[list[Fraction]]) -> Fraction | float | None:
-    """Return the largest objective . x over x >= 0 with (coefficients, constant) . (x, 1) = 0 in each
-    equation.
+    """Return the largest objective . x over x >= 0 under ``equations``.
 
+    Each equation says (coefficients, constant) . (x, 1) = 0.
     None: no such x; infinite: no bound. The simplex method with Bland's rule and artificial unknowns.
     """
     columns = len(objective)
