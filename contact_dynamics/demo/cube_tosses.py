@@ -18,6 +18,7 @@ recordings are off by 1 or 2 %.
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -30,6 +31,7 @@ from contact_dynamics.validation import check_array
 from contact_dynamics.world import Body, Surface, box_vertices
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from contact_dynamics.validation import FloatArray
@@ -108,7 +110,7 @@ def read_cube_toss(path: Path, *, index: int | None = None) -> Toss:
     )
 
 
-def default_index(data: FloatArray, offsets: FloatArray) -> int:
+def default_index(data: FloatArray, offsets: Sequence[int]) -> int:
     """Return the toss that shows most: the longest flight that ends in a clean strike of a single corner.
 
     Clean means: at the strike every other corner is `MARGIN` higher, and the next strike comes at least
@@ -143,12 +145,17 @@ def _strikes(lowest: FloatArray) -> list[int]:
     return frames
 
 
-def _load(path: Path) -> tuple[FloatArray, FloatArray]:
+def _load(path: Path) -> tuple[FloatArray, list[int]]:
     """Return data, (N, 14), and offsets, (tosses + 1,)."""
-    with np.load(path) as arrays:
-        missing = {"data", "offsets"} - set(arrays)
-        if missing:
-            raise InvalidFieldError(
-                path.name, f"no array {', '.join(sorted(missing))}", "arrays data and offsets"
-            )
-        return check_array(f"{path.name}: data", arrays["data"], (None, 14)), np.asarray(arrays["offsets"])
+    try:
+        with np.load(path) as arrays:
+            content = {name: arrays[name] for name in ("data", "offsets") if name in arrays}
+    except (OSError, ValueError, BadZipFile) as error:
+        raise InvalidFieldError(path.name, error, "an .npz of plain arrays") from error
+    if len(content) < 2:
+        raise InvalidFieldError(path.name, f"arrays {sorted(content)}", "arrays data and offsets")
+    data = check_array(f"{path.name}: data", content["data"], (None, 14))
+    offsets = check_array(f"{path.name}: offsets", content["offsets"], (None,)).astype(int).tolist()
+    if len(offsets) < 2 or offsets[0] < 0 or offsets[-1] > len(data) or offsets != sorted(set(offsets)):
+        raise InvalidFieldError(f"{path.name}: offsets", offsets, f"increasing rows from 0 to {len(data)}")
+    return data, offsets

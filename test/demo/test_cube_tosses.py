@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics.demo.cube_tosses import HALF_SIDE, RATE
+from contact_dynamics.demo.measured_events import measure_events
 from contact_dynamics.demo.toss import read_toss
 from contact_dynamics.demo.velocity_estimate import FEWEST_FRAMES
 from contact_dynamics.errors import InvalidFieldError
@@ -93,20 +94,37 @@ def test_the_published_constants_go_with_it(tmp_path: Path) -> None:
     assert toss.rate == 148.0
 
 
-def test_a_file_without_the_arrays_is_refused(tmp_path: Path) -> None:
-    np.savez(tmp_path / "t.npz", data=np.zeros((3, 14)))
-    with pytest.raises(InvalidFieldError, match="no array offsets"):
-        read_toss(tmp_path / "t.npz")
+def test_a_file_that_is_not_as_described_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "t.npz"
+    np.savez(path, data=np.zeros((3, 14)))
+    with pytest.raises(InvalidFieldError, match="allowed is arrays data and offsets"):
+        read_toss(path)
+    np.savez(path, data=np.zeros((3, 13)), offsets=[0, 3])
+    with pytest.raises(InvalidFieldError, match=r"data: found shape \(3, 13\)"):
+        read_toss(path)
+    for offsets in ([0], [0, 4], [2, 1], [-1, 3]):
+        np.savez(path, data=np.zeros((3, 14)), offsets=offsets)
+        with pytest.raises(InvalidFieldError, match="offsets"):
+            read_toss(path)
+    path.write_bytes(b"no archive")
+    with pytest.raises(InvalidFieldError, match="plain arrays"):
+        read_toss(path)
 
 
 MEASURED = os.environ.get("CUBE_TOSSES")
 
 
 @pytest.mark.skipif(MEASURED is None, reason="CUBE_TOSSES does not name the published tosses.npz")
-def test_every_published_toss_can_be_read() -> None:
-    chosen = read_toss(MEASURED)
-    assert chosen.source.startswith("measured toss 344 ")
-    for index in range(360):
+def test_published_tosses_fly_strike_and_come_to_rest() -> None:
+    assert read_toss(MEASURED).source.startswith("measured toss 344 ")
+    with_strikes = 0
+    tosses = range(0, 360, 12)
+    for index in tosses:
         toss = read_toss(MEASURED, index=index)
-        speeds = np.linalg.norm(toss.v_WB_W, axis=1)
-        assert speeds.max() < 3.0  # thrown at 1.4 m/s from 15 cm
+        assert np.linalg.norm(toss.v_WB_W, axis=1).max() < 3.0  # thrown at 1.4 m/s from 15 cm
+        events = measure_events(toss)
+        assert events.rest is not None
+        # the board is where corners are at rest, to what frame, half side and board are known
+        assert -0.006 < events.rest.heights.min() < 0.002
+        with_strikes += len(events.strikes) > 0
+    assert with_strikes > 0.7 * len(tosses)  # of all 360, 281 have a strike between two flights

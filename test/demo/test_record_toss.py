@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import importlib.util
+import platform
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,8 @@ def test_the_script_makes_the_committed_recording_bit_for_bit(tmp_path: Path) ->
     recorded_by = f'"MuJoCo {mujoco.__version__} '
     if recorded_by not in DEFAULT_RECORDING.read_text(encoding="utf-8"):
         pytest.skip(f"the recording was made by another MuJoCo than the installed {mujoco.__version__}")
+    if platform.machine() != "x86_64":
+        pytest.skip(f"the recording was made on x86_64; the last bits may differ on {platform.machine()}")
     spec = importlib.util.spec_from_file_location("record_toss", ROOT / "scripts" / "record_toss.py")
     script = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(script)
