@@ -1,10 +1,11 @@
 """Impact (Mason, lecture 27): what a body's velocity is after it strikes.
 
 In reading order: the laws and outcomes (`law`); the plane, with Routh's construction (`routh`, `planar`,
-`result`); space, where sliding swerves (`sliding`, `series`, `stopping`, `progress`, `swerve`, `spatial`,
-`spatial_result`).
+`result`, `batch`); space, where sliding swerves (`sliding`, `series`, `stopping`, `progress`, `swerve`,
+`spatial`, `spatial_result`).
 """
 
+from contact_dynamics.impact.batch import PlanarImpacts, planar_impacts
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.impact.planar import planar_impact
 from contact_dynamics.impact.result import PlanarImpact
@@ -18,8 +19,10 @@ __all__ = [
     "InverseInertia",
     "PathEvent",
     "PlanarImpact",
+    "PlanarImpacts",
     "RestitutionLaw",
     "SpatialImpact",
     "planar_impact",
+    "planar_impacts",
     "spatial_impact",
 ]
