@@ -1,0 +1,84 @@
+"""Contact modes, impacts and free tumbling of rigid bodies (Mason, *Mechanics of Manipulation*, lectures 24 to 27).
+
+The table of contents, chapters in reading order; everything here is plain NumPy and knows no ROS.
+
+- Lecture 24, 25, rigid bodies: `MassProperties`, `BodyState`, momenta and energies (`rigid_body`).
+- Lecture 25, tumbling: `free_motion` and its `FreeMotion` (`tumbling`); Poinsot's picture of it is in
+  `contact_dynamics.poinsot`.
+- Where a flight ends: `first_contact`, `next_landing`, in a `World` of `Body` and `Surface`.
+- Contacts: `ContactSet` in space (`contact`), from geometry (`find_contacts`); `PlanarContact` and its kin in the plane
+  (`planar`), reached from space by a `PlaneOfMotion`.
+- Lecture 26, contact modes: `planar_contact_modes` (`contact_modes`).
+- Lecture 27, impact: `planar_impact`, `spatial_impact` (`impact`).
+- What is refused, and how: `errors`. What counts as zero: `tolerances`.
+"""
+
+from contact_dynamics.contact import ContactSet
+from contact_dynamics.contact_geometry import find_contacts
+from contact_dynamics.contact_modes import (
+    ConsistentMode,
+    ContactModeAnswer,
+    ModeVerdict,
+    Refusal,
+    RefusedMode,
+    planar_contact_modes,
+)
+from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.first_contact import FirstContact, first_contact
+from contact_dynamics.impact import (
+    ImpactOutcome,
+    PlanarImpact,
+    RestitutionLaw,
+    SpatialImpact,
+    planar_impact,
+    spatial_impact,
+)
+from contact_dynamics.landing import Landing, next_landing
+from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.plane_of_motion import PlanarProblem, PlaneOfMotion, best_plane, project
+from contact_dynamics.rigid_body import BodyState, MassProperties, angular_momentum, kinetic_energy, momentum
+from contact_dynamics.tumbling import FreeMotion, Regime, Trajectory, free_motion
+from contact_dynamics.world import Body, Surface, World, box_vertices
+
+__all__ = [
+    "Body",
+    "BodyState",
+    "ConsistentMode",
+    "ContactDynamicsError",
+    "ContactModeAnswer",
+    "ContactSet",
+    "FirstContact",
+    "FreeMotion",
+    "ImpactOutcome",
+    "Landing",
+    "MassProperties",
+    "ModeVerdict",
+    "PlanarBody",
+    "PlanarContact",
+    "PlanarImpact",
+    "PlanarProblem",
+    "PlanarVelocity",
+    "PlanarWrench",
+    "PlaneOfMotion",
+    "Refusal",
+    "RefusedMode",
+    "Regime",
+    "RestitutionLaw",
+    "SpatialImpact",
+    "Surface",
+    "Trajectory",
+    "World",
+    "angular_momentum",
+    "best_plane",
+    "box_vertices",
+    "find_contacts",
+    "first_contact",
+    "free_motion",
+    "kinetic_energy",
+    "momentum",
+    "next_landing",
+    "planar_contact_modes",
+    "planar_impact",
+    "project",
+    "spatial_impact",
+]

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from contact_dynamics.rigid_body import angular_momentum, rotational_energy
 from contact_dynamics_interfaces.msg import Poinsot as PoinsotMsg
 from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
 from msg_adapters.contacts import flat
@@ -15,7 +11,8 @@ from msg_adapters.frames import origins_of_published_frame
 from msg_adapters.stamps import stamp_to_msg
 
 if TYPE_CHECKING:
-    from contact_dynamics.tumbling import FreeMotion, Trajectory
+    from contact_dynamics.poinsot import Poinsot
+    from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.validation import FloatArray
 
 
@@ -34,21 +31,16 @@ def trajectory_to_msg(
     return msg
 
 
-def poinsot_to_msg(motion: FreeMotion) -> PoinsotMsg:
+def poinsot_to_msg(picture: Poinsot) -> PoinsotMsg:
     """Return Poinsot's picture of a motion."""
-    body, state = motion.body, motion.state
-    L_W = angular_momentum(body, state)
-    size = math.sqrt(L_W @ L_W)
-    energy = rotational_energy(body, state)
-    first, second = (np.array([float(x) for x in axis]) for axis in motion.frame.axes_B[:2])
     return PoinsotMsg(
-        regime=int(motion.regime),
-        rotational_energy=energy,
-        angular_momentum=L_W,
-        invariable_plane_distance=2.0 * energy / size if size > 0.0 else math.nan,
-        polhode_period=math.nan,
-        precession_per_period=math.nan,
-        principal_moments=np.array([float(moment) for moment in motion.frame.moments]),
-        principal_axes=np.column_stack([first, second, np.cross(first, second)]).ravel(),
-        sensitivity=math.nan,
+        regime=int(picture.regime),
+        rotational_energy=picture.rotational_energy,
+        angular_momentum=picture.L_W,
+        invariable_plane_distance=picture.invariable_plane_distance,
+        polhode_period=picture.polhode_period,
+        precession_per_period=picture.precession_per_period,
+        principal_moments=picture.principal_moments,
+        principal_axes=picture.principal_axes_B.ravel(),
+        sensitivity=picture.sensitivity,
     )

@@ -19,6 +19,7 @@ from contact_dynamics.nodes.subject import (
     or_configured,
     subject_of,
 )
+from contact_dynamics.poinsot import poinsot
 from contact_dynamics.tumbling import FreeMotion, free_motion
 from contact_dynamics.validation import check_array, check_unit
 from msg_adapters.geometry import point_to_msg, vector_from_msg, vector_to_msg
@@ -85,7 +86,7 @@ def predict_tumbling(request: Any, response: Any, knowledge: Knowledge) -> None:
         response.event_point = point_to_msg(event.point_W)
         response.event_velocity = vector_to_msg(event.velocity_W)
         response.event_surface = event.surface
-    response.poinsot = poinsot_to_msg(motion)
+    response.poinsot = poinsot_to_msg(poinsot(motion))
     response.state = subject.state_to_msg(subject.state)
 
 

@@ -168,6 +168,8 @@ CASES = [
     ),
     (PredictTumbling, put("fit_window", 0.1), "NOT_SUPPORTED", "fit_window"),
     (PredictTumbling, put("linear_drag", 0.1), "NOT_SUPPORTED", "linear_drag"),
+    (PredictTumbling, put("sampling", 3), "NO_CONTACT", "has no shape"),
+    (PredictTumbling, put("sampling", 4), "INVALID_FIELD", "plane_normal: found [0.0, 0.0, 0.0] of norm 0"),
     (PredictTumbling, put("sampling", 17), "INVALID_FIELD", "sampling: found 17"),
 ]
 

@@ -1,0 +1,53 @@
+"""Ask a running server over ROS 2, with a deadline and a retry: start `contact-dynamics server` first.
+
+The queue of the client is deep and each call has a deadline, because replies can get lost when many ask at once.
+"""
+
+import rclpy
+from contact_dynamics_interfaces.srv import PredictTumbling
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+
+DEADLINE_S = 1.0
+TRIES = 3
+
+
+def main() -> None:
+    """Ask where a spinning body will be in half a second."""
+    rclpy.init()
+    node = Node("asks_the_server")
+    client = node.create_client(
+        PredictTumbling, "/contact_dynamics/predict_tumbling", qos_profile=QoSProfile(depth=1000)
+    )
+    if not client.wait_for_service(timeout_sec=10.0):
+        raise SystemExit("no server: start it with `contact-dynamics server`")
+
+    request = PredictTumbling.Request(state_source=PredictTumbling.Request.STATE_EXPLICIT, times=[0.5])
+    request.inertia.m, request.inertia.ixx, request.inertia.iyy, request.inertia.izz = 1.0, 0.1, 0.2, 0.25
+    request.state.angular_velocity.y, request.state.angular_velocity.z = 6.0, 0.1
+
+    for _ in range(TRIES):
+        future = client.call_async(request)
+        deadline = node.get_clock().now().nanoseconds + int(DEADLINE_S * 1e9)
+        while not future.done() and node.get_clock().now().nanoseconds < deadline:
+            rclpy.spin_once(node, timeout_sec=0.05)
+        if future.done():
+            break
+        client.remove_pending_request(future)
+    else:
+        raise SystemExit(f"no answer in {TRIES} tries of {DEADLINE_S} s")
+
+    answer = future.result()
+    if answer.status != answer.OK:
+        raise SystemExit(f"refused with status {answer.status}: {answer.message}")
+    print(
+        "position",
+        list(answer.trajectory.positions),
+        "orientation x y z w",
+        list(answer.trajectory.orientations),
+    )
+    rclpy.shutdown()
+
+
+if __name__ == "__main__":
+    main()

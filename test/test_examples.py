@@ -1,0 +1,59 @@
+"""The examples and the README's code run, and print what they say."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from running_server import ROOT, environment, process
+
+EXAMPLES = {
+    "tumbling_t_handle.py": "about_minor_axis",
+    "sliding_rod.py": "sliding left under gravity: inconsistent",
+    "next_landing.py": "impulse",
+}
+
+
+def run(script: Path | str, *, code: bool = False) -> str:
+    command = [sys.executable, "-W", "error", *(["-c", str(script)] if code else [str(script)])]
+    result = subprocess.run(
+        command, capture_output=True, text=True, check=False, cwd=ROOT, env=environment(), timeout=60
+    )
+    assert result.returncode == 0, result.stderr
+    return result.stdout
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_example(name: str) -> None:
+    assert EXAMPLES[name] in run(ROOT / "examples" / name)
+
+
+def test_no_example_is_left_out() -> None:
+    assert {path.name for path in (ROOT / "examples").glob("*.py")} == {*EXAMPLES, "ask_the_server.py"}
+
+
+def test_asking_the_server() -> None:
+    arguments = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", "-p", "log:=false")
+    with process("server", *arguments, ready="ready"):
+        script = ROOT / "examples" / "ask_the_server.py"
+        command = [
+            sys.executable,
+            str(script),
+        ]  # without -W error: rclpy's own warnings are not the example's
+        result = subprocess.run(
+            command, capture_output=True, text=True, check=False, env=environment(), timeout=60
+        )
+    assert result.returncode == 0, result.stderr
+    assert "orientation x y z w" in result.stdout
+
+
+def test_the_code_in_the_readme() -> None:
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
+    assert blocks
+    for block in blocks:
+        printed = run(block, code=True)
+        for expected in re.findall(r"#> (.*)", block):
+            assert expected in printed
