@@ -5,8 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from contact_dynamics_interfaces.msg import Poinsot
-from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 
 from contact_dynamics.contact_modes import ModeVerdict
 from contact_dynamics.impact.law import ImpactOutcome
@@ -14,6 +12,8 @@ from contact_dynamics.rigid_body import rotation_matrix
 from contact_dynamics.tumbling import Trajectory
 from contact_dynamics.viewing.contact_modes import ContactModesPicture
 from contact_dynamics.viewing.impact import ImpactPicture
+from contact_dynamics_interfaces.msg import Poinsot
+from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 from msg_adapters.body_state import body_state_from_msg
 from msg_adapters.contacts import contacts_from_msg
 from msg_adapters.geometry import vector_from_msg
@@ -22,9 +22,15 @@ from msg_adapters.stamps import ns_after, stamp_ns_from_msg
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.rigid_body import BodyState
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.picture import Picture
+
+TUMBLING: Final = "Tumbling"
+IMPACT: Final = "Impact"
+CONTACT_MODE: Final = "Contact mode"
+
+MOST_LISTED: Final = 8
+"""More refused modes than this are counted, not listed."""
 
 REGIMES: Final = {
     Poinsot.UNKNOWN: "a torque acts",
@@ -41,58 +47,56 @@ REGIMES: Final = {
 
 def show_tumbling(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns: int) -> None:
     """Show an answer of `~/predict_tumbling`; ``now_ns`` stands for a state without stamp."""
-    state = _state(response.state, p_FB_F)
-    stamp_ns = state.stamp_ns or now_ns
+    stamp_ns = stamp_ns_from_msg(response.state.header.stamp) or now_ns
     name = response.state.body_name
     trajectory = trajectory_from_msg(response.trajectory, p_FB_F=p_FB_F)
     picture.show_trajectory(name, trajectory, stamp_ns=stamp_ns)
-    regime = REGIMES.get(response.poinsot.regime, "")
     if response.event == PredictTumbling.Response.NONE:
-        seconds = trajectory.seconds[-1] if len(trajectory) else 0.0
-        event = f"{len(trajectory)} samples, the last in {seconds:.4g} s"
+        event = f"has {len(trajectory)} samples"
+        if len(trajectory) > 0:
+            event += f" from {trajectory.seconds[0]:.4g} to {trajectory.seconds[-1]:.4g} s"
     else:
-        what = response.event_surface or "the plane"
-        point = _numbers(vector_from_msg(response.event_point))
+        point = numbers(vector_from_msg(response.event_point))
         speed = np.linalg.norm(vector_from_msg(response.event_velocity))
-        event = f"reaches {what} in {response.event_time:.4g} s at ({point}) m with {speed:.3g} m/s"
-    text = f"{event}; {regime} ({response.computation_time * 1e3:.2g} ms)"
-    picture.tell(f"Tumbling of {name or 'a body'}", text, stamp_ns=stamp_ns)
+        where = response.event_surface or "the plane"
+        event = f"reaches {where} in {response.event_time:.4g} s at ({point}) m with {speed:.3g} m/s"
+    _tell(picture, TUMBLING, [event, REGIMES[response.poinsot.regime]], response, stamp_ns=stamp_ns)
 
 
 def show_impact(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns: int) -> None:
     """Show an answer of `~/predict_impact`, at the time of the state that it was computed from."""
-    state = _state(response.state_before, p_FB_F)
+    msg, impact = response.state_before, response.impact
+    name = msg.body_name
+    state = body_state_from_msg(msg, world_frame=msg.header.frame_id, p_FB_F=p_FB_F)
     stamp_ns = ns_after(state.stamp_ns, -response.time_to_contact) if state.stamp_ns else now_ns
-    name = response.state_before.body_name
-    impact = response.impact
-    contacts = contacts_from_msg(response.contacts)
-    impulses = rows(impact.impulses)
     after = vector_from_msg(impact.state_after.linear_velocity)
     is_planar = response.problem == PredictImpact.Request.PLANAR
+    impulses = rows(impact.impulses)
     shown = ImpactPicture(
         state=state,
         v_after_W=after,
-        contacts=contacts,
+        contacts=contacts_from_msg(response.contacts),
         impulses_W=impulses,
         path_W=rows(impact.path),
         path_events=tuple(impact.path_events),
-        path_contacts=tuple(impact.path_contacts) or (0,) * len(impact.path_events),
+        path_contacts=tuple(impact.path_contacts),
         plane_normal_W=vector_from_msg(response.plane_normal) if is_planar else None,
     )
     picture.show_impact(name, shown, stamp_ns=stamp_ns)
     outcome = ImpactOutcome(impact.outcome).name.replace("_", " ").lower()
-    lost = impact.kinetic_energy_before - impact.kinetic_energy_after
-    warning = "; **the law creates energy: do not trust it**" if impact.creates_energy else ""
-    text = (
-        f"in {response.time_to_contact:.4g} s, {outcome}: velocity ({_numbers(state.v_WB_W)}) becomes "
-        f"({_numbers(after)}) m/s, impulse {np.linalg.norm(impulses.sum(axis=0)):.3g} N s, {lost:.3g} J lost{warning} "
-        f"({response.computation_time * 1e3:.2g} ms)"
-    )
-    picture.tell(f"Impact of {name or 'a body'}", text, stamp_ns=stamp_ns)
+    words = [
+        f"in {response.time_to_contact:.4g} s: {outcome}",
+        f"velocity ({numbers(state.v_WB_W)}) becomes ({numbers(after)}) m/s",
+        f"impulse {np.linalg.norm(impulses.sum(axis=0)):.3g} N s",
+        f"{impact.kinetic_energy_before - impact.kinetic_energy_after:.3g} J lost",
+    ]
+    if impact.creates_energy:
+        words.append("the law creates energy: do not trust this answer")
+    _tell(picture, IMPACT, words, response, stamp_ns=stamp_ns)
 
 
-def show_contact_modes(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns: int) -> None:
-    """Show an answer of `~/predict_contact_mode`."""
+def show_contact_modes(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns: int) -> None:  # noqa: ARG001
+    """Show an answer of `~/predict_contact_mode`; contacts are in the world, wherever the body's frame is."""
     stamp_ns = stamp_ns_from_msg(response.state.header.stamp) or now_ns
     name = response.state.body_name
     contacts = contacts_from_msg(response.contacts)
@@ -100,15 +104,17 @@ def show_contact_modes(picture: Picture, response: Any, *, p_FB_F: FloatArray, n
     forces = rows(response.modes[0].contact_forces) if modes else np.zeros((len(contacts), 3))
     shown = ContactModesPicture(contacts=contacts, modes=modes, forces_W=forces)
     picture.show_contact_modes(name, shown, stamp_ns=stamp_ns)
-    verdict = ModeVerdict(response.verdict).name.lower()
-    refused = f"; refused {', '.join(response.refused_modes)}" if response.refused_modes else ""
-    text = f"{verdict}: {', '.join(modes) or 'no mode'}{refused} ({response.computation_time * 1e3:.2g} ms)"
-    picture.tell(f"Contact mode of {name or 'a body'}", text, stamp_ns=stamp_ns)
+    words = [f"{ModeVerdict(response.verdict).name.lower()}: {', '.join(modes) or 'no mode'}"]
+    refused = response.refused_modes
+    if refused:
+        more = f" and {len(refused) - MOST_LISTED} more" if len(refused) > MOST_LISTED else ""
+        words.append(f"refused: {', '.join(refused[:MOST_LISTED])}{more}")
+    _tell(picture, CONTACT_MODE, words, response, stamp_ns=stamp_ns)
 
 
-def show_error(picture: Picture, title: str, response: Any, *, now_ns: int) -> None:
+def show_error(picture: Picture, kind: str, response: Any, *, now_ns: int) -> None:
     """Show that a question was refused."""
-    picture.tell(title, f"refused ({response.status}): {response.message}", stamp_ns=now_ns, is_error=True)
+    picture.tell(kind, f"refused ({response.status}): {response.message}", stamp_ns=now_ns, is_error=True)
 
 
 def trajectory_from_msg(msg: Any, *, p_FB_F: FloatArray) -> Trajectory:
@@ -129,9 +135,20 @@ def rows(numbers: Sequence[float]) -> FloatArray:
     return np.array(numbers, dtype=np.float64).reshape(-1, 3)
 
 
-def _state(msg: Any, p_FB_F: FloatArray) -> BodyState:
-    return body_state_from_msg(msg, world_frame=msg.header.frame_id, p_FB_F=p_FB_F)
+def numbers(vector: FloatArray) -> str:
+    """Return numbers in words, what is below a millionth as 0."""
+    return ", ".join(f"{round(number, 6) + 0.0:.3g}" for number in vector.tolist())
 
 
-def _numbers(vector: FloatArray) -> str:
-    return ", ".join(f"{number:.3g}" for number in vector.tolist())
+def body_name_of(response: Any) -> str:
+    """Return the name of the body that an answer is about; empty where the request named none."""
+    state = response.state_before if hasattr(response, "state_before") else response.state
+    name: str = state.body_name
+    return name
+
+
+def _tell(picture: Picture, kind: str, words: Sequence[str], response: Any, *, stamp_ns: int) -> None:
+    said = [*words, response.message] if response.message else words
+    took = f"({response.computation_time * 1e3:.2g} ms)"
+    text = f"{body_name_of(response) or 'a body'} {'; '.join(said)} {took}"
+    picture.tell(kind, text, stamp_ns=stamp_ns)

@@ -1,20 +1,20 @@
 """The visualizer: shows bodies, surfaces, contacts and every answer of a server in rerun, live or to a file.
 
-It is a process of its own: it listens to the bodies' states and to the service events that the server publishes, and
-nothing goes back. It takes the server's parameters, which describe bodies, surfaces and topics, and its own
-(`config/visualizer.yaml`). A drawing that fails is told once, and the rest goes on.
+It is a process of its own: it listens to the bodies' states and to the service events that the server
+publishes, and nothing goes back. It takes the server's parameters, which describe bodies, surfaces and
+topics, and its own (`config/visualizer.yaml`). A drawing that fails is told once, and the rest goes on.
 """
 
 from __future__ import annotations
 
 import sys
 import traceback
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import rclpy
 import rerun as rr
-from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.clock import Clock, ClockType
 from rclpy.experimental import EventsExecutor
@@ -24,11 +24,21 @@ from service_msgs.msg import ServiceEventInfo
 
 from contact_dynamics.nodes.arguments import ros_arguments
 from contact_dynamics.nodes.parameters import ConfigurationError, read_server_parameters
-from contact_dynamics.nodes.pictured_answers import show_contact_modes, show_error, show_impact, show_tumbling
+from contact_dynamics.nodes.pictured_answers import (
+    CONTACT_MODE,
+    IMPACT,
+    TUMBLING,
+    body_name_of,
+    show_contact_modes,
+    show_error,
+    show_impact,
+    show_tumbling,
+)
 from contact_dynamics.nodes.state_store import StateStore
 from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import DEFAULT_PORT, OpenRecording, Sinks, ViewerMode
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg
 
 if TYPE_CHECKING:
@@ -46,9 +56,9 @@ DRAW_PERIOD_S: Final = 0.05
 
 _SPIN_S: Final = 0.1
 _ANSWERS: Final = (
-    (PredictTumbling, "predict_tumbling", show_tumbling),
-    (PredictImpact, "predict_impact", show_impact),
-    (PredictContactMode, "predict_contact_mode", show_contact_modes),
+    (PredictTumbling, "predict_tumbling", TUMBLING, show_tumbling),
+    (PredictImpact, "predict_impact", IMPACT, show_impact),
+    (PredictContactMode, "predict_contact_mode", CONTACT_MODE, show_contact_modes),
 )
 
 
@@ -67,7 +77,7 @@ class Visualizer(Node):
             OSError: the file cannot be written.
         """
         super().__init__(NODE_NAME, **node_options)
-        rr.set_strict_mode(True)  # noqa: FBT003  rerun's own signature; else it warns and draws half
+        rr.set_strict_mode(True)
         self._strict = strict
         self._told: set[str] = set()
         parameters = read_server_parameters(self)
@@ -85,37 +95,36 @@ class Visualizer(Node):
                 states=self._states,
                 record=lambda _topic, _data: None,
             )
-        for service_type, name, show in _ANSWERS:
-            self._listen(service_type, f"{server}/{name}", show)
+        for service_type, name, kind, show in _ANSWERS:
+            self._listen(service_type, f"{server}/{name}", kind, show)
         self.create_timer(DRAW_PERIOD_S, self.draw_states, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.get_logger().info(f"ready: draws {server} to {self._recording.description}")
 
     def draw_states(self) -> None:
         """Draw the states that came since the last time."""
         for body_name, states in self._states.take().items():
-            self._guarded("states", lambda name=body_name, new=states: self._picture.add_states(name, new))
+            self._guarded("states", partial(self._picture.add_states, body_name, states))
 
     def close(self) -> None:
         """Draw what is left and close the sinks."""
         self.draw_states()
         self._recording.close()
 
-    def _listen(self, service_type: Any, service: str, show: Callable[..., None]) -> None:
+    def _listen(self, service_type: Any, service: str, kind: str, show: Callable[..., None]) -> None:
         def receive(event: Any) -> None:
             if event.info.event_type == ServiceEventInfo.RESPONSE_SENT and event.response:
-                self._guarded(service, lambda: self._show(service, event, show))
+                self._guarded(service, lambda: self._show(kind, event, show))
 
         self.create_subscription(service_type.Event, f"{service}/_service_event", receive, EVENT_QOS)
 
-    def _show(self, service: str, event: Any, show: Callable[..., None]) -> None:
+    def _show(self, kind: str, event: Any, show: Callable[..., None]) -> None:
         response = event.response[0]
         self.draw_states()
         now_ns = self._picture.newest_stamp_ns() or stamp_ns_from_msg(event.info.stamp)
         if response.status != response.OK:
-            show_error(self._picture, service, response, now_ns=now_ns)
+            show_error(self._picture, kind, response, now_ns=now_ns)
             return
-        state = response.state_before if hasattr(response, "state_before") else response.state
-        offsets = [body.p_FB_F for body in self._world.bodies if body.name == state.body_name]
+        offsets = [body.p_FB_F for body in self._world.bodies if body.name == body_name_of(response)]
         show(self._picture, response, p_FB_F=offsets[0] if offsets else np.zeros(3), now_ns=now_ns)
 
     def _guarded(self, kind: str, draw: Callable[[], None]) -> None:
@@ -163,7 +172,9 @@ def _read_own_parameters(node: Node) -> tuple[str, float, Sinks]:
     rrd_path = read("rrd_path", "", "File to draw into, which is replaced. Empty: none.")
     spawn = read("spawn", False, "Start rerun's viewer, unless one listens at the port already.")  # noqa: FBT003
     serve = read("serve", False, "Serve the picture at the port, for viewers that connect.")  # noqa: FBT003
-    url = read("connect", "", "URL of a viewer to draw in, as rerun+http://127.0.0.1:9876/proxy. Empty: none.")
+    url = read(
+        "connect", "", "URL of a viewer to draw in, as rerun+http://127.0.0.1:9876/proxy. Empty: none."
+    )
     port = read(
         "port",
         DEFAULT_PORT,
@@ -188,7 +199,7 @@ def main(arguments: list[str]) -> int:
     try:
         visualizer = Visualizer()
     except (ConfigurationError, OSError) as error:
-        print(f"[{NODE_NAME}] configuration: {error}", file=sys.stderr, flush=True)
+        sys.stderr.write(f"[{NODE_NAME}] configuration: {error}\n")
         rclpy.try_shutdown()
         return 2
     executor = EventsExecutor()

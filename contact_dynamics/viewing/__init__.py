@@ -1,10 +1,11 @@
 """Drawing in rerun: results in, pictures out, nothing back.
 
-In reading order: the colours (`palette`), names of what is drawn (`entities`), bodies and surfaces (`shape`, `scene`),
-what was measured (`measured`), the three kinds of answers (`trajectory`, `impact` with its `impulse_space`,
-`contact_modes`), the arrangement of the views (`blueprint`), all of it together (`picture`), and where it goes (`sinks`).
+In reading order: the colours (`palette`) and what they mean in words (`legend`), names of what is drawn
+(`entities`), bodies and surfaces (`shape`, `scene`), what was measured (`measured`), the three kinds of
+answers (`trajectory`, `impact` with its `impulse_space`, `contact_modes`), the arrangement of the views
+(`blueprint`), all of it together (`picture`), and where it goes (`sinks`).
 
-Everything is drawn on one timeline, `stamp`: the stamps of the states, to the nanosecond. An answer appears at the stamp
-of the state that it was computed from, never later, so that a live view that follows the newest data is not pulled into
-the future. Poses are stored as float32: this is a picture, not a record.
+Everything is drawn on one timeline, `stamp`: the stamps of the states, to the nanosecond. An answer appears
+at the stamp of the state that it was computed from, never later, so that a live view that follows the newest
+data is not pulled into the future. Poses are stored as float32: this is a picture, not a record.
 """

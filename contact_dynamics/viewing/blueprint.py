@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import rerun as rr
 import rerun.blueprint as rrb
 
 from contact_dynamics.viewing import palette
@@ -31,7 +30,10 @@ if TYPE_CHECKING:
 LOWEST_DISTANCE: Final = 0.5
 """m. The eye comes no nearer to what it looks at."""
 
-_DISTANCE: Final = 1.15  # of the eye, relative to the diagonal of what it shows
+WINDOW_S: Final = 10.0
+"""s. How long a trail is, and how far back the curves go."""
+
+_DISTANCE: Final = 1.05  # of the eye, relative to the diagonal of what it shows
 _ELEVATION: Final = 0.33  # of the eye above what it looks at, relative to its horizontal distance
 
 
@@ -45,7 +47,7 @@ class Eye:
 
 
 def eye_on(points_W: FloatArray, *, up_W: FloatArray) -> Eye:
-    """Return an eye that sees all points, (n, 3), m, world, from the side of their longest horizontal extent."""
+    """Return an eye that sees points, (n, 3), m, world, of a path, from the side of where it leads."""
     low, high = points_W.min(axis=0), points_W.max(axis=0)
     target = 0.5 * (low + high)
     level = points_W - np.outer(points_W @ up_W, up_W)
@@ -58,9 +60,6 @@ def eye_on(points_W: FloatArray, *, up_W: FloatArray) -> Eye:
 
 def make_blueprint(body_names: Sequence[str], *, eye: Eye | None) -> rrb.Blueprint:
     """Return the arrangement; without an eye the viewer looks at all that there is."""
-    always = rrb.VisibleTimeRanges(
-        timeline=TIMELINE, start=rrb.TimeRangeBoundary.infinite(), end=rrb.TimeRangeBoundary.cursor_relative()
-    )
     controls = None
     if eye is not None:
         controls = rrb.EyeControls3D(
@@ -73,7 +72,7 @@ def make_blueprint(body_names: Sequence[str], *, eye: Eye | None) -> rrb.Bluepri
         background=rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor),
         line_grid=False,
         eye_controls=controls,
-        overrides={trail_entity(name): always for name in body_names},
+        overrides={trail_entity(name): _window() for name in body_names},
     )
     return rrb.Blueprint(
         rrb.Horizontal(
@@ -84,8 +83,8 @@ def make_blueprint(body_names: Sequence[str], *, eye: Eye | None) -> rrb.Bluepri
                     name="Impulse space (tangential, normal impulse)",
                     background=palette.BACKGROUND,
                 ),
-                rrb.TimeSeriesView(origin=HEIGHT, name="Height of the centre of mass, m"),
-                rrb.TimeSeriesView(origin=SPEED, name="Speed of the centre of mass, m/s"),
+                _curves(HEIGHT, "Height of the centre of mass, m"),
+                _curves(SPEED, "Speed of the centre of mass, m/s"),
                 rrb.Tabs(
                     rrb.TextDocumentView(origin=NEWEST_ANSWERS, name="Newest answers"),
                     rrb.TextLogView(origin=ANSWER_LOG, name="All answers"),
@@ -98,4 +97,17 @@ def make_blueprint(body_names: Sequence[str], *, eye: Eye | None) -> rrb.Bluepri
         rrb.BlueprintPanel(state=rrb.PanelState.Collapsed),
         rrb.SelectionPanel(state=rrb.PanelState.Collapsed),
         rrb.TimePanel(state=rrb.PanelState.Collapsed, timeline=TIMELINE, play_state="Following"),
+    )
+
+
+def _curves(origin: str, name: str) -> rrb.TimeSeriesView:
+    legend = rrb.PlotLegend(corner=rrb.Corner2D.RightTop)
+    return rrb.TimeSeriesView(origin=origin, name=name, plot_legend=legend, time_ranges=_window())
+
+
+def _window() -> rrb.VisibleTimeRanges:
+    return rrb.VisibleTimeRanges(
+        timeline=TIMELINE,
+        start=rrb.TimeRangeBoundary.cursor_relative(seconds=-WINDOW_S),
+        end=rrb.TimeRangeBoundary.cursor_relative(),
     )

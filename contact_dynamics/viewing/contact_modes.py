@@ -1,4 +1,4 @@
-"""Contact modes: each contact coloured by its letter, with the contact forces of the first consistent mode."""
+"""Contact modes: each contact coloured by its letter, with the forces of the first consistent mode."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from contact_dynamics.viewing.shape import Shape
 
 FORCE_LENGTH: Final = 0.6
-"""Length of the longest force arrow, relative to the size of the body; the labels say how much it stands for."""
+"""Length of the longest force arrow, relative to the body's size; labels say how much it stands for."""
 
 _POINT_SIZE: Final = 0.035  # relative to the size of the body
 _ARROW_WIDTH: Final = 0.01  # likewise
@@ -60,13 +60,13 @@ def draw_contact_modes(
             colors=colors[pressed],
             radii=_ARROW_WIDTH * shape.size,
             labels=[f"{magnitude:.3g} N" for magnitude in magnitudes[pressed].tolist()],
-            show_labels=True,
+            show_labels=False,  # four of them hide the body; the viewer shows one where the mouse is
         ),
     )
 
 
 def letters_of_contacts(modes: tuple[str, ...], count: int) -> list[str]:
-    """Return each contact's letters in the consistent modes, each once and joined by `|`; `?` where there is no mode."""
+    """Return each contact's letters in all modes, each once, joined by `|`; `?` where there is no mode."""
     return ["|".join(dict.fromkeys(mode[i] for mode in modes)) or "?" for i in range(count)]
 
 

@@ -1,4 +1,4 @@
-"""A predicted impact in space: contact point, normal, friction cone, impulse, and velocities before and after."""
+"""A predicted impact in the scene: contact, normal, friction cone, impulse, velocities before and after."""
 
 from __future__ import annotations
 
@@ -15,19 +15,23 @@ from contact_dynamics.viewing.scene import tangents
 from contact_dynamics.viewing.trajectory import outline
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
     from contact_dynamics.contact import ContactSet
     from contact_dynamics.rigid_body import BodyState
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.shape import Shape
 
-ARROW_LENGTH: Final = 0.9
-"""Length of the longest arrow of a kind, relative to the size of the body; the labels say how much it stands for."""
+ARROW_LENGTH: Final = 1.1
+"""Length of the longest arrow of a kind, relative to the body's size; labels say how much it stands for."""
 
 CONE_HEIGHT: Final = 0.35
 """Relative to the size of the body."""
 
 _CONE_FACETS: Final = 32
-_ARROW_WIDTH: Final = 0.012  # relative to the size of the body
+_ARROW_WIDTH: Final = 0.016  # relative to the size of the body
 _POINT_SIZE: Final = 0.02  # likewise
 _OUTLINE_WIDTH: Final = -1.2  # negative: points of the screen
 
@@ -53,54 +57,37 @@ class ImpactPicture:
 
 def draw_impact(recording: rr.RecordingStream, body_name: str, shape: Shape, picture: ImpactPicture) -> None:
     """Draw an impact in the scene, at the recording's current time."""
-    path = impact_entity(body_name)
+    path, size = impact_entity(body_name), shape.size
     struck = np.linalg.norm(picture.impulses_W, axis=1) > 0.0
-    points = picture.contacts.p_WC_W[struck]
-    normals = picture.contacts.normals_W[struck]
-    _draw_arrows(recording, f"{path}/impulse", points, picture.impulses_W[struck], "N s", palette.IMPACT, size=shape.size)
-    velocities = np.array([picture.state.v_WB_W, picture.v_after_W])
-    _draw_arrows(
-        recording,
-        f"{path}/velocity",
-        np.tile(picture.state.p_WB_W, (2, 1)),
-        velocities,
-        "m/s",
-        np.array([palette.BEFORE_IMPACT, palette.IMPACT], dtype=np.uint8),
-        size=shape.size,
-    )
-    recording.log(
-        f"{path}/normal",
-        rr.Arrows3D(
-            origins=points,
-            vectors=normals * (CONE_HEIGHT * shape.size),
-            colors=palette.NORMAL,
-            radii=0.5 * _ARROW_WIDTH * shape.size,
-        ),
-    )
-    recording.log(
-        f"{path}/point", rr.Points3D(points, radii=_POINT_SIZE * shape.size, colors=palette.IMPACT)
-    )
-    draw_cones(recording, f"{path}/cone", points, normals, picture.contacts.frictions[struck], height=CONE_HEIGHT * shape.size)
-    edges = outline(shape, picture.state.p_WB_W, picture.state.q_WB)
-    recording.log(
-        f"{path}/body",
-        rr.LineStrips3D(edges, colors=palette.translucent(palette.IMPACT, 0.7), radii=_OUTLINE_WIDTH),
-    )
+    points, normals = picture.contacts.p_WC_W[struck], picture.contacts.normals_W[struck]
+    impulses = _arrows(points, picture.impulses_W[struck], [palette.IMPACT] * len(points), "N s", size)
+    recording.log(f"{path}/impulse", impulses)
+    center_W = np.tile(picture.state.p_WB_W, (2, 1))
+    velocities_W = np.array([picture.state.v_WB_W, picture.v_after_W])
+    velocities = _arrows(center_W, velocities_W, [palette.BEFORE_IMPACT, palette.AFTER_IMPACT], "m/s", size)
+    recording.log(f"{path}/velocity", velocities)
+    height = CONE_HEIGHT * size
+    width = 0.5 * _ARROW_WIDTH * size
+    arrows = rr.Arrows3D(origins=points, vectors=normals * height, colors=palette.NORMAL, radii=width)
+    recording.log(f"{path}/normal", arrows)
+    spheres = rr.Points3D(points, radii=_POINT_SIZE * size, colors=palette.IMPACT)
+    recording.log(f"{path}/point", spheres)
+    cones = friction_cones(points, normals, picture.contacts.frictions[struck], height=height)
+    recording.log(f"{path}/cone", rr.Clear(recursive=False) if cones is None else cones)
+    edges = list(outline(shape, picture.state.p_WB_W, picture.state.q_WB))
+    body = rr.LineStrips3D(edges, colors=palette.translucent(palette.IMPACT, 0.7), radii=_OUTLINE_WIDTH)
+    recording.log(f"{path}/body", body)
 
 
-def draw_cones(
-    recording: rr.RecordingStream,
-    path: str,
-    points_W: FloatArray,
-    normals_W: FloatArray,
-    frictions: FloatArray,
-    *,
-    height: float,
-) -> None:
-    """Draw friction cones, each as long along its slope as ``height``, m, so that great friction stays in the picture."""
+def friction_cones(
+    points_W: FloatArray, normals_W: FloatArray, frictions: FloatArray, *, height: float
+) -> rr.Mesh3D | None:
+    """Return friction cones at points, as long along their slope as ``height``, m; None without friction."""
     angles = np.linspace(0.0, 2.0 * math.pi, _CONE_FACETS, endpoint=False)
+    rim_index = 1 + np.arange(_CONE_FACETS)
+    facets = np.stack([np.zeros_like(rim_index), rim_index, np.roll(rim_index, -1)], axis=1)
     vertices: list[FloatArray] = []
-    triangles: list[tuple[int, int, int]] = []
+    triangles: list[NDArray[np.int64]] = []
     for p_W, normal_W, friction in zip(points_W, normals_W, frictions.tolist(), strict=True):
         if friction == 0.0:
             continue
@@ -108,43 +95,28 @@ def draw_cones(
         half_angle = math.atan(friction)
         around = np.outer(np.cos(angles), u_W) + np.outer(np.sin(angles), v_W)
         rim = p_W + height * (math.cos(half_angle) * normal_W + math.sin(half_angle) * around)
-        first = sum(len(part) for part in vertices)
+        triangles.append(facets + len(vertices) * (1 + _CONE_FACETS))
         vertices.append(np.vstack([p_W, rim]))
-        triangles += [
-            (first, first + 1 + i, first + 1 + (i + 1) % _CONE_FACETS) for i in range(_CONE_FACETS)
-        ]
-    if not triangles:
-        recording.log(path, rr.Clear(recursive=False))
-        return
-    recording.log(
-        path,
-        rr.Mesh3D(
-            vertex_positions=np.vstack(vertices), triangle_indices=triangles, albedo_factor=palette.FRICTION_CONE
-        ),
+    if not vertices:
+        return None
+    return rr.Mesh3D(
+        vertex_positions=np.vstack(vertices),
+        triangle_indices=np.vstack(triangles),
+        albedo_factor=palette.FRICTION_CONE,
     )
 
 
-def _draw_arrows(
-    recording: rr.RecordingStream,
-    path: str,
-    origins: FloatArray,
-    vectors: FloatArray,
-    unit: str,
-    colors: palette.Color | FloatArray,
-    *,
-    size: float,
-) -> None:
+def _arrows(
+    origins: FloatArray, vectors: FloatArray, colors: Sequence[palette.Color], unit: str, size: float
+) -> rr.Arrows3D:
     lengths = np.linalg.norm(vectors, axis=1)
     longest = float(lengths.max(initial=0.0))
     scale = ARROW_LENGTH * size / longest if longest > 0.0 else 0.0
-    recording.log(
-        path,
-        rr.Arrows3D(
-            origins=origins,
-            vectors=vectors * scale,
-            colors=colors,
-            radii=_ARROW_WIDTH * size,
-            labels=[f"{length:.3g} {unit}" for length in lengths.tolist()],
-            show_labels=True,
-        ),
+    return rr.Arrows3D(
+        origins=origins,
+        vectors=vectors * scale,
+        colors=np.array(colors, dtype=np.uint8).reshape(-1, 4),
+        radii=_ARROW_WIDTH * size,
+        labels=[f"{length:.3g} {unit}" for length in lengths.tolist()],
+        show_labels=True,
     )

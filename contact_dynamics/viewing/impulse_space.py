@@ -1,40 +1,61 @@
 """An impact in impulse space (Mason, lecture 27): tangential impulse to the right, normal impulse up.
 
-The path of the accumulated impulse leaves the origin, inside the friction cone. On the sticking line the contact does not
-slide, on the compression line it does not approach: the path bends where it meets the first, and compression ends where it
-meets the second. In space the lines are those for impulses in the plane of the picture, which is that of the normal and of
-the total impulse; a path that swerves out of it is seen as its projection.
+The path of the accumulated impulse leaves the origin, inside the friction cone. On the sticking line the
+contact does not slide, on the compression line it does not approach: the path bends where it meets the first,
+and compression ends where it meets the second. In space the picture's plane is that of the normal and of the
+total impulse, the lines are those for impulses in it, and a path that swerves is seen as its projection.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 import rerun as rr
 
 from contact_dynamics.impact.law import PathEvent
+from contact_dynamics.impact.spatial import contact_inverse_inertia
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import IMPULSE_SPACE
 from contact_dynamics.viewing.scene import tangents
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.planar import Vector2
     from contact_dynamics.rigid_body import MassProperties
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.impact import ImpactPicture
 
-MARGIN: Final = 1.25
+MARGIN: Final = 1.2
 """How far cone and lines go beyond the path."""
 
+_BELOW: Final = 0.12  # part of the picture below the origin, relative to the part above it
 _LINE_WIDTH: Final = -1.2  # negative: points of the screen
 _PATH_WIDTH: Final = -2.5
 _POINT_SIZE: Final = -5.0
+_LABEL_OFFSET: Final = 0.55  # of a label's centre from what it names, relative to the picture's height
+_NAMES: Final = 0.85  # of the names' centre from the normal, likewise
+_NAMED: Final = (
+    ("sticking line", palette.STICKING_LINE),
+    ("compression line", palette.COMPRESSION_LINE),
+    ("friction cone", palette.translucent(palette.FRICTION_CONE, 1.0)),
+)
 _EVENTS: Final = {
     PathEvent.SLIDING_STOPS: "sliding stops",
     PathEvent.COMPRESSION_ENDS: "compression ends",
     PathEvent.RESTITUTION_ENDS: "restitution ends",
 }
+
+
+class _Line(NamedTuple):
+    """Impulses x with ``normal . x + offset = 0``: a component of the contact's velocity is zero there."""
+
+    normal: FloatArray  # (2,), 1/kg, tangential, normal
+    offset: float  # m/s
 
 
 def draw_impulse_space(
@@ -49,35 +70,41 @@ def draw_impulse_space(
     chosen = [i for i, owner in enumerate(picture.path_contacts) if owner == contact]
     path = picture.path_W[chosen] @ axes_W.T
     extent = MARGIN * float(np.abs(path).max(initial=0.0)) or 1.0
-    _strips(recording, "axes", [[(-extent, 0.0), (extent, 0.0)], [(0.0, 0.0), (0.0, extent)]], palette.SURFACE_GRID)
-    half_angle = math.atan(picture.contacts.frictions[contact])
-    rim = extent * math.cos(half_angle), extent * math.sin(half_angle)
-    _strips(recording, "cone", [[(-rim[1], rim[0]), (0.0, 0.0), (rim[1], rim[0])]], palette.translucent(palette.FRICTION_CONE, 1.0))
-    _draw_lines(recording, mass_properties, picture, contact, axes_W, extent)
+    _draw_background(recording, float(picture.contacts.frictions[contact]), extent)
+    # Labels of the path stand on its side of the normal, the names of the lines on the other.
+    side = -1.0 if len(path) > 0 and path[-1, 0] < 0.0 else 1.0
+    _draw_names(recording, -side * _NAMES * extent, extent)
+    lines = None if mass_properties is None else _lines(mass_properties, picture, contact, axes_W)
+    for i, (name, color) in enumerate(_NAMED[:2]):
+        part = np.zeros((0, 2, 2)) if lines is None else line_in_box(lines[i], extent)
+        _strips(recording, name, part, color)
     _strips(recording, "path", [path], palette.IMPACT, width=_PATH_WIDTH)
-    events = [(i, _EVENTS[PathEvent(picture.path_events[i])]) for i in chosen if picture.path_events[i] in _EVENTS]
+    events = [(i, picture.path_events[i]) for i in chosen if picture.path_events[i] in _EVENTS]
     points = picture.path_W[[i for i, _ in events]] @ axes_W.T
-    labels = [
-        f"{text}: {t:.3g}, {n:.3g} N s" for (_, text), (t, n) in zip(events, points.tolist(), strict=True)
+    texts = [
+        f"{_EVENTS[PathEvent(event)]}: {t:.3g}, {n:.3g} N s"
+        for (_, event), (t, n) in zip(events, points.tolist(), strict=True)
     ]
-    recording.log(
-        f"{IMPULSE_SPACE}/events",
-        rr.Points2D(_on_screen(points), colors=palette.IMPACT, radii=_POINT_SIZE, labels=labels, show_labels=True),
-    )
+    shown = rr.Points2D(_on_screen(points), colors=palette.IMPACT, radii=_POINT_SIZE)
+    recording.log(f"{IMPULSE_SPACE}/events", shown)
+    places = points + np.array([side * _LABEL_OFFSET * extent, 0.0])
+    labels = rr.Points2D(_on_screen(places), colors=palette.IMPACT, radii=0.0, labels=texts, show_labels=True)
+    recording.log([IMPULSE_SPACE, "event labels"], labels)
 
 
 def contact_axes(picture: ImpactPicture, contact: int) -> FloatArray:
     """Return the axes of the picture, tangent and normal, (2, 3), unit, world axes.
 
-    In the plane of motion the tangent is the normal turned by -90 degrees. In space it points to where the tangential impulse
-    does, or where there is none, against which the contact slides.
+    In the plane of motion the tangent is the normal turned by -90 degrees. In space it points to where the
+    tangential impulse does, or where there is none, against the sliding.
     """
     normal_W = picture.contacts.normals_W[contact]
     if picture.plane_normal_W is not None:
-        tangent_W = np.cross(normal_W, picture.plane_normal_W)
-        return np.array([tangent_W / np.linalg.norm(tangent_W), normal_W])
-    slip_W = picture.state.velocity_of_point(picture.contacts.p_WC_W[contact])
-    for vector_W in (picture.impulses_W[contact], -slip_W, tangents(normal_W)[0]):
+        candidates = [np.cross(normal_W, picture.plane_normal_W)]
+    else:
+        slip_W = picture.state.velocity_of_point(picture.contacts.p_WC_W[contact])
+        candidates = [picture.impulses_W[contact], -slip_W]
+    for vector_W in (*candidates, tangents(normal_W)[0]):
         tangent_W = vector_W - (vector_W @ normal_W) * normal_W
         length = float(np.linalg.norm(tangent_W))
         if length > 1e-9 * float(np.linalg.norm(vector_W)):
@@ -85,67 +112,67 @@ def contact_axes(picture: ImpactPicture, contact: int) -> FloatArray:
     return np.array([tangent_W / length, normal_W])
 
 
-def _draw_lines(
-    recording: rr.RecordingStream,
-    mass_properties: MassProperties | None,
-    picture: ImpactPicture,
-    contact: int,
-    axes_W: FloatArray,
-    extent: float,
-) -> None:
-    for i, (name, color) in enumerate((("sticking", palette.STICKING_LINE), ("compression", palette.COMPRESSION_LINE))):
-        line = None
-        if mass_properties is not None:
-            point_W = picture.contacts.p_WC_W[contact]
-            velocity = axes_W @ picture.state.velocity_of_point(point_W)
-            response = axes_W @ inverse_inertia(mass_properties, picture, point_W) @ axes_W.T
-            line = line_in_square(response[i], float(velocity[i]), extent)
-        _strips(recording, f"{name}_line", [] if line is None else [line], color, label=f"{name} line")
-
-
-def inverse_inertia(mass_properties: MassProperties, picture: ImpactPicture, point_W: FloatArray) -> FloatArray:
-    """Return the change of a contact's velocity per impulse at it, (3, 3), 1/kg, world axes (lecture 27, eq. 8)."""
-    x, y, z = point_W - picture.state.p_WB_W
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    inverse = np.linalg.inv(mass_properties.inertia_in_world(picture.state.R_WB))
-    response: FloatArray = np.eye(3) / mass_properties.mass - cross @ inverse @ cross
-    return response
-
-
-def line_in_square(normal: FloatArray, offset: float, extent: float) -> FloatArray | None:
-    """Return the two ends, (2, 2), of the part of the line ``normal . x + offset = 0`` with |x|, |y| <= ``extent``."""
-    squared = float(normal @ normal)
+def line_in_box(line: _Line, extent: float) -> FloatArray:
+    """Return the ends, (1, 2, 2), of the part of a line that the picture shows; (0, 2, 2): none."""
+    nothing = np.zeros((0, 2, 2))
+    squared = float(line.normal @ line.normal)
     if squared == 0.0:
-        return None
-    foot = -offset * normal / squared
-    along = np.array([-normal[1], normal[0]]) / math.sqrt(squared)
-    low, high = -math.inf, math.inf
-    for start, slope in zip(foot.tolist(), along.tolist(), strict=True):
+        return nothing
+    foot = -line.offset * line.normal / squared
+    along = np.array([-line.normal[1], line.normal[0]]) / math.sqrt(squared)
+    begin, end = -math.inf, math.inf
+    lowest, highest = (-extent, -_BELOW * extent), (extent, extent)
+    for start, slope, low, high in zip(foot.tolist(), along.tolist(), lowest, highest, strict=True):
         if slope == 0.0:
-            if abs(start) > extent:
-                return None
+            if not low <= start <= high:
+                return nothing
             continue
-        a, b = sorted(((-extent - start) / slope, (extent - start) / slope))
-        low, high = max(low, a), min(high, b)
-    if low >= high:
-        return None
-    return np.array([foot + low * along, foot + high * along])
+        first, last = sorted(((low - start) / slope, (high - start) / slope))
+        begin, end = max(begin, first), min(end, last)
+    if begin >= end:
+        return nothing
+    return np.array([[foot + begin * along, foot + end * along]])
+
+
+def _lines(
+    mass_properties: MassProperties, picture: ImpactPicture, contact: int, axes_W: FloatArray
+) -> tuple[_Line, _Line]:
+    """Return the sticking and the compression line (lecture 27, eq. 9 and 10)."""
+    p_WC_W = picture.contacts.p_WC_W[contact]
+    velocity = axes_W @ picture.state.velocity_of_point(p_WC_W)
+    response_W = contact_inverse_inertia(mass_properties, picture.state, p_WC_W - picture.state.p_WB_W)
+    response = axes_W @ response_W @ axes_W.T
+    return _Line(response[0], float(velocity[0])), _Line(response[1], float(velocity[1]))
+
+
+def _draw_background(recording: rr.RecordingStream, friction: float, extent: float) -> None:
+    axes = [[(-extent, 0.0), (extent, 0.0)], [(0.0, 0.0), (0.0, extent)]]
+    _strips(recording, "axes", axes, palette.SURFACE_GRID)
+    half_angle = math.atan(friction)
+    rim: Vector2 = (extent * math.sin(half_angle), extent * math.cos(half_angle))
+    cone = [[(-rim[0], rim[1]), (0.0, 0.0), rim]]
+    _strips(recording, "friction cone", cone, palette.translucent(palette.FRICTION_CONE, 1.0))
+
+
+def _draw_names(recording: rr.RecordingStream, t: float, extent: float) -> None:
+    points = np.array([(t, extent * (1.0 - 0.13 * i)) for i in range(len(_NAMED))])
+    colors = [color for _, color in _NAMED]
+    labels = rr.Points2D(
+        _on_screen(points), colors=colors, radii=0.0, labels=[name for name, _ in _NAMED], show_labels=True
+    )
+    recording.log(f"{IMPULSE_SPACE}/names", labels)
 
 
 def _strips(
     recording: rr.RecordingStream,
     name: str,
-    strips: object,
+    strips: Iterable[ArrayLike],
     color: palette.Color,
     *,
     width: float = _LINE_WIDTH,
-    label: str = "",
 ) -> None:
     drawn = [_on_screen(np.asarray(strip)) for strip in strips]
-    recording.log(
-        f"{IMPULSE_SPACE}/{name}",
-        rr.LineStrips2D(drawn, colors=color, radii=width, labels=[label] * len(drawn) if label else None),
-    )
+    recording.log([IMPULSE_SPACE, name], rr.LineStrips2D(drawn, colors=color, radii=width))
 
 
 def _on_screen(points: FloatArray) -> FloatArray:

@@ -23,9 +23,13 @@ if TYPE_CHECKING:
 def style_series(recording: rr.RecordingStream, body_name: str) -> None:
     """Set colours and names of a body's curves."""
     for quantity in (HEIGHT, SPEED):
-        for kind, color, width in (("measured", palette.MEASURED, 2.0), ("predicted", palette.PREDICTED, 1.5)):
+        for kind, color, width in (
+            ("measured", palette.MEASURED, 4.0),
+            ("predicted", palette.PREDICTED, 2.0),
+        ):
             path = entity(quantity, body_name, kind)
-            recording.log(path, rr.SeriesLines(colors=color, names=f"{body_name} {kind}", widths=width), static=True)
+            series = rr.SeriesLines(colors=color, names=f"{body_name} {kind}", widths=width)
+            recording.log(path, series, static=True)
 
 
 def draw_states(
@@ -36,21 +40,18 @@ def draw_states(
     before: BodyState | None,
     up_W: FloatArray,
 ) -> None:
-    """Draw states in the order of their stamps; the trail goes on from the state ``before`` them, if there is one."""
+    """Draw states in the order of their stamps; the trail goes on from the state ``before`` them, if any."""
     if not states:
         return
     stamps = time_column([state.stamp_ns for state in states])
     points = np.array([state.p_WB_W for state in states])
-    recording.send_columns(
-        body_entity(body_name),
-        indexes=[stamps],
-        columns=rr.Transform3D.columns(translation=points, quaternion=np.array([state.q_WB for state in states])),
-    )
+    orientations = np.array([state.q_WB for state in states])
+    poses = rr.Transform3D.columns(translation=points, quaternion=orientations)
+    recording.send_columns(body_entity(body_name), indexes=[stamps], columns=poses)
     starts = np.vstack([points[:1] if before is None else before.p_WB_W, points[:-1]])
     segments = np.stack([starts, points], axis=1)
-    recording.send_columns(
-        trail_entity(body_name), indexes=[stamps], columns=rr.LineStrips3D.columns(strips=list(segments))
-    )
+    trail = rr.LineStrips3D.columns(strips=list(segments))
+    recording.send_columns(trail_entity(body_name), indexes=[stamps], columns=trail)
     speeds = np.linalg.norm([state.v_WB_W for state in states], axis=1)
     _draw_curves(recording, body_name, "measured", stamps, heights=points @ up_W, speeds=speeds)
 
@@ -64,10 +65,10 @@ def draw_prediction_at(
     begin_ns: int,
     up_W: FloatArray,
 ) -> None:
-    """Draw what a trajectory that began at ``begin_ns`` says about height and speed at each stamp that it reaches.
+    """Draw what a trajectory that began at ``begin_ns`` says of height and speed at stamps that it reaches.
 
-    So that the curves of measured and predicted values share their times and many predictions make one curve. Where a
-    trajectory has ended, the curve has a gap.
+    So the curves of measured and predicted values share their times, and many predictions make one curve,
+    which has a gap where a trajectory has ended.
     """
     if len(trajectory) == 0:
         return

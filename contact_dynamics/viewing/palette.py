@@ -16,10 +16,13 @@ PREDICTED: Final[Color] = (255, 160, 40, 255)
 """Orange: where the body was predicted to be."""
 
 IMPACT: Final[Color] = (240, 60, 70, 255)
-"""Red: the impulse, and the velocity after it."""
+"""Red: the body at a predicted impact, and the impulse on it."""
 
-BEFORE_IMPACT: Final[Color] = (250, 215, 90, 255)
-"""Yellow: the velocity before an impact."""
+BEFORE_IMPACT: Final[Color] = (190, 180, 120, 255)
+"""Pale yellow: the velocity before an impact."""
+
+AFTER_IMPACT: Final[Color] = (255, 225, 60, 255)
+"""Bright yellow: the velocity after it."""
 
 FRICTION_CONE: Final[Color] = (190, 120, 235, 90)
 """Translucent violet: the forces and impulses that friction allows."""

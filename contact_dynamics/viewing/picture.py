@@ -39,7 +39,7 @@ class _Prediction:
 
 
 class Picture:
-    """Draws into a recording. Times are stamps in ns; a body that is not of the world is drawn without a shape."""
+    """Draws into a recording. Times are stamps in ns; an unknown body is drawn without shape."""
 
     def __init__(self, recording: rr.RecordingStream, world: World, *, surface_side: float) -> None:
         """Draw the surfaces, as squares of ``surface_side``, m, and the bodies."""
@@ -94,13 +94,13 @@ class Picture:
         set_time(self._recording, stamp_ns)
         draw_contact_modes(self._recording, body_name, self._shape(body_name), modes)
 
-    def tell(self, title: str, text: str, *, stamp_ns: int, is_error: bool = False) -> None:
-        """Write an answer in words: to the log of all, and as the newest one under its title (both Markdown)."""
+    def tell(self, kind: str, text: str, *, stamp_ns: int, is_error: bool = False) -> None:
+        """Write an answer in words: to the log of all, and as the newest one of its kind."""
         set_time(self._recording, stamp_ns)
         level = rr.TextLogLevel.WARN if is_error else rr.TextLogLevel.INFO
-        self._recording.log(ANSWER_LOG, rr.TextLog(f"{title}: {text}", level=level))
-        self._answers[title] = text
-        document = "\n\n".join(f"**{title}**: {text}" for title, text in self._answers.items())
+        self._recording.log(ANSWER_LOG, rr.TextLog(f"{kind}: {text}", level=level))
+        self._answers[kind] = text
+        document = "\n\n".join(f"**{kind}**: {newest}" for kind, newest in self._answers.items())
         self._recording.log(NEWEST_ANSWERS, rr.TextDocument(document, media_type=rr.MediaType.MARKDOWN))
 
     def newest_stamp_ns(self) -> int | None:
@@ -114,7 +114,8 @@ class Picture:
         for name, shape in self._shapes.items():
             draw_body(self._recording, name, shape)
             style_series(self._recording, name)
-        self._recording.log(LEGEND, rr.TextDocument(LEGEND_TEXT, media_type=rr.MediaType.MARKDOWN), static=True)
+        legend = rr.TextDocument(LEGEND_TEXT, media_type=rr.MediaType.MARKDOWN)
+        self._recording.log(LEGEND, legend, static=True)
         self._recording.send_blueprint(make_blueprint(list(self._shapes), eye=None))
 
     def _shape(self, body_name: str) -> Shape:
@@ -124,11 +125,12 @@ class Picture:
         return self._shapes[body_name]
 
     def _frame(self, points_W: FloatArray) -> None:
-        """Look at the first trajectory, and put the ground below it; later ones leave the view to whoever looks."""
+        """Look at the first trajectory, the ground below it; later ones leave the view to whoever looks."""
         if self._framed:
             return
         self._framed = True
         center = 0.5 * (points_W.min(axis=0) + points_W.max(axis=0))
         for surface in self._world.surfaces:
             draw_surface(self._recording, surface, center_W=center, side=self._surface_side)
-        self._recording.send_blueprint(make_blueprint(list(self._shapes), eye=eye_on(points_W, up_W=self._up_W)))
+        eye = eye_on(points_W, up_W=self._up_W)
+        self._recording.send_blueprint(make_blueprint(list(self._shapes), eye=eye))

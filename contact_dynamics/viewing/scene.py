@@ -33,36 +33,29 @@ def draw_axes(recording: rr.RecordingStream, up_W: FloatArray) -> None:
     recording.log(SCENE, getattr(rr.ViewCoordinates, f"{names[axis]}_{sign}"), static=True)
 
 
-def draw_surface(recording: rr.RecordingStream, surface: Surface, *, center_W: FloatArray, side: float) -> None:
-    """Draw a square of a surface with that side, m, about the surface's point nearest to ``center_W``, (3,), m."""
-    u_W, v_W = tangents(surface.normal_W)
-    p_W = center_W - ((center_W - surface.p_WS_W) @ surface.normal_W) * surface.normal_W
+def draw_surface(
+    recording: rr.RecordingStream, surface: Surface, *, center_W: FloatArray, side: float
+) -> None:
+    """Draw a square of a surface with that side, m, about the point nearest to ``center_W``, (3,), m."""
+    p_W = center_W - float(surface.gaps(center_W)) * surface.normal_W
+    u_W, v_W = (0.5 * side * tangent for tangent in tangents(surface.normal_W))
+    patch = rr.Mesh3D(
+        vertex_positions=p_W + np.array([-u_W - v_W, u_W - v_W, u_W + v_W, v_W - u_W]),
+        triangle_indices=[[0, 1, 2], [0, 2, 3]],
+        vertex_normals=np.tile(surface.normal_W, (4, 1)),
+        albedo_factor=palette.SURFACE,
+    )
     spacing = GRID_SPACING
     while side / spacing > MOST_GRID_LINES:
         spacing *= 10.0
-    half = 0.5 * side
-    corners = np.array([p_W + a * u_W + b * v_W for a, b in ((-half, -half), (half, -half), (half, half), (-half, half))])
+    places = np.arange(-1.0, 1.0 + spacing / side, 2.0 * spacing / side)
     lines = [
-        np.array([p_W + a * along + half * across, p_W + a * along - half * across])
-        for along, across in ((u_W, v_W), (v_W, u_W))
-        for a in np.arange(-half, half + 0.5 * spacing, spacing)
+        p_W + np.array([a * s - b, a * s + b]) for a, b in ((u_W, v_W), (v_W, u_W)) for s in places.tolist()
     ]
     path = entity(SURFACES, surface.name)
-    recording.log(
-        f"{path}/patch",
-        rr.Mesh3D(
-            vertex_positions=corners,
-            triangle_indices=[[0, 1, 2], [0, 2, 3]],
-            vertex_normals=np.tile(surface.normal_W, (4, 1)),
-            albedo_factor=palette.SURFACE,
-        ),
-        static=True,
-    )
-    recording.log(
-        f"{path}/grid",
-        rr.LineStrips3D(lines, colors=palette.SURFACE_GRID, radii=_GRID_WIDTH),
-        static=True,
-    )
+    recording.log(f"{path}/patch", patch, static=True)
+    grid = rr.LineStrips3D(lines, colors=palette.SURFACE_GRID, radii=_GRID_WIDTH)
+    recording.log(f"{path}/grid", grid, static=True)
 
 
 def draw_body(recording: rr.RecordingStream, body_name: str, shape: Shape) -> None:
@@ -71,7 +64,7 @@ def draw_body(recording: rr.RecordingStream, body_name: str, shape: Shape) -> No
     if len(shape.triangles_B) > 0:
         recording.log(f"{path}/faces", solid(shape, palette.MEASURED), static=True)
     if len(shape.edges_B) > 0:
-        edges = rr.LineStrips3D(shape.edges_B, colors=palette.MEASURED_EDGE, radii=_EDGE_WIDTH)
+        edges = rr.LineStrips3D(list(shape.edges_B), colors=palette.MEASURED_EDGE, radii=_EDGE_WIDTH)
         recording.log(f"{path}/edges", edges, static=True)
     else:
         ball = rr.Points3D([[0.0, 0.0, 0.0]], radii=0.5 * shape.size, colors=palette.MEASURED)
@@ -91,7 +84,7 @@ def solid(shape: Shape, color: palette.Color) -> rr.Mesh3D:
 
 
 def tangents(normal_W: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return two unit vectors, (3,), that make a right-handed frame with a unit normal: for z they are x and y."""
+    """Return two unit vectors, (3,), that with a unit normal make a right-handed frame: x and y for z."""
     helper = np.array([1.0, 0.0, 0.0]) if abs(normal_W[0]) < 0.9 else np.array([0.0, 1.0, 0.0])
     u_W = helper - (helper @ normal_W) * normal_W
     u_W = u_W / np.linalg.norm(u_W)

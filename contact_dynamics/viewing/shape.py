@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 FLAT: Final = 1e-6
-"""Relative to a body's size: thinner than this it is drawn as a polygon, a line or a point. Also 1 - cos of the angle
-below which two triangles are one face: 0.08 degrees."""
+"""Relative to a body's size: thinner than this it is drawn as a polygon, a line or a point. Also 1 - cos of
+the angle below which two triangles are one face: 0.08 degrees."""
 
 NO_SIZE: Final = 0.05
 """m. Size that a body without shape is drawn with."""
@@ -29,7 +29,7 @@ class Shape:
 
 
 def convex_shape(vertices_B: FloatArray) -> Shape:
-    """Return the shape of the convex hull of corners, (k, 3), m; they may lie in a plane, on a line, or be none."""
+    """Return the shape of the hull of corners, (k, 3), m, which may lie in a plane, on a line, or be none."""
     if len(vertices_B) == 0:
         return _skeleton(np.zeros((0, 2, 3)), NO_SIZE)
     center = vertices_B.mean(axis=0)

@@ -1,7 +1,7 @@
 """Where the picture goes: a file, and a viewer that is started, served or connected to, or both at once.
 
-All network ends are of this machine (127.0.0.1) unless a URL names another. A viewer that dies or hangs later takes
-nothing with it: what is drawn goes on into the file, and closing waits for it a few seconds at most.
+All network ends are of this machine (127.0.0.1) unless a URL names another. A viewer that dies or hangs later
+takes nothing with it: what is drawn goes on into the file, and closing waits for it a few seconds at most.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class OpenRecording:
     """A recording that is open to its sinks."""
 
     def __init__(self, sinks: Sinks, *, on_problem: Callable[[str], object]) -> None:
-        """Open the sinks; a viewer that cannot be reached is a problem to tell, and the file is written all the same.
+        """Open the sinks; a viewer that cannot be reached is told, and the file is written all the same.
 
         Raises:
             OSError: the file cannot be written.
@@ -65,7 +65,7 @@ class OpenRecording:
         self.description = ", ".join(self._open(sinks)) or "nowhere"
 
     def close(self) -> None:
-        """Write what is left, and let go of the viewer, which stays open; wait for one that hangs no longer than 5 s."""
+        """Write what is left and let go of the viewer, which stays open; wait 5 s for one that hangs."""
         thread = threading.Thread(target=self._disconnect, daemon=True)
         thread.start()
         thread.join(_CLOSE_S)
@@ -115,7 +115,7 @@ def _start_viewer(port: int) -> str:
     """Start a viewer of its own session, unless one listens already; return what went wrong, or nothing."""
     if _listens(LOCAL, port):
         return ""
-    viewer = subprocess.Popen(
+    viewer = subprocess.Popen(  # noqa: S603  our own program
         [sys.executable, "-m", "rerun", "--bind", LOCAL, "--port", str(port), "--expect-data-soon"],
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,

@@ -1,4 +1,4 @@
-"""Where a body was predicted to be: the path of its centre of mass, outlines along it, and the pose at its end."""
+"""Where a body was predicted to be: the path of its centre of mass, outlines on it, the pose at its end."""
 
 from __future__ import annotations
 
@@ -28,31 +28,29 @@ _OUTLINE_WIDTH: Final = -0.8
 _END_WIDTH: Final = -1.5
 
 
-def draw_trajectory(recording: rr.RecordingStream, body_name: str, shape: Shape, trajectory: Trajectory) -> None:
-    """Draw a trajectory at the recording's current time; one without samples takes away what was drawn before."""
+def draw_trajectory(
+    recording: rr.RecordingStream, body_name: str, shape: Shape, trajectory: Trajectory
+) -> None:
+    """Draw a trajectory at the recording's current time; one without samples clears what was drawn before."""
     path = predicted_entity(body_name)
     if len(trajectory) == 0:
         recording.log(path, rr.Clear(recursive=True))
         return
     last = len(trajectory) - 1
     samples = np.unique(np.linspace(0, last, min(last + 1, MOST_PATH_POINTS)).round().astype(int))
-    strip = trajectory.p_WB_W[samples]
-    recording.log(f"{path}/path", rr.LineStrips3D([strip], colors=palette.PREDICTED, radii=_PATH_WIDTH))
+    strip = rr.LineStrips3D([trajectory.p_WB_W[samples]], colors=palette.PREDICTED, radii=_PATH_WIDTH)
+    recording.log(f"{path}/path", strip)
     times = np.linspace(trajectory.seconds[0], trajectory.seconds[-1], OUTLINES + 2)[1:-1]
-    chosen = np.unique(np.abs(trajectory.seconds[:, None] - times).argmin(axis=0)) if last > 0 else np.array([], int)
-    outlines = [outline(shape, trajectory.p_WB_W[i], trajectory.q_WB[i]) for i in chosen]
-    recording.log(
-        f"{path}/outlines",
-        rr.LineStrips3D(
-            np.concatenate([np.zeros((0, 2, 3)), *outlines]),
-            colors=palette.translucent(palette.PREDICTED, 0.45),
-            radii=_OUTLINE_WIDTH,
-        ),
-    )
+    chosen = np.unique(np.abs(trajectory.seconds[:, None] - times).argmin(axis=0))[:last]
+    edges = [edge for i in chosen for edge in outline(shape, trajectory.p_WB_W[i], trajectory.q_WB[i])]
+    color = palette.translucent(palette.PREDICTED, 0.45)
+    recording.log(f"{path}/outlines", rr.LineStrips3D(edges, colors=color, radii=_OUTLINE_WIDTH))
     end = f"{path}/end"
-    recording.log(end, rr.Transform3D(translation=trajectory.p_WB_W[last], quaternion=trajectory.q_WB[last]))
+    pose = rr.Transform3D(translation=trajectory.p_WB_W[last], quaternion=trajectory.q_WB[last])
+    recording.log(end, pose)
     if len(shape.edges_B) > 0:
-        recording.log(f"{end}/edges", rr.LineStrips3D(shape.edges_B, colors=palette.PREDICTED, radii=_END_WIDTH))
+        strips = rr.LineStrips3D(list(shape.edges_B), colors=palette.PREDICTED, radii=_END_WIDTH)
+        recording.log(f"{end}/edges", strips)
     if len(shape.triangles_B) > 0:
         recording.log(f"{end}/faces", solid(shape, palette.translucent(palette.PREDICTED, 0.25)))
 
