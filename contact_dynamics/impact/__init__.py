@@ -2,11 +2,12 @@
 
 In reading order: the laws and outcomes (`law`); the plane, with Routh's construction (`routh`, `planar`,
 `result`, `batch`); space, where sliding swerves (`sliding`, `series`, `stopping`, `progress`, `swerve`,
-`spatial`, `spatial_result`).
+`spatial`, `spatial_result`); two moving bodies (`pair`).
 """
 
 from contact_dynamics.impact.batch import PlanarImpacts, planar_impacts
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
+from contact_dynamics.impact.pair import planar_pair_impact, spatial_pair_impact
 from contact_dynamics.impact.planar import planar_impact
 from contact_dynamics.impact.result import PlanarImpact
 from contact_dynamics.impact.routh import ImpulsePath, InverseInertia
@@ -24,5 +25,7 @@ __all__ = [
     "SpatialImpact",
     "planar_impact",
     "planar_impacts",
+    "planar_pair_impact",
     "spatial_impact",
+    "spatial_pair_impact",
 ]

@@ -14,7 +14,7 @@ from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.result import PlanarImpact
 from contact_dynamics.impact.routh import impulse_path, inverse_inertia
-from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity
+from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, Vector2
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_not_negative
 
@@ -49,18 +49,7 @@ def planar_impact(
     w = velocity.w
     c_x = v_x - w * r_y
     c_y = v_y + w * r_x
-    v_t = c_x * n_y - c_y * n_x
-    v_n = c_x * n_x + c_y * n_y
-    if v_n > tolerance:
-        raise SeparatingContactError(
-            "contact normal velocity",
-            f"v_n = {v_n:.9g} m/s",
-            f"at most {tolerance:g} m/s, since above it nothing strikes",
-        )
-    if v_n >= -tolerance:
-        v_n = 0.0
-    if -tolerance <= v_t <= tolerance:
-        v_t = 0.0
+    v_t, v_n = approach(c_x * n_y - c_y * n_x, c_x * n_x + c_y * n_y, tolerance)
     r_t = r_x * n_y - r_y * n_x
     r_n = r_x * n_x + r_y * n_y
     response = inverse_inertia(body.mass, body.inertia, r_t, r_n)
@@ -79,3 +68,18 @@ def planar_impact(
         contact_path=path,
         impulse=(i_x, i_y),
     )
+
+
+def approach(v_t: float, v_n: float, tolerance: float) -> Vector2:
+    """Return the contact's velocity with components within ``tolerance`` as 0; refuse one that separates.
+
+    Raises:
+        SeparatingContactError: ``v_n`` is above the tolerance.
+    """
+    if v_n > tolerance:
+        raise SeparatingContactError(
+            "contact normal velocity",
+            f"v_n = {v_n:.9g} m/s",
+            f"at most {tolerance:g} m/s, since above it nothing strikes",
+        )
+    return (0.0 if -tolerance <= v_t <= tolerance else v_t, 0.0 if v_n >= -tolerance else v_n)

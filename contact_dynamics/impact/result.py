@@ -16,10 +16,11 @@ class PlanarImpact:
 
     law: RestitutionLaw  # the restitution law that was asked for
     velocity: PlanarVelocity  # m/s, rad/s, of the body afterwards, axes of the plane
-    velocity_before_C: Vector2  # m/s, of the contact before, contact axes; 0 where within tolerance
+    velocity_before_C: Vector2  # m/s, of the contact before, relative, contact axes; 0: within tolerance
     inverse_inertia: InverseInertia  # 1/kg, the contact's response to impulse
     contact_path: ImpulsePath  # impulse path and the contact's velocity afterwards, contact axes
     impulse: Vector2  # N s, total, on the body, axes of the plane
+    other_velocity: PlanarVelocity | None = None  # of the second body afterwards; None: the fixed world
 
     @property
     def outcome(self) -> ImpactOutcome:

@@ -21,7 +21,7 @@ from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.sliding import SlidingLaw
 from contact_dynamics.impact.spatial_result import SpatialImpact
-from contact_dynamics.impact.swerve import trace
+from contact_dynamics.impact.swerve import SpatialPath, trace
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_not_negative, check_unit, check_within
 
@@ -67,9 +67,43 @@ def spatial_impact(
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
 
     inverse = contact_inverse_inertia(body, state, arm)
-    axes, sliding = principal_contact_axes(inverse, normal, mu)
     before = state.v_WB_W + _cross(state.w_WB_W, arm)
-    u1, u2, v_n = (axes.T @ before).tolist()
+    axes, path = contact_path(
+        inverse, normal, before, friction=mu, restitution=e, law=law, tolerance=tolerance
+    )
+    impulse = axes @ path.impulse
+    return SpatialImpact(
+        law=law,
+        outcome=path.outcome,
+        jams=path.jams,
+        state=pushed(body, state, arm, impulse),
+        impulse_W=impulse,
+        compression_W=axes @ path.compression,
+        path_W=np.array([vertex for _, vertex in path.vertices]) @ axes.T,
+        path_events=tuple(event for event, _ in path.vertices),
+        velocity_before_W=before,
+        velocity_after_W=axes @ (path.u[0], path.u[1], path.v_n),
+        inverse_inertia_W=inverse,
+    )
+
+
+def contact_path(
+    inverse_inertia_W: FloatArray,
+    normal: FloatArray,
+    velocity: FloatArray,
+    *,
+    friction: float,
+    restitution: float,
+    law: RestitutionLaw,
+    tolerance: float,
+) -> tuple[FloatArray, SpatialPath]:
+    """Return contact axes as columns, (3, 3), and the impulse path in them, for a contact velocity.
+
+    Raises:
+        SeparatingContactError: the normal velocity is above the tolerance.
+    """
+    axes, sliding = principal_contact_axes(inverse_inertia_W, normal, friction)
+    u1, u2, v_n = (axes.T @ velocity).tolist()
     if v_n > tolerance:
         raise SeparatingContactError(
             "contact normal velocity",
@@ -78,24 +112,15 @@ def spatial_impact(
         )
     if math.hypot(u1, u2) <= tolerance:
         u1 = u2 = 0.0
-    path = trace(sliding, (u1, u2), v_n if v_n < -tolerance else 0.0, restitution=e, law=law)
+    if v_n >= -tolerance:
+        v_n = 0.0
+    return axes, trace(sliding, (u1, u2), v_n, restitution=restitution, law=law)
 
-    vertices = np.array([vertex for _, vertex in path.vertices]) @ axes.T
-    impulse = axes @ path.impulse
-    angular = np.linalg.solve(body.inertia_in_world(state.R_WB), _cross(arm, impulse))
-    return SpatialImpact(
-        law=law,
-        outcome=path.outcome,
-        jams=path.jams,
-        state=replace(state, v_WB_W=state.v_WB_W + impulse / body.mass, w_WB_W=state.w_WB_W + angular),
-        impulse_W=impulse,
-        compression_W=axes @ path.compression,
-        path_W=vertices,
-        path_events=tuple(event for event, _ in path.vertices),
-        velocity_before_W=before,
-        velocity_after_W=axes @ (path.u[0], path.u[1], path.v_n),
-        inverse_inertia_W=inverse,
-    )
+
+def pushed(body: MassProperties, state: BodyState, arm: FloatArray, impulse: FloatArray) -> BodyState:
+    """Return the state after ``impulse``, (3,), N s, at ``arm``, (3,), m from the centre, world axes."""
+    turn = np.linalg.solve(body.inertia_in_world(state.R_WB), _cross(arm, impulse))
+    return replace(state, v_WB_W=state.v_WB_W + impulse / body.mass, w_WB_W=state.w_WB_W + turn)
 
 
 def contact_inverse_inertia(body: MassProperties, state: BodyState, arm: FloatArray) -> FloatArray:

@@ -13,7 +13,7 @@ from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity
 
 
 def random_cases(count: int) -> dict[str, np.ndarray]:
-    """Draw approaching contacts, among them exact special cases: at rest, level, rough, smooth, e at its ends."""
+    """Draw approaching contacts, among them exact cases: at rest, level, rough, smooth, e = 0 and 1."""
     rng = np.random.default_rng(7)
     angle = rng.uniform(-math.pi, math.pi, count)
     cases = {
