@@ -114,7 +114,7 @@ def project(
         )
     _check_ratio("contact normals", float(np.abs(contacts.normals_W @ normal).max(initial=0.0)), plane)
     _check_ratio("inertia", _inertia_coupling(body, state, normal), plane)
-    _check_ratio("applied force", _ratio(abs(force_W @ normal), math.sqrt(force_W @ force_W)), plane)
+    _check_ratio("applied force", _ratio(float(abs(force_W @ normal)), math.sqrt(force_W @ force_W)), plane)
     planar_body = PlanarBody(
         mass=body.mass, inertia=float(normal @ body.inertia_in_world(state.R_WB) @ normal)
     )
