@@ -1,4 +1,4 @@
-"""Answers about contact modes in a plane of motion to the service's response."""
+"""Answers about contact modes in a plane of motion to the service's response, in world axes."""
 
 from __future__ import annotations
 
@@ -6,15 +6,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contact_dynamics_interfaces.msg import ContactMode
+from contact_dynamics_interfaces.msg import ContactMode, ModeWrenches
 from msg_adapters.contacts import flat
 
 if TYPE_CHECKING:
+    from array import array
     from collections.abc import Sequence
 
-    from contact_dynamics.contact_modes.result import ConsistentMode, ContactModeAnswer
-    from contact_dynamics.planar import Vector2
-    from contact_dynamics.plane_of_motion import PlanarProblem
+    from contact_dynamics.contact_modes import (
+        ConsistentMode,
+        ContactModeAnswer,
+        ModeMargin,
+        ModeWrenchSet,
+        PlanarStatics,
+    )
+    from contact_dynamics.planar import PlanarWrench, Vector2
+    from contact_dynamics.plane_of_motion import PlanarProblem, PlaneOfMotion
     from contact_dynamics.validation import FloatArray
 
 
@@ -34,6 +41,49 @@ def write_planar_answer(response: Any, answer: ContactModeAnswer, problem: Plana
     response.acceleration_tolerance = answer.acceleration_tolerance
 
 
+def write_planar_margins(response: Any, margins: Sequence[ModeMargin], plane: PlaneOfMotion) -> None:
+    """Write the margins of the consistent modes into a response that holds those modes, in the same order."""
+    for msg, margin in zip(response.modes, margins, strict=True):
+        msg.margin = margin.margin
+        msg.margin_length = margin.length
+        msg.margin_wrench = _wrench_row(margin.change, plane)
+        msg.margin_verdict = int(margin.verdict_beyond)
+        msg.margin_modes = list(margin.modes_beyond)
+
+
+def write_planar_statics(response: Any, statics: PlanarStatics) -> None:
+    """Write the answers to the static questions into a response."""
+    response.equilibrium = int(statics.equilibrium)
+    response.jammed = int(statics.jammed)
+    response.wedged = response.CERTAIN if statics.wedged else response.NO
+    response.stable_disturbance = statics.stable_disturbance
+
+
+def wrench_set_to_msg(wrenches: ModeWrenchSet, plane: PlaneOfMotion) -> ModeWrenches:
+    """Return the applied wrenches of one mode."""
+    return ModeWrenches(
+        mode=wrenches.mode,
+        vertices=_wrench_rows(wrenches.vertices, plane),
+        generators=_wrench_rows(wrenches.generators, plane),
+        half_spaces=flat(
+            np.array(
+                [
+                    [*plane.lift((side.a[0], side.a[1])), *(side.a[2] * plane.normal_W), side.b]
+                    for side in wrenches.half_spaces
+                ]
+            )
+        ),
+    )
+
+
+def _wrench_rows(wrenches: Sequence[PlanarWrench], plane: PlaneOfMotion) -> array[float]:
+    return flat(np.array([_wrench_row(wrench, plane) for wrench in wrenches]))
+
+
+def _wrench_row(wrench: PlanarWrench, plane: PlaneOfMotion) -> FloatArray:
+    return np.concatenate([plane.lift(wrench.f), wrench.moment * plane.normal_W])
+
+
 def _mode_to_msg(mode: ConsistentMode, problem: PlanarProblem) -> ContactMode:
     plane = problem.plane
     return ContactMode(
@@ -45,7 +95,6 @@ def _mode_to_msg(mode: ConsistentMode, problem: PlanarProblem) -> ContactMode:
         motion_unique=mode.motion_unique,
         contact_accelerations=flat(_lift(mode.contact_accelerations, problem)),
         margin=float("nan"),
-        margin_length=problem.body.radius_of_gyration,
     )
 
 

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from contact_dynamics.contact_modes import ModeVerdict, planar_contact_modes
+from contact_dynamics.contact_modes import (
+    ModeVerdict,
+    planar_contact_modes,
+    planar_mode_map,
+    planar_mode_margins,
+    planar_statics,
+)
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.impact import planar_impact
 from contact_dynamics.nodes.subject import (
@@ -15,8 +21,13 @@ from contact_dynamics.nodes.subject import (
     subject_of,
     velocity_tolerance_of,
 )
-from contact_dynamics.validation import check_array
-from msg_adapters.contact_mode import write_planar_answer
+from contact_dynamics.validation import check_array, check_not_negative
+from msg_adapters.contact_mode import (
+    wrench_set_to_msg,
+    write_planar_answer,
+    write_planar_margins,
+    write_planar_statics,
+)
 from msg_adapters.contacts import contacts_to_msg
 from msg_adapters.geometry import vector_from_msg, vector_to_msg
 from msg_adapters.impact import planar_impact_to_msg
@@ -26,8 +37,6 @@ if TYPE_CHECKING:
     from contact_dynamics.plane_of_motion import PlanarProblem
     from contact_dynamics_interfaces.msg import Impact as ImpactMsg
 
-_NOT_YET = ("want_margins", "want_wrench_cones")
-
 
 def predict_contact_mode(request: Any, response: Any, knowledge: Knowledge) -> None:
     """Answer one request, or raise a `ContactDynamicsError` that says what is wrong with it."""
@@ -36,9 +45,6 @@ def predict_contact_mode(request: Any, response: Any, knowledge: Knowledge) -> N
         raise NotSupportedError(message)
     if request.problem not in (request.AUTOMATIC, request.PLANAR):
         raise InvalidFieldError("problem", request.problem, "AUTOMATIC (0), PLANAR (1) or SPATIAL (2)")
-    for field in _NOT_YET:
-        if getattr(request, field):
-            raise NotSupportedError(f"{field}: found true, allowed is false in this version")
     subject = subject_of(request, knowledge)
     contacts = contacts_of(request, subject, knowledge)
     body = subject.body.mass_properties
@@ -56,6 +62,29 @@ def predict_contact_mode(request: Any, response: Any, knowledge: Knowledge) -> N
         velocity_tolerance=velocity_tolerance_of(request, knowledge),
     )
     write_planar_answer(response, answer, problem)
+    if request.want_margins:
+        margins = planar_mode_margins(
+            problem.body,
+            problem.velocity,
+            problem.contacts,
+            problem.wrench,
+            margin_length=_margin_length(request),
+            velocity_tolerance=answer.velocity_tolerance,
+        )
+        write_planar_margins(response, margins, problem.plane)
+    if request.want_wrenches:
+        sets = planar_mode_map(
+            problem.body,
+            problem.contacts,
+            velocity=problem.velocity,
+            velocity_tolerance=answer.velocity_tolerance,
+        )
+        response.wrench_sets = [wrench_set_to_msg(wrenches, problem.plane) for wrenches in sets]
+    if request.want_statics:
+        statics = planar_statics(
+            problem.body, problem.contacts, problem.wrench, margin_length=_margin_length(request)
+        )
+        write_planar_statics(response, statics)
     if request.want_impact and answer.verdict in {ModeVerdict.INCONSISTENT, ModeVerdict.IMPACT}:
         response.impact = [_settling_impact(subject, problem, answer.velocity_tolerance)]
     response.problem = request.PLANAR
@@ -64,6 +93,11 @@ def predict_contact_mode(request: Any, response: Any, knowledge: Knowledge) -> N
     response.plane_normal = vector_to_msg(problem.plane.normal_W)
     response.out_of_plane = problem.out_of_plane
     response.distance_tolerance = distance_tolerance_of(request, knowledge)
+
+
+def _margin_length(request: Any) -> float | None:
+    """Return the metric's length that a request asks for, m; None: the radius of gyration."""
+    return check_not_negative("margin_length", request.margin_length) or None
 
 
 def _settling_impact(subject: Subject, problem: PlanarProblem, velocity_tolerance: float) -> ImpactMsg:

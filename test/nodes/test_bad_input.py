@@ -120,6 +120,11 @@ def out_of_plane(request: Any) -> None:
     request.state.angular_velocity.x = 0.25
 
 
+def margin_length(request: Any) -> None:
+    """A metric without sense, where it is used."""
+    request.want_margins, request.margin_length = True, -1.0
+
+
 def crooked_plane(request: Any) -> None:
     """A plane of motion whose normal is not a unit vector."""
     request.problem = request.PLANAR
@@ -140,7 +145,7 @@ CASES = [
     ],
     (PredictContactMode, put("applied_wrench.force.x", math.nan), "INVALID_FIELD", "applied_wrench.force"),
     (PredictContactMode, put("problem", 2), "NOT_SUPPORTED", "problem: found SPATIAL"),
-    (PredictContactMode, put("want_margins", True), "NOT_SUPPORTED", "want_margins"),
+    (PredictContactMode, margin_length, "INVALID_FIELD", "margin_length: found -1.0"),
     (PredictContactMode, put("gravity", 5), "INVALID_FIELD", "gravity: found 5"),
     (PredictImpact, put("state.linear_velocity.z", 1.0), "SEPARATING", "v_n = 1 m/s"),
     (PredictImpact, put("restitution_law", 3), "INVALID_FIELD", "restitution_law: found 3"),
