@@ -2,7 +2,8 @@
 
 In reading order: the laws and outcomes (`law`); the plane, with Routh's construction (`routh`, `planar`,
 `result`, `batch`); space, where sliding swerves (`sliding`, `series`, `stopping`, `progress`, `swerve`,
-`spatial`, `spatial_result`); two moving bodies (`pair`).
+`spatial`, `spatial_result`); two moving bodies (`pair`); several contacts at once
+(`several`, `simultaneous`).
 """
 
 from contact_dynamics.impact.batch import PlanarImpacts, planar_impacts
@@ -11,6 +12,14 @@ from contact_dynamics.impact.pair import planar_pair_impact, spatial_pair_impact
 from contact_dynamics.impact.planar import planar_impact
 from contact_dynamics.impact.result import PlanarImpact
 from contact_dynamics.impact.routh import ImpulsePath, InverseInertia
+from contact_dynamics.impact.several import (
+    OrderedOutcomes,
+    SeveralContactsLaw,
+    SeveralImpact,
+    SeveralVerdict,
+    outcomes_over_orders,
+    several_impact,
+)
 from contact_dynamics.impact.spatial import spatial_impact
 from contact_dynamics.impact.spatial_result import SpatialImpact
 
@@ -18,14 +27,20 @@ __all__ = [
     "ImpactOutcome",
     "ImpulsePath",
     "InverseInertia",
+    "OrderedOutcomes",
     "PathEvent",
     "PlanarImpact",
     "PlanarImpacts",
     "RestitutionLaw",
+    "SeveralContactsLaw",
+    "SeveralImpact",
+    "SeveralVerdict",
     "SpatialImpact",
+    "outcomes_over_orders",
     "planar_impact",
     "planar_impacts",
     "planar_pair_impact",
+    "several_impact",
     "spatial_impact",
     "spatial_pair_impact",
 ]
