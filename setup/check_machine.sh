@@ -53,13 +53,11 @@ raise SystemExit(not (ordinary and version >= [2, 28]))'
                 refuse "$python does not fit the wheels: they need 64-bit CPython, with its lock, and glibc 2.28 or newer."
             fi
             ;;
-        *)
-            lacks "$python is Python $version; 3.10 to 3.14 are supported. Another one: make PYTHON=python3.12 ..." \
-                python3 python3
-            ;;
+        *) refuse "$python is Python $version; 3.10 to 3.14 are supported. To name another one: make PYTHON=python3.12 ..." ;;
     esac
 else
-    lacks "$python does not run. Python 3.10 to 3.14 is needed; one by name: make PYTHON=python3.12 ..." python3 python3
+    lacks "$python does not run. Python 3.10 to 3.14 is needed; to name one: make PYTHON=python3.12 ..." \
+        "python3-dev python3-venv" python3-devel
 fi
 
 if ! compiles "${CC:-cc}" c; then
@@ -69,11 +67,19 @@ if ! compiles "${CXX:-c++}" c++; then
     lacks "There is no working C++ compiler (${CXX:-c++}); half of what rosidl generates is C++." build-essential gcc-c++
 fi
 
+list() {
+    printf '%s\n' "$@" | sort -u | tr '\n' ' '
+}
+
 if [ "$problems" -gt 0 ]; then
-    echo "Nothing was installed; the above has to be put right first." >&2
+    echo "Nothing was installed: the above has to be put right first." >&2
     if [ -n "$packages_debian" ]; then
-        echo "  Debian, Ubuntu: sudo apt install$(printf '%s\n' $packages_debian | sort -u | tr '\n' ' ' | sed 's/^/ /')" >&2
-        echo "  Fedora:         sudo dnf install$(printf '%s\n' $packages_fedora | sort -u | tr '\n' ' ' | sed 's/^/ /')" >&2
+        # The lists are split into words on purpose.
+        # shellcheck disable=SC2086
+        {
+            echo "  Debian, Ubuntu: sudo apt install $(list $packages_debian)"
+            echo "  Fedora:         sudo dnf install $(list $packages_fedora)"
+        } >&2
     fi
     exit 1
 fi

@@ -1,0 +1,142 @@
+"""Both packages as ROS sees them: found by colcon, of one version, with every dependency declared."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from contact_dynamics.command_line import VERBS
+
+ROOT = Path(__file__).parents[2]
+MANIFESTS = (ROOT / "package.xml", ROOT / "contact_dynamics_interfaces" / "package.xml")
+OWN = {"contact_dynamics", "msg_adapters", *(path.stem for path in (ROOT / "test").iterdir())}
+
+# Where a rosdep key is not called what is imported; None: there is no key, and pip installs it.
+KEYS = {
+    "colcon_core": "python3-colcon-common-extensions",
+    "hypothesis": "python3-hypothesis",
+    "mcap": "mcap-ros2-support",
+    "mcap_ros2": "mcap-ros2-support",
+    "mpmath": None,
+    "numpy": "python3-numpy",
+    "pytest": "python3-pytest",
+    "rerun": None,
+    "rosbags": "python3-rosbags-pip",
+    "scipy": "python3-scipy",
+    "typing_extensions": "python3-typing-extensions",
+    "yaml": "python3-yaml",
+}
+
+
+def imported(folder: str) -> tuple[set[str], set[str]]:
+    """The modules from elsewhere that a folder's Python imports, and those that its tests can do without."""
+    needed, optional = set(), set()
+    for path in (ROOT / folder).rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                needed |= {alias.name for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and not node.level and node.module:
+                needed.add(node.module)
+            elif isinstance(node, ast.Call) and ast.unparse(node.func) == "pytest.importorskip":
+                optional |= {str(name.value) for name in node.args if isinstance(name, ast.Constant)}
+    known = sys.stdlib_module_names | OWN
+    return {name.split(".")[0] for name in needed} - known, {name.split(".")[0] for name in optional} - known
+
+
+def keys(modules: set[str]) -> set[str]:
+    """The rosdep keys that stand for modules."""
+    return {key for key in (KEYS.get(module, module) for module in modules) if key}
+
+
+def declared(tag: str) -> set[str]:
+    """The dependencies of one kind in package.xml."""
+    return {element.text or "" for element in ET.parse(MANIFESTS[0]).getroot().findall(tag)}
+
+
+def test_package_xml_declares_what_the_packages_import_and_nothing_else() -> None:
+    needed = set().union(*(imported(folder)[0] for folder in ("contact_dynamics", "msg_adapters", "launch")))
+    assert keys(needed) == declared("exec_depend")
+
+
+def test_package_xml_declares_what_the_tests_import_beside_and_nothing_else() -> None:
+    needed, optional = imported("test")
+    run = declared("exec_depend")
+    # This file starts colcon as a program.
+    assert keys(needed | {"colcon_core"}) - run <= declared("test_depend")
+    assert declared("test_depend") <= keys(needed | optional | {"colcon_core"}) - run
+
+
+def test_what_has_no_rosdep_key_is_named_for_pip_beside_the_keys() -> None:
+    text = MANIFESTS[0].read_text(encoding="utf-8")
+    pins = (ROOT / "requirements" / "core.txt").read_text(encoding="utf-8")
+    rerun = re.search(r"^rerun-sdk\S+$", pins, flags=re.MULTILINE)
+    assert rerun
+    assert f'pip install "{rerun[0]}"' in text
+    assert "pip install mpmath" in text
+
+
+def test_both_packages_have_one_version_and_one_maintainer() -> None:
+    roots = [ET.parse(path).getroot() for path in MANIFESTS]
+    versions = {root.findtext("version") for root in roots}
+    emails = {element.get("email") for root in roots for element in root.findall("maintainer")}
+    assert len(versions) == 1
+    assert len(emails) == 1
+    # colcon silently takes a package whose maintainer has no valid address for plain Python.
+    assert re.fullmatch(r"[-\w.%+]+@[-\w.]+\.[a-zA-Z]{2,}", emails.pop() or "")
+
+
+def test_setup_py_takes_the_version_from_package_xml() -> None:
+    command = [sys.executable, "setup.py", "--version"]
+    answer = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    assert answer.stdout.split()[-1] == ET.parse(MANIFESTS[0]).getroot().findtext("version")
+
+
+def test_colcon_finds_both_packages_from_the_root() -> None:
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("COLCON_")}
+    answer = subprocess.run(
+        [sys.executable, "-c", "from colcon_core.command import main; raise SystemExit(main())", "list"],
+        cwd=ROOT,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert [line.split("\t") for line in answer.stdout.splitlines()] == [
+        ["contact_dynamics", ".", "(ros.ament_python)"],
+        ["contact_dynamics_interfaces", "contact_dynamics_interfaces", "(ros.ament_cmake)"],
+    ]
+
+
+def test_every_ros_wheel_is_pinned_where_what_it_pulls_in_is() -> None:
+    constraints = set((ROOT / "requirements" / "constraints.txt").read_text(encoding="utf-8").split("\n"))
+    pins = set()
+    for kind in ("jazzy", "build"):
+        lines = (ROOT / "requirements" / f"{kind}.txt").read_text(encoding="utf-8").splitlines()
+        pins |= {re.sub(r"\[\w+\]", "", line) for line in lines if line.startswith(("ros-", "catkin"))}
+    assert pins
+    assert pins <= constraints
+
+
+def test_ros2_run_finds_an_executable_for_each_verb() -> None:
+    executables = list((ROOT / "executables").iterdir())
+    assert {path.name for path in executables} == set(VERBS)
+    assert all(os.access(path, os.X_OK) for path in executables)
+
+
+@pytest.mark.parametrize("name", sorted(path.name for path in (ROOT / "executables").iterdir()))
+def test_an_executable_is_the_verb_of_its_name(name: str) -> None:
+    answer = subprocess.run(
+        [sys.executable, ROOT / "executables" / name, "--help"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert answer.returncode == 0, answer.stderr
+    assert name in answer.stdout
