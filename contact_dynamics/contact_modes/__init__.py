@@ -3,7 +3,8 @@
 In reading order: verdicts and evidence (`result`); one contact in closed form (`single`); any planar set
 (`planar`), stated as a cone (`problem`, `cone`), its modes enumerated (`enumeration`) and judged (`dynamics`,
 `wrench_cone`, `least_force`); applied wrenches of each mode (`wrench_sets`), their map and margins
-(`margins`); equilibrium, jamming and wedging (`statics`).
+(`margins`); equilibrium, jamming and wedging (`statics`). In space: contacting and separating modes
+(`spatial`).
 """
 
 from contact_dynamics.contact_modes.margins import ModeMargin, planar_mode_map, planar_mode_margins
@@ -15,6 +16,7 @@ from contact_dynamics.contact_modes.result import (
     Refusal,
     RefusedMode,
 )
+from contact_dynamics.contact_modes.spatial import spatial_kinematic_modes
 from contact_dynamics.contact_modes.statics import Certainty, PlanarStatics, planar_statics
 from contact_dynamics.contact_modes.wrench_sets import ModeWrenchSet, WrenchHalfSpace
 
@@ -33,4 +35,5 @@ __all__ = [
     "planar_mode_map",
     "planar_mode_margins",
     "planar_statics",
+    "spatial_kinematic_modes",
 ]

@@ -1,0 +1,192 @@
+"""Contacting and separating modes of a body in space: lecture 26's strings, with `c` for all that stays.
+
+The accelerations (a, alpha) that do not penetrate are a polyhedral cone in R^6, and a mode is one of its
+faces: the contacts that stay are the rows that vanish on it. Every face is spanned by extreme rays, so that
+its set of staying contacts is the intersection of theirs: the modes are the closure under intersection of the
+rays' sets, kept as the bits of integers. The rays are the facets of the convex hull of the rows, seen from an
+inner point (Huang, Cheng and Mason, Efficient Contact Mode Enumeration in 3D, 2020). The cost follows the
+number of modes.
+
+A body that turns adds centripetal terms; the polyhedron is then the section at height one of a cone in R^7.
+
+Does not cover: which way a contact that stays slides, or whether it sticks, and the forces.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.errors import TooLargeError
+from contact_dynamics.tolerances import ROW_TOLERANCE, VELOCITY_TOLERANCE
+from contact_dynamics.validation import check_not_negative
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from contact_dynamics.contact import ContactSet
+    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.validation import FloatArray
+
+MOST_SPATIAL_CONTACTS: Final = 64
+"""Longest list of contacts accepted: a cone in R^6 can have n^2 rays and more faces than that."""
+
+_WELL_INSIDE: Final = 0.05
+"""Least height of a unit point over all unit rows at which the rows' sum serves as inner point as it is."""
+
+
+def spatial_kinematic_modes(
+    state: BodyState, contacts: ContactSet, *, velocity_tolerance: float = VELOCITY_TOLERANCE
+) -> tuple[str, ...]:
+    """Return every contacting/separating mode that some acceleration realises, in alphabetical order.
+
+    A mode has one letter a contact, in the contacts' order: `c` it stays in contact, `s` it separates. Empty
+    where a contact approaches, and where every acceleration penetrates.
+
+    Args:
+        state: Of the body, with its origin at the centre of mass.
+        contacts: At most `MOST_SPATIAL_CONTACTS`.
+        velocity_tolerance: m/s, >= 0. A contact's normal velocity within it counts as zero, and so does an
+            angular velocity that moves no contact relative to the centre of mass by more than that.
+
+    Raises:
+        InvalidFieldError: the tolerance is negative.
+        TooLargeError: more than `MOST_SPATIAL_CONTACTS` contacts.
+    """
+    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
+    n = len(contacts)
+    if n > MOST_SPATIAL_CONTACTS:
+        raise TooLargeError("contacts", f"{n} contacts", f"at most {MOST_SPATIAL_CONTACTS}")
+    r_W = contacts.p_WC_W - state.p_WB_W
+    v_n = np.sum(contacts.normals_W * state.velocity_of_point(contacts.p_WC_W), axis=1)
+    if np.any(v_n < -tolerance):
+        return ()
+    touching = np.flatnonzero(v_n <= tolerance)
+    if touching.size == 0:
+        return ("s" * n,)
+    rows = _contact_rows(r_W[touching], contacts.normals_W[touching])
+    reach = float(np.linalg.norm(r_W, axis=1).max())
+    below = 0
+    if float(np.linalg.norm(state.w_WB_W)) * reach > tolerance:
+        turned = np.cross(state.w_WB_W, np.cross(state.w_WB_W, r_W[touching]))
+        offsets = np.sum(contacts.normals_W[touching] * turned, axis=1)
+        scale = float(np.abs(offsets).max())
+        if scale > 0.0:
+            below = 1 << touching.size
+            rows = np.vstack(
+                [np.column_stack([rows, offsets / scale]), np.eye(1, rows.shape[1] + 1, rows.shape[1])]
+            )
+    faces = cone_faces(rows / np.linalg.norm(rows, axis=1)[:, None])
+    return tuple(sorted(_string(n, touching, face) for face in faces if not face & below))
+
+
+def cone_faces(rows: FloatArray) -> set[int]:
+    """Return the faces of {x : rows x >= 0} as the bit sets of the rows that vanish on them.
+
+    Args:
+        rows: Unit rows, (m, d).
+    """
+    everything = (1 << len(rows)) - 1
+    inner, strict = _inner_point(rows)
+    implied = everything & ~_mask(strict)
+    if not strict.any():
+        return {everything}
+    # Within the space where the implied equations hold, and across the lines that the cone contains.
+    space = _null_space(rows[~strict])
+    reduced = rows[strict] @ space
+    reduced /= np.linalg.norm(reduced, axis=1)[:, None]
+    spread, basis = np.linalg.svd(reduced)[1:]
+    across = basis[: int((spread > ROW_TOLERANCE * spread[0]).sum())]
+    reduced = reduced @ across.T
+    point = across @ (space.T @ inner)
+    rays = _extreme_rays(reduced, point)
+    positions = [1 << int(i) for i in np.flatnonzero(strict)]
+    faces = {everything}
+    for vanishing in np.unique(np.abs(reduced @ rays.T).T <= 10.0 * ROW_TOLERANCE, axis=0):
+        ray = implied | sum(bit for bit, zero in zip(positions, vanishing, strict=True) if zero)
+        faces |= {face & ray for face in faces}
+    return faces
+
+
+def _contact_rows(r_W: FloatArray, normals_W: FloatArray) -> FloatArray:
+    """Return (n, r x n / reach) for each contact, (m, 6)."""
+    reach = float(np.linalg.norm(r_W, axis=1).max())
+    return np.hstack([normals_W, np.cross(r_W, normals_W) / (reach if reach > 0.0 else 1.0)])
+
+
+def _inner_point(rows: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """Return a point over which as many rows as can be are strictly positive, and which those are."""
+    point = rows.sum(axis=0)
+    size = float(np.linalg.norm(point))
+    if size > 0.0 and float((rows @ point).min()) > _WELL_INSIDE * size:
+        return point / size, np.ones(len(rows), dtype=bool)
+    from scipy.optimize import linprog
+
+    m, d = rows.shape
+    # Any row that can be positive can be 1, because the cone scales: the sum counts the rows that can.
+    found = linprog(
+        np.concatenate([np.zeros(d), -np.ones(m)]),
+        A_ub=np.hstack([-rows, np.eye(m)]),
+        b_ub=np.zeros(m),
+        bounds=[(None, None)] * d + [(0.0, 1.0)] * m,
+        method="highs",
+    )
+    strict = found.x[d:] > 0.5
+    if not strict.any():
+        return found.x[:d], strict
+    # The one deepest inside, in the space of the rows that cannot be positive.
+    space = _null_space(rows[~strict])
+    inside = rows[strict] @ space
+    inside /= np.linalg.norm(inside, axis=1)[:, None]
+    k = space.shape[1]
+    deepest = linprog(
+        np.concatenate([np.zeros(k), [-1.0]]),
+        A_ub=np.hstack([-inside, np.ones((len(inside), 1))]),
+        b_ub=np.zeros(len(inside)),
+        bounds=[(-1.0, 1.0)] * k + [(None, 1.0)],
+        method="highs",
+    )
+    return space @ deepest.x[:k], strict
+
+
+def _extreme_rays(rows: FloatArray, inner: FloatArray) -> FloatArray:
+    """Return the unit extreme rays, (k, d), of a pointed cone; all rows are positive at ``inner``."""
+    d = rows.shape[1]
+    if d == 1:
+        return np.sign(inner)[None, :]
+    inner = inner / np.linalg.norm(inner)
+    across = np.linalg.svd(inner[None, :])[2][1:]
+    points = (rows @ across.T) / (rows @ inner)[:, None]
+    if d == 2:
+        sides = np.array([[1.0, -points.max()], [-1.0, points.min()]])
+    else:
+        from scipy.spatial import ConvexHull
+
+        sides = ConvexHull(points).equations
+    # A side says that outward . x + offset <= 0; the ray is where that height is 0 for the points on it.
+    rays: FloatArray = -sides[:, -1:] * inner - sides[:, :-1] @ across
+    rays /= np.linalg.norm(rays, axis=1)[:, None]
+    return rays
+
+
+def _null_space(rows: FloatArray) -> FloatArray:
+    """Return an orthonormal basis, (d, k), of what the rows, (m, d), do not see."""
+    d = rows.shape[1]
+    if len(rows) == 0:
+        return np.eye(d)
+    spread, basis = np.linalg.svd(rows)[1:]
+    seen = int((spread > ROW_TOLERANCE * spread[0]).sum())
+    return np.ascontiguousarray(basis[seen:].T)
+
+
+def _mask(chosen: NDArray[np.bool_]) -> int:
+    return sum(1 << int(i) for i in np.flatnonzero(chosen))
+
+
+def _string(n: int, touching: NDArray[np.intp], face: int) -> str:
+    letters = bytearray(b"s" * n)
+    for position, contact in enumerate(touching.tolist()):
+        if face >> position & 1:
+            letters[contact] = ord("c")
+    return letters.decode()
