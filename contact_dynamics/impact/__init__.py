@@ -3,7 +3,7 @@
 In reading order: the laws and outcomes (`law`); the plane, with Routh's construction (`routh`, `planar`,
 `result`, `batch`); space, where sliding swerves (`sliding`, `series`, `stopping`, `progress`, `swerve`,
 `spatial`, `spatial_result`); two moving bodies (`pair`); several contacts at once
-(`several`, `simultaneous`).
+(`several`, `simultaneous`); uncertain states (`uncertain`).
 """
 
 from contact_dynamics.impact.batch import PlanarImpacts, planar_impacts
@@ -22,8 +22,14 @@ from contact_dynamics.impact.several import (
 )
 from contact_dynamics.impact.spatial import spatial_impact
 from contact_dynamics.impact.spatial_result import SpatialImpact
+from contact_dynamics.impact.uncertain import (
+    ImpactDistribution,
+    planar_impact_distribution,
+    spatial_impact_distribution,
+)
 
 __all__ = [
+    "ImpactDistribution",
     "ImpactOutcome",
     "ImpulsePath",
     "InverseInertia",
@@ -38,9 +44,11 @@ __all__ = [
     "SpatialImpact",
     "outcomes_over_orders",
     "planar_impact",
+    "planar_impact_distribution",
     "planar_impacts",
     "planar_pair_impact",
     "several_impact",
     "spatial_impact",
+    "spatial_impact_distribution",
     "spatial_pair_impact",
 ]
