@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.tolerances import GRAZING_DEPTH
-from contact_dynamics.tumbling.polhode import Spin
+from contact_dynamics.tumbling.polhode import Spin, largest_rate
 from contact_dynamics.tumbling.quaternions import conjugate, rotated
 from contact_dynamics.validation import FloatArray, check_array, check_not_negative, check_unit
 
@@ -187,13 +187,8 @@ def _free_for(heights: FloatArray, rates: FloatArray, pulls: FloatArray) -> Floa
 
 def _largest_turning(motion: FreeMotion) -> float:
     """Return the most, 1/s^2, that |w x (w x r) + w' x r| / |r| can be."""
-    rotation = motion.rotation
-    if isinstance(rotation, Spin):
-        return float(rotation.rate) ** 2
-    first, middle, third = (float(rotation.L / moment) for moment in rotation.moments)
-    a2, b2, c2, m1 = float(rotation.a2), float(rotation.b2), float(rotation.c2), float(rotation.m1)
-    # |w|^2 is linear in sn^2 u: its extremes are at sn = 0 and at sn = 1.
-    return _TURNING * max(a2 * first**2 + c2 * third**2, b2 * middle**2 + c2 * m1 * third**2)
+    turning: float = 1.0 if isinstance(motion.rotation, Spin) else _TURNING
+    return turning * largest_rate(motion.rotation) ** 2
 
 
 def _dot(a: Vector, b: Vector) -> float:

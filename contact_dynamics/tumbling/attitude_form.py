@@ -26,6 +26,9 @@ cancel."""
 NEGLIGIBLE: Final = 1e-18
 """Relative to the largest term of a sum: far below the last bit."""
 
+STEEPEST: Final = 600.0
+"""Exponent of the ratio of neighbouring bumps above which only two of them are above the range of doubles."""
+
 
 def attitude_form(motion: Spin | Tumble) -> AttitudeForm:
     """Return the attitude about L as a function of time; its value at time 0 is up to a turn about L."""
@@ -34,13 +37,13 @@ def attitude_form(motion: Spin | Tumble) -> AttitudeForm:
             return Steady(psi=linear_phase(motion.rate / (2 * PI), Decimal(0)))
         if motion.m1 == 0:
             return _one_flip(motion)
-        x, y = _zeros(motion)
+        a, c, (x, y) = float(motion.a2.sqrt()), float(motion.c2.sqrt()), _zeros(motion)
         xi, eta = x * float(motion.quarter), y * float(motion.quarter)
         z_rate, z_offset = motion.omega_p * motion.quarter / PI, motion.u0 * motion.quarter / PI
         psi = linear_phase(motion.precession / (2 * PI) - z_rate / 2, -z_offset / 2)
         if 2.0 * (xi + eta) > SWITCH:
-            return _harmonics(xi, eta, linear_phase(z_rate / 2, z_offset / 2), psi)
-        return _bumps(xi, eta, linear_phase(z_rate, z_offset), psi)
+            return _harmonics(xi, eta, (a, c), linear_phase(z_rate / 2, z_offset / 2), psi)
+        return _bumps(xi, eta, (a, c), linear_phase(z_rate, z_offset), psi)
 
 
 def _zeros(motion: Tumble) -> tuple[float, float]:
@@ -53,7 +56,9 @@ def _zeros(motion: Tumble) -> tuple[float, float]:
     return float(x), float(sn2.sqrt() * carlson_rf(motion.c2 * dn2, dn2, Decimal(1)))
 
 
-def _harmonics(xi: float, eta: float, z: LinearPhase, psi: LinearPhase) -> Harmonics:
+def _harmonics(
+    xi: float, eta: float, peaks: tuple[float, float], z: LinearPhase, psi: LinearPhase
+) -> Harmonics:
     """Sum the theta series as far as they matter: q = exp(-2 (xi + eta)), r = exp(-xi)."""
     r, p = math.exp(-xi), math.exp(-2.0 * eta)  # p = q e^{2 xi}
     q, s = p * r * r, p * r**4  # s = q e^{-2 xi}
@@ -67,6 +72,15 @@ def _harmonics(xi: float, eta: float, z: LinearPhase, psi: LinearPhase) -> Harmo
         A_odd.append(inner * s**j - outer * p**j)
         B_even.append(outer * s**j + inner * p**j)
         B_odd.append(outer * s**j - inner * p**j)
+    a, c = peaks
+    theta_2, theta_3 = [1.0], [1.0]
+    while max(theta_2[-1], theta_3[-1]) > NEGLIGIBLE:
+        n = len(theta_3)
+        theta_2.append(q ** (n * (n + 1)))
+        theta_3.append(2.0 * q ** (n * n))
+    size = (
+        sum(A_even) ** 2 + (r * sum(B_even)) ** 2
+    )  # |A|^2 + |B'|^2 at z = 0, where C is a and D is c times it
     return Harmonics(
         z=z,
         psi=psi,
@@ -75,25 +89,34 @@ def _harmonics(xi: float, eta: float, z: LinearPhase, psi: LinearPhase) -> Harmo
         A_sin=_powers_of_cosine(A_odd[1:], 2.0),
         B_cos=_powers_of_cosine(B_even, 1.0),
         B_sin=_powers_of_cosine(B_odd[1:], 2.0),
+        C=_odd_cosines([a * size * term / sum(theta_2) for term in theta_2]),
+        D=_powers_of_cosine([c * size * term / sum(theta_3) for term in theta_3], 1.0),
     )
 
 
-def _bumps(xi: float, eta: float, z: LinearPhase, psi: LinearPhase) -> Bumps:
+def _bumps(xi: float, eta: float, peaks: tuple[float, float], z: LinearPhase, psi: LinearPhase) -> Bumps:
     h = 2.0 * (xi + eta)  # pi K'/K
     mu = xi / h
     steepness = math.pi**2 / h
-    g = math.exp(-steepness)
+    g = math.exp(-steepness) if steepness < STEEPEST else 0.0
+    a, c = peaks
     A_angles, B_angles = _angles(mu)
+    weights = (2.0, 2.0 * g, 2.0 * g**3)  # of the pairs of bumps, in the middle of a flip
+    A_0 = sum(weight * math.cos(angle) for weight, angle in zip(weights, A_angles, strict=True))
+    B_0 = sum(weight * math.cos(angle) for weight, angle in zip(weights, B_angles, strict=True))
+    size = A_0**2 + B_0**2
     return Bumps(
         z=z,
         psi=psi,
         steepness=steepness,
         drift=0.5 - mu,
-        g=0.0 if math.sqrt(g) < NEGLIGIBLE else g,
+        g=g,
         A_cos=_each(math.cos, A_angles),
         A_sin=_each(math.sin, A_angles),
         B_cos=_each(math.cos, B_angles),
         B_sin=_each(math.sin, B_angles),
+        C=a * size / (1.0 - 2.0 * g + g**4),
+        D=c * size / (1.0 + 2.0 * g + g**4),
     )
 
 
@@ -105,6 +128,8 @@ def _one_flip(motion: Tumble) -> OneFlip:
         psi=linear_phase(motion.precession / (2 * PI), Decimal(0)),
         A=(math.cos(A_angles[0]), math.sin(A_angles[0])),
         B=(math.cos(B_angles[0]), math.sin(B_angles[0])),
+        C=4.0 * float(motion.a2.sqrt()),
+        D=4.0 * float(motion.c2.sqrt()),
     )
 
 
@@ -136,3 +161,15 @@ def _powers_of_cosine(coefficients: Sequence[float], slope: float) -> tuple[floa
                 following[k] -= x
         older, newer = newer, following
     return tuple(powers)
+
+
+def _odd_cosines(coefficients: Sequence[float]) -> tuple[float, ...]:
+    """Turn sum c_n cos (2n+1)z / cos z into powers of cos 2z.
+
+    cos (2n+1)z / cos z is 2 (cos 2nz - cos (2n-2)z + ...), and half of the last, which is 1.
+    """
+    cosines = [0.0] * len(coefficients)
+    for n, coefficient in enumerate(coefficients):
+        for k in range(n + 1):
+            cosines[k] += coefficient * (-1.0) ** (n - k) * (2.0 if k else 1.0)
+    return _powers_of_cosine(cosines, 1.0)

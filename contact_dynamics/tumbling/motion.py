@@ -95,9 +95,9 @@ class FreeMotion:
 
     def sample(self, seconds: float) -> Sample:
         """Return the motion at one time, s after the state's stamp, in plain floats."""
-        alpha, beta = _cayley_klein(self.form, seconds)
+        alpha, beta, l_1, l_3 = _cayley_klein(self.form, seconds)
         q_LP = (beta.imag, -beta.real, alpha.imag, alpha.real)
-        across = self._across(alpha, beta)
+        across = self._across(alpha, beta, l_1, l_3)
         w_W = rotated(self.q_WL, (across.real, across.imag, self.w_along))
         q_WB = product(product(self.q_WL, q_LP), self.q_PB)
         p, v, g = self.state.p_WB_W.tolist(), self.state.v_WB_W.tolist(), self.gravity_W.tolist()
@@ -113,11 +113,9 @@ class FreeMotion:
             w_W,
         )
 
-    def _across(self, alpha: complex, beta: complex) -> complex:
+    def _across(self, alpha: complex, beta: complex, l_1: float, l_3: float) -> complex:
         """Return w_x + i w_y of the angular velocity in L's axes, rad/s, for alpha and i beta."""
-        # The sum of L l_i (1 / I_i - 1 / I_2) times axis i, with l = L / |L| in P, l_1 = 2 Re(alpha beta*).
-        l_1 = 2.0 * (alpha.real * beta.real + alpha.imag * beta.imag)
-        l_3 = abs(alpha) ** 2 - abs(beta) ** 2
+        # The sum of L l_i (1 / I_i - 1 / I_2) times axis i, with l = L / |L| in P.
         first, third = self.w_across
         return first * l_1 * (alpha * alpha - beta * beta) - 2.0 * third * l_3 * alpha * beta
 
@@ -164,7 +162,7 @@ class FreeMotion:
         self, times: FloatArray, onto_W: FloatArray, R_LW: FloatArray, q: FloatArray, w_WB: FloatArray
     ) -> None:
         """Fill (n, 4) quaternions and (n, 3) angular velocities."""
-        A_re, A_im, B_re, B_im, tangent = self.form.points(times)
+        A_re, A_im, B_re, B_im, C, D, tangent = self.form.points(times)
         norm2 = A_re * A_re + A_im * A_im + B_re * B_re + B_im * B_im
         scale = 1.0 / np.sqrt(norm2 * (1.0 + tangent * tangent))
         tangent *= scale
@@ -178,8 +176,7 @@ class FreeMotion:
         np.matmul(q_LP.T, onto_W, out=q)
         # As `_across`, in real parts.
         ww, xx, bb, zz = w * w, x * x, b * b, z * z
-        first = (2.0 * self.w_across[0]) * (w * b + z * x)
-        third = (2.0 * self.w_across[1]) * ((ww + zz) - (bb + xx))
+        first, third = self.w_across[0] * (C / norm2), (2.0 * self.w_across[1]) * (D / norm2)
         w_L = np.empty((3, len(times)))
         np.subtract(first * ((ww - zz) - (bb - xx)), third * (w * b - z * x), out=w_L[0])
         np.subtract((2.0 * first) * (w * z - b * x), third * (w * x + z * b), out=w_L[1])
@@ -214,7 +211,7 @@ def free_motion(
             along = float(rotation.L * (rotation.a2 / I1 + rotation.c2 / I3))
             across = float(rotation.L * (I2 - I1) / (I1 * I2)), float(rotation.L * (I2 - I3) / (I2 * I3))
             q_PB = from_rows([[float(x) for x in axis] for axis in rotation.axes_B])
-            alpha, beta = _cayley_klein(form, 0.0)
+            alpha, beta, _, _ = _cayley_klein(form, 0.0)
             q_LP = (beta.imag, -beta.real, alpha.imag, alpha.real)
             q_WL = normalised(product(q_WB, conjugate(product(q_LP, q_PB))))
     return FreeMotion(
@@ -234,14 +231,13 @@ def free_motion(
 _IDENTITY: Final = (0.0, 0.0, 0.0, 1.0)
 
 
-def _cayley_klein(form: AttitudeForm, seconds: float) -> tuple[complex, complex]:
-    """Return alpha and i beta of the attitude of P in L, |alpha|^2 + |beta|^2 = 1."""
-    A_re, A_im, B_re, B_im, tangent = form.point(seconds)
-    scale = 1.0 / math.sqrt(
-        (A_re * A_re + A_im * A_im + B_re * B_re + B_im * B_im) * (1.0 + tangent * tangent)
-    )
+def _cayley_klein(form: AttitudeForm, seconds: float) -> tuple[complex, complex, float, float]:
+    """Return alpha and i beta of the attitude of P in L, of common norm 1, and L_1 / L and L_3 / L."""
+    A_re, A_im, B_re, B_im, C, D, tangent = form.point(seconds)
+    norm2 = A_re * A_re + A_im * A_im + B_re * B_re + B_im * B_im
+    scale = 1.0 / math.sqrt(norm2 * (1.0 + tangent * tangent))
     factor = complex(scale, scale * tangent)
-    return factor * complex(A_re, A_im), factor * complex(B_re, B_im)
+    return factor * complex(A_re, A_im), factor * complex(B_re, B_im), C / norm2, D / norm2
 
 
 def _into_body(q: list[Decimal], w_W: list[Decimal]) -> list[Decimal]:

@@ -15,6 +15,7 @@ L.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from decimal import Context, Decimal, localcontext
 from typing import TYPE_CHECKING, Final, TypeAlias
@@ -122,6 +123,16 @@ def tumble_or_spin(frame: PrincipalFrame, w_B: Sequence[Decimal]) -> Tumble | Sp
             quarter=quarter,
             precession=precession,
         )
+
+
+def largest_rate(rotation: Spin | Tumble) -> float:
+    """Return the largest |w| of a rotation, rad/s."""
+    if isinstance(rotation, Spin):
+        return float(rotation.rate)
+    first, middle, third = (float(rotation.L / moment) for moment in rotation.moments)
+    a2, b2, c2, m1 = float(rotation.a2), float(rotation.b2), float(rotation.c2), float(rotation.m1)
+    # |w|^2 is linear in sn^2 u: its extremes are at sn = 0 and at sn = 1.
+    return math.sqrt(max(a2 * first**2 + c2 * third**2, b2 * middle**2 + c2 * m1 * third**2))
 
 
 def _spin(w: Sequence[Decimal]) -> Spin:

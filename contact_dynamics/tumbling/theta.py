@@ -15,24 +15,31 @@ Near the middle axis q tends to 1. Poisson's summation then gives the same funct
 for each stay near the middle axis, of which the nearest six suffice; the separatrix is the case of two.
 
 `Harmonics` and `Bumps` are the two forms, `OneFlip` is the separatrix, `Steady` is spin at a constant rate.
-Each turns times into (Re A, Im A, Re B', Im B', tan psi) with alpha = e^{i psi} A and beta = -i e^{i psi} B',
-up to a common positive factor. Of psi the tangent is enough, because a common sign is no part of an attitude.
+Each turns times into `Values`: A, B' with alpha = e^{i psi} A, beta = -i e^{i psi} B' up to a common positive
+factor; C = 2 Re(A B'*) and D = |A|^2 - |B'|^2, to which L_1 and L_3 are proportional; and tan psi, which is
+enough of psi because a common sign is no part of an attitude. C and D are sums of their own, theta_2 and
+theta_3 with nome q, as |A|^2 + |B'|^2 is theta_4: a needle spins fast about an axis along which L is small.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from types import ModuleType
+
     from contact_dynamics.tumbling.double_double import LinearPhase
     from contact_dynamics.validation import FloatArray
 
-Point: TypeAlias = "tuple[float, float, float, float, float]"
-Points: TypeAlias = "tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]"
+Values: TypeAlias = "tuple[Any, Any, Any, Any, Any, Any, Any]"
+"""Re A, Im A, Re B', Im B', C, D, tan psi: floats for one time, arrays (n,) for many."""
+
+Three: TypeAlias = "tuple[float, float, float]"
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,14 +48,15 @@ class Steady:
 
     psi: LinearPhase  # half turns
 
-    def point(self, seconds: float) -> Point:
-        """Return Re A, Im A, Re B', Im B', tan psi at a time, s."""
-        return 1.0, 0.0, 0.0, 0.0, math.tan(math.pi * self.psi.fraction(seconds)[0])
+    def point(self, seconds: float) -> Values:
+        """Return the values at a time, s."""
+        return 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, math.tan(math.pi * self.psi.fraction(seconds)[0])
 
-    def points(self, seconds: FloatArray) -> Points:
-        """Return `point` for times (n,), s."""
+    def points(self, seconds: FloatArray) -> Values:
+        """Return the values at times (n,), s."""
         zero = np.zeros_like(seconds)
-        return zero + 1.0, zero, zero, zero, np.tan(np.pi * self.psi.fractions(seconds)[0])
+        one = zero + 1.0
+        return one, zero, zero, zero, zero, one, np.tan(np.pi * self.psi.fractions(seconds)[0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,40 +70,33 @@ class Harmonics:
     A_sin: tuple[float, ...]  # Im A / sin 2z
     B_cos: tuple[float, ...]  # Re B
     B_sin: tuple[float, ...]  # Im B / sin 2z
+    C: tuple[float, ...]  # C / cos z
+    D: tuple[float, ...]  # D
 
-    def point(self, seconds: float) -> Point:
-        """Return Re A, Im A, Re B', Im B', tan psi at a time, s."""
-        z = 2.0 * math.pi * self.z.fraction(seconds)[0]
-        cos, sin = math.cos(z), math.sin(z)
-        cos2, sin2 = 1.0 - 2.0 * sin * sin, 2.0 * sin * cos
-        A_re = A_im = B_re = B_im = 0.0
-        for k in reversed(range(len(self.A_cos))):
-            A_re = A_re * cos2 + self.A_cos[k]
-            B_re = B_re * cos2 + self.B_cos[k]
-        for k in reversed(range(len(self.A_sin))):
-            A_im = A_im * cos2 + self.A_sin[k]
-            B_im = B_im * cos2 + self.B_sin[k]
-        B_im *= sin2
-        cos, sin = self.r * cos, self.r * sin
-        tangent = math.tan(math.pi * self.psi.fraction(seconds)[0])
-        return A_re, A_im * sin2, B_re * cos - B_im * sin, B_re * sin + B_im * cos, tangent
+    def point(self, seconds: float) -> Values:
+        """Return the values at a time, s."""
+        return self._values(math, self.z.fraction(seconds)[0], self.psi.fraction(seconds)[0])
 
-    def points(self, seconds: FloatArray) -> Points:
-        """Return `point` for times (n,), s."""
-        half = np.tan(np.pi * self.z.fractions(seconds)[0])
+    def points(self, seconds: FloatArray) -> Values:
+        """Return the values at times (n,), s."""
+        return self._values(np, self.z.fractions(seconds)[0], self.psi.fractions(seconds)[0])
+
+    def _values(self, functions: ModuleType, z: Any, psi: Any) -> Values:
+        half = functions.tan(math.pi * z)
         square = half * half
         inverse = 1.0 / (1.0 + square)
         cos, sin = (1.0 - square) * inverse, 2.0 * half * inverse
         cos2, sin2 = 1.0 - 2.0 * sin * sin, 2.0 * sin * cos
         B_re, B_im = _polynomial(self.B_cos, cos2), _polynomial(self.B_sin, cos2) * sin2
-        cos *= self.r
-        sin *= self.r
+        r_cos, r_sin = self.r * cos, self.r * sin
         return (
             _polynomial(self.A_cos, cos2),
             _polynomial(self.A_sin, cos2) * sin2,
-            B_re * cos - B_im * sin,
-            B_re * sin + B_im * cos,
-            np.tan(np.pi * self.psi.fractions(seconds)[0]),
+            B_re * r_cos - B_im * r_sin,
+            B_re * r_sin + B_im * r_cos,
+            _polynomial(self.C, cos2) * cos,
+            _polynomial(self.D, cos2),
+            functions.tan(math.pi * psi),
         )
 
 
@@ -107,51 +108,40 @@ class Bumps:
     psi: LinearPhase  # half turns
     steepness: float  # |log| of the ratio of the two nearest bumps, per half turn of z
     drift: float  # half turns of psi per half turn of z
-    g: float  # ratio of a bump to the next at its own top; 0 where the next is below the last bit
-    A_cos: tuple[float, float, float]
-    A_sin: tuple[float, float, float]
-    B_cos: tuple[float, float, float]
-    B_sin: tuple[float, float, float]
+    g: float  # ratio of a bump to the next at its own top; 0 where that is below the range of doubles
+    A_cos: Three
+    A_sin: Three
+    B_cos: Three
+    B_sin: Three
+    C: float  # at z = 0, but for terms in g
+    D: float  # likewise
 
-    def point(self, seconds: float) -> Point:
-        """Return Re A, Im A, Re B', Im B', tan psi at a time, s."""
-        z, flips = self.z.fraction(seconds)
-        side = math.copysign(1.0, z)
-        parity = -1.0 if flips % 2.0 else 1.0
-        w = math.exp(-self.steepness * abs(z))
-        even, odd, g = 1.0 + w, side * (1.0 - w), self.g
+    def point(self, seconds: float) -> Values:
+        """Return the values at a time, s."""
+        return self._values(math, *self.z.fraction(seconds), self.psi.fraction(seconds)[0])
+
+    def points(self, seconds: FloatArray) -> Values:
+        """Return the values at times (n,), s."""
+        return self._values(np, *self.z.fractions(seconds), self.psi.fractions(seconds)[0])
+
+    def _values(self, functions: ModuleType, z: Any, flips: Any, psi: Any) -> Values:
+        side, parity = functions.copysign(1.0, z), 1.0 - 2.0 * (flips % 2.0)
+        w = functions.exp(-self.steepness * abs(z))
+        even, odd = 1.0 + w, side * (1.0 - w)
         A_re, A_im = self.A_cos[0] * even, self.A_sin[0] * odd
         B_re, B_im = self.B_cos[0] * even, self.B_sin[0] * odd
-        if g:
+        C = D = w
+        if self.g:
+            g = self.g
             v = g / w
-            for near, far, k in ((v, g * w * w, 1), (g * v * v, (g * w) ** 3, 2)):
+            www, vvv = g * w**3, g * v**3
+            C, D = (w - v) - (www - vvv), (w + v) + (www + vvv)
+            for k, near, far in ((1, v, g * w * w), (2, g * v * v, g * g * www)):
                 even, odd = near + far, side * (near - far)
-                A_re += self.A_cos[k] * even
-                A_im += self.A_sin[k] * odd
-                B_re += self.B_cos[k] * even
-                B_im += self.B_sin[k] * odd
-        tangent = math.tan(math.pi * (self.psi.fraction(seconds)[0] + self.drift * z))
-        return A_re, A_im, parity * B_re, parity * B_im, tangent
-
-    def points(self, seconds: FloatArray) -> Points:
-        """Return `point` for times (n,), s."""
-        z, flips = self.z.fractions(seconds)
-        side = np.copysign(1.0, z)
-        parity = 1.0 - 2.0 * np.remainder(flips, 2.0)
-        w = np.exp(-self.steepness * np.abs(z))
-        even, odd, g = 1.0 + w, side * (1.0 - w), self.g
-        A_re, A_im = self.A_cos[0] * even, self.A_sin[0] * odd
-        B_re, B_im = self.B_cos[0] * even, self.B_sin[0] * odd
-        if g:
-            v = g / w
-            for near, far, k in ((v, g * w * w, 1), (g * v * v, (g * w) ** 3, 2)):
-                even, odd = near + far, side * (near - far)
-                A_re += self.A_cos[k] * even
-                A_im += self.A_sin[k] * odd
-                B_re += self.B_cos[k] * even
-                B_im += self.B_sin[k] * odd
-        psi = self.psi.fractions(seconds)[0] + self.drift * z
-        return A_re, A_im, parity * B_re, parity * B_im, np.tan(np.pi * psi)
+                A_re, A_im = A_re + self.A_cos[k] * even, A_im + self.A_sin[k] * odd
+                B_re, B_im = B_re + self.B_cos[k] * even, B_im + self.B_sin[k] * odd
+        tangent = functions.tan(math.pi * (psi + self.drift * z))
+        return A_re, A_im, parity * B_re, parity * B_im, (self.C * parity) * C, self.D * D, tangent
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,28 +152,28 @@ class OneFlip:
     psi: LinearPhase  # half turns
     A: tuple[float, float]
     B: tuple[float, float]
+    C: float  # at u = 0
+    D: float  # at u = 0
 
-    def point(self, seconds: float) -> Point:
-        """Return Re A, Im A, Re B', Im B', tan psi at a time, s."""
-        u = sum(self.u.fraction(seconds))
-        w = math.exp(-abs(u))
-        even, odd = 1.0 + w, math.copysign(1.0 - w, u)
-        tangent = math.tan(math.pi * self.psi.fraction(seconds)[0])
-        return self.A[0] * even, self.A[1] * odd, self.B[0] * even, self.B[1] * odd, tangent
+    def point(self, seconds: float) -> Values:
+        """Return the values at a time, s."""
+        return self._values(math, *self.u.fraction(seconds), self.psi.fraction(seconds)[0])
 
-    def points(self, seconds: FloatArray) -> Points:
-        """Return `point` for times (n,), s."""
-        rest, whole = self.u.fractions(seconds)
-        u = rest + whole
-        w = np.exp(-np.abs(u))
-        even, odd = 1.0 + w, np.copysign(1.0 - w, u)
-        tangent = np.tan(np.pi * self.psi.fractions(seconds)[0])
-        return self.A[0] * even, self.A[1] * odd, self.B[0] * even, self.B[1] * odd, tangent
+    def points(self, seconds: FloatArray) -> Values:
+        """Return the values at times (n,), s."""
+        return self._values(np, *self.u.fractions(seconds), self.psi.fractions(seconds)[0])
+
+    def _values(self, functions: ModuleType, fraction: Any, whole: Any, psi: Any) -> Values:
+        u = whole + fraction
+        w = functions.exp(-abs(u))
+        even, odd = 1.0 + w, functions.copysign(1.0 - w, u)
+        tangent = functions.tan(math.pi * psi)
+        (A_cos, A_sin), (B_cos, B_sin) = self.A, self.B
+        return A_cos * even, A_sin * odd, B_cos * even, B_sin * odd, self.C * w, self.D * w, tangent
 
 
-def _polynomial(coefficients: tuple[float, ...], x: FloatArray) -> FloatArray:
-    value = np.full_like(x, coefficients[-1] if coefficients else 0.0)
+def _polynomial(coefficients: Sequence[float], x: Any) -> Any:
+    value = coefficients[-1] if coefficients else 0.0
     for coefficient in coefficients[-2::-1]:
-        value *= x
-        value += coefficient
+        value = value * x + coefficient
     return value

@@ -1,0 +1,118 @@
+"""Flips of a body that spins near its middle axis (the Dzhanibekov effect): when, and how surely.
+
+Lecture 25, polhodes. The body spins about its middle axis for a while, turns that axis over, spins on, and
+turns it back. The middle of a flip is where the angular velocity has no component along the middle axis.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from decimal import Decimal, localcontext
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.tumbling.polhode import PHASES, PI, Spin, Tumble, tumble_or_spin
+from contact_dynamics.tumbling.regime import Regime
+from contact_dynamics.validation import FloatArray, check_array
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.tumbling import FreeMotion
+
+NEAR_MIDDLE_AXIS: Final = 0.75
+"""cos^2 of 30 degrees: between flips the middle axis comes at least this near to the angular momentum, or
+they are called none. Spin about the other axes has the same zeros of its middle component, twice in each
+small wobble."""
+
+NEAR_SEPARATRIX: Final = 0.1
+"""Of 1 - m. Flips are what a body stays between: here half a period is half as long again as it is for small m.
+A nearly axisymmetric rod turns its middle axis over as well, but evenly."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Flips:
+    """The next flips of a body."""
+
+    seconds: FloatArray  # (n,), s after the state's stamp, ascending; empty where there are none
+    deviations: (
+        FloatArray  # (n,), s, one standard deviation of each; NaN: the state's covariance is not known
+    )
+
+
+def next_flips(motion: FreeMotion, count: int, *, covariance: ArrayLike | None = None) -> Flips:
+    """Return the next ``count`` flips, or fewer: one on the separatrix, none where the body does not flip.
+
+    The covariance is (12, 12), of the state in the order position, rotation vector (rad, world axes, applied
+    after the attitude), linear and angular velocity. Flip times depend on the logarithm of the distance to
+    the separatrix, so the deviations are not linearised: the motion is computed for the six sigma points of
+    the unscented transform (Julier and Uhlmann 1997).
+
+    Raises:
+        InvalidFieldError: the covariance is not (12, 12) finite numbers.
+    """
+    regime, rotation = motion.regime, motion.rotation
+    flips = regime in (Regime.ABOUT_MAJOR_AXIS, Regime.ABOUT_MINOR_AXIS, Regime.SEPARATRIX)
+    if (
+        not flips
+        or isinstance(rotation, Spin)
+        or rotation.b2 < NEAR_MIDDLE_AXIS
+        or rotation.m1 > NEAR_SEPARATRIX
+    ):
+        return Flips(seconds=np.zeros(0), deviations=np.zeros(0))
+    times = _flip_times(rotation, count, from_seconds=0.0)
+    if covariance is None or len(times) == 0:
+        return Flips(seconds=times, deviations=np.full(len(times), math.nan))
+    spread = _covariance_in_body(motion, check_array("covariance", covariance, (12, 12)))
+    others = np.array([_as_many(other, times) for other in _sigma_points(motion, spread)])
+    unbounded = np.isinf(others).any(axis=0)
+    others[:, unbounded] = 0.0
+    deviations = np.where(unbounded, math.inf, others.std(axis=0))
+    return Flips(seconds=times, deviations=deviations)
+
+
+def _flip_times(rotation: Tumble, count: int, *, from_seconds: float) -> FloatArray:
+    """Return the first flips at or after a time, s: u = 2 n K, for whole n."""
+    with localcontext(PHASES):
+        if rotation.m1 == 0:
+            only = float(-rotation.u0 / rotation.omega_p)
+            return np.array([only])[: count if only >= from_seconds else 0]
+        between = PI / (rotation.quarter * abs(rotation.omega_p))
+        first = -rotation.u0 / rotation.omega_p
+        first += between * (
+            ((Decimal(from_seconds) - first) / between).to_integral_value(rounding="ROUND_CEILING")
+        )
+        return np.array([float(first + between * i) for i in range(count)])
+
+
+def _as_many(rotation: Spin | Tumble, times: FloatArray) -> FloatArray:
+    """Return the flips of a similar motion nearest to those at ``times``; inf where there is none."""
+    other = np.full(len(times), math.inf)
+    if isinstance(rotation, Tumble):
+        reach = float(PI / (2 * rotation.quarter * abs(rotation.omega_p))) if rotation.m1 else math.inf
+        found = _flip_times(rotation, len(times), from_seconds=max(times[0] - reach, -1e300))
+        other[: len(found)] = found
+    return other
+
+
+def _covariance_in_body(motion: FreeMotion, covariance: FloatArray) -> FloatArray:
+    """Return the covariance (3, 3) of the angular velocity in body axes, which alone decides."""
+    rows = np.r_[3:6, 9:12]
+    x, y, z = motion.state.w_WB_W.tolist()
+    turned = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])  # by an error of the attitude
+    onto_body = motion.state.R_WB.T @ np.hstack([turned, np.eye(3)])
+    spread: FloatArray = onto_body @ covariance[np.ix_(rows, rows)] @ onto_body.T
+    return spread
+
+
+def _sigma_points(motion: FreeMotion, spread: FloatArray) -> list[Spin | Tumble]:
+    variances, directions = np.linalg.eigh(spread)
+    steps = math.sqrt(3.0) * np.sqrt(np.maximum(variances, 0.0)) * directions  # columns
+    w_B = motion.state.R_WB.T @ motion.state.w_WB_W
+    return [
+        tumble_or_spin(motion.frame, [Decimal(x) for x in (w_B + sign * step).tolist()])
+        for step in steps.T
+        for sign in (1.0, -1.0)
+    ]

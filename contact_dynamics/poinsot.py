@@ -1,0 +1,169 @@
+"""Poinsot's picture of a free rotation: the energy ellipsoid rolls on the invariable plane (lecture 25).
+
+In the space of angular velocities the ellipsoid w^T I w = 2 T is fixed in the body, the plane w . L = 2 T in
+the world, and w is where they touch. Its trace on the ellipsoid is the polhode, closed; its trace on the
+plane is the herpolhode, which in general never closes.
+
+Near the middle axis a rotation is stable in neither sense: the body flips (the Dzhanibekov effect), and when
+it does depends on the last digits of its state. `sensitivity` and `next_flips` say how much.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from decimal import Decimal, localcontext
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.rigid_body import angular_momentum, rotation_matrix
+from contact_dynamics.tumbling.elliptic import average_over_period
+from contact_dynamics.tumbling.polhode import PHASES, PI, Spin, Tumble, largest_rate
+from contact_dynamics.tumbling.regime import Regime
+from contact_dynamics.validation import FloatArray, check_array
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.tumbling import FreeMotion
+
+CONSTANT_RATE: Final = (Regime.AT_REST, Regime.SPHERICAL, Regime.PRINCIPAL_AXIS)
+"""Where the angular velocity does not change, or only within rounding: there is no polhode to speak of."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Poinsot:
+    """The constants of a free rotation."""
+
+    regime: Regime
+    rotational_energy: float  # J, T
+    L_W: FloatArray  # (3,), kg m^2/s, angular momentum, world axes: the normal of the invariable plane
+    invariable_plane_distance: float  # rad/s, 2 T / |L|; NaN at rest
+    polhode_period: float  # s; inf on the separatrix, NaN where the angular velocity is constant
+    precession_per_period: float  # rad, turn about L in one period; NaN where there is no period
+    principal_moments: FloatArray  # (3,), kg m^2, ascending
+    principal_axes_B: FloatArray  # (3, 3), columns: their axes in body coordinates, right-handed
+    ellipsoid_semi_axes: FloatArray  # (3,), rad/s, of the energy ellipsoid, along those axes: sqrt(2 T / I)
+    sensitivity: (
+        float  # rad of attitude per rad turned and per relative error of the angular velocity; NaN at rest
+    )
+
+
+def poinsot(motion: FreeMotion) -> Poinsot:
+    """Return Poinsot's picture of a free motion."""
+    rotation = motion.rotation
+    L_W = angular_momentum(motion.body, motion.state)
+    twice_energy = motion.w_along * math.sqrt(L_W @ L_W)
+    moments = np.array([float(moment) for moment in motion.frame.moments])
+    first, second = (np.array([float(x) for x in axis]) for axis in motion.frame.axes_B[:2])
+    period = math.nan if motion.regime in CONSTANT_RATE else polhode_period(rotation)
+    return Poinsot(
+        regime=motion.regime,
+        rotational_energy=0.5 * twice_energy,
+        L_W=L_W,
+        invariable_plane_distance=motion.w_along if motion.regime is not Regime.AT_REST else math.nan,
+        polhode_period=period,
+        precession_per_period=_precession(rotation) * period if math.isfinite(period) else math.nan,
+        principal_moments=moments,
+        principal_axes_B=np.column_stack([first, second, np.cross(first, second)]),
+        ellipsoid_semi_axes=np.sqrt(twice_energy / moments),
+        sensitivity=sensitivity(motion),
+    )
+
+
+def polhode_period(rotation: Spin | Tumble) -> float:
+    """Return the time, s, after which w in the body repeats; inf on the separatrix, NaN where it is constant."""
+    if isinstance(rotation, Spin):
+        return math.nan
+    if rotation.m1 == 0:
+        return math.inf
+    return abs(float(2 * PI / (rotation.quarter * rotation.omega_p)))
+
+
+def sensitivity(motion: FreeMotion) -> float:
+    """Return how fast an error of the initial angular velocity becomes an error of attitude, in the long run.
+
+    The error of attitude, rad, divided by the angle turned, rad, and by the relative error of the angular
+    velocity, for the worst direction of that error and the worst phase: 1 for a steady spin, large near the
+    separatrix, inf on it and about the middle axis itself, where errors grow exponentially. NaN at rest.
+
+    Both phases of the attitude are linear in time with rates that depend on T and |L| alone: nu on the
+    polhode and P about L. With the action J of nu, dT = nu dJ + P dL, and both rates are homogeneous in (J,
+    L); so that d nu / dT at constant L gives all four derivatives.
+    """
+    rotation = motion.rotation
+    if isinstance(rotation, Spin) or motion.regime is Regime.SPHERICAL:
+        return _sensitivity_of_spin(motion)
+    if rotation.m1 == 0:
+        return math.inf
+    with localcontext(PHASES):
+        I1, I2, I3 = rotation.moments
+        P, L = rotation.precession, rotation.L
+        T2 = Decimal(motion.w_along) * L
+        excess = rotation.c2 * (I3 - I1) * L * L / I3  # L^2 - 2 T I_1
+        m_T = 2 * L * L * (I3 - I1) * (I2 - I1) / (excess * excess * (I3 - I2))
+        K_m = average_over_period(rotation.m1.sqrt(), Decimal(1), Decimal(1), Decimal(0)) / (2 * rotation.m1)
+        nu_T = -I1 / excess - K_m * m_T  # of log nu, as are the rest
+        nu_L = (1 - T2 * nu_T) / L
+        P_T = (1 + (L * P - T2) * nu_T) / L
+        P_L = (P - T2 * P_T) / L
+        # d P z + (d nu / nu) (w - P z) = (dP - P d nu / nu) z + (d nu / nu) w
+        along_T, along_L = float(P_T - P * nu_T), float(P_L - P * nu_L)
+        with_T, with_L = float(nu_T), float(nu_L)
+    axes = np.array([[float(x) for x in axis] for axis in rotation.axes_B])
+    moments = np.array([float(moment) for moment in rotation.moments])
+    momentum = moments * (axes @ (motion.state.R_WB.T @ motion.state.w_WB_W))
+    size = float(L)
+    T_w, L_w = momentum, moments * momentum / size  # gradients over w in P
+    a, b = along_T * T_w + along_L * L_w, with_T * T_w + with_L * L_w
+    w2 = largest_rate(rotation) ** 2
+    trace = float(a @ a + 2.0 * motion.w_along * (a @ b) + w2 * (b @ b))
+    determinant = float((a @ a) * (b @ b) - (a @ b) ** 2) * (w2 - motion.w_along**2)
+    return math.sqrt(0.5 * (trace + math.sqrt(max(trace * trace - 4.0 * determinant, 0.0))))
+
+
+def _sensitivity_of_spin(motion: FreeMotion) -> float:
+    """Steady spin is as predictable as any, but about the middle axis and at rest."""
+    if motion.regime is Regime.AT_REST:
+        return math.nan
+    if motion.regime is not Regime.PRINCIPAL_AXIS:
+        return 1.0
+    middle_B = np.array([float(x) for x in motion.frame.axes_B[1]])
+    w_B = motion.state.R_WB.T @ motion.state.w_WB_W
+    return math.inf if abs(middle_B @ w_B) > 0.5 * np.linalg.norm(w_B) else 1.0
+
+
+def polhode(motion: FreeMotion, count: int) -> FloatArray:
+    """Return ``count`` points of the polhode, (count, 3), rad/s, body axes, in order along it.
+
+    The curve is closed: the last point is the first again. On the separatrix it is the arc from one
+    middle-axis spin to the other; of a steady spin all points are one.
+    """
+    rotation = motion.rotation
+    if isinstance(rotation, Spin):
+        return np.tile(motion.state.R_WB.T @ motion.state.w_WB_W, (count, 1))
+    whole = math.pi if rotation.m1 else 0.5 * math.pi
+    angle = np.linspace(-whole, whole, count)  # Jacobi's amplitude of u
+    cos, sin = np.cos(angle), np.sin(angle)
+    a, b, c = (math.sqrt(x) for x in (rotation.a2, rotation.b2, rotation.c2))
+    dn = np.sqrt(cos * cos + float(rotation.m1) * sin * sin)
+    first, middle, third = (float(rotation.L / moment) for moment in rotation.moments)
+    w_P = np.column_stack([a * first * cos, b * middle * sin, c * third * dn])
+    points: FloatArray = w_P @ np.array([[float(x) for x in axis] for axis in rotation.axes_B])
+    return points
+
+
+def herpolhode(motion: FreeMotion, seconds: ArrayLike) -> FloatArray:
+    """Return the herpolhode at times (n,), s: points (n, 3), rad/s, in the invariable plane.
+
+    The axes of the plane are world axes turned so that z lies along L; z is the plane's distance, 2 T / |L|.
+    """
+    times = check_array("times", seconds, (None,))
+    w_W = motion.at(times).w_WB_W
+    points: FloatArray = w_W @ rotation_matrix(np.array(motion.q_WL))
+    return points
+
+
+def _precession(rotation: Spin | Tumble) -> float:
+    return math.nan if isinstance(rotation, Spin) else float(rotation.precession)

@@ -1,0 +1,81 @@
+"""A motion is the same motion begun later: state(t1 + t2) is state(t2) from state(t1), also for t2 = -t1."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.tumbling import FreeMotion, free_motion
+from oracles.tumbling_draws import draw
+from tumbling.known_motions import MOTIONS, motion_of
+
+ROUNDING = 1.5e-15
+"""Of a state passed on in doubles, seven last bits: relative to |w| for angular velocity, rad for attitude."""
+
+HOPELESS = 1e9
+"""Conditioning above which the passing on in doubles says nothing about the motion."""
+
+
+def begun_later(motion: FreeMotion, seconds: float) -> FreeMotion:
+    return free_motion(motion.body, motion.state_at(seconds))
+
+
+def angle(q: np.ndarray, p: np.ndarray) -> float:
+    return float((Rotation.from_quat(q).inv() * Rotation.from_quat(p)).magnitude())
+
+
+def conditioning(motion: FreeMotion, seconds: float) -> float:
+    """Return how much an attitude at a time moves with the state, rad per rad or relative error, tried."""
+    state = motion.state
+    size, step = float(np.linalg.norm(state.w_WB_W)), 1e-13
+    attitude = motion.state_at(seconds).q_WB
+    worst = 0.0
+    for axis in np.vstack([np.eye(3), -np.eye(3)]):
+        turned = (Rotation.from_rotvec(step * axis) * Rotation.from_quat(state.q_WB)).as_quat()
+        for q_WB, w_WB_W in ((state.q_WB, state.w_WB_W + step * size * axis), (turned, state.w_WB_W)):
+            other = BodyState(p_WB_W=state.p_WB_W, q_WB=q_WB, v_WB_W=state.v_WB_W, w_WB_W=w_WB_W)
+            worst = max(worst, angle(attitude, free_motion(motion.body, other).state_at(seconds).q_WB))
+    return worst / step
+
+
+def check(motion: FreeMotion, first: float, second: float) -> None:
+    later = begun_later(motion, first)
+    whole, parts = motion.state_at(first + second), later.state_at(second)
+    condition = conditioning(later, second)
+    assume(condition < HOPELESS)
+    assert angle(whole.q_WB, parts.q_WB) <= 5e-15 + ROUNDING * condition
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_known_motions_compose_and_reverse(name: str) -> None:
+    motion = motion_of(name)
+    for first, second in ((1.5, 2.25), (3.0, -3.0), (-4.0, 1.0), (64.0, 0.5)):
+        check(motion, first, second)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    first=st.floats(-50.0, 50.0),
+    second=st.one_of(st.none(), st.floats(-50.0, 50.0)),
+)
+def test_drawn_motions_compose_and_reverse(seed: int, first: float, second: float | None) -> None:
+    """Times in rad turned; without a second one, back to the beginning."""
+    drawn = draw(np.random.default_rng(seed))
+    rate = float(np.linalg.norm(drawn.w_WB_W))
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=drawn.q_WB, v_WB_W=np.zeros(3), w_WB_W=drawn.w_WB_W)
+    motion = free_motion(MassProperties(mass=1.0, I_B=drawn.I_B), state)
+    out = _on_the_binary_grid(first / rate)
+    check(motion, out, -out if second is None else _on_the_binary_grid(second / rate))
+
+
+def _on_the_binary_grid(seconds: float) -> float:
+    """Return a time near the given one with 26 bits, so that sums of two are exact."""
+    mantissa, exponent = math.frexp(seconds)
+    return math.ldexp(round(mantissa * 2**20), exponent - 20)
