@@ -30,7 +30,7 @@ from msg_adapters.contact_mode import (
 )
 from msg_adapters.contacts import contacts_to_msg
 from msg_adapters.geometry import vector_from_msg, vector_to_msg
-from msg_adapters.impact import planar_impact_to_msg
+from msg_adapters.impact import Before, planar_impact_to_msg
 
 if TYPE_CHECKING:
     from contact_dynamics.nodes.subject import Knowledge, Subject
@@ -108,11 +108,5 @@ def _settling_impact(subject: Subject, problem: PlanarProblem, velocity_toleranc
     impact = planar_impact(
         problem.body, problem.velocity, problem.contacts[0], velocity_tolerance=velocity_tolerance
     )
-    return planar_impact_to_msg(
-        impact,
-        problem,
-        contact=0,
-        body=subject.body.mass_properties,
-        before=subject.state,
-        state_to_msg=subject.state_to_msg,
-    )
+    before = Before(body=subject.body.mass_properties, state=subject.state, state_to_msg=subject.state_to_msg)
+    return planar_impact_to_msg(impact, problem, before)

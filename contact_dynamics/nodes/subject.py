@@ -25,6 +25,7 @@ from msg_adapters.stamps import stamp_ns_from_msg
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from builtin_interfaces.msg import Time
     from geometry_msgs.msg import Inertia
 
     from contact_dynamics.contact import ContactSet
@@ -67,23 +68,40 @@ def subject_of(request: Any, knowledge: Knowledge) -> Subject:
     Raises:
         ContactDynamicsError: the body is unknown, its state unknown or stale, or a number not allowed.
     """
-    parameters = knowledge.parameters
-    body = _body_of(request.body_name, request.inertia, knowledge)
-    if request.state_source == request.STATE_EXPLICIT:
-        state = body_state_from_msg(request.state, world_frame=parameters.world_frame, p_FB_F=body.p_FB_F)
-    elif request.state_source == request.STATE_PUBLISHED:
-        if not request.body_name:
-            raise InvalidFieldError(
-                "body_name", request.body_name, "the name of a configured body, or an explicit state"
-            )
-        state = _published_state(request, knowledge)
-        configured = parameters.world.body(request.body_name)
-        if body is not configured:
-            state = _carried_over(state, configured, body)
-    else:
+    if request.state_source not in {request.STATE_PUBLISHED, request.STATE_EXPLICIT}:
         raise InvalidFieldError(
             "state_source", request.state_source, "STATE_PUBLISHED (0) or STATE_EXPLICIT (1)"
         )
+    explicit = request.state if request.state_source == request.STATE_EXPLICIT else None
+    return _subject(request.body_name, request.inertia, explicit, request.stamp, knowledge)
+
+
+def other_subject_of(request: Any, knowledge: Knowledge) -> Subject | None:
+    """Return the second body of an impact, or None where the first one strikes the world.
+
+    Raises:
+        ContactDynamicsError: as `subject_of`.
+    """
+    explicit = request.other_state[0] if request.other_state else None
+    if not request.other_body_name and request.other_inertia.m == 0.0 and explicit is None:
+        return None
+    return _subject(request.other_body_name, request.other_inertia, explicit, request.stamp, knowledge)
+
+
+def _subject(
+    name: str, inertia: Inertia, explicit: BodyStateMsg | None, stamp: Time, knowledge: Knowledge
+) -> Subject:
+    parameters = knowledge.parameters
+    body = _body_of(name, inertia, knowledge)
+    if explicit is not None:
+        state = body_state_from_msg(explicit, world_frame=parameters.world_frame, p_FB_F=body.p_FB_F)
+    else:
+        if not name:
+            raise InvalidFieldError("body_name", name, "the name of a configured body, or an explicit state")
+        state = _published_state(name, stamp, knowledge)
+        configured = parameters.world.body(name)
+        if body is not configured:
+            state = _carried_over(state, configured, body)
     return Subject(body=body, state=state, world_frame=parameters.world_frame)
 
 
@@ -192,11 +210,11 @@ def _body_of(name: str, inertia: Inertia, knowledge: Knowledge) -> Body:
     return Body(name=name, mass_properties=mass_properties, p_FB_F=p_FB_F, vertices_B=vertices_F - p_FB_F)
 
 
-def _published_state(request: Any, knowledge: Knowledge) -> BodyState:
-    stamp_ns = stamp_ns_from_msg(request.stamp)
+def _published_state(name: str, stamp: Time, knowledge: Knowledge) -> BodyState:
+    stamp_ns = stamp_ns_from_msg(stamp)
     if stamp_ns == 0:
-        return knowledge.states.newest(request.body_name, now_ns=knowledge.now_ns())
-    return knowledge.states.at(request.body_name, stamp_ns)
+        return knowledge.states.newest(name, now_ns=knowledge.now_ns())
+    return knowledge.states.at(name, stamp_ns)
 
 
 def _carried_over(state: BodyState, configured: Body, body: Body) -> BodyState:

@@ -150,7 +150,11 @@ CASES = [
     (PredictImpact, put("state.linear_velocity.z", 1.0), "SEPARATING", "v_n = 1 m/s"),
     (PredictImpact, put("restitution_law", 3), "INVALID_FIELD", "restitution_law: found 3"),
     (PredictImpact, put("want_covariance", True), "NOT_SUPPORTED", "want_covariance"),
-    (PredictImpact, put("other_body_name", "brick"), "NOT_SUPPORTED", "second body"),
+    (PredictImpact, put("other_body_name", "brick"), "NO_STATE", "state of 'brick': none was published yet"),
+    (PredictImpact, put("other_body_name", "cat"), "UNKNOWN_BODY", "found 'cat'"),
+    (PredictImpact, put("other_inertia.m", -1.0), "INVALID_FIELD", "mass: found -1.0"),
+    (PredictImpact, put("other_inertia.m", 1.0), "INVALID_FIELD", "positive definite"),
+    (PredictImpact, put("several_contacts_law", 7), "INVALID_FIELD", "several_contacts_law: found 7"),
     (PredictImpact, crooked_plane, "INVALID_FIELD", "plane_normal: found [0.0, 2.0, 0.0] of norm 2"),
     (
         PredictTumbling,
