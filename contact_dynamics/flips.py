@@ -28,7 +28,7 @@ they are called none. Spin about the other axes has the same zeros of its middle
 small wobble."""
 
 NEAR_SEPARATRIX: Final = 0.1
-"""Of 1 - m. Flips are what a body stays between: here half a period is half as long again as it is for small m.
+"""Of 1 - m. A body stays between flips: here half a period is half as long again as it is for small m.
 A nearly axisymmetric rod turns its middle axis over as well, but evenly."""
 
 

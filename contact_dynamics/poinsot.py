@@ -73,7 +73,7 @@ def poinsot(motion: FreeMotion) -> Poinsot:
 
 
 def polhode_period(rotation: Spin | Tumble) -> float:
-    """Return the time, s, after which w in the body repeats; inf on the separatrix, NaN where it is constant."""
+    """Return the time, s, until w in the body repeats; inf on the separatrix, NaN where it is constant."""
     if isinstance(rotation, Spin):
         return math.nan
     if rotation.m1 == 0:
