@@ -7,7 +7,9 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from contact_dynamics.nodes.parameters import ConfigurationError
 from contact_dynamics.recording.bag_writer import BagWriter
+from contact_dynamics.recording.errors import LogExistsError
 from contact_dynamics.recording.recorder import Recorder
 
 if TYPE_CHECKING:
@@ -16,25 +18,19 @@ if TYPE_CHECKING:
     from rclpy.qos import QoSProfile
 
 
-def new_log_folder(directory: str) -> Path:
-    """Return a folder that does not exist yet, named by the time, in ``directory`` or where the process was started."""
-    name = datetime.now(timezone.utc).astimezone().strftime("contact_dynamics_%Y_%m_%d-%H_%M_%S")
-    folder = Path(directory) / name
-    number = 1
-    while folder.exists():
-        number += 1
-        folder = Path(directory) / f"{name}_{number}"
-    return folder
-
-
 class Log:
-    """Records bytes under topics that are declared before the first message; without a folder it records nothing."""
+    """Records bytes under topics that are declared before the first message; nothing, without a directory."""
 
     def __init__(
-        self, folder: Path | None, *, run: Mapping[str, str], on_problem: Callable[[str], object]
+        self, directory: str | None, *, run: Mapping[str, str], on_problem: Callable[[str], object]
     ) -> None:
-        """Create the folder. Raises `OSError` where it cannot be made: a log that was asked for and fails at the start is told."""
-        self._writer = BagWriter(folder, run=run) if folder is not None else None
+        """Create a folder in ``directory``; empty means where the process was started, None no log.
+
+        Raises:
+            ConfigurationError: it cannot be made. A log that was asked for and fails at the start is told.
+        """
+        self._writer = _new_bag(directory, run) if directory is not None else None
+        self.folder = self._writer.folder if self._writer is not None else None
         self._recorder: Recorder | None = None
         self._on_problem = on_problem
 
@@ -60,3 +56,18 @@ class Log:
         status = self._recorder.close()
         lost = f", {status.lost} lost: {status.problem}" if status.lost else ""
         return f"log: {self._writer.path} ({status.written} messages{lost})"
+
+
+def _new_bag(directory: str, run: Mapping[str, str]) -> BagWriter:
+    """Return a bag in a folder named by the time; of servers that start at once, each gets its own."""
+    name = datetime.now(timezone.utc).astimezone().strftime("contact_dynamics_%Y_%m_%d-%H_%M_%S")
+    number = 1
+    while True:
+        folder = Path(directory) / (name if number == 1 else f"{name}_{number}")
+        try:
+            return BagWriter(folder, run=run)
+        except LogExistsError:
+            number += 1
+        except OSError as error:
+            message = f"log_directory: found {directory!r}, allowed is a folder to write to ({error})"
+            raise ConfigurationError(message) from None

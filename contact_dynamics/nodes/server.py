@@ -11,32 +11,25 @@ import time
 import traceback
 from typing import TYPE_CHECKING, Any
 
-import rclpy
-from rclpy.experimental import EventsExecutor
-from rclpy.logging import get_logger
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.service_introspection import ServiceIntrospectionState
-from rclpy.signals import SignalHandlerOptions
 
 from contact_dynamics.errors import ContactDynamicsError
-from contact_dynamics.nodes.arguments import ros_arguments
-from contact_dynamics.nodes.log import Log, new_log_folder
-from contact_dynamics.nodes.parameters import ConfigurationError, read_server_parameters
+from contact_dynamics.nodes.log import Log
+from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.nodes.predict_contact_mode import predict_contact_mode
 from contact_dynamics.nodes.predict_impact import predict_impact
 from contact_dynamics.nodes.predict_tumbling import predict_tumbling
+from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.state_store import StateStore
 from contact_dynamics.nodes.state_subscriptions import STATE_QOS, subscribe_to_states
-from contact_dynamics.nodes.stop_signals import stop_signals
 from contact_dynamics.nodes.subject import Knowledge
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.status import report_error
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-    from rclpy.service import Service
 
 NODE_NAME = "contact_dynamics"
 EVENT_QOS = QoSProfile(depth=1000)
@@ -45,8 +38,6 @@ EVENT_QOS = QoSProfile(depth=1000)
 SERVICE_QOS = QoSProfile(depth=1000)
 """Of the services. With the usual depth of 10, replies get lost when several clients ask at once."""
 
-_SPIN_S = 0.1
-_DRAIN_S = 0.2  # for what had come but was not logged yet when the node was told to stop
 _SERVICES = (
     (PredictContactMode, "PredictContactMode", "predict_contact_mode", predict_contact_mode),
     (PredictImpact, "PredictImpact", "predict_impact", predict_impact),
@@ -69,8 +60,11 @@ class Server(Node):
         self._knowledge = Knowledge(
             parameters=parameters, states=states, now_ns=lambda: self.get_clock().now().nanoseconds
         )
-        folder = new_log_folder(parameters.log_directory) if parameters.log else None
-        self._log = Log(folder, run=self._run_description(), on_problem=self.get_logger().error)
+        self._log = Log(
+            parameters.log_directory if parameters.log else None,
+            run=self._run_description(),
+            on_problem=self.get_logger().error,
+        )
         for topics in parameters.topics:
             types = subscribe_to_states(
                 self,
@@ -82,23 +76,17 @@ class Server(Node):
             )
             for topic, type_name in types.items():
                 self._log.add_topic(topic, type_name, STATE_QOS)
-        self._served = [self._serve(*service) for service in _SERVICES]
+        for service in _SERVICES:
+            self._serve(*service)
         self._log.start()
         bodies = ", ".join(body.name for body in parameters.world.bodies) or "none"
-        self.get_logger().info(f"ready: bodies {bodies}; log {folder or 'off'}")
-
-    def end_services(self) -> None:
-        """Take no more requests."""
-        for service in self._served:
-            self.destroy_service(service)
+        self.get_logger().info(f"ready: bodies {bodies}; log {self._log.folder or 'off'}")
 
     def close(self) -> None:
         """Finish the log and say where it is."""
         self.get_logger().info(self._log.close())
 
-    def _serve(
-        self, service_type: type[Any], type_name: str, name: str, answer: Callable[..., None]
-    ) -> Service:
+    def _serve(self, service_type: type[Any], type_name: str, name: str, answer: Callable[..., None]) -> None:
         def handle(request: Any, response: Any) -> Any:
             start = time.perf_counter()
             try:
@@ -120,7 +108,6 @@ class Server(Node):
         self.create_subscription(
             service_type.Event, events, lambda data: self._log.record(events, data), EVENT_QOS, raw=True
         )
-        return service
 
     def _run_description(self) -> dict[str, str]:
         names = sorted(self._parameters)
@@ -129,25 +116,5 @@ class Server(Node):
 
 def main(arguments: list[str]) -> int:
     """Run the server until it is told to stop; return the exit code."""
-    args = ros_arguments("server", "Serve contact modes, impacts and tumbling over ROS 2.", arguments)
-    with stop_signals() as stop:
-        rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-        try:
-            server = Server()
-        except (ConfigurationError, OSError) as error:
-            get_logger(NODE_NAME).fatal(f"configuration: {error}")
-            rclpy.try_shutdown()
-            return 2
-        executor = EventsExecutor()
-        executor.add_node(server)
-        try:
-            while not stop.is_set():
-                executor.spin_once(timeout_sec=_SPIN_S)
-            server.end_services()
-            drained = time.monotonic() + _DRAIN_S
-            while time.monotonic() < drained:
-                executor.spin_once(timeout_sec=_DRAIN_S / 10)
-        finally:
-            server.close()
-            rclpy.try_shutdown()
-    return 0
+    description = "Serve contact modes, impacts and tumbling over ROS 2."
+    return run_node(Server, verb="server", description=description, arguments=arguments)

@@ -1,0 +1,108 @@
+"""Runs a node until its process is told to stop: the part of `main` that every node of ours shares.
+
+rclpy's own signal handlers end the context at once, so that messages which have come already cannot be taken
+any more, and Python's raise `KeyboardInterrupt` wherever the process happens to be, also while it closes its
+files. Here SIGINT and SIGTERM set an event, however often they come; the node then stops serving, takes what
+has come, and closes.
+"""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Final, Protocol
+
+import rclpy
+from rclpy.experimental import EventsExecutor
+from rclpy.logging import get_logger
+from rclpy.signals import SignalHandlerOptions
+
+from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.nodes.arguments import ros_arguments
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+    from rclpy.service import Service
+
+_SPIN_S: Final = 0.1
+_DRAIN_S: Final = 0.2  # for messages that have come and are not taken yet when the node is told to stop
+
+
+class RunnableNode(Protocol):
+    """What a node needs to be run."""
+
+    @property
+    def services(self) -> Iterable[Service]:
+        """All services, as `rclpy.node.Node` has them."""
+
+    def destroy_service(self, service: Service) -> bool:
+        """End a service, as `rclpy.node.Node` does."""
+
+    def close(self) -> None:
+        """Finish files and sinks."""
+
+
+def run_node(
+    make_node: Callable[[], RunnableNode], *, verb: str, description: str, arguments: list[str]
+) -> int:
+    """Run a node until SIGINT or SIGTERM; return the exit code: 0, or 2 for a configuration that is refused.
+
+    Args:
+        make_node: the node's class; it may raise `ContactDynamicsError` or `OSError`.
+        verb: the verb of the command line that the node is.
+        description: what it does, for `--help`.
+        arguments: all that follows the verb.
+    """
+    args = ros_arguments(verb, description, arguments)
+    with _stop_signals() as stop:
+        try:
+            rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+        except RuntimeError as error:  # what rclpy raises for arguments and files that it cannot read
+            get_logger(verb).fatal(f"configuration: {error}")
+            return 2
+        try:
+            return _run(make_node, verb, stop)
+        finally:
+            rclpy.try_shutdown()
+
+
+@contextmanager
+def _stop_signals() -> Iterator[threading.Event]:
+    stop = threading.Event()
+    before = {
+        number: signal.signal(number, lambda _number, _frame: stop.set())
+        for number in (signal.SIGINT, signal.SIGTERM)
+    }
+    try:
+        yield stop
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _run(make_node: Callable[[], RunnableNode], verb: str, stop: threading.Event) -> int:
+    try:
+        node = make_node()
+    except (ContactDynamicsError, OSError) as error:
+        get_logger(verb).fatal(f"configuration: {error}")
+        return 2
+    try:
+        _spin(node, stop)
+    finally:
+        node.close()
+    return 0
+
+
+def _spin(node: RunnableNode, stop: threading.Event) -> None:
+    executor = EventsExecutor()
+    executor.add_node(node)
+    while not stop.is_set():
+        executor.spin_once(timeout_sec=_SPIN_S)
+    for service in list(node.services):
+        node.destroy_service(service)
+    drained = time.monotonic() + _DRAIN_S
+    while time.monotonic() < drained:
+        executor.spin_once(timeout_sec=0.1 * _DRAIN_S)
