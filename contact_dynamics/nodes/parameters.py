@@ -6,20 +6,25 @@ The commented file `config/server.yaml` is what a user edits; a test holds the t
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
-from rclpy.exceptions import ParameterUninitializedException
 from rclpy.parameter import Parameter
 
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.rigid_body import MassProperties
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, OUT_OF_PLANE_SPEED, VELOCITY_TOLERANCE
+from contact_dynamics.validation import check_array, check_positive
 from contact_dynamics.world import STANDARD_GRAVITY_W, Body, Surface, World, box_vertices
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from rclpy.node import Node
+
+    from contact_dynamics.validation import FloatArray
 
 T = TypeVar("T")
 
@@ -65,18 +70,18 @@ def read_server_parameters(node: Node) -> ServerParameters:
         named.
     """
     reader = _Reader(node)
-    body_names = reader.read("bodies", [""], "Names of the bodies that questions can name.")
-    surface_names = reader.read("surfaces", [""], "Names of the flats of the world.")
-    bodies = [_read_body(reader, name) for name in body_names if name]
+    body_names = reader.names("bodies", "Names of the bodies that questions can name.")
+    surface_names = reader.names("surfaces", "Names of the flats of the world.")
+    bodies = [_read_body(reader, name) for name in body_names]
     gravity = reader.read(
         "gravity", list(STANDARD_GRAVITY_W), "Acceleration of gravity, m/s^2, world axes: x, y, z."
     )
     return ServerParameters(
         world=reader.build(
-            "gravity",
+            "",
             lambda: World(
                 bodies=tuple(body for body, _ in bodies),
-                surfaces=tuple(_read_surface(reader, name) for name in surface_names if name),
+                surfaces=tuple(_read_surface(reader, name) for name in surface_names),
                 gravity_W=np.array(gravity),
             ),
         ),
@@ -126,34 +131,18 @@ def _read_body(reader: _Reader, name: str) -> tuple[Body, StateTopics]:
     inertia = reader.read(
         f"{key}.inertia",
         Parameter.Type.DOUBLE_ARRAY,
-        "Angular inertia about the centre of mass, kg m^2, in the axes of the body's frame: ixx, iyy, izz, ixy, ixz, iyz.",
+        "Angular inertia about the centre of mass, kg m^2, in the axes of the body's frame: "
+        "ixx, iyy, izz, ixy, ixz, iyz.",
     )
     if len(inertia) != 6:
         message = f"{key}.inertia: found {len(inertia)} numbers, allowed are 6: ixx, iyy, izz, ixy, ixz, iyz"
         raise ConfigurationError(message)
     ixx, iyy, izz, ixy, ixz, iyz = inertia
-    center_of_mass = np.array(
-        reader.read(
-            f"{key}.center_of_mass", [0.0, 0.0, 0.0], "Centre of mass in the body's frame, m: x, y, z."
-        )
+    offset = reader.read(
+        f"{key}.center_of_mass", [0.0, 0.0, 0.0], "Centre of mass in the body's frame, m: x, y, z."
     )
-    box = reader.read(
-        f"{key}.box", [0.0], "Full side lengths of a box centred on the body's frame, m: x, y, z."
-    )
-    corners = reader.read(
-        f"{key}.vertices",
-        [0.0],
-        "Corners of a convex shape in the body's frame, m: x, y, z of one after the other.",
-    )
-    vertices_F = np.zeros((0, 3))
-    if len(box) == 3:
-        vertices_F = reader.build(f"{key}.box", lambda: box_vertices(tuple(box)))
-    elif len(corners) >= 3 and len(corners) % 3 == 0:
-        vertices_F = np.array(corners).reshape(-1, 3)
-    elif len(box) > 1 or len(corners) > 1:
-        field, found = ("box", box) if len(box) > 1 else ("vertices", corners)
-        message = f"{key}.{field}: found {len(found)} numbers, allowed are three for the box, or three for each vertex"
-        raise ConfigurationError(message)
+    center_of_mass = reader.build(key, lambda: check_array("center_of_mass", offset, (3,)))
+    vertices_F = _read_shape(reader, key)
     body = reader.build(
         key,
         lambda: Body(
@@ -167,14 +156,14 @@ def _read_body(reader: _Reader, name: str) -> tuple[Body, StateTopics]:
     )
     topics = StateTopics(
         body_name=name,
-        odometry=reader.read(
-            f"{key}.odometry_topic", "", "Topic of the body's states as nav_msgs/Odometry. Empty: not used."
+        odometry=reader.topic(
+            f"{key}.odometry_topic", "Topic of the body's states as nav_msgs/Odometry. Empty: not used."
         ),
-        pose=reader.read(
-            f"{key}.pose_topic", "", "Topic of the body's geometry_msgs/PoseStamped. Empty: not used."
+        pose=reader.topic(
+            f"{key}.pose_topic", "Topic of the body's geometry_msgs/PoseStamped. Empty: not used."
         ),
-        twist=reader.read(
-            f"{key}.twist_topic", "", "Topic of the body's geometry_msgs/TwistStamped. Empty: not used."
+        twist=reader.topic(
+            f"{key}.twist_topic", "Topic of the body's geometry_msgs/TwistStamped. Empty: not used."
         ),
         frame=reader.read(f"{key}.frame", name, "Frame of the body, which the pose is of."),
     )
@@ -182,6 +171,30 @@ def _read_body(reader: _Reader, name: str) -> tuple[Body, StateTopics]:
         message = f"{key}.pose_topic and {key}.twist_topic: found one of them, allowed are both or none"
         raise ConfigurationError(message)
     return body, topics
+
+
+def _read_shape(reader: _Reader, key: str) -> FloatArray:
+    """Return the corners of a body, (k, 3), m, in its frame; none where it has no shape."""
+    box = reader.read(
+        f"{key}.box", [0.0], "Full side lengths of a box centred on the body's frame, m: x, y, z."
+    )
+    corners = reader.read(
+        f"{key}.vertices",
+        [0.0],
+        "Corners of a convex shape in the body's frame, m: x, y, z of one after the other.",
+    )
+    if len(box) == 3:
+        x, y, z = (reader.build(key, partial(check_positive, f"box[{i}]", box[i])) for i in range(3))
+        return box_vertices((x, y, z))
+    if len(box) > 1:
+        message = f"{key}.box: found {len(box)} numbers, allowed are 3 (or [0.0]: no box)"
+        raise ConfigurationError(message)
+    if len(corners) > 1 and len(corners) % 3 > 0:
+        message = f"{key}.vertices: found {len(corners)} numbers, allowed are 3 for each (or [0.0]: none)"
+        raise ConfigurationError(message)
+    rows = np.array(corners if len(corners) > 1 else []).reshape(-1, 3)
+    vertices: FloatArray = reader.build(key, lambda: check_array("vertices", rows, (None, 3)))
+    return vertices
 
 
 def _read_surface(reader: _Reader, name: str) -> Surface:
@@ -209,30 +222,59 @@ def _read_surface(reader: _Reader, name: str) -> Surface:
 
 
 class _Reader:
-    """Declares a parameter and returns its value; turns whatever is wrong into a `ConfigurationError` that names it."""
+    """Declares parameters and returns their values; whatever is wrong becomes a `ConfigurationError`."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
+        self._topics: dict[str, str] = {}  # resolved name, and the parameter that it comes from
 
     def read(
         self, name: str, default: Any, description: str, bounds: tuple[float, float] | None = None
     ) -> Any:
-        """Return the value of a read-only parameter; a `Parameter.Type` in place of the default makes it mandatory."""
+        """Return a read-only parameter's value; a `Parameter.Type` as the default makes it mandatory."""
         ranges = [FloatingPointRange(from_value=bounds[0], to_value=bounds[1])] if bounds else []
         descriptor = ParameterDescriptor(description=description, read_only=True, floating_point_range=ranges)
         try:
-            return self._node.declare_parameter(name, default, descriptor).value
-        except ParameterUninitializedException:
-            message = f"{name}: found nothing, needed is: {description}"
+            value = self._node.declare_parameter(name, default, descriptor).value
         except Exception as error:  # noqa: BLE001  rclpy raises several unrelated types for a wrong type or range
             message = f"{name}: {error} ({description})"
-        raise ConfigurationError(message)
+            raise ConfigurationError(message) from None
+        if value is None:
+            message = f"{name}: found nothing, needed is: {description}"
+            raise ConfigurationError(message)
+        return value
+
+    def names(self, name: str, description: str) -> list[str]:
+        """Return the names that a list has; empty ones, which stand for none, are left out."""
+        found = [each for each in self.read(name, [""], description) if each]
+        if len(set(found)) < len(found):
+            message = f"{name}: found {found}, allowed are names that differ"
+            raise ConfigurationError(message)
+        return found
+
+    def topic(self, name: str, description: str) -> str:
+        """Return a topic's name, which no other parameter has; empty stands for none."""
+        topic: str = self.read(name, "", description)
+        if not topic:
+            return topic
+        try:
+            resolved = self._node.resolve_topic_name(topic)
+        except RuntimeError as error:
+            message = f"{name}: found {topic!r}, allowed is a topic's name ({error})"
+            raise ConfigurationError(message) from None
+        if resolved in self._topics:
+            message = (
+                f"{name}: found {topic!r}, allowed is another topic than that of {self._topics[resolved]}"
+            )
+            raise ConfigurationError(message)
+        self._topics[resolved] = name
+        return topic
 
     @staticmethod
-    def build(name: str, make: Any) -> Any:
-        """Return what ``make`` builds; what it refuses is reported under the parameter's name."""
+    def build(prefix: str, make: Callable[[], T]) -> T:
+        """Return what ``make`` builds; a field that it refuses is named as the parameter ``prefix.field``."""
         try:
             return make()
         except InvalidFieldError as error:
-            message = f"{name}.{error}"
+            message = f"{prefix}.{error}" if prefix else str(error)
             raise ConfigurationError(message) from None
