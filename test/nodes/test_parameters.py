@@ -1,0 +1,267 @@
+"""The commented configuration files beside what the nodes declare, and what a wrong value gets."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from copy import copy
+from pathlib import Path
+from typing import Any
+
+import pytest
+import rclpy
+import yaml
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+from contact_dynamics.nodes import server, visualizer
+from running_server import DOMAIN_ID, PATIENCE_S, ROOT, environment
+
+CONFIG = ROOT / "config"
+SERVER_FILE = CONFIG / "server.yaml"
+VISUALIZER_FILE = CONFIG / "visualizer.yaml"
+OF_ROS = re.compile(r"use_sim_time|start_type_description_service|qos_overrides\..*")
+WORDS: dict[str, Any] = {
+    "9.80665 along -z": [0.0, 0.0, -9.80665],
+    "[0.0]": [0.0],
+    "at its origin": [0.0, 0.0, 0.0],
+    "empty": "",
+    "false": False,
+    "none": [""],
+    "the body's name": "brick",
+    "the origin": [0.0, 0.0, 0.0],
+    "true": True,
+    "up": [0.0, 0.0, 1.0],
+}
+"""What the comments call a default that is not written as the number or name that it is."""
+
+
+@pytest.fixture(autouse=True)
+def own_domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(DOMAIN_ID))
+    yield
+    rclpy.try_shutdown()  # what a failing test leaves must not fail the next
+
+
+class Declarations(dict[str, tuple[Any, Any]]):
+    """Default and descriptor of each parameter that a node declares while it starts."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        super().__init__()
+        declare = Node.declare_parameter
+
+        def note(node: Node, name: str, value: Any = None, descriptor: Any = None, **options: Any) -> Any:
+            self[name] = (value, descriptor)
+            return declare(node, name, value, descriptor, **options)
+
+        monkeypatch.setattr(Node, "declare_parameter", note)
+
+    def ours(self) -> dict[str, tuple[Any, Any]]:
+        """Those that are not rclpy's own."""
+        return {name: declared for name, declared in self.items() if not OF_ROS.fullmatch(name)}
+
+
+@pytest.fixture
+def declared(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[dict[str, dict[str, Any]]]:
+    """What the server declares, and what the visualizer declares besides, with the files as they are."""
+    files = ["--ros-args", "--params-file", str(SERVER_FILE), "--params-file", str(VISUALIZER_FILE)]
+    rclpy.init(args=[*files, "-p", "log:=false"])
+    declarations = Declarations(monkeypatch)
+    try:
+        server.Server().destroy_node()
+        of_server = declarations.ours()
+        picture = Parameter("rrd_path", value=str(tmp_path / "picture.rrd"))
+        drawing = visualizer.Visualizer(parameter_overrides=[picture])
+        drawing.close()
+        drawing.destroy_node()
+        of_visualizer = {name: d for name, d in declarations.ours().items() if name not in of_server}
+        yield {"server": of_server, "visualizer": of_visualizer}
+    finally:
+        rclpy.shutdown()
+
+
+def values_of(path: Path) -> dict[str, Any]:
+    """The parameters that a file sets."""
+    (node,) = yaml.safe_load(path.read_text(encoding="utf-8")).values()
+    parameters: dict[str, Any] = node["ros__parameters"]
+    return parameters
+
+
+def comments_of(path: Path) -> dict[str, str]:
+    """The comment before each parameter: that of its block, and of the next block that begins with '...'."""
+    comments: dict[str, str] = {}
+    open_block: list[str] = []
+    for block in path.read_text(encoding="utf-8").split("\n\n"):
+        lines = [line.strip() for line in block.splitlines() if line.strip()]
+        text = " ".join(line.lstrip("# ") for line in lines if line.startswith("#"))
+        names = [line.partition(":")[0] for line in lines if not line.startswith("#")]
+        if names and not lines[0].startswith("#"):
+            text = ""
+        if not text.startswith("..."):
+            open_block = []
+        open_block += names
+        for name in open_block:
+            comments[name] = f"{comments.get(name, '')} {text}".strip()
+    return comments
+
+
+@pytest.mark.parametrize("path", [SERVER_FILE, VISUALIZER_FILE], ids=lambda path: path.stem)
+def test_every_parameter_declared_stands_in_the_file_and_none_else(
+    declared: dict[str, dict[str, Any]], path: Path
+) -> None:
+    assert set(values_of(path)) == set(declared[path.stem])
+
+
+@pytest.mark.parametrize("path", [SERVER_FILE, VISUALIZER_FILE], ids=lambda path: path.stem)
+def test_every_parameter_has_a_comment_that_says_its_default(
+    declared: dict[str, dict[str, Any]], path: Path
+) -> None:
+    comments = comments_of(path)
+    for name, (default, descriptor) in declared[path.stem].items():
+        comment = comments[name]
+        assert comment, f"{name}: no comment"
+        if isinstance(default, Parameter.Type):
+            assert "No default" in comment, f"{name}: {comment}"
+            continue
+        _, found, text = comment.partition("Default: ")
+        assert found, f"{name}: no default in {comment!r}"
+        word = next((word for word in WORDS if text.startswith(word)), "")
+        said = WORDS[word] if word else type(default)(re.split(r"[,;.]?(?: |$)", text)[0])
+        assert said == default, f"{name}: the file says {text!r}, declared is {default!r}"
+        assert descriptor.read_only
+
+
+def test_every_parameter_is_described(declared: dict[str, dict[str, Any]]) -> None:
+    """`ros2 param describe` shows the description; that of a number says its unit."""
+    for name, (default, descriptor) in {**declared["server"], **declared["visualizer"]}.items():
+        assert re.fullmatch(r"[A-Z].{8,}", descriptor.description), name
+        if isinstance(default, float) or default is Parameter.Type.DOUBLE:
+            assert re.search(r"\b(m|s|kg|Hz|m/s|[Cc]oefficient)\b", descriptor.description), name
+
+
+Change = Callable[[dict[str, Any]], object]
+
+
+def put(**changes: Any) -> Change:
+    """Return what sets parameters, whose dots are written as two underscores."""
+    return lambda values: values.update({name.replace("__", "."): value for name, value in changes.items()})
+
+
+def drop(name: str) -> Change:
+    return lambda values: values.pop(name)
+
+
+def two_bodies_on_one_topic(values: dict[str, Any]) -> None:
+    values["bodies"] = ["brick", "plate"]
+    for name in ("mass", "inertia", "odometry_topic"):
+        values[f"body.plate.{name}"] = copy(values[f"body.brick.{name}"])  # YAML would write an alias
+
+
+NAN, INF = float("nan"), float("inf")
+BRICK = [3.5e-4, 8.4e-4, 1.0e-3]
+WRONG = [
+    (drop("body.brick.mass"), "body.brick.mass: found nothing, needed is: Mass, kg."),
+    (put(body__brick__mass="heavy"), "body.brick.mass"),
+    (put(body__brick__mass=1), "body.brick.mass"),
+    (put(body__brick__mass=NAN), "body.brick.mass: found nan, allowed is"),
+    (put(body__brick__mass=0.0), "body.brick.mass: found 0.0, allowed is a number > 0"),
+    (put(body__brick__inertia=[*BRICK, 0.0, 0.0]), "body.brick.inertia: found 5 numbers, allowed are 6"),
+    (put(body__brick__inertia=[1.0, 1.0, 3.0, 0.0, 0.0, 0.0]), "body.brick.inertia: found"),
+    (put(body__brick__inertia=[*BRICK, NAN, 0.0, 0.0]), "body.brick.inertia: found"),
+    (put(body__brick__inertia=0.001), "body.brick.inertia"),
+    (put(body__brick__center_of_mass=[0.0, 0.1]), "body.brick.center_of_mass: found"),
+    (put(body__brick__center_of_mass=[0.0, NAN, 0.0]), "body.brick.center_of_mass: found"),
+    (put(body__brick__box=[0.1, 0.2]), "body.brick.box: found 2 numbers"),
+    (put(body__brick__box=[0.1, INF, 0.1]), "body.brick.box[1]: found inf"),
+    (put(body__brick__box=[0.1, -0.1, 0.1]), "body.brick.box[1]: found -0.1, allowed is a number > 0"),
+    (
+        put(body__brick__box=[0.0], body__brick__vertices=[0.1] * 4),
+        "body.brick.vertices: found 4 numbers",
+    ),
+    (put(body__brick__pose_topic="/brick/pose"), "body.brick.pose_topic and body.brick.twist_topic: found"),
+    (put(body__brick__twist_topic="/brick/twist"), "body.brick.pose_topic and body.brick.twist_topic: found"),
+    (
+        put(body__brick__odometry_topic="/brick odometry"),
+        "body.brick.odometry_topic: found '/brick odometry'",
+    ),
+    (put(bodies=["brick", "brick"]), "bodies: found ['brick', 'brick'], allowed are names that differ"),
+    (two_bodies_on_one_topic, "body.plate.odometry_topic: found '/brick/odometry'"),
+    (drop("surface.floor.friction"), "surface.floor.friction: found nothing"),
+    (put(surface__floor__friction=-0.1), "surface.floor.friction: found -0.1, allowed is a number >= 0"),
+    (put(surface__floor__restitution=1.5), "surface.floor.restitution: found 1.5, allowed is"),
+    (put(surface__floor__normal=[0.0, 0.0, 2.0]), "surface.floor.normal: found [0.0, 0.0, 2.0] of norm 2"),
+    (put(surface__floor__point=[0.0, 0.0]), "surface.floor.point: found shape (2,)"),
+    (put(surfaces=["floor", "floor"]), "surfaces: found ['floor', 'floor'], allowed are names that differ"),
+    (put(gravity=[0.0, 0.0, NAN]), "gravity: found"),
+    (put(gravity=[0.0, -9.81]), "gravity: found shape (2,)"),
+    (put(state_timeout=-1.0), "state_timeout"),
+    (put(state_timeout=NAN), "state_timeout: Invalid parameter value (nan)"),
+    (put(velocity_tolerance=NAN), "velocity_tolerance: Invalid parameter value (nan)"),
+    (put(horizon=INF), "horizon"),
+    (put(rate=0.0), "rate"),
+    (put(log="perhaps"), "log"),
+    (put(log_directory=str(Path(__file__))), "log_directory: "),
+]
+
+
+def parameters_file(folder: Path, values: dict[str, Any]) -> Path:
+    path = folder / "parameters.yaml"
+    path.write_text(yaml.safe_dump({"/**": {"ros__parameters": values}}), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(("change", "words"), WRONG, ids=[words.partition(":")[0] for _, words in WRONG])
+def test_a_wrong_value_ends_the_server_and_is_named(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], change: Change, words: str
+) -> None:
+    values = {**values_of(SERVER_FILE), "log_directory": str(tmp_path)}
+    change(values)
+    assert server.main(["--params-file", str(parameters_file(tmp_path, values))]) == 2
+    printed = capfd.readouterr().err
+    assert words in printed
+    assert "Traceback" not in printed
+    assert not list(tmp_path.glob("contact_dynamics_*")), "a log that holds nothing"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ([], "rrd_path, spawn, serve, connect: found none, needed is somewhere to draw to"),
+        (["-p", "spawn:=true", "-p", "serve:=true"], "spawn and serve: found 2 ways to a viewer"),
+        (["-p", "serve:=true", "-p", "port:=0"], "port"),
+        (["-p", "serve:=true", "-p", "port:=70000"], "port"),
+        (["-p", "serve:=maybe"], "serve"),
+        (["-p", "rrd_path:=a.rrd", "-p", "surface_side:=0.0"], "surface_side"),
+        (["-p", "rrd_path:=a.rrd", "-p", "body.brick.mass:=-1.0"], "body.brick.mass: found -1.0"),
+    ],
+)
+def test_a_wrong_value_ends_the_visualizer_and_is_named(
+    capfd: pytest.CaptureFixture[str], arguments: list[str], words: str
+) -> None:
+    given = ["--params-file", str(SERVER_FILE), "--ros-args", *arguments]
+    assert visualizer.main(given) == 2
+    assert words in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("path", [ROOT / "missing.yaml", ROOT / "README.md"], ids=lambda path: path.name)
+def test_a_file_that_cannot_be_read_is_named(capfd: pytest.CaptureFixture[str], path: Path) -> None:
+    assert server.main(["--params-file", str(path)]) == 2
+    assert str(path) in capfd.readouterr().err
+
+
+def test_the_process_ends_with_2_and_one_line() -> None:
+    wrong = ["--params-file", str(SERVER_FILE), "--ros-args", "-p", "body.brick.mass:=-1.0"]
+    done = subprocess.run(
+        [sys.executable, "-m", "contact_dynamics", "server", *wrong],
+        cwd=ROOT,
+        env=environment(),
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert "body.brick.mass: found -1.0, allowed is a number > 0" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
