@@ -7,6 +7,7 @@ topics, and its own (`config/visualizer.yaml`). A drawing that fails is told onc
 
 from __future__ import annotations
 
+import os
 import sys
 import traceback
 from functools import partial
@@ -105,10 +106,10 @@ class Visualizer(Node):
         for body_name, states in self._states.take().items():
             self._guarded("states", partial(self._picture.add_states, body_name, states))
 
-    def close(self) -> None:
-        """Draw what is left and close the sinks."""
+    def close(self) -> bool:
+        """Draw what is left and close the sinks; return whether they took all."""
         self.draw_states()
-        self._recording.close()
+        return self._recording.close()
 
     def _listen(self, service_type: Any, service: str, kind: str, show: Callable[..., None]) -> None:
         def receive(event: Any) -> None:
@@ -210,6 +211,8 @@ def main(arguments: list[str]) -> int:
     except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
         pass
     finally:
-        visualizer.close()
+        complete = visualizer.close()
         rclpy.try_shutdown()
+        if not complete:
+            os._exit(1)  # a usual exit would wait for a viewer that hangs
     return 0

@@ -33,7 +33,7 @@ LOWEST_DISTANCE: Final = 0.5
 WINDOW_S: Final = 10.0
 """s. How long a trail is, and how far back the curves go."""
 
-_DISTANCE: Final = 1.05  # of the eye, relative to the diagonal of what it shows
+_DISTANCE: Final = 1.12  # of the eye, relative to the diagonal of what it shows
 _ELEVATION: Final = 0.33  # of the eye above what it looks at, relative to its horizontal distance
 
 

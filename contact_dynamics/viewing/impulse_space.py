@@ -51,7 +51,7 @@ _EVENTS: Final = {
 }
 
 
-class _Line(NamedTuple):
+class Line(NamedTuple):
     """Impulses x with ``normal . x + offset = 0``: a component of the contact's velocity is zero there."""
 
     normal: FloatArray  # (2,), 1/kg, tangential, normal
@@ -112,7 +112,7 @@ def contact_axes(picture: ImpactPicture, contact: int) -> FloatArray:
     return np.array([tangent_W / length, normal_W])
 
 
-def line_in_box(line: _Line, extent: float) -> FloatArray:
+def line_in_box(line: Line, extent: float) -> FloatArray:
     """Return the ends, (1, 2, 2), of the part of a line that the picture shows; (0, 2, 2): none."""
     nothing = np.zeros((0, 2, 2))
     squared = float(line.normal @ line.normal)
@@ -136,13 +136,13 @@ def line_in_box(line: _Line, extent: float) -> FloatArray:
 
 def _lines(
     mass_properties: MassProperties, picture: ImpactPicture, contact: int, axes_W: FloatArray
-) -> tuple[_Line, _Line]:
+) -> tuple[Line, Line]:
     """Return the sticking and the compression line (lecture 27, eq. 9 and 10)."""
     p_WC_W = picture.contacts.p_WC_W[contact]
     velocity = axes_W @ picture.state.velocity_of_point(p_WC_W)
     response_W = contact_inverse_inertia(mass_properties, picture.state, p_WC_W - picture.state.p_WB_W)
     response = axes_W @ response_W @ axes_W.T
-    return _Line(response[0], float(velocity[0])), _Line(response[1], float(velocity[1]))
+    return Line(response[0], float(velocity[0])), Line(response[1], float(velocity[1]))
 
 
 def _draw_background(recording: rr.RecordingStream, friction: float, extent: float) -> None:

@@ -28,7 +28,6 @@ DEFAULT_PORT: Final = 9876
 
 _START_S: Final = 15.0
 _CONNECT_S: Final = 1.0
-_CLOSE_S: Final = 5.0
 _POLL_S: Final = 0.05
 
 
@@ -55,7 +54,7 @@ class OpenRecording:
     """A recording that is open to its sinks."""
 
     def __init__(self, sinks: Sinks, *, on_problem: Callable[[str], object]) -> None:
-        """Open the sinks; a viewer that cannot be reached is told, and the file is written all the same.
+        """Open the sinks; a viewer that cannot be reached is told, the file is written all the same.
 
         Raises:
             OSError: the file cannot be written.
@@ -64,13 +63,17 @@ class OpenRecording:
         self._on_problem = on_problem
         self.description = ", ".join(self._open(sinks)) or "nowhere"
 
-    def close(self) -> None:
-        """Write what is left and let go of the viewer, which stays open; wait 5 s for one that hangs."""
+    def close(self, *, timeout: float = 5.0) -> bool:
+        """Write what is left and let go of the viewer, which stays open; return whether it took all in time, s.
+
+        Where it did not, rerun would wait for it for ever when the process exits.
+        """
         thread = threading.Thread(target=self._disconnect, daemon=True)
         thread.start()
-        thread.join(_CLOSE_S)
+        thread.join(timeout)
         if thread.is_alive():
-            self._on_problem(f"the viewer did not take all that was drawn within {_CLOSE_S:g} s")
+            self._on_problem(f"the viewer did not take all that was drawn within {timeout:g} s")
+        return not thread.is_alive()
 
     def _disconnect(self) -> None:
         self.stream.disconnect()

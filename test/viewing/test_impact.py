@@ -1,0 +1,105 @@
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from contact_dynamics.viewing.impact import ImpactPicture, draw_impact, friction_cones
+from contact_dynamics.viewing.shape import convex_shape
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import rerun as rr
+
+    from contact_dynamics.contact import ContactSet
+    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import Body
+    from viewing.drawn import Drawn
+
+IMPACT = "/world/impact/brick"
+
+
+def picture_of(state: BodyState, contacts: ContactSet, impulses: FloatArray) -> ImpactPicture:
+    return ImpactPicture(
+        state=state,
+        v_after_W=np.array([0.25, 0.1, 0.5]),
+        contacts=contacts,
+        impulses_W=impulses,
+        path_W=np.array([[0.0, 0.0, 0.0], impulses[1]]),
+        path_events=(0, 3),
+        path_contacts=(1, 1),
+        plane_normal_W=None,
+    )
+
+
+def test_arrows_point_along_what_they_stand_for_and_say_how_much(
+    recording: rr.RecordingStream,
+    read: Callable[[], Drawn],
+    body: Body,
+    state: BodyState,
+    two_contacts: ContactSet,
+) -> None:
+    impulses = np.array([[0.0, 0.0, 0.0], [0.3, 0.0, 0.4]])
+    draw_impact(recording, "brick", convex_shape(body.vertices_B), picture_of(state, two_contacts, impulses))
+    drawn = read()
+    assert drawn.last(f"{IMPACT}/impulse", "Arrows3D:labels") == ["0.5 N s"]
+    arrow = drawn.array(f"{IMPACT}/impulse", "Arrows3D:vectors")
+    np.testing.assert_allclose(np.cross(arrow, impulses[1:]), [[0.0, 0.0, 0.0]], atol=1e-7)
+    assert arrow[0] @ impulses[1] > 0.0
+    np.testing.assert_allclose(
+        drawn.array(f"{IMPACT}/impulse", "Arrows3D:origins"), [[-0.1, 0, 0]], rtol=1e-6
+    )
+    before, after = drawn.array(f"{IMPACT}/velocity", "Arrows3D:vectors")
+    np.testing.assert_allclose(before / after, state.v_WB_W / [0.25, 0.1, 0.5], rtol=1e-5)  # one scale
+    np.testing.assert_allclose(
+        drawn.array(f"{IMPACT}/point", "Points3D:positions"), [[-0.1, 0, 0]], rtol=1e-6
+    )
+
+
+def test_an_impact_without_impulse_is_drawn(
+    recording: rr.RecordingStream,
+    read: Callable[[], Drawn],
+    body: Body,
+    state: BodyState,
+    two_contacts: ContactSet,
+) -> None:
+    picture = picture_of(state, two_contacts, np.zeros((2, 3)))
+    draw_impact(recording, "brick", convex_shape(body.vertices_B), picture)
+    drawn = read()
+    assert drawn.last(f"{IMPACT}/impulse", "Arrows3D:vectors") == []
+    assert drawn.last(f"{IMPACT}/cone", "Clear:is_recursive") == [False]
+
+
+@pytest.mark.parametrize("friction", [1e-3, 0.3, 1.0, 50.0])
+def test_a_friction_cone_opens_by_the_friction_angle(friction: float) -> None:
+    normal = np.array([0.6, 0.0, 0.8])
+    cones = friction_cones(np.array([[1.0, 2.0, 3.0]]), normal[None], np.array([friction]), height=0.1)
+    assert cones is not None
+    assert cones.vertex_positions is not None
+    vertices = np.array(cones.vertex_positions.as_arrow_array().to_pylist())
+    apex, rim = vertices[0], vertices[1:]
+    np.testing.assert_allclose(apex, [1.0, 2.0, 3.0])
+    along = (rim - apex) @ normal
+    across = np.linalg.norm(rim - apex - np.outer(along, normal), axis=1)
+    # float32 positions of size 3 carry 2e-7 m
+    np.testing.assert_allclose(np.arctan2(across, along), math.atan(friction), atol=1e-5)
+
+
+def test_cones_of_several_contacts_do_not_share_triangles() -> None:
+    points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]])
+    cones = friction_cones(points, np.tile([0.0, 0.0, 1.0], (3, 1)), np.array([0.5, 0.0, 0.5]), height=0.1)
+    assert cones is not None
+    assert cones.vertex_positions is not None
+    assert cones.triangle_indices is not None
+    vertices = np.array(cones.vertex_positions.as_arrow_array().to_pylist())
+    triangles = vertices[np.array(cones.triangle_indices.as_arrow_array().to_pylist())]
+    assert np.ptp(triangles[..., 0], axis=1).max() < 0.2
+    assert {round(x) for x in triangles[..., 0].ravel().tolist()} == {0, 2}
+
+
+def test_without_friction_there_is_no_cone() -> None:
+    assert friction_cones(np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]), np.zeros(1), height=0.1) is None

@@ -1,0 +1,132 @@
+"""The sliding rod of lecture 27 (worked number 4), drawn in impulse space."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contact_dynamics.contact import ContactSet
+from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.viewing.impact import ImpactPicture
+from contact_dynamics.viewing.impulse_space import Line, contact_axes, draw_impulse_space, line_in_box
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import rerun as rr
+
+    from viewing.drawn import Drawn
+
+MU = math.tan(math.radians(30.0))
+STICKS = (MU * 0.1719704, 0.1719704)
+COMPRESSED = (1.0 / 9.0, 2.0 / 9.0)
+ENDS = (0.1372549, 0.3333333)
+DIGITS = 1e-6  # the lecture's numbers have seven, the picture is float32
+
+# Seen from -y, the plane of motion has x to the right and z up.
+PLANE_NORMAL = np.array([0.0, -1.0, 0.0])
+ROD = MassProperties(mass=1.0, I_B=np.eye(3))
+
+
+def sliding_rod(*, in_plane: bool = True) -> ImpactPicture:
+    path = np.array([[t, 0.0, n] for t, n in ((0.0, 0.0), STICKS, COMPRESSED, ENDS)])
+    return ImpactPicture(
+        state=BodyState(
+            p_WB_W=np.array([1.0, 0.0, 4.0]),
+            q_WB=np.array([0.0, 0.0, 0.0, 1.0]),
+            v_WB_W=np.array([-1.0, 0.0, 0.0]),
+            w_WB_W=np.zeros(3),
+        ),
+        v_after_W=np.array([-0.8627451, 0.0, 0.3333333]),
+        contacts=ContactSet(
+            p_WC_W=np.zeros((1, 3)),
+            normals_W=np.array([[0.0, 0.0, 1.0]]),
+            frictions=np.array([MU]),
+            restitutions=np.array([0.5]),
+        ),
+        impulses_W=path[-1:],
+        path_W=path,
+        path_events=(0, 1, 2, 3),
+        path_contacts=(0, 0, 0, 0),
+        plane_normal_W=PLANE_NORMAL if in_plane else None,
+    )
+
+
+def on_paper(points: object) -> np.ndarray:
+    """Points as the lecture draws them: rerun's 2D views have the second coordinate downwards."""
+    return np.array(points, dtype=np.float64) * (1.0, -1.0)
+
+
+@pytest.mark.parametrize("in_plane", [True, False])
+def test_the_lines_pass_through_the_lectures_points(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], *, in_plane: bool
+) -> None:
+    draw_impulse_space(recording, ROD, sliding_rod(in_plane=in_plane))
+    drawn = read()
+    path = on_paper(drawn.last("/impulse_space/path", "LineStrips2D:strips")[0])
+    np.testing.assert_allclose(path, [(0.0, 0.0), STICKS, COMPRESSED, ENDS], atol=DIGITS)
+    (sticking,) = on_paper(drawn.last(r"/impulse_space/sticking\ line", "LineStrips2D:strips"))
+    (compression,) = on_paper(drawn.last(r"/impulse_space/compression\ line", "LineStrips2D:strips"))
+    for point in (STICKS, COMPRESSED, ENDS):  # it sticks until the end
+        assert distance(point, sticking) < DIGITS
+    assert distance(COMPRESSED, compression) < DIGITS
+    assert distance(ENDS, compression) > 0.01
+    labels = drawn.last(r"/impulse_space/event\ labels", "Points2D:labels")
+    assert labels == [
+        "sliding stops: 0.0993, 0.172 N s",
+        "compression ends: 0.111, 0.222 N s",
+        "restitution ends: 0.137, 0.333 N s",
+    ]
+
+
+def distance(point: tuple[float, float], line: np.ndarray) -> float:
+    along, across = line[1] - line[0], np.array(point) - line[0]
+    return float(abs(along[0] * across[1] - along[1] * across[0]) / np.linalg.norm(along))
+
+
+def test_without_mass_properties_the_lines_are_left_out(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    draw_impulse_space(recording, None, sliding_rod())
+    drawn = read()
+    assert drawn.last(r"/impulse_space/sticking\ line", "LineStrips2D:strips") == []
+    assert len(drawn.last("/impulse_space/path", "LineStrips2D:strips")) == 1
+
+
+def test_right_is_right_seen_against_the_planes_normal() -> None:
+    np.testing.assert_allclose(contact_axes(sliding_rod(), 0), [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+
+
+def test_in_space_right_is_where_friction_pushes() -> None:
+    np.testing.assert_allclose(contact_axes(sliding_rod(in_plane=False), 0)[0], [1.0, 0.0, 0.0])
+
+
+@given(
+    normal=st.tuples(st.floats(-10.0, 10.0), st.floats(-10.0, 10.0)).filter(lambda n: math.hypot(*n) > 1e-3),
+    offset=st.floats(-20.0, 20.0),
+    extent=st.floats(1e-3, 1e3),
+)
+def test_what_is_drawn_of_a_line_is_all_that_lies_in_the_picture(
+    normal: tuple[float, float], offset: float, extent: float
+) -> None:
+    line = Line(np.array(normal), offset)
+    found = line_in_box(line, extent)
+    scale = abs(offset) + extent * math.hypot(*normal)
+    for end in found.reshape(-1, 2):
+        assert abs(line.normal @ end + offset) <= 1e-9 * scale
+        assert np.abs(end).max() <= extent * (1.0 + 1e-9)
+        at_border = np.isclose(np.abs(end), extent, rtol=1e-9).any() or end[1] <= 0.0
+        assert at_border
+    corners = np.array([(x, y) for x in (-extent, extent) for y in (0.0, extent)])
+    sides = corners @ line.normal + offset
+    if sides.min() < -1e-9 * scale and sides.max() > 1e-9 * scale:
+        assert len(found) == 1  # it separates corners of the part above the origin
+
+
+def test_a_line_of_no_direction_is_not_drawn() -> None:
+    assert len(line_in_box(Line(np.zeros(2), 1.0), 1.0)) == 0

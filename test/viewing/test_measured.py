@@ -1,0 +1,95 @@
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.rigid_body import BodyState
+from contact_dynamics.tumbling import free_motion
+from contact_dynamics.viewing.measured import draw_prediction_at, draw_states, style_series
+from viewing.drawn import STAMP_NS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import rerun as rr
+
+    from contact_dynamics.tumbling import Trajectory
+    from contact_dynamics.world import Body
+    from viewing.drawn import Drawn
+
+UP = np.array([0.0, 0.0, 1.0])
+ODD_NS = 4_166_667  # 240 Hz, to a whole ns
+
+
+def flight(body: Body, state: BodyState, count: int) -> list[BodyState]:
+    motion = free_motion(body.mass_properties, state)
+    return [motion.state_at(i * ODD_NS * 1e-9) for i in range(count)]
+
+
+def test_states_are_drawn_at_their_stamps_to_the_nanosecond(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, state: BodyState
+) -> None:
+    states = flight(body, state, 7)
+    draw_states(recording, "brick", states[:4], before=None, up_W=UP)
+    draw_states(recording, "brick", states[4:], before=states[3], up_W=UP)
+    drawn = read()
+    pose = "/world/bodies/brick"
+    expected = [STAMP_NS + i * ODD_NS for i in range(7)]
+    assert drawn.stamps(pose, "Transform3D:translation") == expected
+    positions = np.array([s.p_WB_W for s in states])
+    np.testing.assert_allclose(drawn.series(pose, "Transform3D:translation"), positions, rtol=1e-6)
+    orientations = np.array([s.q_WB for s in states])
+    np.testing.assert_allclose(drawn.series(pose, "Transform3D:quaternion"), orientations, atol=1e-6)
+    heights = drawn.series("/height/brick/measured", "Scalars:scalars")
+    speeds = drawn.series("/speed/brick/measured", "Scalars:scalars")
+    np.testing.assert_array_equal(heights, positions[:, 2])
+    np.testing.assert_allclose(speeds, [np.linalg.norm(s.v_WB_W) for s in states], rtol=1e-15)
+
+
+def test_the_trail_goes_on_where_the_last_batch_ended(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, state: BodyState
+) -> None:
+    states = flight(body, state, 6)
+    draw_states(recording, "brick", states[:3], before=None, up_W=UP)
+    draw_states(recording, "brick", states[3:], before=states[2], up_W=UP)
+    segments = read().series("/world/trails/brick", "LineStrips3D:strips")
+    assert segments.shape == (6, 2, 3)
+    np.testing.assert_array_equal(segments[1:, 0], segments[:-1, 1])
+
+
+def test_height_counts_against_gravity(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], state: BodyState
+) -> None:
+    draw_states(recording, "brick", [state], before=None, up_W=np.array([0.0, -1.0, 0.0]))
+    assert read().last("/height/brick/measured", "Scalars:scalars") == [-state.p_WB_W[1]]
+
+
+def test_a_prediction_is_drawn_where_it_reaches_and_nowhere_else(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], trajectory: Trajectory, state: BodyState
+) -> None:
+    ends_ns = STAMP_NS + 400_000_000
+    stamps = [STAMP_NS - 1, STAMP_NS, STAMP_NS + 123_456_789, ends_ns, ends_ns + 1_000, ends_ns + 2_000]
+    draw_prediction_at(recording, "brick", stamps, trajectory=trajectory, begin_ns=STAMP_NS, up_W=UP)
+    drawn = read()
+    assert drawn.stamps("/height/brick/predicted", "Scalars:scalars")[:3] == stamps[1:4]
+    seconds = np.array([0.0, 0.123456789, 0.4])
+    falling = state.p_WB_W[2] + seconds * (state.v_WB_W[2] - 0.5 * 9.80665 * seconds)
+    heights = [value[0] for _, value in drawn.values["/height/brick/predicted", "Scalars:scalars"][:3]]
+    # Straight lines between samples 10 ms apart leave a parabola by at most g dt^2 / 8.
+    np.testing.assert_allclose(heights, falling, atol=9.80665 * 0.01**2 / 8.0 + 1e-12)
+    cleared = drawn.values["/height/brick/predicted", "Clear:is_recursive"]
+    assert [stamp for stamp, _ in cleared] == [stamps[4]]
+
+
+def test_a_prediction_without_samples_draws_nothing(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, state: BodyState
+) -> None:
+    empty = free_motion(body.mass_properties, state).at([])
+    draw_prediction_at(recording, "brick", [STAMP_NS], trajectory=empty, begin_ns=STAMP_NS, up_W=UP)
+    assert "/height/brick/predicted" not in read().entities
+
+
+def test_curves_are_named_by_body(recording: rr.RecordingStream, read: Callable[[], Drawn]) -> None:
+    style_series(recording, "brick")
+    assert read().last("/speed/brick/predicted", "SeriesLines:names") == ["brick predicted"]

@@ -1,0 +1,88 @@
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+import rerun as rr
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contact_dynamics.viewing.scene import (
+    MOST_GRID_LINES,
+    draw_axes,
+    draw_body,
+    draw_surface,
+    tangents,
+)
+from contact_dynamics.viewing.shape import convex_shape
+from contact_dynamics.world import Surface
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from contact_dynamics.world import Body
+    from viewing.drawn import Drawn
+
+TILTED = Surface(
+    name="ramp",
+    p_WS_W=np.array([0.0, 0.0, 0.5]),
+    normal_W=np.array([0.6, 0.0, 0.8]),
+    friction=0.3,
+    restitution=0.5,
+)
+
+
+@pytest.mark.parametrize("side", [0.05, 2.0, 25.0, 3000.0])
+def test_a_surface_is_a_square_in_its_plane_below_the_centre(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], side: float
+) -> None:
+    center = np.array([2.0, 3.0, 4.0])
+    draw_surface(recording, TILTED, center_W=center, side=side)
+    drawn = read()
+    corners = drawn.array("/world/surfaces/ramp/patch", "Mesh3D:vertex_positions")
+    tolerance = 1e-6 * (side + 5.0)  # float32
+    np.testing.assert_allclose(TILTED.gaps(corners), np.zeros(4), atol=tolerance)
+    lengths = np.linalg.norm(corners - np.roll(corners, -1, axis=0), axis=1)
+    np.testing.assert_allclose(lengths, np.full(4, side), rtol=1e-5)
+    foot = corners.mean(axis=0)
+    np.testing.assert_allclose(np.cross(center - foot, TILTED.normal_W), np.zeros(3), atol=10 * tolerance)
+    grid = drawn.array("/world/surfaces/ramp/grid", "LineStrips3D:strips")
+    assert 2 <= len(grid) <= 2 * (MOST_GRID_LINES + 2)
+    np.testing.assert_allclose(TILTED.gaps(grid), np.zeros(grid.shape[:2]), atol=tolerance)
+    distances = np.abs((grid - foot) @ np.array(tangents(TILTED.normal_W)).T).max()
+    assert distances <= 0.5 * side * (1.0 + 1e-5) + tolerance
+
+
+@given(st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda v: np.linalg.norm(v) > 1e-3))
+def test_tangents_and_normal_are_a_right_handed_frame(direction: tuple[float, float, float]) -> None:
+    normal = np.array(direction) / np.linalg.norm(direction)
+    frame = np.array([*tangents(normal), normal])
+    np.testing.assert_allclose(frame @ frame.T, np.eye(3), atol=1e-12)
+    assert np.linalg.det(frame) > 0.0
+
+
+def test_a_body_is_drawn_in_its_own_axes(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body
+) -> None:
+    draw_body(recording, "brick", convex_shape(body.vertices_B))
+    drawn = read()
+    faces = drawn.array("/world/bodies/brick/faces", "Mesh3D:vertex_positions")
+    np.testing.assert_allclose(np.unique(np.abs(faces), axis=0), [[0.075, 0.045, 0.025]], rtol=1e-6)
+    assert len(drawn.last("/world/bodies/brick/edges", "LineStrips3D:strips")) == 12
+
+
+def test_a_body_without_shape_is_a_ball(recording: rr.RecordingStream, read: Callable[[], Drawn]) -> None:
+    draw_body(recording, "", convex_shape(np.zeros((0, 3))))
+    assert read().last("/world/bodies/unnamed/faces", "Points3D:radii")[0] > 0.0
+
+
+@pytest.mark.parametrize("up", [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0), (-0.99, 0.0, 0.1)])
+def test_up_is_told_to_the_viewer(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], up: tuple[float, float, float]
+) -> None:
+    draw_axes(recording, np.array(up))
+    (axes,) = read().last("/world", "ViewCoordinates:xyz")
+    names = rr.components.ViewCoordinates.ViewDir
+    vertical = np.array([{names.Up: 1.0, names.Down: -1.0}.get(names(axis), 0.0) for axis in axes])
+    assert vertical @ np.array(up) > 0.9

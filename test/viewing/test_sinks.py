@@ -1,0 +1,123 @@
+from __future__ import annotations
+
+import socket
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+import rerun as rr
+
+from contact_dynamics.viewing.sinks import LOCAL, OpenRecording, Sinks, ViewerMode
+from viewing.drawn import read_drawn
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+@pytest.fixture
+def silent_viewer() -> Iterator[int]:
+    """A port where something listens and never answers."""
+    with socket.socket() as listener:
+        listener.bind((LOCAL, 0))
+        listener.listen()
+        yield listener.getsockname()[1]
+
+
+@pytest.fixture
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind((LOCAL, 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+def draw(recording: OpenRecording) -> None:
+    recording.stream.log("point", rr.Points3D([[1.0, 2.0, 3.0]]), static=True)
+
+
+def holds_the_point(path: Path) -> bool:
+    return read_drawn(path).last("/point", "Points3D:positions") == [[1.0, 2.0, 3.0]]
+
+
+def test_a_file_holds_what_is_drawn(tmp_path: Path) -> None:
+    path, problems = tmp_path / "a.rrd", []
+    recording = OpenRecording(Sinks(rrd_path=str(path)), on_problem=problems.append)
+    draw(recording)
+    assert recording.close()
+    assert recording.description == str(path)
+    assert holds_the_point(path)
+    assert problems == []
+
+
+def test_a_file_that_cannot_be_written_is_told_at_once(tmp_path: Path) -> None:
+    with pytest.raises(OSError, match="nowhere"):
+        OpenRecording(Sinks(rrd_path=str(tmp_path / "nowhere" / "a.rrd")), on_problem=print)
+
+
+def test_a_viewer_that_is_not_there_leaves_the_file(tmp_path: Path, free_port: int) -> None:
+    path, problems = tmp_path / "a.rrd", []
+    url = f"rerun+http://{LOCAL}:{free_port}/proxy"
+    sinks = Sinks(rrd_path=str(path), viewer=ViewerMode.CONNECT, url=url)
+    recording = OpenRecording(sinks, on_problem=problems.append)
+    draw(recording)
+    assert recording.close()
+    assert problems == [f"no viewer listens at {url}"]
+    assert holds_the_point(path)
+
+
+def test_a_viewer_that_hangs_does_not_keep_the_process(tmp_path: Path, silent_viewer: int) -> None:
+    """In a process of its own, because rerun waits for such a viewer when a process ends."""
+    import subprocess
+
+    path = tmp_path / "a.rrd"
+    script = f"""
+import os
+import rerun as rr
+from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode
+url = "rerun+http://{LOCAL}:{silent_viewer}/proxy"
+sinks = Sinks(rrd_path={str(path)!r}, viewer=ViewerMode.CONNECT, url=url)
+recording = OpenRecording(sinks, on_problem=lambda text: print(text, flush=True))
+for _ in range(1000):
+    recording.stream.log("point", rr.Points3D([[1.0, 2.0, 3.0]]), static=True)
+os._exit(7 if recording.close(timeout=0.5) else 0)
+"""
+    root = Path(__file__).parents[2]
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=root, capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert "the viewer did not take all that was drawn within 0.5 s" in done.stdout
+    assert holds_the_point(path)
+
+
+def test_serving_is_for_this_machine_alone(free_port: int) -> None:
+    recording = OpenRecording(Sinks(viewer=ViewerMode.SERVE, port=free_port), on_problem=print)
+    try:
+        draw(recording)
+        listening = f":{free_port:04X} 00000000:0000 0A"
+        tables = "".join(Path(f"/proc/net/{kind}").read_text(encoding="ascii") for kind in ("tcp", "tcp6"))
+        addresses = [line.split()[1] for line in tables.splitlines() if listening in line]
+        assert addresses == [f"0100007F:{free_port:04X}"]
+    finally:
+        assert recording.close()
+
+
+def test_a_taken_port_is_told(silent_viewer: int) -> None:
+    problems: list[str] = []
+    recording = OpenRecording(Sinks(viewer=ViewerMode.SERVE, port=silent_viewer), on_problem=problems.append)
+    assert recording.close()
+    assert problems == [f"port {silent_viewer} is taken: the picture is not served"]
+
+
+def test_a_viewer_that_cannot_start_is_told(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, free_port: int
+) -> None:
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+    path, problems = tmp_path / "a.rrd", []
+    sinks = Sinks(rrd_path=str(path), viewer=ViewerMode.SPAWN, port=free_port)
+    recording = OpenRecording(sinks, on_problem=problems.append)
+    draw(recording)
+    assert recording.close()
+    assert problems == ["the viewer ended at once with exit code 1: is there a display?"]
+    assert holds_the_point(path)
