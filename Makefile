@@ -52,9 +52,10 @@ clean: ## remove the environment and what the tools left behind
 $(MADE)/python: FORCE
 	@setup/make_venv.sh $(VENV) $(if $(filter-out undefined,$(origin PYTHON)),"$(PYTHON)")
 
-$(MADE)/wheels: requirements/core.txt requirements/jazzy.txt requirements/build.txt requirements/constraints.txt $(MADE)/python
+RUN := $(addprefix requirements/,core.txt view.txt jazzy.txt build.txt)
+$(MADE)/wheels: $(RUN) requirements/constraints.txt $(MADE)/python
 	@echo "Installing ROS 2 Jazzy and what else runs (about 1 GB; a minute or two)."
-	@$(PIP) install --quiet -c requirements/constraints.txt -r requirements/core.txt -r requirements/jazzy.txt -r requirements/build.txt
+	@$(PIP) install --quiet -c requirements/constraints.txt $(addprefix -r ,$(RUN))
 	@touch $@
 
 INTERFACES := contact_dynamics_interfaces
