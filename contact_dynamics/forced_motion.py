@@ -11,9 +11,9 @@ re-anchored rotation vectors need. Position and velocity are deviations from the
 therefore exact. SciPy's DOP853 (Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, II.5)
 steps them, in both directions of time and as far as is asked for; what has been stepped is kept.
 
-Accuracy, against the closed form at zero torque: 1e-12 rad after 10 revolutions of a compact body and 1e-11
-after 100, growing with the square of time; a rod twenty times as slender, or spin near the middle axis, is a
-hundred times as sensitive. Cost: some 15 ms a revolution. Where nothing acts the closed form is better in all
+Accuracy, against the closed form at zero torque: 1e-12 rad after 10 revolutions of a compact body and 5e-11
+after 100, growing with the square of time; a rod twenty times as slender, or spin near the middle axis, is ten
+times as sensitive. Cost: some 15 ms a revolution. Where nothing acts the closed form is better in all
 respects: `motion_of` chooses.
 
 Not covered: forces that jump (each jump costs small steps), impacts, wind, lift, added mass.
@@ -24,16 +24,17 @@ from __future__ import annotations
 import enum
 import math
 from bisect import bisect_left
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
+from contact_dynamics.applied_wrench import NO_DRAG, NO_WRENCH, ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body import BodyState, MassProperties, angular_momentum
 from contact_dynamics.tumbling import FreeMotion, Sample, Trajectory, free_motion
 from contact_dynamics.tumbling.quaternions import Quaternion, conjugate, normalised, product, rotated
-from contact_dynamics.validation import FloatArray, check_array, check_finite, check_not_negative
+from contact_dynamics.validation import FloatArray, check_array, check_finite
 from contact_dynamics.world import STANDARD_GRAVITY_W
 
 if TYPE_CHECKING:
@@ -60,54 +61,6 @@ class Method(enum.IntEnum):
 
     CLOSED_FORM = 0  # exact to rounding, the error does not grow with time
     INTEGRATED = 1  # stepped by an integrator
-
-
-class WrenchAxes(enum.IntEnum):
-    """In whose axes a wrench is constant."""
-
-    WORLD = 0
-    BODY = 1  # it turns with the body
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ConstantWrench:
-    """A force through the centre of mass and a torque about it that stay as they are.
-
-    Raises:
-        InvalidFieldError: not three finite numbers each.
-    """
-
-    force: FloatArray = field(default_factory=lambda: np.zeros(3))  # (3,), N, in `axes`
-    torque: FloatArray = field(default_factory=lambda: np.zeros(3))  # (3,), N m, in `axes`
-    axes: WrenchAxes = WrenchAxes.WORLD
-
-    def __post_init__(self) -> None:
-        """Check both arrays."""
-        object.__setattr__(self, "force", check_array("force", self.force, (3,)))
-        object.__setattr__(self, "torque", check_array("torque", self.torque, (3,)))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Drag:
-    """Drag in still air, at the centre of mass: force -(linear + quadratic |v|) v, torque the same of w.
-
-    Raises:
-        InvalidFieldError: a coefficient is negative or not finite.
-    """
-
-    linear: float = 0.0  # N s/m, >= 0
-    quadratic: float = 0.0  # N s^2/m^2, >= 0
-    linear_angular: float = 0.0  # N m s, >= 0
-    quadratic_angular: float = 0.0  # N m s^2, >= 0
-
-    def __post_init__(self) -> None:
-        """Check all four."""
-        for name in self.__slots__:
-            object.__setattr__(self, name, check_not_negative(f"{name}_drag", getattr(self, name)))
-
-
-NO_WRENCH: Final = ConstantWrench()
-NO_DRAG: Final = Drag()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

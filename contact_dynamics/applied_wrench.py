@@ -1,0 +1,64 @@
+"""What acts on a body besides gravity: constant wrenches, and drag (lecture 24).
+
+A wrench is a force through the centre of mass and a torque about it. Drag is the usual pair of laws for still
+air or water, linear where the flow creeps, quadratic where it is turbulent; it acts at the centre of mass and
+alike in all directions. Not covered: wind, lift, added mass, a centre of pressure elsewhere.
+"""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+
+from contact_dynamics.validation import FloatArray, check_array, check_not_negative
+
+
+class WrenchAxes(enum.IntEnum):
+    """In whose axes a wrench is constant."""
+
+    WORLD = 0
+    BODY = 1  # it turns with the body
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ConstantWrench:
+    """A force through the centre of mass and a torque about it that stay as they are.
+
+    Raises:
+        InvalidFieldError: not three finite numbers each.
+    """
+
+    force: FloatArray = field(default_factory=lambda: np.zeros(3))  # (3,), N, in `axes`
+    torque: FloatArray = field(default_factory=lambda: np.zeros(3))  # (3,), N m, in `axes`
+    axes: WrenchAxes = WrenchAxes.WORLD
+
+    def __post_init__(self) -> None:
+        """Check both arrays."""
+        object.__setattr__(self, "force", check_array("force", self.force, (3,)))
+        object.__setattr__(self, "torque", check_array("torque", self.torque, (3,)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Drag:
+    """Drag in still air, at the centre of mass: force -(linear + quadratic |v|) v, torque the same of w.
+
+    Raises:
+        InvalidFieldError: a coefficient is negative or not finite.
+    """
+
+    linear: float = 0.0  # N s/m, >= 0
+    quadratic: float = 0.0  # N s^2/m^2, >= 0
+    linear_angular: float = 0.0  # N m s, >= 0
+    quadratic_angular: float = 0.0  # N m s^2, >= 0
+
+    def __post_init__(self) -> None:
+        """Check all four."""
+        for name in self.__slots__:
+            object.__setattr__(self, name, check_not_negative(f"{name}_drag", getattr(self, name)))
+
+
+NO_WRENCH: Final = ConstantWrench()
+NO_DRAG: Final = Drag()
