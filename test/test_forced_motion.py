@@ -49,7 +49,7 @@ def angle_between(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 def test_without_torque_it_is_the_closed_form(
     moments: tuple[float, ...], w_B: tuple[float, ...], stated: float
 ) -> None:
-    """Over 100 revolutions within twice the stated errors: what 3e-14 a step adds up to, quadratically in time."""
+    """Over 100 revolutions within twice what is stated: 3e-14 a step, added up quadratically."""
     body = MassProperties(mass=1.0, I_B=np.diag(moments))
     start = state(w=TURN.apply(w_B))
     times = np.linspace(0.0, 200.0 * math.pi / float(np.linalg.norm(w_B)), 51)
