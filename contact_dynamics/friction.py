@@ -18,6 +18,7 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.planar import PlanarWrench
+from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
     from contact_dynamics.planar import PlanarBody, PlanarContact, Vector2
@@ -76,27 +77,39 @@ def acceleration_centre(acceleration: Vector2, angular_acceleration: float) -> O
     return OrientedPoint(point, Turn.ANTICLOCKWISE if angular_acceleration > 0.0 else Turn.CLOCKWISE)
 
 
-def linearised_cone(normal: FloatArray, friction: float, facets: int) -> FloatArray:
+def linearised_cone(
+    normal: FloatArray, friction: float, facets: int, *, towards: FloatArray | None = None
+) -> FloatArray:
     """Return the edges, (facets, 3), of a pyramid inside the round friction cone about a unit normal, (3,).
 
     Each edge is the normal plus friction times a unit tangent; the tangents are evenly spread, so that the
-    pyramid allows at least cos(pi / facets) of the cone's tangential force in every direction.
+    pyramid allows at least cos(pi / facets) of the cone's tangential force in every direction. The first edge
+    leans towards ``towards``, (3,), if given.
 
     Raises:
         InvalidFieldError: fewer than 3 facets.
     """
     if facets < 3:
         raise InvalidFieldError("friction_facets", facets, "a whole number >= 3")
-    one, two = tangents(normal)
+    one, two = tangents(normal, towards)
     angles = 2.0 * math.pi * np.arange(facets) / facets
     edges: FloatArray = normal + friction * (np.outer(np.cos(angles), one) + np.outer(np.sin(angles), two))
     return edges
 
 
-def tangents(normal: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return two unit tangents, (3,) each, that make a right-handed frame (one, two, normal)."""
+def tangents(normal: FloatArray, towards: FloatArray | None = None) -> tuple[FloatArray, FloatArray]:
+    """Return two unit tangents, (3,) each, that make a right-handed frame (one, two, normal).
+
+    The first leans towards the direction ``towards``, (3,), unless that is along the normal or not given.
+    """
+    if towards is not None:
+        one: FloatArray = towards - np.dot(towards, normal) * normal
+        size = float(np.linalg.norm(one))
+        if size > ROW_TOLERANCE * float(np.linalg.norm(towards)):
+            one = one / size
+            return one, np.cross(normal, one)
     least = np.zeros(3)
     least[int(np.abs(normal).argmin())] = 1.0
     one = np.cross(least, normal)
-    one /= np.linalg.norm(one)
+    one = one / np.linalg.norm(one)
     return one, np.cross(normal, one)

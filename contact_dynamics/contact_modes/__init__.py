@@ -17,6 +17,8 @@ from contact_dynamics.contact_modes.result import (
     RefusedMode,
 )
 from contact_dynamics.contact_modes.spatial import spatial_kinematic_modes
+from contact_dynamics.contact_modes.spatial_dynamics import spatial_contact_modes
+from contact_dynamics.contact_modes.spatial_result import SpatialMode, SpatialModeAnswer
 from contact_dynamics.contact_modes.statics import Certainty, PlanarStatics, planar_statics
 from contact_dynamics.contact_modes.wrench_sets import ModeWrenchSet, WrenchHalfSpace
 
@@ -30,10 +32,13 @@ __all__ = [
     "PlanarStatics",
     "Refusal",
     "RefusedMode",
+    "SpatialMode",
+    "SpatialModeAnswer",
     "WrenchHalfSpace",
     "planar_contact_modes",
     "planar_mode_map",
     "planar_mode_margins",
     "planar_statics",
+    "spatial_contact_modes",
     "spatial_kinematic_modes",
 ]
