@@ -1,0 +1,13 @@
+"""How much mass a shape has: given outright, or as a density."""
+
+from __future__ import annotations
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.validation import check_positive
+
+
+def mass_of(measure: float, *, mass: float | None, density: float | None) -> float:
+    """Return the mass, kg, of a shape of that volume, area or length; exactly one of the two is given."""
+    if (mass is None) == (density is None):
+        raise InvalidFieldError("mass, density", f"{mass}, {density}", "exactly one of the two")
+    return check_positive("mass", mass) if density is None else check_positive("density", density) * measure
