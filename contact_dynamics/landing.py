@@ -10,7 +10,7 @@ import numpy as np
 from contact_dynamics.contact_geometry import find_contacts
 from contact_dynamics.first_contact import first_contact
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, VELOCITY_TOLERANCE
-from contact_dynamics.tumbling import free_motion
+from contact_dynamics.tumbling import FreeMotion, free_motion
 
 if TYPE_CHECKING:
     from contact_dynamics.contact import ContactSet
@@ -38,16 +38,19 @@ def next_landing(
     horizon: float,
     distance_tolerance: float = DISTANCE_TOLERANCE,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
+    motion: FreeMotion | None = None,
 ) -> Landing | None:
     """Return where a body's flight ends within ``horizon`` (s), or None.
 
     A vertex within ``distance_tolerance`` (m) of a surface touches it. A body that touches flies only if each of
     its contacts leaves faster than ``velocity_tolerance`` (m/s); then what counts is where it comes down again.
+    ``motion`` is the flight, where it is known already; None: the state's, in the world's gravity.
     """
     now = _touching(body, state, world, distance_tolerance)
     if now is not None and (now.approach <= velocity_tolerance).any():
         return now.landing(0.0, state, velocity_tolerance)
-    motion = free_motion(body.mass_properties, state, gravity_W=world.gravity_W)
+    if motion is None:
+        motion = free_motion(body.mass_properties, state, gravity_W=world.gravity_W)
     arrivals = [
         found.seconds
         for surface in world.surfaces

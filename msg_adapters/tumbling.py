@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from contact_dynamics_interfaces.msg import Poinsot as PoinsotMsg
 from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
@@ -11,6 +14,7 @@ from msg_adapters.frames import origins_of_published_frame
 from msg_adapters.stamps import stamp_to_msg
 
 if TYPE_CHECKING:
+    from contact_dynamics.flips import Flips
     from contact_dynamics.poinsot import Poinsot
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.validation import FloatArray
@@ -31,8 +35,8 @@ def trajectory_to_msg(
     return msg
 
 
-def poinsot_to_msg(picture: Poinsot) -> PoinsotMsg:
-    """Return Poinsot's picture of a motion."""
+def poinsot_to_msg(picture: Poinsot, flips: Flips) -> PoinsotMsg:
+    """Return Poinsot's picture of a motion, with the next flips of its middle axis."""
     return PoinsotMsg(
         regime=int(picture.regime),
         rotational_energy=picture.rotational_energy,
@@ -43,4 +47,22 @@ def poinsot_to_msg(picture: Poinsot) -> PoinsotMsg:
         principal_moments=picture.principal_moments,
         principal_axes=picture.principal_axes_B.ravel(),
         sensitivity=picture.sensitivity,
+        flip_times=flat(flips.seconds),
+        flip_time_deviations=flat(flips.deviations),
+    )
+
+
+def torque_acts() -> PoinsotMsg:
+    """Return what is left of Poinsot's picture under a torque: nothing."""
+    nan = math.nan
+    return PoinsotMsg(
+        regime=PoinsotMsg.UNKNOWN,
+        rotational_energy=nan,
+        angular_momentum=np.full(3, nan),
+        invariable_plane_distance=nan,
+        polhode_period=nan,
+        precession_per_period=nan,
+        principal_moments=np.full(3, nan),
+        principal_axes=np.full(9, nan),
+        sensitivity=nan,
     )

@@ -3,82 +3,59 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
-import numpy as np
-
-from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLargeError
-from contact_dynamics.first_contact import first_contact
-from contact_dynamics.landing import next_landing
-from contact_dynamics.nodes.subject import (
-    Knowledge,
-    Subject,
-    check_has_shape,
-    gravity_of,
-    or_configured,
-    subject_of,
-)
+from contact_dynamics.applied_wrench import ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError
+from contact_dynamics.flips import next_flips
+from contact_dynamics.forced_motion import ForcedMotion, motion_of
+from contact_dynamics.nodes.sampling import times_of
+from contact_dynamics.nodes.subject import Knowledge, gravity_of, subject_of
 from contact_dynamics.poinsot import poinsot
-from contact_dynamics.tumbling import FreeMotion, free_motion
-from contact_dynamics.validation import check_array, check_unit
+from contact_dynamics.validation import check_array
 from msg_adapters.geometry import point_to_msg, vector_from_msg, vector_to_msg
-from msg_adapters.stamps import seconds_between
-from msg_adapters.tumbling import poinsot_to_msg, trajectory_to_msg
+from msg_adapters.tumbling import poinsot_to_msg, torque_acts, trajectory_to_msg
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
-MOST_SAMPLES: Final = 20_000
-"""Longest trajectory in one answer: 2.2 MB of numbers. More would stall the middleware for longer than the answer takes."""
+FLIPS: Final = 3
+"""How many of the next flips are told."""
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Event:
-    """What ends a trajectory."""
-
-    kind: int
-    seconds: float  # s after the state's stamp
-    point_W: FloatArray  # (3,), m
-    velocity_W: FloatArray  # (3,), m/s
-    surface: str
+MOST_INTEGRATED_TURNS: Final = 100.0
+"""Longest motion under torque or drag in one answer, in turns at the present rate: 1 or 2 s of computing,
+during which nobody else is answered."""
 
 
 def predict_tumbling(request: Any, response: Any, knowledge: Knowledge) -> None:
     """Answer one request, or raise a `ContactDynamicsError` that says what is wrong with it."""
     _refuse_what_is_not_answered_yet(request)
     subject = subject_of(request, knowledge)
-    gravity_W = gravity_of(request, knowledge)
-    motion = free_motion(subject.body.mass_properties, subject.state, gravity_W=gravity_W)
-    event = None
-    if request.sampling == request.AT_TIMES:
-        times = _ascending("times", np.array(request.times))
-        if len(times) > 0 and times[0] < 0.0:
-            raise InvalidFieldError("times[0]", times[0], "a number >= 0 (AT_STAMPS reaches into the past)")
-    elif request.sampling == request.AT_STAMPS:
-        stamps_ns = request.stamps_ns
-        _check_count("stamps_ns", len(stamps_ns))
-        times = _ascending(
-            "stamps_ns", np.array([seconds_between(subject.state.stamp_ns, stamp) for stamp in stamps_ns])
-        )
-    elif request.sampling in (request.AT_RATE, request.UNTIL_CONTACT, request.UNTIL_PLANE):
-        duration = or_configured("duration", request.duration, knowledge.parameters.horizon)
-        rate = or_configured("rate", request.rate, knowledge.parameters.rate)
-        if request.sampling == request.UNTIL_CONTACT:
-            event = _contact(request, response, subject, knowledge, duration)
-        elif request.sampling == request.UNTIL_PLANE:
-            event = _plane_reached(request, response, subject, motion, duration)
-        times = _at_rate(rate, duration, None if event is None else event.seconds)
+    motion, method = motion_of(
+        subject.body.mass_properties,
+        subject.state,
+        gravity_W=gravity_of(request, knowledge),
+        wrench=_wrench_of(request),
+        drag=Drag(
+            linear=request.linear_drag,
+            quadratic=request.quadratic_drag,
+            linear_angular=request.linear_angular_drag,
+            quadratic_angular=request.quadratic_angular_drag,
+        ),
+    )
+    times, event = times_of(request, response, subject, motion, knowledge)
+    if isinstance(motion, ForcedMotion):
+        _check_span(times, subject.state.w_WB_W)
+        response.poinsot = torque_acts()
     else:
-        raise InvalidFieldError("sampling", request.sampling, "AT_TIMES (0) to UNTIL_PLANE (4)")
-
+        response.poinsot = poinsot_to_msg(poinsot(motion), next_flips(motion, FLIPS))
     response.trajectory = trajectory_to_msg(
         motion.at(times),
         stamp_ns=subject.state.stamp_ns,
         world_frame=subject.world_frame,
         p_FB_F=subject.body.p_FB_F,
     )
-    response.method = response.CLOSED_FORM
+    response.method = int(method)
     response.event = response.NONE if event is None else event.kind
     response.event_time = math.nan
     if event is not None:
@@ -86,94 +63,30 @@ def predict_tumbling(request: Any, response: Any, knowledge: Knowledge) -> None:
         response.event_point = point_to_msg(event.point_W)
         response.event_velocity = vector_to_msg(event.velocity_W)
         response.event_surface = event.surface
-    response.poinsot = poinsot_to_msg(poinsot(motion))
     response.state = subject.state_to_msg(subject.state)
 
 
 def _refuse_what_is_not_answered_yet(request: Any) -> None:
-    wrench, drags = (
-        request.applied_wrench,
-        ("linear_drag", "quadratic_drag", "linear_angular_drag", "quadratic_angular_drag"),
-    )
-    numbers = {
-        "applied_wrench": np.concatenate([vector_from_msg(wrench.force), vector_from_msg(wrench.torque)]),
-        "fit_window": np.array([request.fit_window]),
-        **{drag: np.array([getattr(request, drag)]) for drag in drags},
-    }
-    for field, values in numbers.items():
-        if np.any(values):
-            raise NotSupportedError(f"{field}: found {values.tolist()}, allowed is zero in this version")
+    if request.fit_window != 0.0:
+        raise NotSupportedError(f"fit_window: found {request.fit_window}, allowed is zero in this version")
     if request.want_covariance:
-        message = "want_covariance: found true, allowed is false in this version"
-        raise NotSupportedError(message)
+        raise NotSupportedError("want_covariance: found true, allowed is false in this version")
 
 
-def _contact(
-    request: Any, response: Any, subject: Subject, knowledge: Knowledge, duration: float
-) -> _Event | None:
-    check_has_shape(subject.body)
-    landing = next_landing(
-        subject.body,
-        subject.state,
-        replace(knowledge.parameters.world, gravity_W=gravity_of(request, knowledge)),
-        horizon=duration,
-        distance_tolerance=knowledge.parameters.distance_tolerance,
-        velocity_tolerance=knowledge.parameters.velocity_tolerance,
-    )
-    if landing is None:
-        return None
-    return _Event(
-        kind=response.CONTACT,
-        seconds=landing.seconds,
-        point_W=landing.contacts.p_WC_W[0],
-        velocity_W=landing.velocities_W[0],
-        surface=landing.contacts.surfaces[0],
+def _wrench_of(request: Any) -> ConstantWrench:
+    wrench = request.applied_wrench
+    return ConstantWrench(
+        force=check_array("applied_wrench.force", vector_from_msg(wrench.force), (3,)),
+        torque=check_array("applied_wrench.torque", vector_from_msg(wrench.torque), (3,)),
+        axes=WrenchAxes.BODY if request.wrench_in_body_axes else WrenchAxes.WORLD,
     )
 
 
-def _plane_reached(
-    request: Any, response: Any, subject: Subject, motion: FreeMotion, duration: float
-) -> _Event | None:
-    point_B = check_array("body_point", vector_from_msg(request.body_point), (3,)) - subject.body.p_FB_F
-    found = first_contact(
-        motion,
-        point_B[None, :],
-        check_array("plane_point", vector_from_msg(request.plane_point), (3,)),
-        check_unit("plane_normal", vector_from_msg(request.plane_normal), 3),
-        horizon=duration,
-    )
-    if found is None:
-        return None
-    state = motion.state_at(found.seconds)
-    point_W = state.p_WB_W + state.R_WB @ point_B
-    return _Event(
-        kind=response.PLANE_REACHED,
-        seconds=found.seconds,
-        point_W=point_W,
-        velocity_W=state.velocity_of_point(point_W),
-        surface="",
-    )
-
-
-def _at_rate(rate: float, duration: float, end: float | None) -> FloatArray:
-    """Return times from 0 at a rate, up to the end of the duration, or to the event that comes before, which is the last."""
-    until = duration if end is None else end
-    _check_count("rate * duration", until * rate)
-    times = np.arange(math.floor(until * rate * (1.0 + 1e-12)) + 1) / rate
-    return times if end is None else np.append(times[times < end], end)
-
-
-def _ascending(field: str, times: FloatArray) -> FloatArray:
-    _check_count(field, len(times))
-    checked = check_array(field, times, (None,))
-    steps = np.diff(checked)
-    for i in np.flatnonzero(steps < 0.0)[:1]:
+def _check_span(times: FloatArray, w_WB_W: FloatArray) -> None:
+    turns = float(abs(times).max(initial=0.0)) * math.sqrt(w_WB_W @ w_WB_W) / (2.0 * math.pi)
+    if turns > MOST_INTEGRATED_TURNS:
         raise InvalidFieldError(
-            f"{field}[{i + 1}]", f"{-steps[i]:.9g} s before {field}[{i}]", "ascending times"
+            "times",
+            f"{turns:.6g} turns of the body ahead",
+            f"at most {MOST_INTEGRATED_TURNS:g} under torque or drag",
         )
-    return checked
-
-
-def _check_count(field: str, count: float) -> None:
-    if count > MOST_SAMPLES:
-        raise TooLargeError(field, f"{count:.9g} samples", f"at most {MOST_SAMPLES}")

@@ -176,7 +176,12 @@ CASES = [
         "times: found 100000 samples, allowed is at most 20000",
     ),
     (PredictTumbling, put("fit_window", 0.1), "NOT_SUPPORTED", "fit_window"),
-    (PredictTumbling, put("linear_drag", 0.1), "NOT_SUPPORTED", "linear_drag"),
+    (
+        PredictTumbling,
+        put("linear_drag", -0.1),
+        "INVALID_FIELD",
+        "linear_drag: found -0.1, allowed is a number >= 0",
+    ),
     (PredictTumbling, put("sampling", 3), "NO_CONTACT", "has no shape"),
     (PredictTumbling, put("sampling", 4), "INVALID_FIELD", "plane_normal: found [0.0, 0.0, 0.0] of norm 0"),
     (PredictTumbling, put("sampling", 17), "INVALID_FIELD", "sampling: found 17"),

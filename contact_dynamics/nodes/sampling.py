@@ -1,0 +1,146 @@
+"""At which times a trajectory is asked for, and what ends it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLargeError
+from contact_dynamics.first_contact import first_contact
+from contact_dynamics.landing import next_landing
+from contact_dynamics.nodes.subject import Knowledge, Subject, check_has_shape, or_configured
+from contact_dynamics.tumbling import FreeMotion
+from contact_dynamics.validation import check_array, check_unit
+from msg_adapters.geometry import vector_from_msg
+from msg_adapters.stamps import seconds_between
+
+if TYPE_CHECKING:
+    from contact_dynamics.forced_motion import ForcedMotion
+    from contact_dynamics.validation import FloatArray
+
+MOST_SAMPLES: Final = 20_000
+"""Longest trajectory in one answer: 2.2 MB of numbers. More would stall the middleware for longer than the
+answer takes."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Event:
+    """What ends a trajectory."""
+
+    kind: int  # a constant of the response
+    seconds: float  # s after the state's stamp
+    point_W: FloatArray  # (3,), m
+    velocity_W: FloatArray  # (3,), m/s
+    surface: str  # name of the surface that is touched; empty: a plane of the request's
+
+
+def times_of(
+    request: Any, response: Any, subject: Subject, motion: FreeMotion | ForcedMotion, knowledge: Knowledge
+) -> tuple[FloatArray, Event | None]:
+    """Return the times, (n,), s after the state's stamp, that a request asks for, and what ends them.
+
+    Raises:
+        ContactDynamicsError: times that do not ascend, are too many, or are sampled in an unknown way.
+    """
+    if request.sampling == request.AT_TIMES:
+        times = _ascending("times", np.array(request.times))
+        if len(times) > 0 and times[0] < 0.0:
+            raise InvalidFieldError("times[0]", times[0], "a number >= 0 (AT_STAMPS reaches into the past)")
+        return times, None
+    if request.sampling == request.AT_STAMPS:
+        stamps_ns = request.stamps_ns
+        _check_count("stamps_ns", len(stamps_ns))
+        seconds = [seconds_between(subject.state.stamp_ns, stamp) for stamp in stamps_ns]
+        return _ascending("stamps_ns", np.array(seconds)), None
+    duration = or_configured("duration", request.duration, knowledge.parameters.horizon)
+    rate = or_configured("rate", request.rate, knowledge.parameters.rate)
+    if request.sampling == request.AT_RATE:
+        event = None
+    elif request.sampling == request.UNTIL_CONTACT:
+        event = _contact(response, subject, _in_closed_form(motion), knowledge, duration)
+    elif request.sampling == request.UNTIL_PLANE:
+        event = _plane_reached(request, response, subject, _in_closed_form(motion), duration)
+    else:
+        raise InvalidFieldError("sampling", request.sampling, "AT_TIMES (0) to UNTIL_PLANE (4)")
+    return _at_rate(rate, duration, None if event is None else event.seconds), event
+
+
+def _in_closed_form(motion: FreeMotion | ForcedMotion) -> FreeMotion:
+    if isinstance(motion, FreeMotion):
+        return motion
+    message = "sampling: found UNTIL_CONTACT or UNTIL_PLANE with a torque or drag, allowed are 0 to 2 in this version"
+    raise NotSupportedError(message)
+
+
+def _contact(
+    response: Any, subject: Subject, motion: FreeMotion, knowledge: Knowledge, duration: float
+) -> Event | None:
+    check_has_shape(subject.body)
+    parameters = knowledge.parameters
+    landing = next_landing(
+        subject.body,
+        subject.state,
+        parameters.world,
+        horizon=duration,
+        distance_tolerance=parameters.distance_tolerance,
+        velocity_tolerance=parameters.velocity_tolerance,
+        motion=motion,
+    )
+    if landing is None:
+        return None
+    return Event(
+        kind=response.CONTACT,
+        seconds=landing.seconds,
+        point_W=landing.contacts.p_WC_W[0],
+        velocity_W=landing.velocities_W[0],
+        surface=landing.contacts.surfaces[0],
+    )
+
+
+def _plane_reached(
+    request: Any, response: Any, subject: Subject, motion: FreeMotion, duration: float
+) -> Event | None:
+    point_B = check_array("body_point", vector_from_msg(request.body_point), (3,)) - subject.body.p_FB_F
+    found = first_contact(
+        motion,
+        point_B[None, :],
+        check_array("plane_point", vector_from_msg(request.plane_point), (3,)),
+        check_unit("plane_normal", vector_from_msg(request.plane_normal), 3),
+        horizon=duration,
+    )
+    if found is None:
+        return None
+    return Event(
+        kind=response.PLANE_REACHED,
+        seconds=found.seconds,
+        point_W=found.p_WC_W,
+        velocity_W=found.v_WC_W,
+        surface="",
+    )
+
+
+def _at_rate(rate: float, duration: float, end: float | None) -> FloatArray:
+    """Return times from 0 at a rate, up to the duration, or to the event that comes before, which is the last."""
+    until = duration if end is None else end
+    _check_count("rate * duration", until * rate)
+    times = np.arange(math.floor(until * rate * (1.0 + 1e-12)) + 1) / rate
+    return times if end is None else np.append(times[times < end], end)
+
+
+def _ascending(field: str, times: FloatArray) -> FloatArray:
+    _check_count(field, len(times))
+    checked = check_array(field, times, (None,))
+    steps = np.diff(checked)
+    for i in np.flatnonzero(steps < 0.0)[:1]:
+        raise InvalidFieldError(
+            f"{field}[{i + 1}]", f"{-steps[i]:.9g} s before {field}[{i}]", "ascending times"
+        )
+    return checked
+
+
+def _check_count(field: str, count: float) -> None:
+    if count > MOST_SAMPLES:
+        raise TooLargeError(field, f"{count:.9g} samples", f"at most {MOST_SAMPLES}")

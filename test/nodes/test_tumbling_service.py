@@ -1,0 +1,201 @@
+"""Tumbling over the service: times, stamps, first contact, planes, drag, Poinsot's constants, beside known motions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from contact_dynamics_interfaces.msg import Poinsot
+from contact_dynamics_interfaces.srv import PredictTumbling
+from running_server import Client, server_and_client
+from scipy.spatial.transform import Rotation
+
+G = 9.80665
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
+    with server_and_client(Path(tmp_path_factory.mktemp("log"))) as client:
+        yield client
+
+
+def spinning(
+    *, w: tuple[float, float, float], moments: tuple[float, float, float]
+) -> PredictTumbling.Request:
+    request = PredictTumbling.Request(state_source=PredictTumbling.Request.STATE_EXPLICIT)
+    request.inertia.m = 2.0
+    request.inertia.ixx, request.inertia.iyy, request.inertia.izz = moments
+    spin = request.state.angular_velocity
+    spin.x, spin.y, spin.z = w
+    return request
+
+
+def test_an_axisymmetric_top_precesses_steadily(client: Client) -> None:
+    """About L at |L| / I_1, while it spins about its axis by (1/I_3 - 1/I_1) L cos(tilt)."""
+    request = spinning(w=(0.3, 0.0, 2.0), moments=(0.2, 0.2, 0.1))
+    request.times = [0.0, 0.5, 40.0]
+    answer = client.ask(request)
+    assert answer.status == answer.OK, answer.message
+    assert answer.method == answer.CLOSED_FORM
+    L = np.array([0.06, 0.0, 0.2])
+    size = float(np.linalg.norm(L))
+    for t, q in zip(
+        answer.trajectory.times, np.array(answer.trajectory.orientations).reshape(-1, 4), strict=True
+    ):
+        about_L = Rotation.from_rotvec(t * L / 0.2)
+        about_axis = Rotation.from_rotvec([0.0, 0.0, t * (2.0 - 0.2 / 0.2)])
+        error = (Rotation.from_quat(q).inv() * about_L * about_axis).magnitude()
+        assert error < 1e-13  # of 100 rad turned, by SciPy's own products of rounded rotations
+    picture = answer.poinsot
+    assert picture.regime == Poinsot.AXISYMMETRIC
+    np.testing.assert_allclose(picture.angular_momentum, L, atol=1e-15)
+    energy = 0.5 * (0.2 * 0.09 + 0.1 * 4.0)
+    assert picture.rotational_energy == pytest.approx(energy, rel=1e-14)
+    assert picture.invariable_plane_distance == pytest.approx(2.0 * energy / size, rel=1e-14)
+    np.testing.assert_allclose(picture.principal_moments, [0.1, 0.2, 0.2], rtol=1e-15)
+
+
+def test_gravity_bends_the_path_and_can_be_left_out(client: Client) -> None:
+    request = spinning(w=(0.0, 0.0, 0.0), moments=(0.1, 0.1, 0.1))
+    request.state.linear_velocity.x = 3.0
+    request.times = [2.0]
+    np.testing.assert_allclose(client.ask(request).trajectory.positions, [6.0, 0.0, -2.0 * G], atol=1e-13)
+    request.gravity = request.GRAVITY_NONE
+    np.testing.assert_allclose(client.ask(request).trajectory.positions, [6.0, 0.0, 0.0], atol=1e-13)
+
+
+def test_positions_are_those_of_the_published_frame(client: Client) -> None:
+    """Spin about z with the centre of mass at rest: the frame's origin circles it."""
+    request = spinning(w=(0.0, 0.0, math.pi), moments=(0.1, 0.1, 0.1))
+    request.gravity = request.GRAVITY_NONE
+    request.inertia.com.x = 0.5
+    request.times = [0.0, 0.5, 1.0]
+    positions = np.array(client.ask(request).trajectory.positions).reshape(-1, 3)
+    np.testing.assert_allclose(positions, [[0.0, 0.0, 0.0], [0.5, -0.5, 0.0], [1.0, 0.0, 0.0]], atol=1e-15)
+
+
+def test_stamps_reach_into_the_past(client: Client) -> None:
+    request = spinning(w=(0.0, 0.0, 1.0), moments=(0.1, 0.1, 0.1))
+    request.gravity = request.GRAVITY_NONE
+    request.state.linear_velocity.x = 1.0
+    request.state.header.stamp.sec = 1_795_000_000
+    request.sampling = request.AT_STAMPS
+    request.stamps_ns = [1_794_999_999_500_000_000, 1_795_000_000_250_000_001]
+    answer = client.ask(request)
+    assert answer.status == answer.OK, answer.message
+    np.testing.assert_allclose(answer.trajectory.times, [-0.5, 0.250000001], atol=1e-16)
+    assert answer.trajectory.header.stamp == request.state.header.stamp
+    positions = np.array(answer.trajectory.positions).reshape(-1, 3)
+    np.testing.assert_allclose(positions[:, 0], [-0.5, 0.250000001], atol=1e-15)
+
+
+def test_until_the_first_contact(client: Client) -> None:
+    request = PredictTumbling.Request(body_name="brick", state_source=PredictTumbling.Request.STATE_EXPLICIT)
+    request.state.pose.position.z = 0.025 + 0.5 * G * 0.4**2
+    request.sampling, request.rate = request.UNTIL_CONTACT, 100.0
+    answer = client.ask(request)
+    assert answer.status == answer.OK, answer.message
+    assert (answer.event, answer.event_surface) == (answer.CONTACT, "floor")
+    assert answer.event_time == pytest.approx(0.4, abs=1e-12)
+    assert answer.trajectory.times[-1] == answer.event_time
+    assert len(answer.trajectory.times) in {41, 42}  # 0.40 itself is a sample or the event
+    assert answer.event_point.z == pytest.approx(0.0, abs=1e-12)
+    assert answer.event_velocity.z == pytest.approx(-0.4 * G, abs=1e-11)
+
+
+def test_without_contact_the_trajectory_goes_to_its_end(client: Client) -> None:
+    request = PredictTumbling.Request(body_name="brick", state_source=PredictTumbling.Request.STATE_EXPLICIT)
+    request.state.pose.position.z = 50.0
+    request.sampling, request.rate, request.duration = request.UNTIL_CONTACT, 10.0, 1.0
+    answer = client.ask(request)
+    assert (answer.event, len(answer.trajectory.times)) == (answer.NONE, 11)
+    assert math.isnan(answer.event_time)
+
+
+def test_until_a_point_of_the_body_reaches_a_plane(client: Client) -> None:
+    """A point 0.5 m out on x of a body that turns about y: it goes down as 0.5 sin(w t)."""
+    request = spinning(w=(0.0, 2.0, 0.0), moments=(0.1, 0.1, 0.1))
+    request.gravity = request.GRAVITY_NONE
+    request.sampling, request.rate, request.duration = request.UNTIL_PLANE, 50.0, 5.0
+    request.body_point.x = 0.5
+    request.plane_point.z = -0.25
+    request.plane_normal.z = 1.0
+    answer = client.ask(request)
+    assert answer.event == answer.PLANE_REACHED
+    assert answer.event_time == pytest.approx(math.pi / 12.0, abs=1e-13)  # sin = 1/2
+    point, velocity = answer.event_point, answer.event_velocity
+    np.testing.assert_allclose([point.x, point.z], [0.25 * math.sqrt(3.0), -0.25], atol=1e-13)
+    np.testing.assert_allclose([velocity.x, velocity.z], [-0.5, -0.5 * math.sqrt(3.0)], atol=1e-12)
+
+
+def test_with_drag_it_is_integrated_and_says_so(client: Client) -> None:
+    request = spinning(w=(0.0, 0.0, 3.0), moments=(0.1, 0.1, 0.1))
+    request.linear_drag, request.linear_angular_drag = 0.5, 0.02
+    request.times = [1.0, 3.0]
+    answer = client.ask(request)
+    assert answer.status == answer.OK, answer.message
+    assert answer.method == answer.INTEGRATED
+    assert answer.poinsot.regime == Poinsot.UNKNOWN
+    k = 0.5 / 2.0
+    falling = [-G / k * (1.0 - math.exp(-k * t)) for t in (1.0, 3.0)]
+    velocities = np.array(answer.trajectory.linear_velocities).reshape(-1, 3)
+    np.testing.assert_allclose(velocities[:, 2], falling, rtol=1e-11)
+    spins = np.array(answer.trajectory.angular_velocities).reshape(-1, 3)
+    np.testing.assert_allclose(spins[:, 2], [3.0 * math.exp(-0.2 * t) for t in (1.0, 3.0)], rtol=1e-11)
+
+
+def test_a_torque_in_body_axes_spins_up_and_a_force_alone_stays_in_closed_form(client: Client) -> None:
+    request = spinning(w=(0.0, 0.0, 1.0), moments=(0.1, 0.1, 0.2))
+    request.applied_wrench.torque.z = 0.4
+    request.wrench_in_body_axes = True
+    request.times = [2.0]
+    answer = client.ask(request)
+    assert answer.method == answer.INTEGRATED
+    assert answer.trajectory.angular_velocities[2] == pytest.approx(5.0, rel=1e-12)
+    pulled = spinning(w=(0.0, 0.0, 1.0), moments=(0.1, 0.1, 0.2))
+    pulled.applied_wrench.force.z = 2.0 * G
+    pulled.times = [2.0]
+    answer = client.ask(pulled)
+    assert answer.method == answer.CLOSED_FORM
+    np.testing.assert_allclose(answer.trajectory.positions, 0.0, atol=1e-14)
+
+
+def test_hours_under_drag_are_refused_rather_than_computed(client: Client) -> None:
+    request = spinning(w=(0.0, 0.0, 10.0), moments=(0.1, 0.1, 0.1))
+    request.linear_drag, request.times = 0.1, [3600.0]
+    answer = client.ask(request)
+    assert answer.status == answer.INVALID_FIELD
+    assert (
+        "times: found 5729.58 turns of the body ahead, allowed is at most 100 under torque" in answer.message
+    )
+
+
+def test_flips_near_the_middle_axis_are_told(client: Client) -> None:
+    request = spinning(w=(1e-3, 10.0, 0.0), moments=(1e-4, 2e-4, 2.8e-4))
+    request.gravity = request.GRAVITY_NONE
+    request.times = [0.0]
+    picture = client.ask(request).poinsot
+    flips = np.array(picture.flip_times)
+    assert len(flips) == 3
+    np.testing.assert_allclose(np.diff(flips), 0.5 * picture.polhode_period, rtol=1e-12)
+    assert np.isnan(picture.flip_time_deviations).all()
+    assert picture.sensitivity > 100.0
+    request.times = (flips + 0.5 * np.append(np.diff(flips), 0.0)).tolist()[:2]
+    tilt = np.array(client.ask(request).trajectory.orientations).reshape(-1, 4)
+    along = Rotation.from_quat(tilt).apply([0.0, 1.0, 0.0])[:, 1]
+    assert along[0] * along[1] < 0.0  # between two flips it points one way, after the next the other
+
+
+def test_the_longest_trajectory_arrives_whole(client: Client) -> None:
+    request = spinning(w=(1.0, 2.0, 3.0), moments=(0.1, 0.2, 0.25))
+    request.sampling, request.rate, request.duration = request.AT_RATE, 1999.9, 10.0
+    answer = client.ask(request)
+    assert answer.status == answer.OK, answer.message
+    n = len(answer.trajectory.times)
+    assert n == 20_000
+    assert len(answer.trajectory.orientations) == 4 * n
+    norms = np.linalg.norm(np.array(answer.trajectory.orientations).reshape(-1, 4), axis=1)
+    np.testing.assert_allclose(norms, 1.0, atol=1e-15)
