@@ -1,0 +1,353 @@
+"""The visualizer: states and service events over DDS in, a file out, which is read back."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+import rclpy
+from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
+from nav_msgs.msg import Odometry
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import QoSProfile
+from scipy.spatial.transform import Rotation
+from service_msgs.msg import ServiceEventInfo
+
+with warnings.catch_warnings():
+    warnings.simplefilter("ignore", DeprecationWarning)  # of Python 3.10, at rerun's import
+    from contact_dynamics.nodes.visualizer import Visualizer
+    from viewing.drawn import STAMP_NS, Drawn, read_drawn
+
+from contact_dynamics.nodes.parameters import ConfigurationError
+from contact_dynamics_interfaces.msg import BodyState, ContactMode, ContactSet, Impact, Poinsot, Trajectory
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from msg_adapters.stamps import stamp_to_msg
+from running_server import DOMAIN_ID, ROOT, process, server_and_client
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+CENTER = np.array([0.02, -0.01, 0.005])  # m, of mass, in the body's frame
+CONFIGURATION = {
+    "bodies": ["brick"],
+    "body.brick.mass": 0.4,
+    "body.brick.inertia": [0.00035, 0.00083, 0.00102, 0.0, 0.0, 0.0],
+    "body.brick.center_of_mass": CENTER.tolist(),
+    "body.brick.box": [0.15, 0.09, 0.05],
+    "body.brick.odometry_topic": "/brick/odometry",
+    "surfaces": ["floor"],
+    "surface.floor.friction": 0.3,
+    "surface.floor.restitution": 0.5,
+}
+TURNED = [0.1, -0.5, 0.7, 0.5]  # x, y, z, w
+SERVICES = {
+    "predict_tumbling": PredictTumbling,
+    "predict_impact": PredictImpact,
+    "predict_contact_mode": PredictContactMode,
+}
+PATIENCE = 300  # spins of up to 0.1 s
+
+
+class Bench:
+    """A visualizer, and a node that publishes what a server and a body would."""
+
+    def __init__(self, path: Path, *, strict: bool) -> None:
+        self.path = path
+        self._context = Context()
+        rclpy.init(context=self._context, domain_id=DOMAIN_ID)
+        values = {**CONFIGURATION, "rrd_path": str(path)}
+        overrides = [Parameter(name, value=value) for name, value in values.items()]
+        self.visualizer = Visualizer(strict=strict, context=self._context, parameter_overrides=overrides)
+        self.node = Node("outside", context=self._context)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.visualizer)
+        self._executor.add_node(self.node)
+        qos = QoSProfile(depth=1000)
+        self.states = self.node.create_publisher(Odometry, "/brick/odometry", qos)
+        self._events = {
+            name: self.node.create_publisher(service.Event, f"/contact_dynamics/{name}/_service_event", qos)
+            for name, service in SERVICES.items()
+        }
+        self.received = 0
+        for subscription in self.visualizer.subscriptions:
+            subscription.callback = self._counting(subscription.callback)
+        publishers = [self.states, *self._events.values()]
+        self.spin_until(lambda: all(publisher.get_subscription_count() == 1 for publisher in publishers))
+
+    def _counting(self, callback: Callable[[Any], None]) -> Callable[[Any], None]:
+        def receive(msg: Any) -> None:
+            self.received += 1
+            callback(msg)
+
+        return receive
+
+    def spin_until(self, done: Callable[[], bool]) -> None:
+        for _ in range(PATIENCE):
+            if done():
+                return
+            self._executor.spin_once(timeout_sec=0.1)
+        pytest.fail("nothing came")
+
+    def answer(self, name: str, response: Any, kind: int = ServiceEventInfo.RESPONSE_SENT) -> None:
+        """Publish a service event, and wait until it has been received."""
+        info = ServiceEventInfo(event_type=kind, stamp=stamp_to_msg(STAMP_NS + 7))
+        self._events[name].publish(SERVICES[name].Event(info=info, response=[response]))
+        expected = self.received + 1
+        self.spin_until(lambda: self.received == expected)
+
+    def drawn(self) -> Drawn:
+        assert self.visualizer.close()
+        return read_drawn(self.path)
+
+    def end(self) -> None:
+        self._executor.shutdown()
+        self.node.destroy_node()
+        self.visualizer.destroy_node()
+        rclpy.shutdown(context=self._context)
+
+
+@pytest.fixture
+def bench(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Bench]:
+    bench = Bench(tmp_path / "drawn.rrd", strict=getattr(request, "param", True))
+    yield bench
+    bench.end()
+
+
+def odometry(stamp_ns: int, x: float) -> Odometry:
+    msg = Odometry(child_frame_id="brick")
+    msg.header.frame_id = "world"
+    msg.header.stamp = stamp_to_msg(stamp_ns)
+    msg.pose.pose = Pose(position=Point(x=x, y=0.0, z=1.0), orientation=quaternion(TURNED))
+    return msg
+
+
+def quaternion(numbers: list[float]) -> Quaternion:
+    x, y, z, w = numbers
+    return Quaternion(x=x, y=y, z=z, w=w)
+
+
+def body_state(stamp_ns: int = STAMP_NS, body_name: str = "brick") -> BodyState:
+    msg = BodyState(body_name=body_name)
+    msg.header.frame_id = "world"
+    msg.header.stamp = stamp_to_msg(stamp_ns)
+    msg.pose = Pose(position=Point(x=0.5, y=0.0, z=1.0), orientation=quaternion(TURNED))
+    msg.linear_velocity = Vector3(x=1.0, y=0.0, z=-2.0)
+    return msg
+
+
+def two_contacts() -> ContactSet:
+    return ContactSet(
+        positions=[0.1, 0.0, 0.0, -0.1, 0.0, 0.0],
+        normals=[0.0, 0.0, 1.0, 0.0, 0.0, 1.0],
+        frictions=[0.3, 0.3],
+        restitutions=[0.5, 0.5],
+        surface_names=["floor", "floor"],
+    )
+
+
+def tumbling_answer(stamp_ns: int = STAMP_NS) -> PredictTumbling.Response:
+    return PredictTumbling.Response(
+        state=body_state(stamp_ns),
+        trajectory=Trajectory(
+            times=[0.0, 0.1],
+            positions=[0.5, 0.0, 1.0, 0.6, 0.0, 0.8],
+            orientations=[0.0, 0.0, 0.0, 1.0, *TURNED],
+            linear_velocities=[1.0, 0.0, -2.0, 1.0, 0.0, -3.0],
+            angular_velocities=[0.0] * 6,
+        ),
+        event=PredictTumbling.Response.CONTACT,
+        event_time=0.1,
+        event_point=Point(x=0.6, y=0.0, z=0.0),
+        event_velocity=Vector3(x=3.0, y=0.0, z=-4.0),
+        event_surface="floor",
+        poinsot=Poinsot(regime=Poinsot.ABOUT_MAJOR_AXIS),
+        computation_time=0.0012,
+    )
+
+
+def impact_answer(contacts: ContactSet) -> PredictImpact.Response:
+    impact = Impact(
+        outcome=Impact.STICKS_IN_COMPRESSION,
+        state_after=body_state(),
+        impulses=[0.3, 0.0, 0.4, 0.0, 0.0, 0.0],
+        path=[0.0, 0.0, 0.0, 0.3, 0.0, 0.4],
+        path_events=[Impact.START, Impact.RESTITUTION_ENDS],
+        path_contacts=[0, 0],
+        kinetic_energy_before=1.0,
+        kinetic_energy_after=0.25,
+    )
+    return PredictImpact.Response(
+        impact=impact, time_to_contact=0.05, state_before=body_state(), contacts=contacts, problem=2
+    )
+
+
+def center_of_mass(position: list[float], orientation: list[float]) -> np.ndarray:
+    return np.array(position) + Rotation.from_quat(orientation).apply(CENTER)
+
+
+def test_states_are_drawn_where_the_centre_of_mass_is(bench: Bench) -> None:
+    for i in range(5):
+        bench.states.publish(odometry(STAMP_NS + i, 0.1 * i))
+    bench.spin_until(lambda: bench.received == 5)
+    drawn = bench.drawn()
+    pose = "/world/bodies/brick"
+    assert drawn.stamps(pose, "Transform3D:translation") == [STAMP_NS + i for i in range(5)]
+    expected = [center_of_mass([0.1 * i, 0.0, 1.0], TURNED) for i in range(5)]
+    np.testing.assert_allclose(drawn.series(pose, "Transform3D:translation"), expected, atol=1e-6)
+
+
+def test_a_trajectory_is_that_of_the_centre_of_mass(bench: Bench) -> None:
+    bench.answer("predict_tumbling", tumbling_answer())
+    drawn = bench.drawn()
+    path = drawn.array("/world/predicted/brick/path", "LineStrips3D:strips")[0]
+    expected = [
+        center_of_mass([0.5, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]),
+        center_of_mass([0.6, 0.0, 0.8], TURNED),
+    ]
+    np.testing.assert_allclose(path, expected, atol=1e-6)
+    (text,) = drawn.last("/answers/newest", "TextDocument:text")
+    assert "brick reaches floor in 0.1 s at (0.6, 0, 0) m with 5 m/s" in text
+    assert "it tumbles about its major axis (1.2 ms)" in text
+
+
+def test_an_impact_is_drawn_when_it_was_asked_for(bench: Bench) -> None:
+    bench.answer("predict_impact", impact_answer(two_contacts()))
+    drawn = bench.drawn()
+    impulse = "/world/impact/brick/impulse"
+    assert drawn.stamps(impulse, "Arrows3D:labels") == [STAMP_NS - 50_000_000]
+    assert drawn.last(impulse, "Arrows3D:labels") == ["0.5 N s"]
+    path = drawn.array("/impulse_space/path", "LineStrips2D:strips")[0]
+    np.testing.assert_allclose(path, [[0.0, 0.0], [0.3, -0.4]], atol=1e-7)  # the second axis down
+    text = drawn.last("/answers/newest", "TextDocument:text")[0]
+    assert "sticks in compression" in text
+    assert "0.75 J lost" in text
+
+
+def test_contact_modes_are_drawn_with_every_mode_in_words(bench: Bench) -> None:
+    response = PredictContactMode.Response(
+        verdict=PredictContactMode.Response.INDETERMINATE,
+        modes=[
+            ContactMode(mode=mode, contact_forces=[0.0, 0.0, 2.0, 0.0, 0.0, 2.0]) for mode in ("fl", "ff")
+        ],
+        refused_modes=["ss"],
+        state=body_state(),
+        contacts=two_contacts(),
+    )
+    bench.answer("predict_contact_mode", response)
+    drawn = bench.drawn()
+    assert drawn.last("/world/contacts/brick/points", "Points3D:labels") == ["f", "l|f"]
+    assert drawn.last("/world/contacts/brick/forces", "Arrows3D:labels") == ["2 N", "2 N"]
+    assert "indeterminate: fl, ff; refused: ss" in drawn.last("/answers/newest", "TextDocument:text")[0]
+
+
+def test_a_refusal_is_told(bench: Bench) -> None:
+    response = PredictImpact.Response(
+        status=PredictImpact.Response.UNKNOWN_BODY, message="body_name: found 'x'"
+    )
+    bench.answer("predict_impact", response)
+    drawn = bench.drawn()
+    assert drawn.last("/answers/log", "TextLog:text") == ["Impact: refused (202): body_name: found 'x'"]
+    assert drawn.last("/answers/log", "TextLog:level") == ["WARN"]
+    assert drawn.stamps("/answers/log", "TextLog:text") == [STAMP_NS + 7]  # no state: the event's own time
+
+
+def test_an_answer_about_a_state_without_stamp_appears_at_the_events(bench: Bench) -> None:
+    bench.answer("predict_tumbling", tumbling_answer(stamp_ns=0))
+    assert bench.drawn().stamps("/world/predicted/brick/path", "LineStrips3D:strips") == [STAMP_NS + 7]
+
+
+def test_what_others_than_the_server_report_is_not_drawn(bench: Bench) -> None:
+    bench.answer("predict_tumbling", tumbling_answer(), ServiceEventInfo.RESPONSE_RECEIVED)
+    assert not any("predicted/brick" in entity for entity in bench.drawn().entities if "world" in entity)
+
+
+@pytest.mark.parametrize("bench", [False], indirect=True)
+def test_what_cannot_be_drawn_is_told_once_and_the_rest_goes_on(bench: Bench) -> None:
+    told: list[str] = []
+    bench.visualizer.get_logger().warning = told.append
+    broken = two_contacts()
+    broken.positions = [0.1]
+    for _ in range(3):
+        bench.answer("predict_impact", impact_answer(broken))
+    bench.answer("predict_tumbling", tumbling_answer())
+    assert len(told) == 1
+    assert "contacts.positions" in told[0]
+    drawn = bench.drawn()
+    assert "/world/predicted/brick/path" in drawn.entities
+    assert "/world/impact/brick/impulse" not in drawn.entities
+
+
+def test_strictly_it_raises(bench: Bench) -> None:
+    broken = two_contacts()
+    broken.positions = [0.1]
+    with pytest.raises(ValueError, match="positions"):
+        bench.answer("predict_impact", impact_answer(broken))
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({}, "needed is somewhere to draw to"),
+        ({"spawn": True, "serve": True}, "spawn and serve: found 2 ways to a viewer"),
+        ({"serve": True, "connect": "rerun+http://127.0.0.1:1/proxy"}, "serve and connect"),
+        ({"rrd_path": 3}, "rrd_path"),
+        ({"rrd_path": "a.rrd", "port": 0}, "port"),
+        ({"rrd_path": "a.rrd", "surface_side": -1.0}, "surface_side"),
+    ],
+)
+def test_parameters_that_are_not_allowed_are_named(values: dict[str, Any], words: str) -> None:
+    context = Context()
+    rclpy.init(context=context, domain_id=DOMAIN_ID)
+    try:
+        overrides = [Parameter(name, value=value) for name, value in {**CONFIGURATION, **values}.items()]
+        with pytest.raises(ConfigurationError, match=words):
+            Visualizer(context=context, parameter_overrides=overrides)
+    finally:
+        rclpy.shutdown(context=context)
+
+
+def test_a_file_that_cannot_be_written_ends_the_process_with_its_name(tmp_path: Path) -> None:
+    path = tmp_path / "nowhere" / "a.rrd"
+    arguments = (
+        "--params-file",
+        str(ROOT / "config" / "server.yaml"),
+        "--ros-args",
+        "-p",
+        f"rrd_path:={path}",
+    )
+    with process("visualizer", *arguments, ready="nowhere/a.rrd") as started:
+        assert started.wait(10.0) == 2
+
+
+def test_answers_of_a_server_are_drawn_by_a_process_beside_it(tmp_path: Path) -> None:
+    path = tmp_path / "drawn.rrd"
+    arguments = (
+        "--params-file",
+        str(ROOT / "config" / "server.yaml"),
+        "--ros-args",
+        "-p",
+        f"rrd_path:={path}",
+    )
+    state = body_state()
+    asked = PredictTumbling.Request(
+        body_name="brick", state_source=PredictTumbling.Request.STATE_EXPLICIT, state=state
+    )
+    asked.sampling, asked.rate, asked.duration = PredictTumbling.Request.AT_RATE, 100.0, 0.25
+    with (
+        server_and_client(tmp_path / "log") as client,
+        process("visualizer", *arguments, ready="ready") as started,
+    ):
+        answer = client.ask(asked)
+        assert answer.status == answer.OK, answer.message
+        # Events from before the two processes have found each other are lost: ask until one is drawn.
+        client.spin_until(lambda: client.ask(asked) and b"predicted/brick/path" in path.read_bytes())
+    assert started.returncode == 0
+    drawn = read_drawn(path)
+    strip = drawn.array("/world/predicted/brick/path", "LineStrips3D:strips")[0]
+    np.testing.assert_allclose(strip, np.array(answer.trajectory.positions).reshape(-1, 3), atol=1e-6)
