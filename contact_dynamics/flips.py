@@ -8,16 +8,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from decimal import Decimal, localcontext
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.tumbling.polhode import PHASES, PI, Spin, Tumble, tumble_or_spin
+from contact_dynamics.tumbling.arithmetic import DOUBLES
+from contact_dynamics.tumbling.polhode import Rotation, Spin, Tumble, tumble_or_spin
+from contact_dynamics.tumbling.principal_frame import in_doubles
 from contact_dynamics.tumbling.regime import Regime
 from contact_dynamics.validation import FloatArray, check_array
 
 if TYPE_CHECKING:
+    from decimal import Decimal
+
     from numpy.typing import ArrayLike
 
     from contact_dynamics.tumbling import FreeMotion
@@ -73,25 +76,25 @@ def next_flips(motion: FreeMotion, count: int, *, covariance: ArrayLike | None =
     return Flips(seconds=times, deviations=deviations)
 
 
-def _flip_times(rotation: Tumble, count: int, *, from_seconds: float) -> FloatArray:
+def _flip_times(rotation: Tumble[Decimal] | Tumble[float], count: int, *, from_seconds: float) -> FloatArray:
     """Return the first flips at or after a time, s: u = 2 n K, for whole n."""
-    with localcontext(PHASES):
-        if rotation.m1 == 0:
-            only = float(-rotation.u0 / rotation.omega_p)
-            return np.array([only])[: count if only >= from_seconds else 0]
-        between = PI / (rotation.quarter * abs(rotation.omega_p))
-        first = -rotation.u0 / rotation.omega_p
-        first += between * (
-            ((Decimal(from_seconds) - first) / between).to_integral_value(rounding="ROUND_CEILING")
-        )
-        return np.array([float(first + between * i) for i in range(count)])
+    first = -float(rotation.u0) / float(rotation.omega_p)
+    if rotation.m1 == 0:
+        return np.array([first])[: count if first >= from_seconds else 0]
+    between = math.pi / (float(rotation.quarter) * abs(float(rotation.omega_p)))
+    first += between * math.ceil((from_seconds - first) / between)
+    return np.array([first + between * i for i in range(count)])
 
 
-def _as_many(rotation: Spin | Tumble, times: FloatArray) -> FloatArray:
+def _as_many(rotation: Rotation, times: FloatArray) -> FloatArray:
     """Return the flips of a similar motion nearest to those at ``times``; inf where there is none."""
     other = np.full(len(times), math.inf)
     if isinstance(rotation, Tumble):
-        reach = float(PI / (2 * rotation.quarter * abs(rotation.omega_p))) if rotation.m1 else math.inf
+        reach = (
+            0.5 * math.pi / (float(rotation.quarter) * abs(float(rotation.omega_p)))
+            if rotation.m1
+            else math.inf
+        )
         found = _flip_times(rotation, len(times), from_seconds=max(times[0] - reach, -1e300))
         other[: len(found)] = found
     return other
@@ -107,12 +110,12 @@ def _covariance_in_body(motion: FreeMotion, covariance: FloatArray) -> FloatArra
     return spread
 
 
-def _sigma_points(motion: FreeMotion, spread: FloatArray) -> list[Spin | Tumble]:
+def _sigma_points(motion: FreeMotion, spread: FloatArray) -> list[Rotation]:
     variances, directions = np.linalg.eigh(spread)
     steps = math.sqrt(3.0) * np.sqrt(np.maximum(variances, 0.0)) * directions  # columns
     w_B = motion.state.R_WB.T @ motion.state.w_WB_W
     return [
-        tumble_or_spin(motion.frame, [Decimal(x) for x in (w_B + sign * step).tolist()])
+        tumble_or_spin(in_doubles(motion.frame), (w_B + sign * step).tolist(), DOUBLES)
         for step in steps.T
         for sign in (1.0, -1.0)
     ]

@@ -12,14 +12,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from decimal import Decimal, localcontext
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.rigid_body import angular_momentum, rotation_matrix
+from contact_dynamics.tumbling.arithmetic import DOUBLES
 from contact_dynamics.tumbling.elliptic import average_over_period
-from contact_dynamics.tumbling.polhode import PHASES, PI, Spin, Tumble, largest_rate
+from contact_dynamics.tumbling.polhode import Rotation, Spin, largest_rate
 from contact_dynamics.tumbling.regime import Regime
 from contact_dynamics.validation import FloatArray, check_array
 
@@ -72,13 +72,13 @@ def poinsot(motion: FreeMotion) -> Poinsot:
     )
 
 
-def polhode_period(rotation: Spin | Tumble) -> float:
+def polhode_period(rotation: Rotation) -> float:
     """Return the time, s, until w in the body repeats; inf on the separatrix, NaN where it is constant."""
     if isinstance(rotation, Spin):
         return math.nan
     if rotation.m1 == 0:
         return math.inf
-    return abs(float(2 * PI / (rotation.quarter * rotation.omega_p)))
+    return 2.0 * math.pi / (float(rotation.quarter) * abs(float(rotation.omega_p)))
 
 
 def sensitivity(motion: FreeMotion) -> float:
@@ -97,26 +97,24 @@ def sensitivity(motion: FreeMotion) -> float:
         return _sensitivity_of_spin(motion)
     if rotation.m1 == 0:
         return math.inf
-    with localcontext(PHASES):
-        I1, I2, I3 = rotation.moments
-        P, L = rotation.precession, rotation.L
-        T2 = Decimal(motion.w_along) * L
-        excess = rotation.c2 * (I3 - I1) * L * L / I3  # L^2 - 2 T I_1
-        m_T = 2 * L * L * (I3 - I1) * (I2 - I1) / (excess * excess * (I3 - I2))
-        K_m = average_over_period(rotation.m1.sqrt(), Decimal(1), Decimal(1), Decimal(0)) / (2 * rotation.m1)
-        nu_T = -I1 / excess - K_m * m_T  # of log nu, as are the rest
-        nu_L = (1 - T2 * nu_T) / L
-        P_T = (1 + (L * P - T2) * nu_T) / L
-        P_L = (P - T2 * P_T) / L
-        # d P z + (d nu / nu) (w - P z) = (dP - P d nu / nu) z + (d nu / nu) w
-        along_T, along_L = float(P_T - P * nu_T), float(P_L - P * nu_L)
-        with_T, with_L = float(nu_T), float(nu_L)
+    I1, _, I3 = (float(moment) for moment in rotation.moments)
+    gap21, gap32, gap31 = (float(gap) for gap in rotation.gaps)
+    P, L, c2, m1 = (float(x) for x in (rotation.precession, rotation.L, rotation.c2, rotation.m1))
+    T2 = motion.w_along * L
+    excess = c2 * gap31 * L * L / I3  # L^2 - 2 T I_1
+    m_T = 2.0 * L * L * gap31 * gap21 / (excess * excess * gap32)
+    K_m = average_over_period(math.sqrt(rotation.m1), 1.0, 1.0, 0.0, numbers=DOUBLES)[1] / (2.0 * m1)
+    nu_T = -I1 / excess - K_m * m_T  # of log nu, as is the next
+    nu_L = (1.0 - T2 * nu_T) / L
+    P_T = (1.0 + (L * P - T2) * nu_T) / L
+    P_L = (P - T2 * P_T) / L
+    # d P z + (d nu / nu) (w - P z) = (dP - P d nu / nu) z + (d nu / nu) w
+    along_T, along_L = P_T - P * nu_T, P_L - P * nu_L
     axes = np.array([[float(x) for x in axis] for axis in rotation.axes_B])
     moments = np.array([float(moment) for moment in rotation.moments])
     momentum = moments * (axes @ (motion.state.R_WB.T @ motion.state.w_WB_W))
-    size = float(L)
-    T_w, L_w = momentum, moments * momentum / size  # gradients over w in P
-    a, b = along_T * T_w + along_L * L_w, with_T * T_w + with_L * L_w
+    T_w, L_w = momentum, moments * momentum / L  # gradients over w in P
+    a, b = along_T * T_w + along_L * L_w, nu_T * T_w + nu_L * L_w
     w2 = largest_rate(rotation) ** 2
     trace = float(a @ a + 2.0 * motion.w_along * (a @ b) + w2 * (b @ b))
     determinant = float((a @ a) * (b @ b) - (a @ b) ** 2) * (w2 - motion.w_along**2)
@@ -148,7 +146,8 @@ def polhode(motion: FreeMotion, count: int) -> FloatArray:
     cos, sin = np.cos(angle), np.sin(angle)
     a, b, c = (math.sqrt(x) for x in (rotation.a2, rotation.b2, rotation.c2))
     dn = np.sqrt(cos * cos + float(rotation.m1) * sin * sin)
-    first, middle, third = (float(rotation.L / moment) for moment in rotation.moments)
+    L = float(rotation.L)
+    first, middle, third = (L / float(moment) for moment in rotation.moments)
     w_P = np.column_stack([a * first * cos, b * middle * sin, c * third * dn])
     points: FloatArray = w_P @ np.array([[float(x) for x in axis] for axis in rotation.axes_B])
     return points
@@ -165,5 +164,5 @@ def herpolhode(motion: FreeMotion, seconds: ArrayLike) -> FloatArray:
     return points
 
 
-def _precession(rotation: Spin | Tumble) -> float:
+def _precession(rotation: Rotation) -> float:
     return math.nan if isinstance(rotation, Spin) else float(rotation.precession)

@@ -5,7 +5,8 @@ elliptic integrals they need (`elliptic`), attitude as quotients of theta functi
 `attitude_form`), phases over many turns (`double_double`), and the motion itself (`motion`).
 """
 
+from contact_dynamics.tumbling.arithmetic import Precision
 from contact_dynamics.tumbling.motion import FreeMotion, Sample, Trajectory, free_motion
 from contact_dynamics.tumbling.regime import Regime
 
-__all__ = ["FreeMotion", "Regime", "Sample", "Trajectory", "free_motion"]
+__all__ = ["FreeMotion", "Precision", "Regime", "Sample", "Trajectory", "free_motion"]

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from decimal import Decimal, localcontext
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from contact_dynamics.tumbling.arithmetic import DOUBLES, Number, within
 from contact_dynamics.tumbling.double_double import linear_phase
 from contact_dynamics.tumbling.elliptic import carlson_rf
-from contact_dynamics.tumbling.polhode import PHASES, PI, Spin, Tumble
+from contact_dynamics.tumbling.polhode import Spin, Tumble
 from contact_dynamics.tumbling.theta import Bumps, Harmonics, OneFlip, Steady
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from contact_dynamics.tumbling.arithmetic import Arithmetic
     from contact_dynamics.tumbling.double_double import LinearPhase
 
 AttitudeForm: TypeAlias = "Steady | Harmonics | Bumps | OneFlip"
@@ -30,30 +31,33 @@ STEEPEST: Final = 600.0
 """Exponent of the ratio of neighbouring bumps above which only two of them are above the range of doubles."""
 
 
-def attitude_form(motion: Spin | Tumble) -> AttitudeForm:
+def attitude_form(rotation: Tumble[Number] | Spin[Number], numbers: Arithmetic[Number]) -> AttitudeForm:
     """Return the attitude about L as a function of time; its value at time 0 is up to a turn about L."""
-    with localcontext(PHASES):
-        if isinstance(motion, Spin):
-            return Steady(psi=linear_phase(motion.rate / (2 * PI), Decimal(0)))
-        if motion.m1 == 0:
-            return _one_flip(motion)
-        a, c, (x, y) = float(motion.a2.sqrt()), float(motion.c2.sqrt()), _zeros(motion)
-        xi, eta = x * float(motion.quarter), y * float(motion.quarter)
-        z_rate, z_offset = motion.omega_p * motion.quarter / PI, motion.u0 * motion.quarter / PI
-        psi = linear_phase(motion.precession / (2 * PI) - z_rate / 2, -z_offset / 2)
+    pi = numbers.pi
+    with within(numbers.rates):
+        if isinstance(rotation, Spin):
+            return Steady(psi=linear_phase(rotation.rate / (2 * pi), numbers.number(0.0)))
+        if rotation.m1 == 0:
+            return _one_flip(rotation, numbers)
+        a, c = math.sqrt(rotation.a2), math.sqrt(rotation.c2)
+        x, y = _zeros(rotation)
+        xi, eta = x * float(rotation.quarter), y * float(rotation.quarter)
+        z_rate, z_offset = rotation.omega_p * rotation.quarter / pi, rotation.u0 * rotation.quarter / pi
+        psi = linear_phase(rotation.precession / (2 * pi) - z_rate / 2, -z_offset / 2)
         if 2.0 * (xi + eta) > SWITCH:
             return _harmonics(xi, eta, (a, c), linear_phase(z_rate / 2, z_offset / 2), psi)
         return _bumps(xi, eta, (a, c), linear_phase(z_rate, z_offset), psi)
 
 
-def _zeros(motion: Tumble) -> tuple[float, float]:
+def _zeros(rotation: Tumble[Number]) -> tuple[float, float]:
     """Return x = sn^-1(c | 1 - m), which says where alpha and beta have their zeros, and y = K' - x."""
-    below_one = motion.a2 + motion.m * motion.c2  # 1 - (1 - m) c^2
-    x = motion.c2.sqrt() * carlson_rf(motion.a2, below_one, Decimal(1))
-    if motion.m == 0:
-        return float(x), math.inf
-    sn2, dn2 = motion.a2 / below_one, motion.m / below_one
-    return float(x), float(sn2.sqrt() * carlson_rf(motion.c2 * dn2, dn2, Decimal(1)))
+    a2, c2, m = float(rotation.a2), float(rotation.c2), float(rotation.m)
+    below_one = a2 + m * c2  # 1 - (1 - m) c^2
+    x = math.sqrt(c2) * carlson_rf(a2, below_one, 1.0, numbers=DOUBLES)
+    if m == 0.0:
+        return x, math.inf
+    sn2, dn2 = a2 / below_one, m / below_one
+    return x, math.sqrt(sn2) * carlson_rf(c2 * dn2, dn2, 1.0, numbers=DOUBLES)
 
 
 def _harmonics(
@@ -63,7 +67,7 @@ def _harmonics(
     r, p = math.exp(-xi), math.exp(-2.0 * eta)  # p = q e^{2 xi}
     q, s = p * r * r, p * r**4  # s = q e^{-2 xi}
     A_even, A_odd, B_even, B_odd = [1.0], [0.0], [1.0], [0.0]
-    for j in range(1, 100):
+    for j in range(1, MOST_TERMS):
         sign = -1.0 if j % 2 else 1.0
         inner, outer = sign * q ** (2 * j * (j - 1)), sign * q ** (2 * j * j)
         if abs(inner) * p**j < NEGLIGIBLE:
@@ -72,25 +76,25 @@ def _harmonics(
         A_odd.append(inner * s**j - outer * p**j)
         B_even.append(outer * s**j + inner * p**j)
         B_odd.append(outer * s**j - inner * p**j)
-    a, c = peaks
     theta_2, theta_3 = [1.0], [1.0]
-    while max(theta_2[-1], theta_3[-1]) > NEGLIGIBLE:
-        n = len(theta_3)
+    for n in range(1, MOST_TERMS):
+        if q ** (n * n) < NEGLIGIBLE:
+            break
         theta_2.append(q ** (n * (n + 1)))
         theta_3.append(2.0 * q ** (n * n))
-    size = (
-        sum(A_even) ** 2 + (r * sum(B_even)) ** 2
-    )  # |A|^2 + |B'|^2 at z = 0, where C is a and D is c times it
+    # At z = 0, where C = a (|A|^2 + |B'|^2) and D = c times the same.
+    size = sum(A_even) ** 2 + (r * sum(B_even)) ** 2
+    C, D = peaks[0] * size / sum(theta_2), peaks[1] * size / sum(theta_3)
     return Harmonics(
         z=z,
         psi=psi,
         r=r,
-        A_cos=_powers_of_cosine(A_even, 1.0),
-        A_sin=_powers_of_cosine(A_odd[1:], 2.0),
-        B_cos=_powers_of_cosine(B_even, 1.0),
-        B_sin=_powers_of_cosine(B_odd[1:], 2.0),
-        C=_odd_cosines([a * size * term / sum(theta_2) for term in theta_2]),
-        D=_powers_of_cosine([c * size * term / sum(theta_3) for term in theta_3], 1.0),
+        A_cos=_powers_of_cosine(A_even, COSINES),
+        A_sin=_powers_of_cosine(A_odd, SINES)[:-1],
+        B_cos=_powers_of_cosine(B_even, COSINES),
+        B_sin=_powers_of_cosine(B_odd, SINES)[:-1],
+        C=_powers_of_cosine([C * term for term in theta_2], ODD_COSINES),
+        D=_powers_of_cosine([D * term for term in theta_3], COSINES),
     )
 
 
@@ -99,7 +103,6 @@ def _bumps(xi: float, eta: float, peaks: tuple[float, float], z: LinearPhase, ps
     mu = xi / h
     steepness = math.pi**2 / h
     g = math.exp(-steepness) if steepness < STEEPEST else 0.0
-    a, c = peaks
     A_angles, B_angles = _angles(mu)
     weights = (2.0, 2.0 * g, 2.0 * g**3)  # of the pairs of bumps, in the middle of a flip
     A_0 = sum(weight * math.cos(angle) for weight, angle in zip(weights, A_angles, strict=True))
@@ -115,21 +118,20 @@ def _bumps(xi: float, eta: float, peaks: tuple[float, float], z: LinearPhase, ps
         A_sin=_each(math.sin, A_angles),
         B_cos=_each(math.cos, B_angles),
         B_sin=_each(math.sin, B_angles),
-        C=a * size / (1.0 - 2.0 * g + g**4),
-        D=c * size / (1.0 + 2.0 * g + g**4),
+        C=peaks[0] * size / (1.0 - 2.0 * g + g**4),
+        D=peaks[1] * size / (1.0 + 2.0 * g + g**4),
     )
 
 
-def _one_flip(motion: Tumble) -> OneFlip:
-    x, _ = _zeros(motion)
-    A_angles, B_angles = _angles(x / math.pi)
+def _one_flip(rotation: Tumble[Number], numbers: Arithmetic[Number]) -> OneFlip:
+    A_angles, B_angles = _angles(_zeros(rotation)[0] / math.pi)
     return OneFlip(
-        u=linear_phase(motion.omega_p, motion.u0),
-        psi=linear_phase(motion.precession / (2 * PI), Decimal(0)),
+        u=linear_phase(rotation.omega_p, rotation.u0),
+        psi=linear_phase(rotation.precession / (2 * numbers.pi), numbers.number(0.0)),
         A=(math.cos(A_angles[0]), math.sin(A_angles[0])),
         B=(math.cos(B_angles[0]), math.sin(B_angles[0])),
-        C=4.0 * float(motion.a2.sqrt()),
-        D=4.0 * float(motion.c2.sqrt()),
+        C=4.0 * math.sqrt(rotation.a2),
+        D=4.0 * math.sqrt(rotation.c2),
     )
 
 
@@ -143,33 +145,35 @@ def _each(function: Callable[[float], float], angles: Sequence[float]) -> tuple[
     return function(angles[0]), function(angles[1]), function(angles[2])
 
 
-def _powers_of_cosine(coefficients: Sequence[float], slope: float) -> tuple[float, ...]:
-    """Turn sum c_j P_j(x) into powers of x, for Chebyshev's P_0 = 1, P_1 = slope x, P_j = 2 x P_j-1 - P_j-2.
+def _powers_of_cosine(coefficients: Sequence[float], table: Sequence[Sequence[float]]) -> tuple[float, ...]:
+    """Turn a sum over j of coefficient j and row j of ``table``, powers of x, into powers of x.
 
-    Slope 1 serves cos jy, slope 2 sin (j+1)y / sin y, with x = cos y. The coefficients fall fast enough for
-    powers.
+    The coefficients fall fast enough for powers to be as good as a recurrence.
     """
     powers = [0.0] * len(coefficients)
-    older, newer = [0.0], [1.0]
-    for j, coefficient in enumerate(coefficients):
-        for k, x in enumerate(newer):
+    for coefficient, row in zip(coefficients, table, strict=False):
+        for k, x in enumerate(row):
             powers[k] += coefficient * x
-        factor = 2.0 if j else slope
-        following = [0.0, *(factor * x for x in newer)]
-        if j:
-            for k, x in enumerate(older):
-                following[k] -= x
-        older, newer = newer, following
     return tuple(powers)
 
 
-def _odd_cosines(coefficients: Sequence[float]) -> tuple[float, ...]:
-    """Turn sum c_n cos (2n+1)z / cos z into powers of cos 2z.
+def _chebyshev(first: Sequence[float], second: Sequence[float]) -> tuple[tuple[float, ...], ...]:
+    """Return powers of x of P_0, P_1 and P_j = 2 x P_j-1 - P_j-2."""
+    rows = [tuple(first), tuple(second)]
+    for _ in range(MOST_TERMS - 2):
+        older, newer = (*rows[-2], *(0.0,) * 2), (0.0, *rows[-1])
+        rows.append(tuple(2.0 * x - y for x, y in zip(newer, older, strict=False)))
+    return tuple(rows)
 
-    cos (2n+1)z / cos z is 2 (cos 2nz - cos (2n-2)z + ...), and half of the last, which is 1.
-    """
-    cosines = [0.0] * len(coefficients)
-    for n, coefficient in enumerate(coefficients):
-        for k in range(n + 1):
-            cosines[k] += coefficient * (-1.0) ** (n - k) * (2.0 if k else 1.0)
-    return _powers_of_cosine(cosines, 1.0)
+
+MOST_TERMS: Final = 10
+"""At the switch, exp(-n^2) is negligible from n = 7 on."""
+
+COSINES: Final = _chebyshev((1.0,), (0.0, 1.0))
+"""cos 2jz in powers of cos 2z."""
+
+SINES: Final = ((), *_chebyshev((1.0,), (0.0, 2.0)))
+"""sin 2jz / sin 2z in powers of cos 2z."""
+
+ODD_COSINES: Final = _chebyshev((1.0,), (-1.0, 2.0))
+"""cos (2j+1)z / cos z in powers of cos 2z."""

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 if TYPE_CHECKING:
+    from contact_dynamics.tumbling.arithmetic import Number
     from contact_dynamics.validation import FloatArray
 
 _SPLITTER: Final = 134217729.0
@@ -74,7 +75,7 @@ class LinearPhase:
         return total, turns
 
 
-def linear_phase(rate: Decimal, offset: Decimal) -> LinearPhase:
+def linear_phase(rate: Number, offset: Number) -> LinearPhase:
     """Return the phase with the given rate, turns/s, and offset, turns, each rounded to 32 digits."""
     high, low = _split(rate)
     scaled = _SPLITTER * high
@@ -90,6 +91,6 @@ def linear_phase(rate: Decimal, offset: Decimal) -> LinearPhase:
     )
 
 
-def _split(number: Decimal) -> tuple[float, float]:
+def _split(number: Decimal | float) -> tuple[float, float]:
     high = float(number)
-    return high, float(number - Decimal(high))
+    return high, float(number - Decimal(high)) if isinstance(number, Decimal) else 0.0

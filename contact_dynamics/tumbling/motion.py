@@ -16,15 +16,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from decimal import Decimal, localcontext
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.tumbling.arithmetic import DECIMALS, DOUBLES, Arithmetic, Number, Precision, within
 from contact_dynamics.tumbling.attitude_form import AttitudeForm, attitude_form
-from contact_dynamics.tumbling.polhode import Spin, Tumble, tumble_or_spin
-from contact_dynamics.tumbling.principal_frame import EXACT, PrincipalFrame, principal_frame
+from contact_dynamics.tumbling.polhode import Rotation, Spin, Tumble, tumble_or_spin
+from contact_dynamics.tumbling.principal_frame import PrincipalFrame, in_doubles, principal_frame
 from contact_dynamics.tumbling.quaternions import (
     Quaternion,
     conjugate,
@@ -41,12 +41,17 @@ from contact_dynamics.validation import FloatArray, check_array, check_finite
 from contact_dynamics.world import STANDARD_GRAVITY_W
 
 if TYPE_CHECKING:
+    from decimal import Decimal
+
     from numpy.typing import ArrayLike
 
 NANOSECONDS: Final = 1_000_000_000
 
 CHUNK: Final = 8192
 """Samples at a time: their intermediate arrays stay in the processor's cache."""
+
+FEW: Final = 16
+"""Samples that cost less one by one than NumPy's calls do."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -80,8 +85,8 @@ class FreeMotion:
     body: MassProperties
     state: BodyState  # at time 0
     gravity_W: FloatArray  # (3,), m/s^2, world axes
-    frame: PrincipalFrame  # principal moments and axes of the body
-    rotation: Spin | Tumble  # constants of the rotation
+    frame: PrincipalFrame[Decimal]  # principal moments and axes of the body
+    rotation: Rotation  # constants of the rotation
     form: AttitudeForm  # attitude about L as a function of time
     q_WL: Quaternion
     q_PB: Quaternion
@@ -141,13 +146,7 @@ class FreeMotion:
             InvalidFieldError: the times are not a flat list of finite numbers.
         """
         times = check_array("times", seconds, (None,))
-        n = len(times)
-        q_WB, w_WB_W = np.empty((n, 4)), np.empty((n, 3))
-        onto_W = left_matrix(self.q_WL) @ right_matrix(self.q_PB)
-        R_LW = np.array([rotated(self.q_WL, axis) for axis in np.eye(3).tolist()])
-        for start in range(0, n, CHUNK):
-            chunk = slice(start, start + CHUNK)
-            self._attitudes(times[chunk], onto_W.T, R_LW, q_WB[chunk], w_WB_W[chunk])
+        q_WB, w_WB_W = self._one_by_one(times) if len(times) <= FEW else self._in_chunks(times)
         _make_continuous(q_WB, self.state.q_WB)
         elapsed = times[:, None]
         return Trajectory(
@@ -157,6 +156,22 @@ class FreeMotion:
             v_WB_W=self.state.v_WB_W + elapsed * self.gravity_W,
             w_WB_W=w_WB_W,
         )
+
+    def _one_by_one(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+        samples = [self.sample(t) for t in times.tolist()]
+        q_WB = np.array([sample.q_WB for sample in samples]).reshape(-1, 4)
+        return q_WB, np.array([sample.w_WB_W for sample in samples]).reshape(-1, 3)
+
+    def _in_chunks(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+        q_WB, w_WB_W = np.empty((len(times), 4)), np.empty((len(times), 3))
+        onto_W = left_matrix(self.q_WL) @ right_matrix(self.q_PB)
+        R_LW = np.array(
+            [rotated(self.q_WL, axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))]
+        )
+        for start in range(0, len(times), CHUNK):
+            chunk = slice(start, start + CHUNK)
+            self._attitudes(times[chunk], onto_W.T, R_LW, q_WB[chunk], w_WB_W[chunk])
+        return q_WB, w_WB_W
 
     def _attitudes(
         self, times: FloatArray, onto_W: FloatArray, R_LW: FloatArray, q: FloatArray, w_WB: FloatArray
@@ -185,35 +200,42 @@ class FreeMotion:
 
 
 def free_motion(
-    body: MassProperties, state: BodyState, *, gravity_W: ArrayLike = STANDARD_GRAVITY_W
+    body: MassProperties,
+    state: BodyState,
+    *,
+    gravity_W: ArrayLike = STANDARD_GRAVITY_W,
+    precision: Precision = Precision.EXTENDED,
 ) -> FreeMotion:
     """Return the motion of a body without torque, in uniform gravity, from its state at one time.
 
-    Gravity is (3,), m/s^2, world axes.
+    Gravity is (3,), m/s^2, world axes. The precision is that of the motion's constants: double costs a third
+    of the time, and its errors grow with the angle turned.
 
     Raises:
         InvalidFieldError: gravity is not three finite numbers.
     """
     gravity = check_array("gravity", gravity_W, (3,))
     frame = principal_frame(body.I_B)
+    rotation: Rotation
+    if precision is Precision.EXTENDED:
+        rotation, form = _rotation(frame, state, DECIMALS)
+    else:
+        rotation, form = _rotation(in_doubles(frame), state, DOUBLES)
     q_WB = normalised(state.q_WB.tolist())
-    with localcontext(EXACT):
-        w_W = [Decimal(x) for x in state.w_WB_W.tolist()]
-        rotation = tumble_or_spin(frame, _into_body([Decimal(x) for x in state.q_WB.tolist()], w_W))
-        form = attitude_form(rotation)
-        if isinstance(rotation, Spin):
-            along, across = float(rotation.rate), (0.0, 0.0)
-            q_WL = from_z_onto([float(x / rotation.rate) for x in w_W]) if rotation.rate else _IDENTITY
-            q_PB = product(conjugate(q_WL), q_WB)
-        else:
-            I1, I2, I3 = rotation.moments
-            # w . L / |L| = L (l_1^2 / I_1 + l_2^2 / I_2 + l_3^2 / I_3), at u = 0
-            along = float(rotation.L * (rotation.a2 / I1 + rotation.c2 / I3))
-            across = float(rotation.L * (I2 - I1) / (I1 * I2)), float(rotation.L * (I2 - I3) / (I2 * I3))
-            q_PB = from_rows([[float(x) for x in axis] for axis in rotation.axes_B])
-            alpha, beta, _, _ = _cayley_klein(form, 0.0)
-            q_LP = (beta.imag, -beta.real, alpha.imag, alpha.real)
-            q_WL = normalised(product(q_WB, conjugate(product(q_LP, q_PB))))
+    if isinstance(rotation, Spin):
+        rate = float(rotation.rate)
+        along, across = rate, (0.0, 0.0)
+        q_WL = from_z_onto((state.w_WB_W / rate).tolist()) if rate else _IDENTITY
+        q_PB = product(conjugate(q_WL), q_WB)
+    else:
+        L, (I1, I2, I3) = float(rotation.L), (float(moment) for moment in rotation.moments)
+        # w . L / |L| = L (l_1^2 / I_1 + l_2^2 / I_2 + l_3^2 / I_3), at u = 0
+        along = L * (float(rotation.a2) / I1 + float(rotation.c2) / I3)
+        across = L * float(rotation.gaps[0]) / (I1 * I2), -L * float(rotation.gaps[1]) / (I2 * I3)
+        q_PB = from_rows([[float(x) for x in axis] for axis in rotation.axes_B])
+        alpha, beta, _, _ = _cayley_klein(form, 0.0)
+        q_LP = (beta.imag, -beta.real, alpha.imag, alpha.real)
+        q_WL = normalised(product(q_WB, conjugate(product(q_LP, q_PB))))
     return FreeMotion(
         body=body,
         state=state,
@@ -240,10 +262,18 @@ def _cayley_klein(form: AttitudeForm, seconds: float) -> tuple[complex, complex,
     return factor * complex(A_re, A_im), factor * complex(B_re, B_im), C / norm2, D / norm2
 
 
-def _into_body(q: list[Decimal], w_W: list[Decimal]) -> list[Decimal]:
-    """Return R^T w for the rotation of a quaternion that is unit to rounding, as if it were exactly so."""
-    x, y, z, s = q
-    a, b, c = w_W
+def _rotation(
+    frame: PrincipalFrame[Number], state: BodyState, numbers: Arithmetic[Number]
+) -> tuple[Spin[Number] | Tumble[Number], AttitudeForm]:
+    with within(numbers.sums):
+        rotation = tumble_or_spin(frame, _body_rate(state, numbers), numbers)
+        return rotation, attitude_form(rotation, numbers)
+
+
+def _body_rate(state: BodyState, numbers: Arithmetic[Number]) -> list[Number]:
+    """Return the angular velocity in body axes, rad/s: R^T w, for a quaternion that is unit to rounding."""
+    x, y, z, s = (numbers.number(i) for i in state.q_WB.tolist())
+    a, b, c = (numbers.number(i) for i in state.w_WB_W.tolist())
     imaginary2 = x * x + y * y + z * z
     norm2 = imaginary2 + s * s
     scale, along, across = s * s - imaginary2, 2 * (x * a + y * b + z * c), 2 * s

@@ -1,4 +1,4 @@
-"""The constants of a torque-free rotation, from its initial angular velocity, in extended precision.
+"""The constants of a torque-free rotation, from its initial angular velocity.
 
 Jacobi's order of axes: the angular velocity circles axis 3, which is the major axis (largest moment) where
 L^2 > 2 T I_2 and the minor one where L^2 < 2 T I_2; axis 2 is the middle one. With a, b, c > 0,
@@ -17,100 +17,104 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from decimal import Context, Decimal, localcontext
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final, Generic, TypeAlias
 
-from contact_dynamics.tumbling.elliptic import arithmetic_geometric_mean, average_over_period, carlson_rf
-from contact_dynamics.tumbling.principal_frame import EXACT, PrincipalFrame, Triple
+from contact_dynamics.tumbling.arithmetic import Number, within
+from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from decimal import Decimal
 
-Axes: TypeAlias = "tuple[Triple, Triple, Triple]"
+    from contact_dynamics.tumbling.arithmetic import Arithmetic
+    from contact_dynamics.tumbling.principal_frame import PrincipalFrame
 
-PI: Final = Decimal("3.14159265358979323846264338327950288419716939937510582097494459")
-
-PHASES: Final = Context(prec=42)
-"""Arithmetic of the rates: a double-double's 32 digits and ten for the way there."""
-
-CANCELLED: Final = Decimal("1e-100")
-"""Relative to the terms of a sum. What is left below it is the rounding of `EXACT`: the sum is zero."""
-
-MOTIONLESS: Final = Decimal("1e-60")
+MOTIONLESS: Final = 1e-60
 """Squared angle between the angular velocity and the major or minor axis, below which the spin is taken as
 steady. The motion left out is an angle of 1e-30 rad for ever, since spin about these axes is stable."""
 
 
 @dataclass(frozen=True, slots=True)
-class Spin:
+class Spin(Generic[Number]):
     """The angular velocity is constant."""
 
-    rate: Decimal  # rad/s, >= 0
+    rate: Number  # rad/s, >= 0
 
 
 @dataclass(frozen=True, slots=True)
-class Tumble:
+class Tumble(Generic[Number]):
     """The angular velocity moves on a polhode; axes in Jacobi's order, right-handed, axis 3 on L's side."""
 
-    moments: Triple  # kg m^2, about axes 1, 2, 3
-    axes_B: Axes  # rows: unit axes 1, 2, 3 in body coordinates
-    L: Decimal  # kg m^2/s, |angular momentum|
-    m: Decimal  # parameter of the elliptic functions, in [0, 1]
-    m1: Decimal  # 1 - m, in [0, 1]; 0 on the separatrix
-    a2: Decimal  # a^2 = 1 - c^2, > 0
-    b2: Decimal  # b^2
-    c2: Decimal  # c^2
-    omega_p: Decimal  # rad/s, du/dt, < 0 where axis 3 is the minor one
-    u0: Decimal  # u at time 0
-    quarter: Decimal  # pi / 2K, 0 on the separatrix
-    precession: Decimal  # rad/s, mean rate about L; on the separatrix the rate in the far past and future
+    moments: tuple[Number, Number, Number]  # kg m^2, about axes 1, 2, 3
+    gaps: tuple[Number, Number, Number]  # kg m^2, I_2 - I_1, I_3 - I_2, I_3 - I_1; > 0 about the major axis
+    axes_B: tuple[tuple[Number, Number, Number], ...]  # 3 rows: unit axes 1, 2, 3 in body coordinates
+    L: Number  # kg m^2/s, |angular momentum|
+    m: Number  # parameter of the elliptic functions, in [0, 1]
+    m1: Number  # 1 - m, in [0, 1]; 0 on the separatrix
+    a2: Number  # a^2 = 1 - c^2, > 0
+    b2: Number  # b^2
+    c2: Number  # c^2
+    omega_p: Number  # rad/s, du/dt, < 0 where axis 3 is the minor one
+    u0: Number  # u at time 0
+    quarter: Number  # pi / 2K, 0 on the separatrix
+    precession: Number  # rad/s, mean rate about L; on the separatrix the rate in the far past and future
 
 
-def tumble_or_spin(frame: PrincipalFrame, w_B: Sequence[Decimal]) -> Tumble | Spin:
-    """Return the constants of the motion that begins with the angular velocity ``w_B``, rad/s, body axes."""
-    with localcontext(EXACT):
+Rotation: TypeAlias = "Spin[Decimal] | Tumble[Decimal] | Spin[float] | Tumble[float]"
+
+
+def tumble_or_spin(
+    frame: PrincipalFrame[Number], w_B: Sequence[Number], numbers: Arithmetic[Number]
+) -> Tumble[Number] | Spin[Number]:
+    """Return the constants of a rotation that begins with the angular velocity ``w_B``, rad/s, body axes."""
+    zero, one = numbers.number(0.0), numbers.number(1.0)
+    with within(numbers.sums):
         w = [_dot(axis, w_B) for axis in frame.axes_B]
-        moments = frame.moments
-        below = moments[0] * (moments[1] - moments[0]) * w[0] * w[0]
-        above = moments[2] * (moments[2] - moments[1]) * w[2] * w[2]
+        low, high, both = frame.gaps
+        below = frame.moments[0] * low * w[0] * w[0]
+        above = frame.moments[2] * high * w[2] * w[2]
         if not (below or above):
-            return _spin(w)
+            return Spin(rate=numbers.sqrt(_squared(w)))
         from_middle = above - below  # L^2 - 2 T I_2
-        on_separatrix = abs(from_middle) <= CANCELLED * (above + below)
-        order = (0, 1, 2) if from_middle > 0 or on_separatrix else (2, 1, 0)
-        I1, I2, I3 = (moments[i] for i in order)
-        axes_B = _jacobis_axes(frame, w, order)
+        on_separatrix = abs(from_middle) <= numbers.cancelled * (above + below)
+        about_major = from_middle > 0 or on_separatrix
+        first, third = (0, 2) if about_major else (2, 0)
+        I1, I2, I3 = frame.moments[first], frame.moments[1], frame.moments[third]
+        # With the sign of I3 - I1, as d1 to d3 are; it cancels wherever they are used.
+        gap21, gap32, gap31 = (low, high, both) if about_major else (-high, -low, -both)
+        axes_B = _jacobis_axes(frame, w, first, third)
         w1, w2, w3 = (_dot(axis, w_B) for axis in axes_B)
-        # Each with the sign of I3 - I1, which cancels wherever they are used.
-        d1 = I2 * (I2 - I1) * w2 * w2 + I3 * (I3 - I1) * w3 * w3  # L^2 - 2 T I_1
-        d2 = Decimal(0) if on_separatrix else from_middle
-        d3 = I1 * (I3 - I1) * w1 * w1 + I2 * (I3 - I2) * w2 * w2  # 2 T I_3 - L^2
+        d1 = I2 * gap21 * w2 * w2 + I3 * gap31 * w3 * w3  # L^2 - 2 T I_1
+        d2 = zero if on_separatrix else from_middle
+        d3 = I1 * gap31 * w1 * w1 + I2 * gap32 * w2 * w2  # 2 T I_3 - L^2
         momentum = (I1 * w1, I2 * w2, I3 * w3)
         squared = _squared(momentum)
-        a2 = I1 * d3 / ((I3 - I1) * squared)
+        a2 = I1 * d3 / (gap31 * squared)
         if a2 <= MOTIONLESS:
-            return _spin(w)
-        b2 = I2 * d3 / ((I3 - I2) * squared)
-        c2 = I3 * d1 / ((I3 - I1) * squared)
-        m = d3 * (I2 - I1) / (d1 * (I3 - I2))
-        m1 = d2 * (I3 - I1) / (d1 * (I3 - I2))
-        rate2 = d1 * (I3 - I2) / (I1 * I2 * I3)  # omega_p^2
-    with localcontext(PHASES):
-        L = squared.sqrt()
-        omega_p = rate2.sqrt()
-        sn = momentum[1] / (L * b2.sqrt())
+            return Spin(rate=numbers.sqrt(_squared(w)))
+        b2 = I2 * d3 / (gap32 * squared)
+        c2 = I3 * d1 / (gap31 * squared)
+        m = d3 * gap21 / (d1 * gap32)
+        m1 = d2 * gap31 / (d1 * gap32)
+        rate2 = d1 * gap32 / (I1 * I2 * I3)  # omega_p^2
+    with within(numbers.rates):
+        L = numbers.sqrt(squared)
+        omega_p = numbers.sqrt(rate2)
+        sn = momentum[1] / (L * numbers.sqrt(b2))
         cn2 = momentum[0] * momentum[0] / (squared * a2)
         dn2 = momentum[2] * momentum[2] / (squared * c2)
-        u0 = sn * carlson_rf(cn2, dn2, Decimal(1))
+        u0 = sn * carlson_rf(cn2, dn2, one, numbers=numbers)
         if on_separatrix:
-            quarter, precession = Decimal(0), L / I2
+            quarter, precession = zero, L / I2
         else:
-            kc = m1.sqrt()
-            quarter = arithmetic_geometric_mean(Decimal(1), kc)
             elongation = b2 / a2
-            precession = L * average_over_period(kc, elongation, 1 / I1, elongation / I2)
+            quarter, average = average_over_period(
+                numbers.sqrt(m1), elongation, one / I1, elongation / I2, numbers=numbers
+            )
+            precession = L * average
         return Tumble(
             moments=(I1, I2, I3),
+            gaps=(gap21, gap32, gap31),
             axes_B=axes_B,
             L=L,
             m=m,
@@ -118,43 +122,41 @@ def tumble_or_spin(frame: PrincipalFrame, w_B: Sequence[Decimal]) -> Tumble | Sp
             a2=a2,
             b2=b2,
             c2=c2,
-            omega_p=omega_p if I3 > I1 else -omega_p,
+            omega_p=omega_p if about_major else -omega_p,
             u0=u0,
             quarter=quarter,
             precession=precession,
         )
 
 
-def largest_rate(rotation: Spin | Tumble) -> float:
+def largest_rate(rotation: Rotation) -> float:
     """Return the largest |w| of a rotation, rad/s."""
     if isinstance(rotation, Spin):
         return float(rotation.rate)
-    first, middle, third = (float(rotation.L / moment) for moment in rotation.moments)
+    L = float(rotation.L)
+    first, middle, third = (L / float(moment) for moment in rotation.moments)
     a2, b2, c2, m1 = float(rotation.a2), float(rotation.b2), float(rotation.c2), float(rotation.m1)
     # |w|^2 is linear in sn^2 u: its extremes are at sn = 0 and at sn = 1.
     return math.sqrt(max(a2 * first**2 + c2 * third**2, b2 * middle**2 + c2 * m1 * third**2))
 
 
-def _spin(w: Sequence[Decimal]) -> Spin:
-    return Spin(rate=_squared(w).sqrt())
-
-
-def _jacobis_axes(frame: PrincipalFrame, w: Sequence[Decimal], order: tuple[int, int, int]) -> Axes:
+def _jacobis_axes(
+    frame: PrincipalFrame[Number], w: Sequence[Number], first: int, third: int
+) -> tuple[tuple[Number, Number, Number], ...]:
     """Return axes 1, 2, 3 with w1 >= 0, w3 > 0, right-handed."""
-    first, third = order[0], order[2]
     x = _flipped(frame.axes_B[first]) if w[first] < 0 else frame.axes_B[first]
     z = _flipped(frame.axes_B[third]) if w[third] < 0 else frame.axes_B[third]
     y = (z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0])
     return x, y, z
 
 
-def _squared(vector: Sequence[Decimal]) -> Decimal:
+def _squared(vector: Sequence[Number]) -> Number:
     return vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]
 
 
-def _flipped(axis: Triple) -> Triple:
+def _flipped(axis: tuple[Number, Number, Number]) -> tuple[Number, Number, Number]:
     return (-axis[0], -axis[1], -axis[2])
 
 
-def _dot(axis: Triple, w_B: Sequence[Decimal]) -> Decimal:
+def _dot(axis: tuple[Number, Number, Number], w_B: Sequence[Number]) -> Number:
     return axis[0] * w_B[0] + axis[1] * w_B[1] + axis[2] * w_B[2]

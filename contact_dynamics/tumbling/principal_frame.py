@@ -11,46 +11,53 @@ Not covered: an ordering or sign of axes for people to rely on; this frame serve
 from __future__ import annotations
 
 from dataclasses import dataclass
-from decimal import Context, Decimal, localcontext
+from decimal import Decimal
 from functools import lru_cache
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final, Generic
 
 import numpy as np
+
+from contact_dynamics.tumbling.arithmetic import DECIMALS, Number, within
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
-Triple: TypeAlias = "tuple[Decimal, Decimal, Decimal]"
-
-EXACT: Final = Context(prec=120)
-"""Arithmetic in which sums of products of doubles may cancel by 80 digits and leave a double's worth."""
-
 EQUAL_MOMENTS: Final = Decimal("1e-110")
-"""Relative to the largest moment. Closer ones are equal: Jacobi's rotations leave this much, in `EXACT`."""
+"""Relative to the largest moment. Closer ones are equal: Jacobi's rotations leave this much in 120 digits."""
 
 _MOST_SWEEPS: Final = 30
 """Convergence takes four to eight."""
 
 
 @dataclass(frozen=True, slots=True)
-class PrincipalFrame:
-    """The principal moments in ascending order and their axes."""
+class PrincipalFrame(Generic[Number]):
+    """The principal moments in ascending order, and their axes."""
 
-    moments: Triple  # kg m^2, ascending; equal ones are equal to the last digit
+    moments: tuple[Number, Number, Number]  # kg m^2
+    gaps: tuple[Number, Number, Number]  # kg m^2, >= 0: middle - small, large - middle, large - small
     axes_B: tuple[
-        Triple, Triple, Triple
-    ]  # rows: unit axis of each moment, body coordinates, of either handedness
+        tuple[Number, Number, Number], ...
+    ]  # 3 rows: unit axes, body coordinates, either handedness
 
 
-def principal_frame(I_B: FloatArray) -> PrincipalFrame:
+def principal_frame(I_B: FloatArray) -> PrincipalFrame[Decimal]:
     """Return the principal frame of a (3, 3) inertia matrix, kg m^2, body axes; remembered per matrix."""
     return _of_bytes(I_B.tobytes())
 
 
 @lru_cache(maxsize=256)
-def _of_bytes(data: bytes) -> PrincipalFrame:
+def in_doubles(frame: PrincipalFrame[Decimal]) -> PrincipalFrame[float]:
+    """Return a frame with each number rounded, the gaps too, which keeps nearly equal moments apart."""
+    small, middle, large = (float(moment) for moment in frame.moments)
+    low, high, both = (float(gap) for gap in frame.gaps)
+    axes = tuple((float(x), float(y), float(z)) for x, y, z in frame.axes_B)
+    return PrincipalFrame(moments=(small, middle, large), gaps=(low, high, both), axes_B=axes)
+
+
+@lru_cache(maxsize=256)
+def _of_bytes(data: bytes) -> PrincipalFrame[Decimal]:
     rows = np.frombuffer(data, dtype=np.float64).reshape(3, 3).tolist()
-    with localcontext(EXACT):
+    with within(DECIMALS.sums):
         exact = [[Decimal(x) for x in row] for row in rows]
         matrix = [[(exact[i][j] + exact[j][i]) / 2 for j in range(3)] for i in range(3)]
         axes = [[Decimal(int(i == j)) for j in range(3)] for i in range(3)]
@@ -61,22 +68,23 @@ def _of_bytes(data: bytes) -> PrincipalFrame:
             small = middle
         if large - middle <= EQUAL_MOMENTS * large:
             large = middle
-        first, second, third = ((axes[0][i], axes[1][i], axes[2][i]) for i in order)
-    return PrincipalFrame(moments=(small, middle, large), axes_B=(first, second, third))
+        return PrincipalFrame(
+            moments=(small, middle, large),
+            gaps=(middle - small, large - middle, large - small),
+            axes_B=tuple((axes[0][i], axes[1][i], axes[2][i]) for i in order),
+        )
 
 
 def _diagonalise(matrix: list[list[Decimal]], axes: list[list[Decimal]]) -> None:
     """Make ``matrix`` diagonal, and turn ``axes`` (columns) likewise (Golub and Van Loan, 8.5)."""
-    negligible = EQUAL_MOMENTS / 10**8 * sum(matrix[i][i] for i in range(3))
+    negligible = EQUAL_MOMENTS / 10**5 * sum(matrix[i][i] for i in range(3))
     for _ in range(_MOST_SWEEPS):
         if all(abs(matrix[p][q]) <= negligible for p, q in ((0, 1), (0, 2), (1, 2))):
             return
         for p, q, other in ((0, 1, 2), (0, 2, 1), (1, 2, 0)):
             if abs(matrix[p][q]) > negligible:
                 _rotate(matrix, axes, p, q, other)
-    raise ArithmeticError(
-        "Jacobi's rotations did not converge"
-    )  # no symmetric matrix of finite numbers gets here
+    raise ArithmeticError("Jacobi's rotations did not converge")  # they do for all symmetric matrices
 
 
 def _rotate(matrix: list[list[Decimal]], axes: list[list[Decimal]], p: int, q: int, other: int) -> None:

@@ -9,7 +9,9 @@ from contact_dynamics.tolerances import EQUAL_MOMENTS_TOLERANCE, STEADY_AXIS_TOL
 from contact_dynamics.tumbling.polhode import Spin
 
 if TYPE_CHECKING:
-    from contact_dynamics.tumbling.polhode import Tumble
+    from decimal import Decimal
+
+    from contact_dynamics.tumbling.polhode import Rotation
     from contact_dynamics.tumbling.principal_frame import PrincipalFrame
 
 
@@ -26,7 +28,7 @@ class Regime(enum.IntEnum):
     SEPARATRIX = 7  # between the two: one flip, and an infinite period
 
 
-def regime_of(frame: PrincipalFrame, rotation: Spin | Tumble) -> Regime:
+def regime_of(frame: PrincipalFrame[Decimal], rotation: Rotation) -> Regime:
     """Return the name of a rotation; moments within `EQUAL_MOMENTS_TOLERANCE` count as equal."""
     if isinstance(rotation, Spin) and rotation.rate == 0:
         return Regime.AT_REST
@@ -40,4 +42,4 @@ def regime_of(frame: PrincipalFrame, rotation: Spin | Tumble) -> Regime:
         return Regime.PRINCIPAL_AXIS
     if rotation.m1 == 0:
         return Regime.SEPARATRIX
-    return Regime.ABOUT_MAJOR_AXIS if rotation.moments[2] > rotation.moments[0] else Regime.ABOUT_MINOR_AXIS
+    return Regime.ABOUT_MAJOR_AXIS if rotation.omega_p > 0 else Regime.ABOUT_MINOR_AXIS

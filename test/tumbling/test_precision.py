@@ -1,0 +1,50 @@
+"""Constants in doubles: as good as extended ones at first, and worse by what their last bits do in time."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from contact_dynamics.poinsot import sensitivity
+from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
+from oracles.tumbling_draws import draw
+from tumbling.known_motions import MOTIONS, motion_of
+
+LAST_BITS = 2e-15
+
+
+def in_doubles(motion: FreeMotion) -> FreeMotion:
+    return free_motion(motion.body, motion.state, precision=Precision.DOUBLE)
+
+
+def difference(motion: FreeMotion, seconds: float) -> float:
+    exact, rounded = motion.sample(seconds).q_WB, in_doubles(motion).sample(seconds).q_WB
+    return float((Rotation.from_quat(exact).inv() * Rotation.from_quat(rounded)).magnitude())
+
+
+@pytest.mark.parametrize("name", sorted(set(MOTIONS) - {"at rest", "about the middle axis"}))
+def test_known_motions(name: str) -> None:
+    motion = motion_of(name)
+    rate = float(np.linalg.norm(motion.state.w_WB_W))
+    growth = min(sensitivity(motion), 100.0)  # e^5 times on the separatrix, in these times
+    for turned in (0.0, 0.3, -8.0, 300.0):
+        limit = LAST_BITS * (1.0 + growth * abs(turned))
+        assert difference(motion, turned / rate) <= limit
+    assert in_doubles(motion).regime is motion.regime
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), turned=st.floats(-100.0, 100.0))
+def test_drawn_motions(seed: int, turned: float) -> None:
+    drawn = draw(np.random.default_rng(seed))
+    # There, what the last bit of the state does is beyond any bound in doubles.
+    assume(drawn.spin not in ("separatrix", "middle") and drawn.body != "needle")
+    rate = float(np.linalg.norm(drawn.w_WB_W))
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=drawn.q_WB, v_WB_W=np.zeros(3), w_WB_W=drawn.w_WB_W)
+    motion = free_motion(MassProperties(mass=1.0, I_B=drawn.I_B), state)
+    limit = LAST_BITS * (1.0 + sensitivity(motion)) * (1.0 + abs(turned))
+    assert difference(motion, turned / rate) <= limit
