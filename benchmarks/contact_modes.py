@@ -1,4 +1,4 @@
-"""Planar contact modes against the number of contacts, beside a linear program for each of the 4^n strings.
+"""Contact modes against the number of contacts; in the plane beside a linear program for each of 4^n strings.
 
 Sets: `ring`, whose contacts all bound the motion (the most modes there are), `drawn`, where few do, and
 `flush`, a row of feet, where all planes share a line. The linear programs are SciPy's HiGHS, on the `drawn`
@@ -15,10 +15,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from scipy.optimize import linprog
 
-from contact_dynamics.contact_modes import planar_contact_modes
+from contact_dynamics.contact import ContactSet
+from contact_dynamics.contact_modes import planar_contact_modes, spatial_kinematic_modes
 from contact_dynamics.contact_modes.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.problem import planar_problem
 from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.rigid_body import BodyState
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -104,6 +106,32 @@ def all_strings(contacts: list[PlanarContact]) -> set[str]:
     return found
 
 
+def in_space(n: int) -> ContactSet:
+    """Return contacts all over a ball whose normals point upwards, more or less."""
+    chance = np.random.default_rng(n)
+    points = chance.normal(size=(n, 3))
+    normals = np.array([0.0, 0.0, 1.0]) + 0.6 * chance.normal(size=(n, 3))
+    return ContactSet(
+        p_WC_W=points / np.linalg.norm(points, axis=1)[:, None],
+        normals_W=normals / np.linalg.norm(normals, axis=1)[:, None],
+        frictions=np.ones(n),
+        restitutions=np.zeros(n),
+    )
+
+
+def run_in_space() -> None:
+    """Print times and counts of contacting/separating modes in space."""
+    still = BodyState(
+        p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
+    )
+    print(f"\n{'n':>11} {'modes':>6} {'in space':>12}")
+    for n in (4, 8, 16, 32):
+        contacts = in_space(n)
+        modes = len(spatial_kinematic_modes(still, contacts))
+        seconds = best_of(lambda contacts=contacts: spatial_kinematic_modes(still, contacts))
+        print(f"{n:11d} {modes:6d} {1e3 * seconds:9.2f} ms")
+
+
 def run() -> None:
     """Print times and counts."""
     print(
@@ -127,3 +155,4 @@ def run() -> None:
                 f"{make.__name__:>6} {n:4d} {modes:6d} {1e3 * enumeration:9.3f} ms {1e3 * answer:9.3f} ms"
                 f" {1e6 * dynamics:7.1f} us {peer:>14}"
             )
+    run_in_space()

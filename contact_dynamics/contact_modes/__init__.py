@@ -4,7 +4,7 @@ In reading order: verdicts and evidence (`result`); one contact in closed form (
 (`planar`), stated as a cone (`problem`, `cone`), its modes enumerated (`enumeration`) and judged (`dynamics`,
 `wrench_cone`, `least_force`); applied wrenches of each mode (`wrench_sets`), their map and margins
 (`margins`); equilibrium, jamming and wedging (`statics`). In space: contacting and separating modes
-(`spatial`).
+(`spatial`); sticking and sliding, with mechanics (`spatial_dynamics`, `spatial_letters`, `spatial_result`).
 """
 
 from contact_dynamics.contact_modes.margins import ModeMargin, planar_mode_map, planar_mode_margins

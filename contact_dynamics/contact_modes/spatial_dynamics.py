@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.contact_modes.result import ModeVerdict
+from contact_dynamics.contact_modes.spatial_letters import Trial, any_letter
 from contact_dynamics.contact_modes.spatial_result import SpatialMode, SpatialModeAnswer
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.friction import linearised_cone
@@ -53,19 +54,9 @@ _MILDER: Final = 0.1
 """How much less an arc must hold than its letters, whose rows are differences of unit ones."""
 
 
-class _Trial(NamedTuple):
-    """A letter of one contact, or several together; rows act on the edge forces and end in a constant."""
-
-    letter: str  # c also for an arc of sliding directions; empty: several
-    silent: list[int]  # edge forces that are zero
-    zero: FloatArray  # (k, K + 1)
-    positive: FloatArray  # (k, K + 1), strictly where it is a letter
-    parts: list[_Trial]  # the letters that it stands for, in groups; empty where it is a letter
-
-
 class _Problem(NamedTuple):
     edges: FloatArray  # (3 n, K), N, contact forces of unit edge forces
-    trials: list[_Trial]  # for each contact, all its letters together
+    trials: list[Trial]  # for each contact, all its letters together
     motion: FloatArray  # (6, K), acceleration of the body for unit edge forces
 
 
@@ -215,66 +206,20 @@ def _stated(
         normal = contacts.normals_W[i] @ point
         if leaving[i]:
             nothing = np.zeros((0, total + 1))
-            trials.append(_Trial("s", own, nothing, nothing, []))
+            trials.append(Trial("s", own, nothing, nothing, []))
         else:
-            trials.append(_any_letter(pyramid - contacts.normals_W[i], own, normal, point))
+            trials.append(any_letter(pyramid - contacts.normals_W[i], own, normal, point))
     return _Problem(edges * motion.scale, trials, motion.of_forces @ edges * motion.scale)
 
 
-def _any_letter(tangential: FloatArray, own: list[int], normal: FloatArray, point: FloatArray) -> _Trial:
-    """Return all letters of one touching contact, with ``tangential`` the edges' parts along the surface."""
-    nothing = np.zeros((0, len(normal)))
-    separates = _Trial("s", own, nothing, normal[None, :], [])
-    if len(own) == 1:
-        stays = _Trial("c", [], normal[None, :], nothing, [])
-    else:
-        along = (tangential / np.linalg.norm(tangential, axis=1)[:, None]) @ point
-        sticks = _Trial("f", [], np.vstack([normal, _across(tangential, point)]), nothing, [])
-        # Sectors and borders alternate around the circle; no arc may be wider than a third of it.
-        arcs = np.array_split(np.arange(2 * len(own)), len(own) if len(own) < 6 else 4)
-        slides = [_slides(arc.tolist(), own, normal, along) for arc in arcs]
-        stays = _Trial("", [], normal[None, :], nothing, [sticks, *slides])
-    return _Trial("", [], nothing, normal[None, :], [separates, stays])
-
-
-def _slides(arc: list[int], own: list[int], normal: FloatArray, along: FloatArray) -> _Trial:
-    """Return the letters of sliding within an arc: 2 j is the sector of edge j, 2 j + 1 its far border.
-
-    The edge that opposes the sliding most has the least product with it, alone or with its neighbour.
-    """
-    count = len(own)
-    first, last = arc[0], arc[-1]
-    acting = {(item + side) // 2 % count for item in arc for side in (0, 1)}
-    silent = [edge for j, edge in enumerate(own) if j not in acting]
-    if len(arc) > 1:
-        low, high = (first - 1) // 2, last // 2
-        middle = -np.mean([along[item // 2] for item in arc if item % 2 == 0], axis=0)
-        sides = [
-            along[low % count] - along[(low + 1) % count],
-            along[(high + 1) % count] - along[high % count],
-        ]
-        parts = [_slides(half, own, normal, along) for half in (arc[: len(arc) // 2], arc[len(arc) // 2 :])]
-        return _Trial("c", silent, normal[None, :], np.array([middle, *sides]), parts)
-    j, k = first // 2, (first + 1) // 2 % count
-    sides = [along[(j - 1) % count] - along[j], along[(k + 1) % count] - along[k]]
-    zero = normal[None, :] if j == k else np.array([normal, along[j] - along[k]])
-    return _Trial("c", silent, zero, np.array(sides), [])
-
-
-def _across(tangential: FloatArray, point: FloatArray) -> FloatArray:
-    """Return the contact's acceleration along two orthonormal tangents, (2, K + 1)."""
-    tangents: FloatArray = np.linalg.svd(tangential)[2][:2]
-    return tangents @ point
-
-
-def _can_hold(trials: list[_Trial]) -> bool:
+def _can_hold(trials: list[Trial]) -> bool:
     """Return whether some forces satisfy all trials, those that are letters strictly."""
     count = trials[0].zero.shape[1] - 1
     found = _program(trials, np.zeros(count), maximise_slack=True)
     return found is not None and found[-1] > _STRICT
 
 
-def _strictness(trial: _Trial) -> FloatArray:
+def _strictness(trial: Trial) -> FloatArray:
     """Return how much of the slack each row must have: a letter's all, an arc's first, since it slides."""
     strict = np.ones(len(trial.positive))
     if trial.parts:
@@ -283,7 +228,7 @@ def _strictness(trial: _Trial) -> FloatArray:
     return strict
 
 
-def _program(trials: list[_Trial], objective: FloatArray, *, maximise_slack: bool) -> FloatArray | None:
+def _program(trials: list[Trial], objective: FloatArray, *, maximise_slack: bool) -> FloatArray | None:
     """Minimise ``objective`` over the edge forces, or maximise the slack, at most 1, that comes last.
 
     None: no forces at all, or no minimum.
@@ -314,7 +259,7 @@ def _program(trials: list[_Trial], objective: FloatArray, *, maximise_slack: boo
 
 
 def _evidence(
-    motion: _Motion, problem: _Problem, chosen: list[_Trial], contacts: ContactSet, sliding: FloatArray
+    motion: _Motion, problem: _Problem, chosen: list[Trial], contacts: ContactSet, sliding: FloatArray
 ) -> SpatialMode:
     count = problem.edges.shape[1]
     found = _program(chosen, np.zeros(count), maximise_slack=True)
@@ -346,7 +291,7 @@ def _evidence(
     )
 
 
-def _is_unique(chosen: list[_Trial], quantities: FloatArray) -> bool:
+def _is_unique(chosen: list[Trial], quantities: FloatArray) -> bool:
     """Return whether ``quantities``, (k, K), of the edge forces are the same for all that the mode allows.
 
     One combination of them, drawn once and for all, is made as small and as large as it can be.
