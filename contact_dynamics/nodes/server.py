@@ -11,6 +11,8 @@ import time
 import traceback
 from typing import TYPE_CHECKING, Any
 
+from rclpy.clock import JumpThreshold
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.service_introspection import ServiceIntrospectionState
@@ -57,6 +59,9 @@ class Server(Node):
         super().__init__(NODE_NAME, **node_options)
         parameters = read_server_parameters(self)
         states = StateStore(history=parameters.state_history, timeout=parameters.state_timeout)
+        # A simulation or a log that is played again: without this its new states would count as old ones.
+        set_back = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
+        self._jumps = self.get_clock().create_jump_callback(set_back, post_callback=lambda _: states.clear())
         self._knowledge = Knowledge(
             parameters=parameters, states=states, now_ns=lambda: self.get_clock().now().nanoseconds
         )

@@ -17,7 +17,7 @@ class StateStore:
     """States by body, sorted by their stamps; older ones than the history are dropped as new ones come."""
 
     def __init__(self, *, history: float, timeout: float) -> None:
-        """Keep ``history`` seconds of states; refuse one that is older than ``timeout`` seconds when asked about now."""
+        """Keep ``history`` seconds of states; refuse one older than ``timeout`` seconds when asked about."""
         self._history_ns = round(history * _NS_PER_S)
         self._timeout_ns = round(timeout * _NS_PER_S)
         self._states: dict[str, list[BodyState]] = {}
@@ -29,6 +29,10 @@ class StateStore:
         oldest = states[-1].stamp_ns - self._history_ns
         if states[0].stamp_ns < oldest:
             del states[: bisect_right(states, oldest - 1, key=_stamp)]
+
+    def clear(self) -> None:
+        """Forget all states: the clock was set back, and what they are stamped with has not come yet."""
+        self._states.clear()
 
     def newest(self, body_name: str, *, now_ns: int) -> BodyState:
         """Return the newest state.
