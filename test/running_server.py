@@ -43,7 +43,7 @@ def environment() -> dict[str, str]:
 
 @contextmanager
 def process(verb: str, *arguments: str, ready: str = "") -> Iterator[subprocess.Popen[str]]:
-    """Start a verb of the command line; wait until it prints ``ready``; stop it with SIGINT and expect that it obeys."""
+    """Start a verb of the command line; wait until it prints ``ready``; stop it with SIGINT, as it must."""
     command = [sys.executable, "-m", "contact_dynamics", verb, *arguments]
     started = subprocess.Popen(
         command, cwd=ROOT, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
@@ -80,7 +80,8 @@ def wait_for(started: subprocess.Popen[str], text: str) -> str:
 class Client:
     """A node that calls the three services and publishes."""
 
-    def __init__(self) -> None:
+    def __init__(self, namespace: str = "") -> None:
+        """Join the domain and find the services of the server in a namespace."""
         self._context = Context()
         rclpy.init(context=self._context, domain_id=DOMAIN_ID)
         self.node = Node("test_client", context=self._context)
@@ -88,7 +89,7 @@ class Client:
         self._executor.add_node(self.node)
         qos = QoSProfile(depth=1000)
         self._clients = {
-            service: self.node.create_client(service, name, qos_profile=qos)
+            service: self.node.create_client(service, namespace + name, qos_profile=qos)
             for service, name in SERVICES.items()
         }
         for client in self._clients.values():
@@ -96,10 +97,14 @@ class Client:
 
     def ask(self, request: Any) -> Any:
         """Call the service that a request belongs to; return the response."""
-        service = next(service for service in SERVICES if isinstance(request, service.Request))
-        future = self._clients[service].call_async(request)
+        future = self.begin_to_ask(request)
         self.spin_until(future.done)
         return future.result()
+
+    def begin_to_ask(self, request: Any) -> Any:
+        """Call the service that a request belongs to; return the future of the response."""
+        service = next(service for service in SERVICES if isinstance(request, service.Request))
+        return self._clients[service].call_async(request)
 
     def spin_until(self, done: Any) -> None:
         """Spin until ``done()``; fail after a while."""

@@ -1,0 +1,442 @@
+"""Questions about published states over real DDS: several servers at once, each configured in another way."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+from geometry_msgs.msg import PoseStamped, TwistStamped
+from nav_msgs.msg import Odometry
+from rclpy.qos import QoSProfile
+from rosgraph_msgs.msg import Clock
+
+from contact_dynamics.nodes.log import Log
+from contact_dynamics.recording import BagReader, DamagedLogWarning
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
+from oracles.rigid_flight import about, fly, matrix
+from running_server import PATIENCE_S, ROOT, Client, process, wait_for
+
+BRICK_FILE = ROOT / "config" / "server.yaml"
+BRICK = yaml.safe_load(BRICK_FILE.read_text(encoding="utf-8"))["/**"]["ros__parameters"]
+BRICK_MASS = BRICK["body.brick.mass"]  # kg
+BRICK_MOMENTS = BRICK["body.brick.inertia"][:3]  # kg m^2, about the axes of its frame
+SIDES = 0.5 * np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+BRICK_CORNERS = SIDES * BRICK["body.brick.box"]  # m
+STAMPS_NS = count(time.time_ns(), 10_000_000)  # each state is the newest, 10 ms later than the one before
+GRAVITY = 9.80665  # m/s^2
+OFFSET = np.array([0.1, -0.03, 0.02])  # m, centre of mass of club and disc in their published frames
+AT_ORIGIN = np.zeros(3)
+MOMENTS = (0.001, 0.002, 0.0025)
+ROUNDING = 1e-12  # a few operations on numbers of order 1 to 10
+STEPPED = 1e-6  # what the oracle's steps of 1 ms leave, in m and rad, over half a second
+
+
+@dataclass(frozen=True, kw_only=True)
+class Body:
+    """A state of a body as a test publishes it: pose of its frame, twist in its axes at its origin."""
+
+    p: np.ndarray = field(default_factory=lambda: np.array([0.1, -0.2, 1.0]))
+    q: np.ndarray = field(default_factory=lambda: about((2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0), 0.7))
+    v: np.ndarray = field(default_factory=lambda: np.array([0.4, 0.1, -0.3]))
+    w: np.ndarray = field(default_factory=lambda: np.array([1.0, 5.0, -2.0]))
+    stamp_ns: int = field(default_factory=lambda: next(STAMPS_NS))
+
+    def odometry(self, frame: str) -> Odometry:
+        msg = Odometry(child_frame_id=frame)
+        fill(msg.pose.pose, self.p, self.q)
+        fill_twist(msg.twist.twist, self.v, self.w)
+        msg.header.frame_id = "world"
+        msg.header.stamp = stamp_to_msg(self.stamp_ns)
+        return msg
+
+    def pose(self) -> PoseStamped:
+        msg = PoseStamped()
+        fill(msg.pose, self.p, self.q)
+        msg.header.frame_id = "world"
+        msg.header.stamp = stamp_to_msg(self.stamp_ns)
+        return msg
+
+    def twist(self, frame: str) -> TwistStamped:
+        R = np.eye(3) if frame != "world" else matrix(self.q)
+        msg = TwistStamped()
+        fill_twist(msg.twist, R @ self.v, R @ self.w)
+        msg.header.frame_id = frame
+        msg.header.stamp = stamp_to_msg(self.stamp_ns)
+        return msg
+
+    def velocity_of_centre(self, offset: np.ndarray) -> np.ndarray:
+        """Velocity of a centre of mass at ``offset`` in the body's frame, world axes."""
+        return matrix(self.q) @ (self.v + np.cross(self.w, offset))
+
+
+def fill(pose: Any, p: np.ndarray, q: np.ndarray) -> None:
+    pose.position.x, pose.position.y, pose.position.z = p.tolist()
+    pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w = q.tolist()
+
+
+def fill_twist(twist: Any, v: np.ndarray, w: np.ndarray) -> None:
+    twist.linear.x, twist.linear.y, twist.linear.z = v.tolist()
+    twist.angular.x, twist.angular.y, twist.angular.z = w.tolist()
+
+
+def xyz(vector: Any) -> np.ndarray:
+    return np.array([vector.x, vector.y, vector.z])
+
+
+def xyzw(quaternion: Any) -> np.ndarray:
+    return np.array([quaternion.x, quaternion.y, quaternion.z, quaternion.w])
+
+
+def rows(numbers: Any, columns: int) -> np.ndarray:
+    return np.array(numbers).reshape(-1, columns)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Servers:
+    """Servers that run at the same time and log to one folder, and a client of each."""
+
+    brick: Client  # of the commented configuration, but for a patience with loaded machines
+    robot: Client  # of a server in the namespace /robot1, whose bodies have their centre of mass elsewhere
+    clock: Client  # of a server that takes its time from /clock, in the namespace /simulated
+    logs: Path
+
+
+@pytest.fixture(scope="module")
+def servers(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Servers]:
+    logs = tmp_path_factory.mktemp("logs")
+    robot_file = tmp_path_factory.mktemp("config") / "robot.yaml"
+    parameters: dict[str, Any] = {"bodies": ["club", "disc"], "state_timeout": 1000.0}
+    for name in parameters["bodies"]:
+        parameters[f"body.{name}.mass"] = 0.5
+        parameters[f"body.{name}.inertia"] = [*MOMENTS, 0.0, 0.0, 0.0]
+        parameters[f"body.{name}.center_of_mass"] = OFFSET.tolist()
+    parameters["body.club.odometry_topic"] = "club/odometry"
+    parameters["body.disc.pose_topic"] = "disc/pose"
+    parameters["body.disc.twist_topic"] = "disc/twist"
+    parameters["body.disc.frame"] = "disc_link"
+    robot_file.write_text(yaml.safe_dump({"/**": {"ros__parameters": parameters}}), encoding="utf-8")
+    log = ["-p", f"log_directory:={logs}"]
+    remaps = ["-r", "__ns:=/robot1", "-r", "club/odometry:=/mocap/club"]
+    simulated = ["-r", "__ns:=/simulated", "-r", "/brick/odometry:=/simulated/odometry"]
+    simulated += ["-p", "use_sim_time:=true"]
+    with ExitStack() as stack:
+        started = [
+            stack.enter_context(process("server", "--params-file", file, "--ros-args", *log, *arguments))
+            for file, arguments in (
+                (str(BRICK_FILE), ["-p", "state_timeout:=1000.0"]),
+                (str(robot_file), remaps),
+                (str(BRICK_FILE), simulated),
+            )
+        ]
+        for each in started:
+            wait_for(each, "ready")
+        brick, robot, clock = stack.enter_context(clients("", "/robot1", "/simulated"))
+        yield Servers(brick=brick, robot=robot, clock=clock, logs=logs)
+
+
+@contextmanager
+def clients(*namespaces: str) -> Iterator[list[Client]]:
+    """A client of the server in each namespace; they look for it at once, as that can take seconds."""
+    with ThreadPoolExecutor(len(namespaces)) as pool:
+        joined = list(pool.map(Client, namespaces))
+    try:
+        yield joined
+    finally:
+        for client in joined:
+            client.close()
+
+
+def publisher(client: Client, msg_type: Any, topic: str, listeners: int = 1) -> Any:
+    """Return a publisher once the servers listen to it."""
+    made = client.node.create_publisher(msg_type, topic, QoSProfile(depth=1000))
+    client.spin_until(lambda: made.get_subscription_count() >= listeners)
+    return made
+
+
+def known(client: Client, body_name: str, stamp_ns: int) -> Any:
+    """Ask until the newest state is the one with that stamp, as states and questions go by different ways."""
+    answers: list[Any] = []
+
+    def came() -> bool:
+        answers.append(client.ask(PredictTumbling.Request(body_name=body_name, times=[0.0, 0.25, 0.5])))
+        return stamp_ns_from_msg(answers[-1].state.header.stamp) == stamp_ns
+
+    client.spin_until(came)
+    return answers[-1]
+
+
+def check_state(msg: Any, body: Body, offset: np.ndarray = AT_ORIGIN) -> None:
+    """The state in a response is the one published: its pose, and the velocity of the centre of mass."""
+    np.testing.assert_allclose(xyz(msg.pose.position), body.p, atol=ROUNDING)
+    np.testing.assert_allclose(xyzw(msg.pose.orientation), body.q, atol=ROUNDING)
+    np.testing.assert_allclose(xyz(msg.linear_velocity), body.velocity_of_centre(offset), atol=ROUNDING)
+    np.testing.assert_allclose(xyz(msg.angular_velocity), matrix(body.q) @ body.w, atol=ROUNDING)
+    assert stamp_ns_from_msg(msg.header.stamp) == body.stamp_ns
+    assert msg.header.frame_id == "world"
+
+
+def check_flight(trajectory: Any, body: Body, moments: tuple[float, ...], offset: np.ndarray) -> None:
+    """The published frame moves as the oracle's flight of the centre of mass carries it."""
+    R = matrix(body.q)
+    p, q, v, w = fly(
+        trajectory.times,
+        body.p + R @ offset,
+        body.q,
+        body.velocity_of_centre(offset),
+        R @ body.w,
+        moments=moments,
+        gravity=GRAVITY,
+    )
+    origins = [p_B - matrix(q_B) @ offset for p_B, q_B in zip(p, q, strict=True)]
+    np.testing.assert_allclose(rows(trajectory.positions, 3), origins, atol=STEPPED)
+    same_sign = np.sign(np.sum(rows(trajectory.orientations, 4) * q, axis=1))[:, None]
+    np.testing.assert_allclose(rows(trajectory.orientations, 4), same_sign * q, atol=STEPPED)
+    np.testing.assert_allclose(rows(trajectory.linear_velocities, 3), v, atol=STEPPED)
+    np.testing.assert_allclose(rows(trajectory.angular_velocities, 3), w, atol=10 * STEPPED)
+
+
+def test_tumbling_from_the_newest_state(servers: Servers) -> None:
+    client = servers.brick
+    states = publisher(client, Odometry, "/brick/odometry")
+    bodies = [Body(p=np.array([0.1 * i, 0.0, 1.0])) for i in range(3)]
+    for body in (bodies[0], bodies[2], bodies[1]):  # the newest is the one with the latest stamp
+        states.publish(body.odometry("brick"))
+    answer = known(client, "brick", bodies[2].stamp_ns)
+    assert (answer.status, answer.message) == (answer.OK, "")
+    check_state(answer.state, bodies[2])
+    assert list(answer.trajectory.times) == [0.0, 0.25, 0.5]
+    check_flight(answer.trajectory, bodies[2], BRICK_MOMENTS, AT_ORIGIN)
+
+
+@pytest.mark.parametrize("service", [PredictTumbling, PredictImpact])
+def test_a_past_stamp_takes_the_state_before_it(servers: Servers, service: Any) -> None:
+    client = servers.brick
+    states = publisher(client, Odometry, "/brick/odometry")
+    bodies = [Body(p=np.array([0.1 * i, 0.0, 1.0])) for i in range(4)]
+    for body in bodies:
+        states.publish(body.odometry("brick"))
+    known(client, "brick", bodies[-1].stamp_ns)
+    for asked_ns, body in (
+        (bodies[1].stamp_ns, bodies[1]),
+        (bodies[2].stamp_ns - 1, bodies[1]),
+        (bodies[3].stamp_ns + 1, bodies[3]),
+    ):
+        answer = client.ask(service.Request(body_name="brick", stamp=stamp_to_msg(asked_ns)))
+        assert answer.status == answer.OK, answer.message
+        if service is PredictTumbling:
+            check_state(answer.state, body)
+        else:
+            landing_ns = stamp_ns_from_msg(answer.state_before.header.stamp)
+            assert landing_ns - body.stamp_ns == pytest.approx(1e9 * answer.time_to_contact, abs=1.0)
+    too_old = client.ask(
+        service.Request(body_name="brick", stamp=stamp_to_msg(bodies[0].stamp_ns - 3_600_000_000_000))
+    )
+    assert too_old.status == too_old.NO_STATE
+    assert "the oldest kept has" in too_old.message
+
+
+def test_impact_after_the_newest_state(servers: Servers) -> None:
+    """Until the time of the impact every corner is above the floor, and then one is at it and comes down."""
+    client = servers.brick
+    states = publisher(client, Odometry, "/brick/odometry")
+    body = Body()
+    states.publish(body.odometry("brick"))
+    known(client, "brick", body.stamp_ns)
+    answer = client.ask(PredictImpact.Request(body_name="brick"))
+    assert answer.status == answer.OK, answer.message
+    times = np.linspace(0.0, answer.time_to_contact, 60)
+    R = matrix(body.q)
+    p, q, v, w = fly(times, body.p, body.q, R @ body.v, R @ body.w, moments=BRICK_MOMENTS, gravity=GRAVITY)
+    lowest = [(p_i + BRICK_CORNERS @ matrix(q_i).T)[:, 2].min() for p_i, q_i in zip(p, q, strict=True)]
+    assert min(lowest[:-1]) > 0.0
+    assert lowest[-1] == pytest.approx(0.0, abs=STEPPED)
+    np.testing.assert_allclose(xyz(answer.state_before.pose.position), p[-1], atol=STEPPED)
+    np.testing.assert_allclose(xyz(answer.state_before.linear_velocity), v[-1], atol=STEPPED)
+    np.testing.assert_allclose(xyz(answer.state_before.angular_velocity), w[-1], atol=10 * STEPPED)
+    # the impulse is what changes the momentum, and it acts at the corner
+    (corner,) = rows(answer.contacts.positions, 3)
+    impulse = np.array(answer.impact.impulses)
+    after = answer.impact.state_after
+    np.testing.assert_allclose(xyz(after.linear_velocity), v[-1] + impulse / BRICK_MASS, atol=10 * STEPPED)
+    I_W = matrix(q[-1]) @ np.diag(BRICK_MOMENTS) @ matrix(q[-1]).T
+    turn = I_W @ (xyz(after.angular_velocity) - w[-1])
+    np.testing.assert_allclose(turn, np.cross(corner - p[-1], impulse), atol=STEPPED)
+    assert (xyz(after.linear_velocity) + np.cross(xyz(after.angular_velocity), corner - p[-1]))[2] > 0.0
+
+
+def test_contact_mode_of_the_newest_state(servers: Servers) -> None:
+    client = servers.brick
+    states = publisher(client, Odometry, "/brick/odometry")
+    still = np.zeros(3)
+    body = Body(
+        p=np.array([0.3, 0.2, -BRICK_CORNERS[:, 2].min()]), q=about((0.0, 0.0, 1.0), 0.4), v=still, w=still
+    )
+    states.publish(body.odometry("brick"))
+    known(client, "brick", body.stamp_ns)
+    answer = client.ask(PredictContactMode.Request(body_name="brick"))
+    assert answer.status == answer.OK, answer.message
+    check_state(answer.state, body)
+    assert answer.verdict == answer.UNIQUE
+    assert [mode.mode for mode in answer.modes] == ["ffff"]
+    forces = rows(answer.modes[0].contact_forces, 3)
+    np.testing.assert_allclose(forces.sum(axis=0), [0.0, 0.0, BRICK_MASS * GRAVITY], atol=1e-9)
+    lowest = BRICK_CORNERS[BRICK_CORNERS[:, 2] < 0.0] @ matrix(body.q).T + body.p
+    found = rows(answer.contacts.positions, 3)
+    np.testing.assert_allclose(found[np.lexsort(found.T)], lowest[np.lexsort(lowest.T)], atol=ROUNDING)
+
+
+def test_the_longest_trajectory_arrives_whole(servers: Servers) -> None:
+    """2.2 MB of numbers, four times what Fast DDS's shared memory holds at once."""
+    client = servers.brick
+    request = PredictTumbling.Request(body_name="brick", state_source=PredictTumbling.Request.STATE_EXPLICIT)
+    request.state.linear_velocity.x = 0.5
+    request.state.angular_velocity.y = 3.0
+    request.times = np.linspace(0.0, 2.0, 20_000).tolist()
+    for _ in range(3):
+        answer = client.ask(request)
+        assert answer.status == answer.OK, answer.message
+        trajectory = answer.trajectory
+        np.testing.assert_array_equal(trajectory.times, request.times)
+        assert len(trajectory.orientations) == 4 * 20_000
+        assert len(trajectory.angular_velocities) == 3 * 20_000
+        t = np.array(request.times)
+        parabola = np.column_stack([0.5 * t, 0.0 * t, -0.5 * GRAVITY * t * t])
+        np.testing.assert_allclose(rows(trajectory.positions, 3), parabola, atol=1e-12)
+
+
+@pytest.mark.usefixtures("servers")
+def test_four_clients_at_once_lose_no_answer() -> None:
+    """Each asks 200 times without waiting, and each answer is that of its question."""
+    with clients("", "", "", "") as four:
+        futures = []
+        for number in range(200):
+            for index, client in enumerate(four):
+                request = PredictTumbling.Request(body_name="brick", times=[float(index), number + 10.0])
+                request.state_source = request.STATE_EXPLICIT
+                futures.append((client.begin_to_ask(request), list(request.times)))
+        for index, client in enumerate(four):
+            own = [future for future, _ in futures[index::4]]
+            client.spin_until(lambda own=own: all(future.done() for future in own))
+        assert [list(future.result().trajectory.times) for future, _ in futures] == [t for _, t in futures]
+
+
+def test_odometry_of_a_body_whose_centre_of_mass_is_elsewhere(servers: Servers) -> None:
+    """In a namespace, on a topic that is remapped."""
+    client = servers.robot
+    states = publisher(client, Odometry, "/mocap/club")
+    body = Body()
+    states.publish(body.odometry("club"))
+    answer = known(client, "club", body.stamp_ns)
+    assert answer.status == answer.OK, answer.message
+    assert answer.state.body_name == "club"
+    check_state(answer.state, body, OFFSET)
+    check_flight(answer.trajectory, body, MOMENTS, OFFSET)
+
+
+@pytest.mark.parametrize("frame", ["disc_link", "world"])
+@pytest.mark.parametrize("pose_first", [True, False])
+def test_pose_and_twist_of_one_stamp_are_a_state(servers: Servers, *, frame: str, pose_first: bool) -> None:
+    client = servers.robot
+    poses = publisher(client, PoseStamped, "/robot1/disc/pose")
+    twists = publisher(client, TwistStamped, "/robot1/disc/twist")
+    body = Body()
+    if pose_first:
+        poses.publish(body.pose())
+        twists.publish(body.twist(frame))
+    else:
+        twists.publish(body.twist(frame))
+        poses.publish(body.pose())
+    poses.publish(Body().pose())  # half a state is none
+    answer = known(client, "disc", body.stamp_ns)
+    assert answer.status == answer.OK, answer.message
+    check_state(answer.state, body, OFFSET)
+    check_flight(answer.trajectory, body, MOMENTS, OFFSET)
+
+
+def test_services_stand_in_the_namespace(servers: Servers) -> None:
+    names = {name for name, _ in servers.robot.node.get_service_names_and_types()}
+    for service in ("predict_contact_mode", "predict_impact", "predict_tumbling"):
+        for namespace in ("", "/robot1", "/simulated"):
+            assert f"{namespace}/contact_dynamics/{service}" in names
+    unknown = servers.robot.ask(PredictTumbling.Request(body_name="brick", times=[0.0]))
+    assert unknown.status == unknown.UNKNOWN_BODY
+    assert "'club', 'disc'" in unknown.message
+
+
+def test_time_comes_from_the_clock_topic(servers: Servers) -> None:
+    """A simulation that is started again goes back in time, and its new states count."""
+    client = servers.clock
+    clock = publisher(client, Clock, "/clock")
+    states = publisher(client, Odometry, "/simulated/odometry")
+    first, again = Body(stamp_ns=1_000_000_000_000), Body(v=np.zeros(3), stamp_ns=10_000_000_000)
+
+    def answer_at(seconds: float, body: Body, status: int) -> Any:
+        """Clock, state and question go by different ways: ask until the answer is of that time."""
+        answers: list[Any] = []
+
+        def came() -> bool:
+            clock.publish(Clock(clock=stamp_to_msg(round(seconds * 1e9))))
+            states.publish(body.odometry("brick"))
+            answers.append(client.ask(PredictTumbling.Request(body_name="brick", times=[0.0])))
+            of_body = stamp_ns_from_msg(answers[-1].state.header.stamp) == body.stamp_ns
+            return answers[-1].status == status and (status != 0 or of_body)
+
+        client.spin_until(came)
+        return answers[-1]
+
+    check_state(answer_at(1000.5, first, 0).state, first)  # 0.5 s old, which is allowed
+    stale = answer_at(1000.625, first, PredictTumbling.Response.STALE_STATE)
+    assert "the newest is 0.625 s old, allowed is at most 0.5 s" in stale.message
+    check_state(answer_at(10.25, again, 0).state, again)
+
+
+def topics_of(folder: Path) -> set[str]:
+    """Topics of the messages in a log that is still being written."""
+    with pytest.warns(DamagedLogWarning):
+        return {message.topic for message in BagReader(folder).messages()}
+
+
+def test_servers_in_one_folder_have_a_log_each(servers: Servers) -> None:
+    """Read while it is written: what was asked is in the file after 0.1 s."""
+    for client in (servers.brick, servers.robot, servers.clock):
+        client.ask(PredictTumbling.Request())
+    folders = list(servers.logs.iterdir())
+    assert len(folders) == 3
+    expected = {
+        f"{ns}/contact_dynamics/predict_tumbling/_service_event" for ns in ("", "/robot1", "/simulated")
+    }
+    deadline = time.monotonic() + PATIENCE_S
+    found: list[set[str]] = []
+    while time.monotonic() < deadline:
+        found = [topics_of(folder) & expected for folder in folders]
+        if all(found):
+            break
+        time.sleep(0.1)
+    assert [len(topics) for topics in found] == [1, 1, 1]
+    assert set().union(*found) == expected
+
+
+def test_logs_begun_at_the_same_moment_do_not_meet(tmp_path: Path) -> None:
+    problems: list[str] = []
+
+    def log(number: int) -> Path | None:
+        log = Log(str(tmp_path), run={"number": str(number)}, on_problem=problems.append)
+        log.start()
+        log.close()
+        return log.folder
+
+    with ThreadPoolExecutor(8) as pool:
+        folders = list(pool.map(log, range(8)))
+    assert len(set(folders)) == 8
+    assert sorted(BagReader(str(folder)).run()["number"] for folder in folders) == [str(n) for n in range(8)]
+    assert problems == []
