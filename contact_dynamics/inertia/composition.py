@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.inertia.distribution import MassDistribution, point_inertia
+from contact_dynamics.inertia.distribution import MassDistribution, difference, point_inertia
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -48,11 +48,14 @@ def without(whole: MassDistribution, part: MassDistribution) -> MassDistribution
     if mass <= 0.0:
         raise InvalidFieldError("part", f"mass {part.mass:g} kg", f"less than the whole's {whole.mass:g} kg")
     to_part = part.p_FB_F - whole.p_FB_F
-    center = -part.mass / mass * to_part
-    inertia = whole.I_B + whole.mass * point_inertia(center)
-    inertia = inertia - part.I_B - part.mass * point_inertia(to_part - center)
+    apart = whole.mass * part.mass / mass * point_inertia(to_part)
+    rounding = whole.mass / mass * float(np.trace(whole.I_B) + np.trace(part.I_B) + np.trace(apart))
     try:
-        return MassDistribution(mass=mass, p_FB_F=whole.p_FB_F + center, I_B=inertia)
+        return MassDistribution(
+            mass=mass,
+            p_FB_F=whole.p_FB_F - part.mass / mass * to_part,
+            I_B=difference(whole.I_B, part.I_B + apart, terms=rounding),
+        )
     except InvalidFieldError as error:
         raise InvalidFieldError(
             "part", f"one that leaves {error.found}", "a part that lies within the whole"

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from contact_dynamics.world import Body
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+ROUNDING: Final = 1e-14
+"""Relative to the largest term of a difference of inertias: some ten roundings of 1e-16, with room."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -66,7 +69,8 @@ class MassDistribution:
         mass = check_positive("mass", mass)
         center = check_array("center_of_mass", p_FB_F, (3,))
         arm = center - check_array("point", p_FQ_F, (3,))
-        I_B = check_array("inertia", I_Q, (3, 3)) - mass * point_inertia(arm)
+        about = check_array("inertia", I_Q, (3, 3))
+        I_B = difference(about, mass * point_inertia(arm), terms=float(np.abs(about).max()))
         return cls(mass=mass, p_FB_F=center, I_B=I_B)
 
     @property
@@ -160,6 +164,20 @@ def inertia_of_second_moments(second: FloatArray) -> FloatArray:
     xy, xz, yz = 0.0 - xy, 0.0 - xz, 0.0 - yz  # never -0.0
     # Summed entry by entry: tr(S) - S_zz would lose a thin body's small moment.
     return np.array([[yy + zz, xy, xz], [xy, xx + zz, yz], [xz, yz, xx + yy]])
+
+
+def difference(minuend: FloatArray, subtrahend: FloatArray, *, terms: float) -> FloatArray:
+    """Return the difference of two inertias, (3, 3), kg m^2, that rounding does not make impossible.
+
+    What is left of a point or a line is rounding alone, and may have I1 + I2 < I3. Where that is within the
+    rounding of the ``terms``, kg m^2, that went into it, the nearest possible inertia is returned.
+    """
+    inertia: FloatArray = minuend - subtrahend
+    half_trace = 0.5 * float(np.trace(inertia))
+    spreads, axes = np.linalg.eigh(half_trace * np.eye(3) - _symmetric(inertia))  # integrals of x^2, y^2, z^2
+    if not -ROUNDING * terms <= spreads[0] < 0.0:
+        return inertia
+    return inertia_of_second_moments(_symmetric((axes * np.maximum(spreads, 0.0)) @ axes.T))
 
 
 def _symmetric(matrix: FloatArray) -> FloatArray:

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 ROUNDING: Final = 1e-13
 """Relative to a surface's area times its size, m^3. A volume within it is rounding: the surface is flat."""
 
+_EPSILON: Final = 2.0**-52
+"""Of coordinates, relative: what rounding moves them by. Far from the origin that is a volume too."""
+
 TOUCHING: Final = 1e-9
 """Relative to a part's size. Surfaces nearer than this touch; what lies between them is not looked for."""
 
@@ -82,7 +85,8 @@ class _Parts:
         volumes: FloatArray = np.bincount(labels, each).astype(np.float64)
         edges = np.diff(points.reshape(-1, 3, 3), axis=1)
         areas: FloatArray = 0.5 * np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1)
-        reach = np.abs(points).reshape(-1, 9).max(axis=1)
+        reach = ROUNDING * np.abs(points).reshape(-1, 9).max(axis=1)
+        reach += _EPSILON * float(np.abs(corners).max())
         lowest, highest = np.full((len(sizes), 3), math.inf), np.full((len(sizes), 3), -math.inf)
         np.minimum.at(lowest, labels, corners.min(axis=1))
         np.maximum.at(highest, labels, corners.max(axis=1))
@@ -90,7 +94,7 @@ class _Parts:
             corners=corners,
             labels=labels,
             volumes=volumes,
-            rounding=ROUNDING * np.bincount(labels, areas * reach).astype(np.float64),
+            rounding=np.bincount(labels, areas * reach).astype(np.float64),
             lowest=lowest,
             highest=highest,
         )

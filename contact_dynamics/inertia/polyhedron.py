@@ -45,10 +45,15 @@ def polyhedron(p_FV_F: FloatArray, triangles: NDArray[np.int64]) -> Polyhedron:
 def signed_volumes(points: FloatArray, triangles: NDArray[np.int64]) -> FloatArray:
     """Return the signed volumes, (m,), m^3, of the triangles' tetrahedra with the origin.
 
-    From edges rather than corners, so that small triangles far from the origin keep their digits.
+    From a corner and edges, so that small triangles far from the origin keep their digits; from the two
+    shorter edges, so that needles do.
     """
-    a, b, c = (points[triangles[:, i]] for i in range(3))
-    volumes: FloatArray = np.einsum("ij,ij->i", a, np.cross(b - a, c - a)) / 6.0
+    corners = points[triangles.T]  # (3, m, 3)
+    edges = np.roll(corners, -1, axis=0) - corners  # each from its corner to the next
+    longest = np.einsum("eij,eij->ei", edges, edges).argmax(axis=0)
+    each = np.arange(len(triangles))
+    normals = np.cross(edges[(longest + 1) % 3, each], edges[(longest + 2) % 3, each])
+    volumes: FloatArray = np.einsum("ij,ij->i", corners[0], normals) / 6.0
     return volumes
 
 

@@ -6,7 +6,7 @@ well wound is said in `surface` and `parts`; the integrals are in `polyhedron`.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from contact_dynamics.validation import FloatArray, check_array
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+
+_EPSILON: Final = 2.0**-52
+"""Of coordinates, relative: points within what rounding moves them by lie in one plane."""
 
 
 def mesh(
@@ -49,7 +52,7 @@ def mesh(
 def convex_hull(
     p_FV_F: ArrayLike, *, mass: float | None = None, density: float | None = None
 ) -> MassDistribution:
-    """Return the solid convex hull of points (n, 3), m, such as a `Body`'s vertices.
+    """Return the solid convex hull of points (n, 3), m, such as a body's vertices.
 
     Give either ``mass``, kg, or ``density``, kg/m^3.
 
@@ -60,15 +63,18 @@ def convex_hull(
     from scipy.spatial import ConvexHull, QhullError
 
     vertices = check_array("vertices", p_FV_F, (None, 3))
-    if len(vertices) == 0:
-        raise InvalidFieldError("vertices", "none", "at least four points")
+    flat = InvalidFieldError("vertices", f"{len(vertices)} points", "four or more, not in one plane")
+    if len(vertices) < 4:
+        raise flat
     points = vertices - vertices.mean(axis=0)
+    # Linear maps keep a hull's facets. Qhull joins those that are nearly flat, so slim clouds are made round.
+    rounded, sizes, _ = np.linalg.svd(points, full_matrices=False)
+    if sizes[2] <= _EPSILON * len(vertices) * float(np.abs(vertices).max()):
+        raise flat
     try:
-        triangles: NDArray[np.int64] = ConvexHull(points).simplices.astype(np.int64)
-    except (QhullError, ValueError):
-        raise InvalidFieldError(
-            "vertices", f"{len(vertices)} points", "four points or more, not in one plane"
-        ) from None
+        triangles: NDArray[np.int64] = ConvexHull(rounded).simplices.astype(np.int64)
+    except QhullError:
+        raise flat from None
     inward = signed_volumes(points, triangles) < 0.0  # their mean is inside
     triangles[inward] = triangles[inward][:, ::-1]
     return _solid(vertices, triangles, mass, density)
