@@ -1,4 +1,4 @@
-"""The numbers in which the constants of a rotation are computed: doubles, or decimals of many digits.
+"""The numbers in which the constants of a rotation are computed: doubles, alone or in arrays, or decimals.
 
 The formulas are written once. Extended precision is for the long run: a phase that is off by a last bit in
 its rate is off by radians after 1e16 of them, and after far fewer near the middle axis, where rates depend on
@@ -12,13 +12,19 @@ import enum
 import math
 from dataclasses import dataclass
 from decimal import Context, Decimal, localcontext
-from typing import TYPE_CHECKING, Final, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Final, Generic, TypeAlias, TypeVar
+
+import numpy as np
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from contextlib import AbstractContextManager
 
-Number = TypeVar("Number", float, Decimal)
+    from numpy.typing import NDArray
+
+FloatArray: TypeAlias = "NDArray[np.float64]"
+Scalar = TypeVar("Scalar", float, Decimal)
+Number = TypeVar("Number", float, Decimal, "FloatArray")
 
 
 class Precision(enum.Enum):
@@ -36,6 +42,8 @@ class Arithmetic(Generic[Number]):
     """What the formulas need to know of a kind of number."""
 
     number: Callable[[float], Number]  # exact
+    any: Callable[[Any], bool]  # whether a comparison is true, or true anywhere
+    largest: Callable[[Number, Number, Number], Number]
     sqrt: Callable[[Number], Number]
     pi: Number
     sums: Context | None  # for sums that cancel
@@ -47,6 +55,8 @@ class Arithmetic(Generic[Number]):
 
 DOUBLES: Final = Arithmetic(
     number=float,
+    any=bool,
+    largest=max,
     sqrt=math.sqrt,
     pi=math.pi,
     sums=None,
@@ -58,6 +68,8 @@ DOUBLES: Final = Arithmetic(
 
 DECIMALS: Final = Arithmetic(
     number=Decimal,
+    any=bool,
+    largest=max,
     sqrt=Decimal.sqrt,
     pi=Decimal("3.14159265358979323846264338327950288419716939937510582097494459"),
     sums=Context(prec=120),  # may cancel by 80 digits and leave a double's worth
@@ -65,6 +77,19 @@ DECIMALS: Final = Arithmetic(
     cancelled=Decimal("1e-100"),
     half_precise=Decimal("1e-19"),
     eighth_precise=Decimal("3e-3"),  # 1e-21: a double, and what cancels where a flip is reached
+)
+
+ARRAYS: Final = Arithmetic(
+    number=np.asarray,
+    any=np.any,
+    largest=lambda x, y, z: np.maximum(np.maximum(x, y), z),
+    sqrt=np.sqrt,
+    pi=np.asarray(math.pi),
+    sums=None,
+    rates=None,
+    cancelled=np.asarray(DOUBLES.cancelled),
+    half_precise=np.asarray(DOUBLES.half_precise),
+    eighth_precise=np.asarray(DOUBLES.eighth_precise),
 )
 
 

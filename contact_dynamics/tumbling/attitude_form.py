@@ -3,21 +3,43 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, TypeAlias
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
 
-from contact_dynamics.tumbling.arithmetic import DOUBLES, Number, within
+import numpy as np
+
+from contact_dynamics.tumbling.arithmetic import DOUBLES, Number, Scalar, within
 from contact_dynamics.tumbling.double_double import linear_phase
 from contact_dynamics.tumbling.elliptic import carlson_rf
 from contact_dynamics.tumbling.polhode import Spin, Tumble
 from contact_dynamics.tumbling.theta import Bumps, Harmonics, OneFlip, Steady
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
+    from types import ModuleType
 
     from contact_dynamics.tumbling.arithmetic import Arithmetic
     from contact_dynamics.tumbling.double_double import LinearPhase
+    from contact_dynamics.tumbling.theta import Three, Values
+    from contact_dynamics.validation import FloatArray
 
-AttitudeForm: TypeAlias = "Steady | Harmonics | Bumps | OneFlip"
+
+@dataclass(frozen=True, slots=True)
+class AttitudeForm:
+    """The attitude about L as a function of time."""
+
+    series: Steady | Harmonics | Bumps | OneFlip
+    z: LinearPhase  # in the series' unit
+    psi: LinearPhase  # half turns
+
+    def point(self, seconds: float) -> Values:
+        """Return what `theta` says at a time, s."""
+        return self.series.values(math, *self.z.fraction(seconds), self.psi.fraction(seconds)[0])
+
+    def points(self, seconds: FloatArray) -> Values:
+        """Return what `theta` says at times (n,), s."""
+        return self.series.values(np, *self.z.fractions(seconds), self.psi.fractions(seconds)[0])
+
 
 SWITCH: Final = 1.0
 """Value of pi K'/K below which theta functions are summed as bumps. There both forms reach the last bit with
@@ -27,67 +49,74 @@ cancel."""
 NEGLIGIBLE: Final = 1e-18
 """Relative to the largest term of a sum: far below the last bit."""
 
-STEEPEST: Final = 600.0
-"""Exponent of the ratio of neighbouring bumps above which only two of them are above the range of doubles."""
 
-
-def attitude_form(rotation: Tumble[Number] | Spin[Number], numbers: Arithmetic[Number]) -> AttitudeForm:
+def attitude_form(rotation: Tumble[Scalar] | Spin[Scalar], numbers: Arithmetic[Scalar]) -> AttitudeForm:
     """Return the attitude about L as a function of time; its value at time 0 is up to a turn about L."""
-    pi = numbers.pi
+    pi, zero = numbers.pi, numbers.number(0.0)
     with within(numbers.rates):
         if isinstance(rotation, Spin):
-            return Steady(psi=linear_phase(rotation.rate / (2 * pi), numbers.number(0.0)))
-        if rotation.m1 == 0:
-            return _one_flip(rotation, numbers)
-        a, c = math.sqrt(rotation.a2), math.sqrt(rotation.c2)
+            psi = linear_phase(rotation.rate / (2 * pi), zero)
+            return AttitudeForm(Steady(), linear_phase(zero, zero), psi)
         x, y = _zeros(rotation)
-        xi, eta = x * float(rotation.quarter), y * float(rotation.quarter)
+        peaks = math.sqrt(rotation.a2), math.sqrt(rotation.c2)
+        if rotation.m1 == 0:
+            psi = linear_phase(rotation.precession / (2 * pi), zero)
+            return AttitudeForm(one_flip(x, peaks), linear_phase(rotation.omega_p, rotation.u0), psi)
         z_rate, z_offset = rotation.omega_p * rotation.quarter / pi, rotation.u0 * rotation.quarter / pi
         psi = linear_phase(rotation.precession / (2 * pi) - z_rate / 2, -z_offset / 2)
+        xi, eta = x * float(rotation.quarter), y * float(rotation.quarter)
         if 2.0 * (xi + eta) > SWITCH:
-            return _harmonics(xi, eta, (a, c), linear_phase(z_rate / 2, z_offset / 2), psi)
-        return _bumps(xi, eta, (a, c), linear_phase(z_rate, z_offset), psi)
+            return AttitudeForm(harmonics(xi, eta, peaks), linear_phase(z_rate / 2, z_offset / 2), psi)
+        return AttitudeForm(bumps(xi, eta, peaks), linear_phase(z_rate, z_offset), psi)
 
 
-def _zeros(rotation: Tumble[Number]) -> tuple[float, float]:
-    """Return x = sn^-1(c | 1 - m), which says where alpha and beta have their zeros, and y = K' - x."""
+def _zeros(rotation: Tumble[Scalar]) -> tuple[float, float]:
     a2, c2, m = float(rotation.a2), float(rotation.c2), float(rotation.m)
-    below_one = a2 + m * c2  # 1 - (1 - m) c^2
-    x = math.sqrt(c2) * carlson_rf(a2, below_one, 1.0, numbers=DOUBLES)
     if m == 0.0:
-        return x, math.inf
+        return math.sqrt(c2) * carlson_rf(a2, a2, 1.0, numbers=DOUBLES), math.inf
+    return zeros(a2, c2, m, DOUBLES)
+
+
+def zeros(a2: Number, c2: Number, m: Number, numbers: Arithmetic[Number]) -> tuple[Number, Number]:
+    """Return x = sn^-1(c | 1 - m), where alpha and beta have their zeros, and y = K' - x, for m > 0."""
+    below_one = a2 + m * c2  # 1 - (1 - m) c^2
     sn2, dn2 = a2 / below_one, m / below_one
-    return x, math.sqrt(sn2) * carlson_rf(c2 * dn2, dn2, 1.0, numbers=DOUBLES)
+    x = numbers.sqrt(c2) * carlson_rf(a2, below_one, numbers.number(1.0), numbers=numbers)
+    return x, numbers.sqrt(sn2) * carlson_rf(c2 * dn2, dn2, numbers.number(1.0), numbers=numbers)
 
 
-def _harmonics(
-    xi: float, eta: float, peaks: tuple[float, float], z: LinearPhase, psi: LinearPhase
-) -> Harmonics:
-    """Sum the theta series as far as they matter: q = exp(-2 (xi + eta)), r = exp(-xi)."""
-    r, p = math.exp(-xi), math.exp(-2.0 * eta)  # p = q e^{2 xi}
-    q, s = p * r * r, p * r**4  # s = q e^{-2 xi}
+def harmonics(xi: Any, eta: Any, peaks: tuple[Any, Any], *, functions: ModuleType = math) -> Harmonics:
+    """Sum the theta series as far as they matter: q = exp(-2 (xi + eta)), r = exp(-xi).
+
+    All may be arrays (n,), with NumPy for ``functions``; ``peaks`` are a and c.
+    """
+    r, p = functions.exp(-xi), functions.exp(-2.0 * eta)  # p = q e^{2 xi}
+    q, s = p * r * r, p * (r * r) * (r * r)  # s = q e^{-2 xi}
+    largest_p, largest_q = (p, q) if functions is math else (float(p.max()), float(q.max()))
     A_even, A_odd, B_even, B_odd = [1.0], [0.0], [1.0], [0.0]
+    inner, sign, q_2j, p_j, s_j = 1.0, 1.0, 1.0, 1.0, 1.0
     for j in range(1, MOST_TERMS):
-        sign = -1.0 if j % 2 else 1.0
-        inner, outer = sign * q ** (2 * j * (j - 1)), sign * q ** (2 * j * j)
-        if abs(inner) * p**j < NEGLIGIBLE:
+        if largest_q ** (2 * j * (j - 1)) * largest_p**j < NEGLIGIBLE:
             break
-        A_even.append(outer * p**j + inner * s**j)
-        A_odd.append(inner * s**j - outer * p**j)
-        B_even.append(outer * s**j + inner * p**j)
-        B_odd.append(outer * s**j - inner * p**j)
-    theta_2, theta_3 = [1.0], [1.0]
+        sign, q_2j, p_j, s_j = -sign, q_2j * (q * q), p_j * p, s_j * s
+        outer = inner * q_2j  # q^(2 j^2), as inner is q^(2 j (j-1))
+        A_even.append(sign * (outer * p_j + inner * s_j))
+        A_odd.append(sign * (inner * s_j - outer * p_j))
+        B_even.append(sign * (outer * s_j + inner * p_j))
+        B_odd.append(sign * (outer * s_j - inner * p_j))
+        inner = outer * q_2j
+    theta_2, theta_3, square, power = [1.0], [1.0], 1.0, 1.0
     for n in range(1, MOST_TERMS):
-        if q ** (n * n) < NEGLIGIBLE:
+        if largest_q ** (n * n) < NEGLIGIBLE:
             break
-        theta_2.append(q ** (n * (n + 1)))
-        theta_3.append(2.0 * q ** (n * n))
+        square = square * power * (power * q)  # q^(n^2)
+        power = power * q
+        theta_2.append(square * power)
+        theta_3.append(2.0 * square)
     # At z = 0, where C = a (|A|^2 + |B'|^2) and D = c times the same.
     size = sum(A_even) ** 2 + (r * sum(B_even)) ** 2
     C, D = peaks[0] * size / sum(theta_2), peaks[1] * size / sum(theta_3)
     return Harmonics(
-        z=z,
-        psi=psi,
         r=r,
         A_cos=_powers_of_cosine(A_even, COSINES),
         A_sin=_powers_of_cosine(A_odd, SINES)[:-1],
@@ -98,62 +127,57 @@ def _harmonics(
     )
 
 
-def _bumps(xi: float, eta: float, peaks: tuple[float, float], z: LinearPhase, psi: LinearPhase) -> Bumps:
+def bumps(xi: Any, eta: Any, peaks: tuple[Any, Any], *, functions: ModuleType = math) -> Bumps:
+    """Weigh the six nearest bumps; all may be arrays (n,), with NumPy for ``functions``."""
     h = 2.0 * (xi + eta)  # pi K'/K
     mu = xi / h
     steepness = math.pi**2 / h
-    g = math.exp(-steepness) if steepness < STEEPEST else 0.0
-    A_angles, B_angles = _angles(mu)
+    g = functions.exp(-steepness)
+    A_cos, A_sin, B_cos, B_sin = _bump_phases(mu, functions)
     weights = (2.0, 2.0 * g, 2.0 * g**3)  # of the pairs of bumps, in the middle of a flip
-    A_0 = sum(weight * math.cos(angle) for weight, angle in zip(weights, A_angles, strict=True))
-    B_0 = sum(weight * math.cos(angle) for weight, angle in zip(weights, B_angles, strict=True))
+    A_0 = sum(weight * cos for weight, cos in zip(weights, A_cos, strict=True))
+    B_0 = sum(weight * cos for weight, cos in zip(weights, B_cos, strict=True))
     size = A_0**2 + B_0**2
     return Bumps(
-        z=z,
-        psi=psi,
         steepness=steepness,
         drift=0.5 - mu,
         g=g,
-        A_cos=_each(math.cos, A_angles),
-        A_sin=_each(math.sin, A_angles),
-        B_cos=_each(math.cos, B_angles),
-        B_sin=_each(math.sin, B_angles),
+        A_cos=A_cos,
+        A_sin=A_sin,
+        B_cos=B_cos,
+        B_sin=B_sin,
         C=peaks[0] * size / (1.0 - 2.0 * g + g**4),
         D=peaks[1] * size / (1.0 + 2.0 * g + g**4),
     )
 
 
-def _one_flip(rotation: Tumble[Number], numbers: Arithmetic[Number]) -> OneFlip:
-    A_angles, B_angles = _angles(_zeros(rotation)[0] / math.pi)
-    return OneFlip(
-        u=linear_phase(rotation.omega_p, rotation.u0),
-        psi=linear_phase(rotation.precession / (2 * numbers.pi), numbers.number(0.0)),
-        A=(math.cos(A_angles[0]), math.sin(A_angles[0])),
-        B=(math.cos(B_angles[0]), math.sin(B_angles[0])),
-        C=4.0 * math.sqrt(rotation.a2),
-        D=4.0 * math.sqrt(rotation.c2),
+def one_flip(x: float, peaks: tuple[float, float]) -> OneFlip:
+    """Weigh the two bumps of the separatrix, where K' = pi / 2."""
+    A_cos, A_sin, B_cos, B_sin = _bump_phases(x / math.pi, math)
+    return OneFlip(A=(A_cos[0], A_sin[0]), B=(B_cos[0], B_sin[0]), C=4.0 * peaks[0], D=4.0 * peaks[1])
+
+
+def _bump_phases(mu: Any, functions: ModuleType) -> tuple[Three, Three, Three, Three]:
+    """Return cos, sin of the phases of three bumps to one side, in A and in B'; the others' are opposite."""
+    tops = [(k + 0.5) * math.pi for k in range(3)]
+    A, B = [top * (mu - 0.5) for top in tops], [top * (mu + 0.5) for top in tops]
+    return (
+        (functions.cos(A[0]), functions.cos(A[1]), functions.cos(A[2])),
+        (functions.sin(A[0]), functions.sin(A[1]), functions.sin(A[2])),
+        (functions.cos(B[0]), functions.cos(B[1]), functions.cos(B[2])),
+        (functions.sin(B[0]), functions.sin(B[1]), functions.sin(B[2])),
     )
 
 
-def _angles(mu: float) -> tuple[list[float], list[float]]:
-    """Return the phases, rad, of the three bumps to one side in A and in B'; the others' are opposite."""
-    tops = [(k + 0.5) * math.pi for k in range(3)]
-    return [top * (mu - 0.5) for top in tops], [top * (mu + 0.5) for top in tops]
-
-
-def _each(function: Callable[[float], float], angles: Sequence[float]) -> tuple[float, float, float]:
-    return function(angles[0]), function(angles[1]), function(angles[2])
-
-
-def _powers_of_cosine(coefficients: Sequence[float], table: Sequence[Sequence[float]]) -> tuple[float, ...]:
+def _powers_of_cosine(coefficients: Sequence[Any], table: Sequence[Sequence[float]]) -> tuple[Any, ...]:
     """Turn a sum over j of coefficient j and row j of ``table``, powers of x, into powers of x.
 
     The coefficients fall fast enough for powers to be as good as a recurrence.
     """
-    powers = [0.0] * len(coefficients)
+    powers: list[Any] = [0.0] * len(coefficients)
     for coefficient, row in zip(coefficients, table, strict=False):
         for k, x in enumerate(row):
-            powers[k] += coefficient * x
+            powers[k] = powers[k] + coefficient * x
     return tuple(powers)
 
 

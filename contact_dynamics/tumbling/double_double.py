@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 if TYPE_CHECKING:
-    from contact_dynamics.tumbling.arithmetic import Number
     from contact_dynamics.validation import FloatArray
 
 _SPLITTER: Final = 134217729.0
@@ -75,7 +74,7 @@ class LinearPhase:
         return total, turns
 
 
-def linear_phase(rate: Number, offset: Number) -> LinearPhase:
+def linear_phase(rate: Decimal | float, offset: Decimal | float) -> LinearPhase:
     """Return the phase with the given rate, turns/s, and offset, turns, each rounded to 32 digits."""
     high, low = _split(rate)
     scaled = _SPLITTER * high

@@ -31,7 +31,7 @@ def average_over_period(
         f, g = a, e / p
         a, b, p = a + b / p, 2 * (b + f * g), p + g
         g, m, scale = m, m + kc, 2 * scale
-        if abs(g - kc) <= numbers.half_precise * g:
+        if not numbers.any(abs(g - kc) > numbers.half_precise * g):
             mean = m / scale
             return mean, mean * (b + a * m) / (m * (m + p))
         kc = 2 * sqrt(e)
@@ -43,17 +43,17 @@ def carlson_rf(x: Number, y: Number, z: Number, *, numbers: Arithmetic[Number]) 
     sqrt = numbers.sqrt
     x0, y0, mean = x, y, (x + y + z) / 3
     mean0, quarters = mean, numbers.number(1.0)
-    spread = max(abs(mean - x), abs(mean - y), abs(mean - z))
-    while spread * quarters > numbers.eighth_precise * mean:
+    spread = numbers.largest(abs(mean - x), abs(mean - y), abs(mean - z))
+    while numbers.any(spread * quarters > numbers.eighth_precise * mean):
         root_x, root_y, root_z = sqrt(x), sqrt(y), sqrt(z)
         step = root_x * (root_y + root_z) + root_y * root_z
         x, y, z, mean = (x + step) / 4, (y + step) / 4, (z + step) / 4, (mean + step) / 4
-        quarters /= 4
+        quarters = quarters / 4
     from_x = (mean0 - x0) * quarters / mean
     from_y = (mean0 - y0) * quarters / mean
     from_z = -from_x - from_y
     e2 = from_x * from_y - from_z * from_z
     e3 = from_x * from_y * from_z
     series = 1 - e2 / 10 + e3 / 14 + e2 * (e2 / 24 - 3 * e3 / 44)
-    series += 3 * e3 * e3 / 104 + e2 * e2 * (e3 / 16 - 5 * e2 / 208)
+    series = series + 3 * e3 * e3 / 104 + e2 * e2 * (e3 / 16 - 5 * e2 / 208)
     return series / sqrt(mean)

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.rigid_body import BodyState, MassProperties
-from contact_dynamics.tumbling.arithmetic import DECIMALS, DOUBLES, Arithmetic, Number, Precision, within
+from contact_dynamics.tumbling.arithmetic import DECIMALS, DOUBLES, Arithmetic, Precision, Scalar, within
 from contact_dynamics.tumbling.attitude_form import AttitudeForm, attitude_form
 from contact_dynamics.tumbling.polhode import Rotation, Spin, Tumble, tumble_or_spin
 from contact_dynamics.tumbling.principal_frame import PrincipalFrame, in_doubles, principal_frame
@@ -263,14 +263,14 @@ def _cayley_klein(form: AttitudeForm, seconds: float) -> tuple[complex, complex,
 
 
 def _rotation(
-    frame: PrincipalFrame[Number], state: BodyState, numbers: Arithmetic[Number]
-) -> tuple[Spin[Number] | Tumble[Number], AttitudeForm]:
+    frame: PrincipalFrame[Scalar], state: BodyState, numbers: Arithmetic[Scalar]
+) -> tuple[Spin[Scalar] | Tumble[Scalar], AttitudeForm]:
     with within(numbers.sums):
         rotation = tumble_or_spin(frame, _body_rate(state, numbers), numbers)
         return rotation, attitude_form(rotation, numbers)
 
 
-def _body_rate(state: BodyState, numbers: Arithmetic[Number]) -> list[Number]:
+def _body_rate(state: BodyState, numbers: Arithmetic[Scalar]) -> list[Scalar]:
     """Return the angular velocity in body axes, rad/s: R^T w, for a quaternion that is unit to rounding."""
     x, y, z, s = (numbers.number(i) for i in state.q_WB.tolist())
     a, b, c = (numbers.number(i) for i in state.w_WB_W.tolist())

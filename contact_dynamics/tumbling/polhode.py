@@ -19,7 +19,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Generic, TypeAlias
 
-from contact_dynamics.tumbling.arithmetic import Number, within
+from contact_dynamics.tumbling.arithmetic import Scalar, within
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
 
 if TYPE_CHECKING:
@@ -35,37 +35,37 @@ steady. The motion left out is an angle of 1e-30 rad for ever, since spin about 
 
 
 @dataclass(frozen=True, slots=True)
-class Spin(Generic[Number]):
+class Spin(Generic[Scalar]):
     """The angular velocity is constant."""
 
-    rate: Number  # rad/s, >= 0
+    rate: Scalar  # rad/s, >= 0
 
 
 @dataclass(frozen=True, slots=True)
-class Tumble(Generic[Number]):
+class Tumble(Generic[Scalar]):
     """The angular velocity moves on a polhode; axes in Jacobi's order, right-handed, axis 3 on L's side."""
 
-    moments: tuple[Number, Number, Number]  # kg m^2, about axes 1, 2, 3
-    gaps: tuple[Number, Number, Number]  # kg m^2, I_2 - I_1, I_3 - I_2, I_3 - I_1; > 0 about the major axis
-    axes_B: tuple[tuple[Number, Number, Number], ...]  # 3 rows: unit axes 1, 2, 3 in body coordinates
-    L: Number  # kg m^2/s, |angular momentum|
-    m: Number  # parameter of the elliptic functions, in [0, 1]
-    m1: Number  # 1 - m, in [0, 1]; 0 on the separatrix
-    a2: Number  # a^2 = 1 - c^2, > 0
-    b2: Number  # b^2
-    c2: Number  # c^2
-    omega_p: Number  # rad/s, du/dt, < 0 where axis 3 is the minor one
-    u0: Number  # u at time 0
-    quarter: Number  # pi / 2K, 0 on the separatrix
-    precession: Number  # rad/s, mean rate about L; on the separatrix the rate in the far past and future
+    moments: tuple[Scalar, Scalar, Scalar]  # kg m^2, about axes 1, 2, 3
+    gaps: tuple[Scalar, Scalar, Scalar]  # kg m^2, I_2 - I_1, I_3 - I_2, I_3 - I_1; > 0 about the major axis
+    axes_B: tuple[tuple[Scalar, Scalar, Scalar], ...]  # 3 rows: unit axes 1, 2, 3 in body coordinates
+    L: Scalar  # kg m^2/s, |angular momentum|
+    m: Scalar  # parameter of the elliptic functions, in [0, 1]
+    m1: Scalar  # 1 - m, in [0, 1]; 0 on the separatrix
+    a2: Scalar  # a^2 = 1 - c^2, > 0
+    b2: Scalar  # b^2
+    c2: Scalar  # c^2
+    omega_p: Scalar  # rad/s, du/dt, < 0 where axis 3 is the minor one
+    u0: Scalar  # u at time 0
+    quarter: Scalar  # pi / 2K, 0 on the separatrix
+    precession: Scalar  # rad/s, mean rate about L; on the separatrix the rate in the far past and future
 
 
 Rotation: TypeAlias = "Spin[Decimal] | Tumble[Decimal] | Spin[float] | Tumble[float]"
 
 
 def tumble_or_spin(
-    frame: PrincipalFrame[Number], w_B: Sequence[Number], numbers: Arithmetic[Number]
-) -> Tumble[Number] | Spin[Number]:
+    frame: PrincipalFrame[Scalar], w_B: Sequence[Scalar], numbers: Arithmetic[Scalar]
+) -> Tumble[Scalar] | Spin[Scalar]:
     """Return the constants of a rotation that begins with the angular velocity ``w_B``, rad/s, body axes."""
     zero, one = numbers.number(0.0), numbers.number(1.0)
     with within(numbers.sums):
@@ -141,8 +141,8 @@ def largest_rate(rotation: Rotation) -> float:
 
 
 def _jacobis_axes(
-    frame: PrincipalFrame[Number], w: Sequence[Number], first: int, third: int
-) -> tuple[tuple[Number, Number, Number], ...]:
+    frame: PrincipalFrame[Scalar], w: Sequence[Scalar], first: int, third: int
+) -> tuple[tuple[Scalar, Scalar, Scalar], ...]:
     """Return axes 1, 2, 3 with w1 >= 0, w3 > 0, right-handed."""
     x = _flipped(frame.axes_B[first]) if w[first] < 0 else frame.axes_B[first]
     z = _flipped(frame.axes_B[third]) if w[third] < 0 else frame.axes_B[third]
@@ -150,13 +150,13 @@ def _jacobis_axes(
     return x, y, z
 
 
-def _squared(vector: Sequence[Number]) -> Number:
+def _squared(vector: Sequence[Scalar]) -> Scalar:
     return vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]
 
 
-def _flipped(axis: tuple[Number, Number, Number]) -> tuple[Number, Number, Number]:
+def _flipped(axis: tuple[Scalar, Scalar, Scalar]) -> tuple[Scalar, Scalar, Scalar]:
     return (-axis[0], -axis[1], -axis[2])
 
 
-def _dot(axis: tuple[Number, Number, Number], w_B: Sequence[Number]) -> Number:
+def _dot(axis: tuple[Scalar, Scalar, Scalar], w_B: Sequence[Scalar]) -> Scalar:
     return axis[0] * w_B[0] + axis[1] * w_B[1] + axis[2] * w_B[2]

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Final, Generic
 
 import numpy as np
 
-from contact_dynamics.tumbling.arithmetic import DECIMALS, Number, within
+from contact_dynamics.tumbling.arithmetic import DECIMALS, Scalar, within
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
@@ -30,13 +30,13 @@ _MOST_SWEEPS: Final = 30
 
 
 @dataclass(frozen=True, slots=True)
-class PrincipalFrame(Generic[Number]):
+class PrincipalFrame(Generic[Scalar]):
     """The principal moments in ascending order, and their axes."""
 
-    moments: tuple[Number, Number, Number]  # kg m^2
-    gaps: tuple[Number, Number, Number]  # kg m^2, >= 0: middle - small, large - middle, large - small
+    moments: tuple[Scalar, Scalar, Scalar]  # kg m^2
+    gaps: tuple[Scalar, Scalar, Scalar]  # kg m^2, >= 0: middle - small, large - middle, large - small
     axes_B: tuple[
-        tuple[Number, Number, Number], ...
+        tuple[Scalar, Scalar, Scalar], ...
     ]  # 3 rows: unit axes, body coordinates, either handedness
 
 

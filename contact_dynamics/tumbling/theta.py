@@ -15,10 +15,11 @@ Near the middle axis q tends to 1. Poisson's summation then gives the same funct
 for each stay near the middle axis, of which the nearest six suffice; the separatrix is the case of two.
 
 `Harmonics` and `Bumps` are the two forms, `OneFlip` is the separatrix, `Steady` is spin at a constant rate.
-Each turns times into `Values`: A, B' with alpha = e^{i psi} A, beta = -i e^{i psi} B' up to a common positive
-factor; C = 2 Re(A B'*) and D = |A|^2 - |B'|^2, to which L_1 and L_3 are proportional; and tan psi, which is
-enough of psi because a common sign is no part of an attitude. C and D are sums of their own, theta_2 and
-theta_3 with nome q, as |A|^2 + |B'|^2 is theta_4: a needle spins fast about an axis along which L is small.
+Each turns z, as fraction and whole number, and psi, in half turns, into `Values`: A, B' with alpha = e^{i
+psi} A, beta = -i e^{i psi} B' up to a common positive factor; C = 2 Re(A B'*) and D = |A|^2 - |B'|^2, to
+which L_1 and L_3 are proportional; and tan psi, which is enough of psi because a common sign is no part of an
+attitude. C and D are sums of their own, theta_2 and theta_3 with nome q, as |A|^2 + |B'|^2 is theta_4: a
+needle spins fast about an axis along which L is small.
 """
 
 from __future__ import annotations
@@ -27,44 +28,31 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-import numpy as np
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from types import ModuleType
 
-    from contact_dynamics.tumbling.double_double import LinearPhase
-    from contact_dynamics.validation import FloatArray
-
 Values: TypeAlias = "tuple[Any, Any, Any, Any, Any, Any, Any]"
 """Re A, Im A, Re B', Im B', C, D, tan psi: floats for one time, arrays (n,) for many."""
 
-Three: TypeAlias = "tuple[float, float, float]"
+Three: TypeAlias = "tuple[Any, Any, Any]"
 
 
 @dataclass(frozen=True, slots=True)
 class Steady:
     """Spin at a constant rate about z."""
 
-    psi: LinearPhase  # half turns
-
-    def point(self, seconds: float) -> Values:
-        """Return the values at a time, s."""
-        return 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, math.tan(math.pi * self.psi.fraction(seconds)[0])
-
-    def points(self, seconds: FloatArray) -> Values:
-        """Return the values at times (n,), s."""
-        zero = np.zeros_like(seconds)
+    def values(self, functions: ModuleType, z: Any, _: Any, psi: Any) -> Values:
+        """Return the values; z does not matter."""
+        zero = 0.0 * z
         one = zero + 1.0
-        return one, zero, zero, zero, zero, one, np.tan(np.pi * self.psi.fractions(seconds)[0])
+        return one, zero, zero, zero, zero, one, functions.tan(math.pi * psi)
 
 
 @dataclass(frozen=True, slots=True)
 class Harmonics:
     """Theta functions as trigonometric series: polynomials in cos 2z, lowest power first."""
 
-    z: LinearPhase  # turns
-    psi: LinearPhase  # half turns
     r: float  # e^{-xi}
     A_cos: tuple[float, ...]  # Re A
     A_sin: tuple[float, ...]  # Im A / sin 2z
@@ -73,15 +61,8 @@ class Harmonics:
     C: tuple[float, ...]  # C / cos z
     D: tuple[float, ...]  # D
 
-    def point(self, seconds: float) -> Values:
-        """Return the values at a time, s."""
-        return self._values(math, self.z.fraction(seconds)[0], self.psi.fraction(seconds)[0])
-
-    def points(self, seconds: FloatArray) -> Values:
-        """Return the values at times (n,), s."""
-        return self._values(np, self.z.fractions(seconds)[0], self.psi.fractions(seconds)[0])
-
-    def _values(self, functions: ModuleType, z: Any, psi: Any) -> Values:
+    def values(self, functions: ModuleType, z: Any, _: Any, psi: Any) -> Values:
+        """Return the values for z in turns, of which whole ones do not matter."""
         half = functions.tan(math.pi * z)
         square = half * half
         inverse = 1.0 / (1.0 + square)
@@ -104,11 +85,9 @@ class Harmonics:
 class Bumps:
     """Theta functions after Poisson's summation: stays near the middle axis, and a flip between each two."""
 
-    z: LinearPhase  # half turns; a whole number at the middle of a flip
-    psi: LinearPhase  # half turns
     steepness: float  # |log| of the ratio of the two nearest bumps, per half turn of z
     drift: float  # half turns of psi per half turn of z
-    g: float  # ratio of a bump to the next at its own top; 0 where that is below the range of doubles
+    g: float  # ratio of a bump to the next at its own top
     A_cos: Three
     A_sin: Three
     B_cos: Three
@@ -116,30 +95,21 @@ class Bumps:
     C: float  # at z = 0, but for terms in g
     D: float  # likewise
 
-    def point(self, seconds: float) -> Values:
-        """Return the values at a time, s."""
-        return self._values(math, *self.z.fraction(seconds), self.psi.fraction(seconds)[0])
-
-    def points(self, seconds: FloatArray) -> Values:
-        """Return the values at times (n,), s."""
-        return self._values(np, *self.z.fractions(seconds), self.psi.fractions(seconds)[0])
-
-    def _values(self, functions: ModuleType, z: Any, flips: Any, psi: Any) -> Values:
+    def values(self, functions: ModuleType, z: Any, flips: Any, psi: Any) -> Values:
+        """Return the values for z in half turns from the middle of a flip, and the number of flips before."""
         side, parity = functions.copysign(1.0, z), 1.0 - 2.0 * (flips % 2.0)
         w = functions.exp(-self.steepness * abs(z))
         even, odd = 1.0 + w, side * (1.0 - w)
         A_re, A_im = self.A_cos[0] * even, self.A_sin[0] * odd
         B_re, B_im = self.B_cos[0] * even, self.B_sin[0] * odd
-        C = D = w
-        if self.g:
-            g = self.g
-            v = g / w
-            www, vvv = g * w**3, g * v**3
-            C, D = (w - v) - (www - vvv), (w + v) + (www + vvv)
-            for k, near, far in ((1, v, g * w * w), (2, g * v * v, g * g * www)):
-                even, odd = near + far, side * (near - far)
-                A_re, A_im = A_re + self.A_cos[k] * even, A_im + self.A_sin[k] * odd
-                B_re, B_im = B_re + self.B_cos[k] * even, B_im + self.B_sin[k] * odd
+        g = self.g
+        v = g / (w + 1e-300)  # both vanish where the period is beyond 1e300 rad
+        www, vvv = g * w**3, g * v**3
+        for k, near, far in ((1, v, g * w * w), (2, g * v * v, g * g * www)):
+            even, odd = near + far, side * (near - far)
+            A_re, A_im = A_re + self.A_cos[k] * even, A_im + self.A_sin[k] * odd
+            B_re, B_im = B_re + self.B_cos[k] * even, B_im + self.B_sin[k] * odd
+        C, D = (w - v) - (www - vvv), (w + v) + (www + vvv)
         tangent = functions.tan(math.pi * (psi + self.drift * z))
         return A_re, A_im, parity * B_re, parity * B_im, (self.C * parity) * C, self.D * D, tangent
 
@@ -148,22 +118,13 @@ class Bumps:
 class OneFlip:
     """The separatrix: from spin about the middle axis, by one flip, to spin about it the other way round."""
 
-    u: LinearPhase  # dimensionless time, 0 at the middle of the flip
-    psi: LinearPhase  # half turns
     A: tuple[float, float]
     B: tuple[float, float]
     C: float  # at u = 0
     D: float  # at u = 0
 
-    def point(self, seconds: float) -> Values:
-        """Return the values at a time, s."""
-        return self._values(math, *self.u.fraction(seconds), self.psi.fraction(seconds)[0])
-
-    def points(self, seconds: FloatArray) -> Values:
-        """Return the values at times (n,), s."""
-        return self._values(np, *self.u.fractions(seconds), self.psi.fractions(seconds)[0])
-
-    def _values(self, functions: ModuleType, fraction: Any, whole: Any, psi: Any) -> Values:
+    def values(self, functions: ModuleType, fraction: Any, whole: Any, psi: Any) -> Values:
+        """Return the values for u = whole + fraction, 0 in the middle of the flip."""
         u = whole + fraction
         w = functions.exp(-abs(u))
         even, odd = 1.0 + w, functions.copysign(1.0 - w, u)

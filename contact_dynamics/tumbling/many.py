@@ -1,0 +1,180 @@
+"""Many free rotations at once, each at its own time: samples of an uncertain state, or a cloud of bodies.
+
+The formulas for one, over arrays and in doubles. Errors of attitude grow by some 1e-16 of the angle turned,
+times the motion's sensitivity. What lies on the separatrix to the last bit is taken as lying 1e-300 off it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.tumbling.arithmetic import ARRAYS, FloatArray
+from contact_dynamics.tumbling.attitude_form import SWITCH, bumps, harmonics, zeros
+from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
+from contact_dynamics.tumbling.polhode import MOTIONLESS
+from contact_dynamics.validation import check_array
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from contact_dynamics.tumbling.theta import Bumps, Harmonics
+
+CHUNK: Final = 4096
+"""Rotations at a time: their intermediate arrays stay in the processor's cache."""
+
+SMALLEST: Final = 1e-300
+"""Stands for zero where a quotient or a logarithm of it is wanted."""
+
+
+def rotations_of_many(
+    moments: ArrayLike, w_P: ArrayLike, seconds: ArrayLike
+) -> tuple[FloatArray, FloatArray]:
+    """Return how bodies turn in given times: quaternions (n, 4), and angular velocities (n, 3) then, rad/s.
+
+    All in each body's principal axes P: the quaternion, x y z w, takes P as it is then into P at time 0.
+
+    Args:
+        moments: (3,) for all bodies, or (n, 3), kg m^2, principal moments in any order.
+        w_P: (n, 3), rad/s, angular velocities at time 0, in right-handed principal axes in that order.
+        seconds: (n,), or one number for all, s.
+
+    Raises:
+        InvalidFieldError: an array of another shape, a number that is not finite, a moment that is not > 0.
+    """
+    w = check_array("angular_velocities", w_P, (None, 3))
+    n = len(w)
+    given = check_array("moments", moments, (3,) if np.ndim(moments) == 1 else (n, 3))
+    if not (given > 0.0).all():
+        raise InvalidFieldError("moments", float(given.min()), "numbers > 0")
+    times = np.broadcast_to(check_array("times", seconds, () if np.ndim(seconds) == 0 else (n,)), (n,))
+    given = np.broadcast_to(given, (n, 3))
+    q, w_then = np.empty((n, 4)), np.empty((n, 3))
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # in rows of steady spin, set after
+        for start in range(0, n, CHUNK):
+            part = slice(start, start + CHUNK)
+            _turn(given[part], w[part], times[part], q[part], w_then[part])
+    return q, w_then
+
+
+@dataclass(frozen=True, slots=True)
+class _Tumbles:
+    """What `polhode.Tumble` is for one, in arrays (n,), in Jacobi's axes of each."""
+
+    axes: NDArray[np.intp]  # (n, 3), which of the given axes is 1, 2, 3
+    signs: FloatArray  # (n, 3), and whether it points along or against it
+    moments: FloatArray  # (n, 3)
+    L: FloatArray
+    m: FloatArray
+    a2: FloatArray
+    c2: FloatArray
+    z_rate: FloatArray  # rad/s
+    z_offset: FloatArray  # rad
+    quarter: FloatArray
+    precession: FloatArray
+    steady: FloatArray  # bool
+
+
+def _tumbles(given: FloatArray, w_P: FloatArray) -> _Tumbles:
+    rows = np.arange(len(w_P))
+    order = np.argsort(given, axis=1)
+    small, middle, large = (given[rows, order[:, k]] for k in range(3))
+    w_small, w_large = w_P[rows, order[:, 0]], w_P[rows, order[:, 2]]
+    low, high, both = middle - small, large - middle, large - small
+    from_middle = large * high * w_large**2 - small * low * w_small**2
+    major = from_middle >= 0.0
+    axes = np.where(major[:, None], order, order[:, ::-1])
+    I1, I2, I3 = np.where(major, small, large), middle, np.where(major, large, small)
+    gap21, gap32, gap31 = np.where(major, (low, high, both), (-high, -low, -both))
+    w1, w2, w3 = (w_P[rows, axes[:, k]] for k in range(3))
+    signs = np.ones((len(w_P), 3))
+    signs[:, 0], signs[:, 2] = np.copysign(1.0, w1), np.copysign(1.0, w3)
+    even = (axes[:, 1] - axes[:, 0]) % 3 == 1
+    signs[:, 1] = signs[:, 0] * signs[:, 2] * np.where(even, 1.0, -1.0)
+    d1 = I2 * gap21 * w2**2 + I3 * gap31 * w3**2
+    d3 = I1 * gap31 * w1**2 + I2 * gap32 * w2**2
+    momenta = I1 * w1, I2 * w2, I3 * w3
+    squared = momenta[0] ** 2 + momenta[1] ** 2 + momenta[2] ** 2
+    a2, b2, c2 = I1 * d3 / (gap31 * squared), I2 * d3 / (gap32 * squared), I3 * d1 / (gap31 * squared)
+    steady = ~(a2 > MOTIONLESS) | ~(abs(gap32) * w3**2 + abs(gap21) * w1**2 > 0.0)
+    # Steady rows get the numbers of some tumble, so that the iterations end.
+    a2, b2, c2 = (np.where(steady, 0.5, x) for x in (a2, b2, c2))
+    m = np.where(steady, 0.5, np.maximum(d3 * gap21 / (d1 * gap32), SMALLEST))
+    m1 = np.where(steady, 0.5, np.maximum(from_middle * gap31 / (d1 * gap32), SMALLEST))
+    L = np.sqrt(squared)
+    sn = np.where(steady, 0.0, signs[:, 1] * momenta[1] / (L * np.sqrt(b2)))
+    cn2 = np.where(steady, 1.0, momenta[0] ** 2 / (squared * a2))
+    dn2 = np.where(steady, 1.0, np.maximum(momenta[2] ** 2 / (squared * c2), SMALLEST))
+    u0 = sn * carlson_rf(cn2, dn2, np.ones_like(sn), numbers=ARRAYS)
+    quarter, average = average_over_period(np.sqrt(m1), b2 / a2, 1.0 / I1, b2 / (a2 * I2), numbers=ARRAYS)
+    omega_p = np.where(major, 1.0, -1.0) * np.sqrt(d1 * gap32 / (I1 * I2 * I3))
+    return _Tumbles(
+        axes=axes,
+        signs=signs,
+        moments=np.stack((I1, I2, I3)),
+        L=L,
+        m=m,
+        a2=a2,
+        c2=c2,
+        z_rate=omega_p * quarter,
+        z_offset=u0 * quarter,
+        quarter=quarter,
+        precession=L * average,
+        steady=steady,
+    )
+
+
+def _turn(given: FloatArray, w_P: FloatArray, times: FloatArray, q: FloatArray, w_then: FloatArray) -> None:
+    """Fill (n, 4) quaternions and (n, 3) angular velocities."""
+    r = _tumbles(given, w_P)
+    begin, end = _values(r, np.zeros_like(times)), _values(r, times)
+    x0, y0, z0, w0 = _attitudes(begin)
+    x1, y1, z1, w1 = _attitudes(end)
+    turned = np.stack(
+        (
+            w0 * x1 - x0 * w1 - y0 * z1 + z0 * y1,
+            w0 * y1 + x0 * z1 - y0 * w1 - z0 * x1,
+            w0 * z1 - x0 * y1 + y0 * x1 - z0 * w1,
+        ),
+        axis=1,
+    )
+    norm2 = end[0] ** 2 + end[1] ** 2 + end[2] ** 2 + end[3] ** 2
+    momenta = np.stack((end[4], 2.0 * (end[0] * end[3] - end[1] * end[2]), end[5]))
+    rates = (momenta * (r.L / norm2) / r.moments).T
+    np.put_along_axis(q, r.axes, r.signs * turned, axis=1)
+    q[:, 3] = w0 * w1 + x0 * x1 + y0 * y1 + z0 * z1
+    q /= np.sqrt(np.einsum("ij,ij->i", q, q))[:, None]
+    np.put_along_axis(w_then, r.axes, r.signs * rates, axis=1)
+    if r.steady.any():
+        spin, half = w_P[r.steady], 0.5 * times[r.steady]
+        rate = np.sqrt(np.einsum("ij,ij->i", spin, spin))
+        q[r.steady, :3] = spin * (np.sin(rate * half) / np.maximum(rate, SMALLEST))[:, None]
+        q[r.steady, 3] = np.cos(rate * half)
+        w_then[r.steady] = spin
+
+
+def _attitudes(values: FloatArray) -> FloatArray:
+    """Return quaternions (4, n) of any length, x y z w, of Jacobi's axes in L's."""
+    A_re, A_im, B_re, B_im, _, _, tangent = values
+    return np.stack(
+        (B_im + tangent * B_re, tangent * B_im - B_re, A_im + tangent * A_re, A_re - tangent * A_im)
+    )
+
+
+def _values(r: _Tumbles, times: FloatArray) -> FloatArray:
+    """Return `theta.Values` as (7, n)."""
+    xi, eta = (zero * r.quarter for zero in zeros(r.a2, r.c2, r.m, ARRAYS))
+    by_bumps = 2.0 * (xi + eta) <= SWITCH
+    values = np.empty((7, len(times)))
+    z, psi = r.z_rate * times + r.z_offset, 0.5 * (r.precession - r.z_rate) * times / np.pi
+    for rows, make, unit in ((~by_bumps, harmonics, 2.0 * np.pi), (by_bumps, bumps, np.pi)):
+        if rows.any():
+            peaks = np.sqrt(r.a2[rows]), np.sqrt(r.c2[rows])
+            series: Harmonics | Bumps = make(xi[rows], eta[rows], peaks, functions=np)
+            turns = z[rows] / unit
+            whole = np.rint(turns)
+            values[:, rows] = series.values(np, turns - whole, whole, psi[rows])
+    return values
