@@ -73,7 +73,9 @@ class SlidingSeries:
             v = self.normal_velocity
             power = [sum(map(mul, v[: n + 1], q[n::-1])) for n in range(ORDER + 1)]
             self.normal_work = _integral(power)
-        self.length = min(_reach(q[0], u1, u2, ORDER), _reach(q[0], u1, u2, ORDER - 1), 20.0 / law.scale)
+        # Terms that underflow tell nothing; over half of 1/scale the direction hardly turns even then.
+        sure = 0.5 / law.scale
+        self.length = min(_reach(q[0], u1, u2, n, sure) for n in (ORDER, ORDER - 1))
 
     @staticmethod
     def value(series: list[float], s: float) -> float:
@@ -93,8 +95,13 @@ class SlidingSeries:
         Newton's method inside a bracket that bisection keeps.
         """
         low, high = begin, end
-        rising = self.value(series, end) >= self.value(series, begin)
-        s = 0.5 * (low + high)
+        first, last = self.value(series, begin), self.value(series, end)
+        rising = last >= first
+        s = (
+            begin + (end - begin) * min(max((level - first) / (last - first), 0.0), 1.0)
+            if last != first
+            else end
+        )
         for _ in range(_MOST_ITERATIONS):
             total = slope = 0.0
             for c in reversed(series):
@@ -106,11 +113,9 @@ class SlidingSeries:
             else:
                 low = s
             guess = s - excess / slope if slope != 0.0 else low
-            if not low < guess < high:
-                guess = 0.5 * (low + high)
-            if abs(guess - s) <= 4e-16 * high:
-                return guess
-            s = guess
+            if abs(guess - s) <= 1e-15 * abs(guess):
+                break
+            s = guess if low < guess < high else 0.5 * (low + high)
         return s
 
 
@@ -118,7 +123,7 @@ def _integral(series: list[float]) -> list[float]:
     return [0.0, *[c / (n + 1) for n, c in enumerate(series)]]
 
 
-def _reach(speed: float, u1: list[float], u2: list[float], n: int) -> float:
-    """Return the length at which term n of u is `TRUNCATION` of ``speed``."""
+def _reach(speed: float, u1: list[float], u2: list[float], n: int, sure: float) -> float:
+    """Return the length at which term n of u is `TRUNCATION` of ``speed``; ``sure`` where the term is 0."""
     term = max(abs(u1[n]), abs(u2[n]))
-    return (TRUNCATION * speed / term) ** (1.0 / n) if term > 0.0 else math.inf
+    return (TRUNCATION * speed / term) ** (1.0 / n) if term > 0.0 else sure

@@ -20,6 +20,10 @@ STRAIGHT: Final = 1e-12
 """Dimensionless, of the sliding law's scale. A direction that turns more slowly is invariant: what turns it
 is the rounding of contact axes and inertia, some 1e-15, which an unstable direction would amplify."""
 
+UNCOUPLED: Final = 1e-15
+"""Dimensionless, of the tangential inverse inertia. A slower turn is the rounding of a coupling that is zero,
+as of a sphere's, whose scale is rounding too."""
+
 STOPPED: Final = 1e-13
 """Dimensionless, of the first sliding speed. The error in impulse from going the rest of the way straight is
 below this part of the impulse that stops the contact."""
@@ -85,12 +89,13 @@ def _path(outcome: ImpactOutcome, progress: Progress, u: tuple[float, float], *,
 def _slide(sliding: SlidingLaw, u: tuple[float, float], progress: Progress) -> tuple[float, float]:
     """Follow sliding until it stops or the impact is over; return the sliding velocity there, m/s."""
     slowest = STOPPED * math.hypot(*u)
+    still = max(STRAIGHT * sliding.scale, UNCOUPLED * (sliding.l1 + sliding.l2))
     with_work = progress.law == RestitutionLaw.ENERGETIC
     for stretch in range(_MOST_STRETCHES):
         speed = math.hypot(*u)
         d1, d2 = u[0] / speed, u[1] / speed
         speeding, lifting = sliding.speeding(d1, d2), sliding.lifting(d1, d2)
-        straight = abs(sliding.turning(d1, d2)) <= STRAIGHT * sliding.scale
+        straight = abs(sliding.turning(d1, d2)) <= still
         if straight and (stretch == 0 or sliding.attraction(d1, d2) < 0.0):
             return _slide_straight(sliding, (d1, d2), speed, progress)
         if speeding < 0.0:

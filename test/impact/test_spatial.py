@@ -377,3 +377,15 @@ def test_separating_contact_is_refused() -> None:
     problem = random_problem(0)
     with pytest.raises(SeparatingContactError, match="v_n = "):
         solve({**problem, "n_W": -problem["n_W"]})
+
+
+@pytest.mark.parametrize("law", RestitutionLaw)
+@pytest.mark.parametrize("offset", [0.0, 1e-30, 1e-18, 1e-14, 1e-9])
+def test_weak_coupling_ends_in_the_central_impact(offset: float, law: RestitutionLaw) -> None:
+    """A corner below the centre, off by rounding: the terms of its swerve underflow or nearly do."""
+    body = MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5]))
+    state = BodyState(p_WB_W=UP, q_WB=IDENTITY, v_WB_W=[1e-6, 2e-6, -1e-7], w_WB_W=np.zeros(3))
+    answer = spatial_impact(
+        body, state, p_WC_W=[offset, -0.3 * offset, 0.0], n_W=UP, friction=0.0, restitution=0.5, law=law
+    )
+    assert answer.impulse_W == pytest.approx([0.0, 0.0, 2.0 * 1.5e-7], rel=1e-8, abs=1e-22)
