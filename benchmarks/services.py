@@ -56,7 +56,7 @@ def run() -> None:
         server += ["--ros-args", "-p", f"log_directory:={log}", "--log-level", "warn"]
         empty = [sys.executable, "-m", "benchmarks.services", "empty"]
         processes = [
-            subprocess.Popen(command, cwd=ROOT, env=environment, stdout=subprocess.DEVNULL)
+            subprocess.Popen(command, cwd=ROOT, env=environment, stdout=subprocess.DEVNULL)  # noqa: S603  our own
             for command in (server, empty)
         ]
         try:
@@ -74,47 +74,58 @@ def _measure(server_pid: int) -> None:
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     print(f"{CALLS} calls of each, alternating; ms")
-    print(
-        f"{'question':34} {'p50':>6} {'p99':>6}   {'empty p50':>9} {'p99':>6}   {'ratio p50':>9}   {'inside':>7}"
+    head = (
+        f"{'question':34} {'p50':>6} {'p99':>6}   {'empty p50':>9} {'p99':>6}   {'ratio':>6}   {'inside':>7}"
     )
+    print(head)
     for title, name, request in _questions():
-        clients = [
-            node.create_client(SERVICES[name], f"/{server}/{name}", qos_profile=QOS)
-            for server in ("contact_dynamics", "empty")
-        ]
-        for client in clients:
-            if not client.wait_for_service(PATIENCE_S):
-                raise TimeoutError(f"no service {client.srv_name}")
-        trips: list[list[float]] = [[], []]
-        inside = []
-        for call in range(WARM_UP + CALLS):
-            for client, times in zip(clients, trips, strict=True):
-                start = time.perf_counter()
-                future = client.call_async(request)
-                while not future.done():
-                    executor.spin_once(timeout_sec=PATIENCE_S)
-                if call >= WARM_UP:
-                    times.append(1e3 * (time.perf_counter() - start))
-                    if client is clients[0]:
-                        answer = future.result()
-                        if answer.status != answer.OK:
-                            raise RuntimeError(answer.message)
-                        inside.append(1e3 * answer.computation_time)
-        (ours, ours_99), (empty, empty_99) = (
-            (statistics.median(t), statistics.quantiles(t, n=100)[98]) for t in trips
-        )
+        ours, empty, inside = _alternate(node, executor, name, request)
+        ratio = statistics.median(ours) / statistics.median(empty)
         print(
-            f"{title:34} {ours:6.2f} {ours_99:6.2f}   {empty:9.2f} {empty_99:6.2f}   {ours / empty:9.2f}"
-            f"   {statistics.median(inside):7.3f}",
+            f"{title:34} {statistics.median(ours):6.2f} {_p99(ours):6.2f}   {statistics.median(empty):9.2f}"
+            f" {_p99(empty):6.2f}   {ratio:6.2f}   {statistics.median(inside):7.3f}",
             flush=True,
         )
-        for client in clients:
-            node.destroy_client(client)
     resident = (
         Path(f"/proc/{server_pid}/status").read_text(encoding="utf-8").split("VmRSS:")[1].split("kB")[0]
     )
     print(f"resident memory of the server: {int(resident) / 1024:.0f} MB")
     rclpy.shutdown()
+
+
+def _alternate(
+    node: Node, executor: SingleThreadedExecutor, name: str, request: Any
+) -> tuple[list[float], list[float], list[float]]:
+    """Return the round trips of our service and of the empty one, and the time inside ours; ms."""
+    clients = [
+        node.create_client(SERVICES[name], f"/{server}/{name}", qos_profile=QOS)
+        for server in ("contact_dynamics", "empty")
+    ]
+    for client in clients:
+        if not client.wait_for_service(PATIENCE_S):
+            raise TimeoutError(f"no service {client.srv_name}")
+    trips: list[list[float]] = [[], []]
+    inside = []
+    for call in range(WARM_UP + CALLS):
+        for client, times in zip(clients, trips, strict=True):
+            start = time.perf_counter()
+            future = client.call_async(request)
+            while not future.done():
+                executor.spin_once(timeout_sec=PATIENCE_S)
+            answer = future.result()
+            if answer.status != answer.OK:
+                raise RuntimeError(answer.message)
+            if call >= WARM_UP:
+                times.append(1e3 * (time.perf_counter() - start))
+                if client is clients[0]:
+                    inside.append(1e3 * answer.computation_time)
+    for client in clients:
+        node.destroy_client(client)
+    return trips[0], trips[1], inside
+
+
+def _p99(times: list[float]) -> float:
+    return statistics.quantiles(times, n=100)[98]
 
 
 def _questions() -> list[tuple[str, str, Any]]:

@@ -1,4 +1,4 @@
-"""Contact modes, impacts and free tumbling of rigid bodies (Mason, *Mechanics of Manipulation*, lectures 24 to 27).
+"""Contact modes, impacts and free tumbling of rigid bodies (Mason's lectures 24 to 27).
 
 The table of contents, chapters in reading order; everything here is plain NumPy and knows no ROS.
 
@@ -6,8 +6,8 @@ The table of contents, chapters in reading order; everything here is plain NumPy
 - Lecture 25, tumbling: `free_motion` and its `FreeMotion` (`tumbling`); Poinsot's picture of it is in
   `contact_dynamics.poinsot`.
 - Where a flight ends: `first_contact`, `next_landing`, in a `World` of `Body` and `Surface`.
-- Contacts: `ContactSet` in space (`contact`), from geometry (`find_contacts`); `PlanarContact` and its kin in the plane
-  (`planar`), reached from space by a `PlaneOfMotion`.
+- Contacts: `ContactSet` in space (`contact`), from geometry (`find_contacts`); `PlanarContact` and its kin in
+  the plane (`planar`), reached from space by a `PlaneOfMotion`.
 - Lecture 26, contact modes: `planar_contact_modes` (`contact_modes`).
 - Lecture 27, impact: `planar_impact`, `spatial_impact` (`impact`).
 - What is refused, and how: `errors`. What counts as zero: `tolerances`.

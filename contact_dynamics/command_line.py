@@ -54,8 +54,8 @@ def _run(verb: str, arguments: list[str]) -> int:
             raise
         print(
             f"contact-dynamics {verb} needs {error.name!r}, which is not installed.\n"
-            "With ROS 2: source it and the workspace that has contact_dynamics_interfaces. Without: `make setup` in the\n"
-            "project's folder installs ROS's own Python packages into .venv (see README.md).",
+            "With ROS 2: source it and a workspace with its interface package. Without: `make setup` in\n"
+            "the project's folder installs ROS's own Python packages into .venv (see README.md).",
             file=sys.stderr,
         )
         return 3

@@ -1,4 +1,4 @@
-"""What misuse raises: one root, one class a cause, each message naming the field, the value and what is allowed.
+"""What misuse raises: one root, one class a cause; messages name the field, the value and what is allowed.
 
 An expected physical outcome (separating, inconsistent, ambiguous) is a result, never one of these.
 """
@@ -27,7 +27,7 @@ class TooLargeError(InvalidFieldError):
 
 
 class OutOfPlaneError(InvalidFieldError):
-    """A planar question about a state, body or contact that leaves the plane of motion by more than the tolerance."""
+    """A planar question about something that leaves the plane of motion by more than the tolerance."""
 
 
 class SeparatingContactError(InvalidFieldError):
@@ -55,7 +55,7 @@ class FrameMismatchError(ContactDynamicsError):
 
 
 class NotSupportedError(ContactDynamicsError):
-    """A question that the interface can carry and this version does not answer; the message says which part."""
+    """A question that the interface carries and this version does not answer; the message says which part."""
 
 
 _LONGEST_SHOWN: Final = 120

@@ -1,4 +1,4 @@
-"""When and how a free body's flight ends: the first contact with the world's surfaces, and all contacts there."""
+"""When and how a free body's flight ends: its first contact with the world, and all contacts there."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ def next_landing(
 ) -> Landing | None:
     """Return where a body's flight ends within ``horizon`` (s), or None.
 
-    A vertex within ``distance_tolerance`` (m) of a surface touches it. A body that touches flies only if each of
-    its contacts leaves faster than ``velocity_tolerance`` (m/s); then what counts is where it comes down again.
+    A vertex within ``distance_tolerance`` (m) of a surface touches it. A body that touches flies only if each
+    of its contacts leaves faster than ``velocity_tolerance`` (m/s); what counts then is where it comes down.
     ``motion`` is the flight, where it is known already; None: the state's, in the world's gravity.
     """
     now = _touching(body, state, world, distance_tolerance)

@@ -1,4 +1,4 @@
-"""From space to a plane of motion and back: when a spatial body's question is a planar one, and by how much it is not.
+"""From space to a plane of motion and back: when a question is a planar one, and by how much it is not.
 
 The plane passes through the centre of mass. Seen with its normal towards the eye and a contact's normal up,
 *right* is right, so that turning the plane over swaps left and right.
@@ -26,7 +26,7 @@ from contact_dynamics.tolerances import OUT_OF_PLANE_RATIO, OUT_OF_PLANE_SPEED
 from contact_dynamics.validation import FloatArray, check_unit
 
 _STEEP: Final = 0.8
-"""Cosine to the world's up above which a normal counts as upright: then its angle to the world's x is over 36 degrees."""
+"""Cosine to the world's up above which a normal counts as upright: it is then over 36 degrees off x."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -143,7 +143,7 @@ def project(
 
 
 def out_of_plane_speed(plane: PlaneOfMotion, state: BodyState, contacts: ContactSet) -> float:
-    """Return the largest speed, m/s, at the contacts and the centre of mass, of the motion that the plane leaves out."""
+    """Return the largest speed, m/s, at contacts and centre of mass that the plane leaves out."""
     normal = plane.normal_W
     v_out = (state.v_WB_W @ normal) * normal
     w_out = state.w_WB_W - (state.w_WB_W @ normal) * normal

@@ -39,11 +39,11 @@ class MassProperties:
         return R_WB @ self.I_B @ R_WB.T
 
     def angular_inertia_about(self, axis_B: FloatArray) -> float:
-        """Return the scalar angular inertia n^T I n about a unit axis through the centre of mass (lecture 25, eq. 12)."""
+        """Return n^T I n, kg m^2, about a unit axis through the centre of mass (lecture 25, eq. 12)."""
         return float(axis_B @ self.I_B @ axis_B)
 
     def radius_of_gyration(self, axis_B: FloatArray) -> float:
-        """Return k in I_n = m k^2, in m, about a unit axis through the centre of mass (lecture 25, eq. 13)."""
+        """Return k of I_n = m k^2, m, about a unit axis through the centre of mass (lecture 25, eq. 13)."""
         return math.sqrt(self.angular_inertia_about(axis_B) / self.mass)
 
 

@@ -1,4 +1,4 @@
-"""The gates at the border of the physics: each returns the value it was given, made safe, or raises by field name.
+"""The gates at the border of the physics: each returns its value, made safe, or raises by field name.
 
 Only constructors of domain types and public entry points call these; what lies behind them does not check
 again.
@@ -74,7 +74,7 @@ def check_array(field: str, value: ArrayLike, shape: tuple[int | None, ...]) -> 
 
 
 def check_unit(field: str, value: ArrayLike, length: int) -> FloatArray:
-    """Return the vector of ``length`` numbers scaled to norm 1; refuse it where its norm is not 1 within tolerance.
+    """Return the vector of ``length`` numbers scaled to norm 1; refuse a norm that is not 1 within tolerance.
 
     Unit means `UNIT_LENGTH_TOLERANCE`; the rest of rounding is taken out here, so that nothing behind has to.
     """

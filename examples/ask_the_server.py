@@ -1,12 +1,13 @@
 """Ask a running server over ROS 2, with a deadline and a retry: start `contact-dynamics server` first.
 
-The queue of the client is deep and each call has a deadline, because replies can get lost when many ask at once.
+The client's queue is deep and each call has a deadline, because replies can get lost when many ask at once.
 """
 
 import rclpy
-from contact_dynamics_interfaces.srv import PredictTumbling
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
+
+from contact_dynamics_interfaces.srv import PredictTumbling
 
 DEADLINE_S = 1.0
 TRIES = 3

@@ -28,7 +28,8 @@ tossed = BodyState(
     w_WB_W=np.array([3.0, 8.0, 1.0]),
 )
 landing = next_landing(box, tossed, World(bodies=(box,), surfaces=(floor,)), horizon=2.0)
-assert landing is not None
+if landing is None:
+    raise SystemExit("it does not land within 2 s")
 print(f"in {landing.seconds:.6f} s at {landing.contacts.p_WC_W[0]}, at {landing.velocities_W[0]} m/s")
 
 impact = spatial_impact(
@@ -41,5 +42,5 @@ impact = spatial_impact(
 )
 print(f"the contact {impact.outcome.name.lower().replace('_', ' ')}; impulse {impact.impulse_W} N s")
 print(
-    f"then v = {impact.state.v_WB_W} m/s, w = {impact.state.w_WB_W} rad/s; {-impact.energy_change:.3f} J are lost"
+    f"then v = {impact.state.v_WB_W} m/s, w = {impact.state.w_WB_W} rad/s; {-impact.energy_change:.3f} J lost"
 )

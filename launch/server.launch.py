@@ -1,4 +1,7 @@
-"""Starts the server, and the visualizer with it where asked: `ros2 launch contact_dynamics server.launch.py view:=true`."""
+"""Starts the server, with `view:=true` the visualizer too.
+
+`ros2 launch contact_dynamics server.launch.py`
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ def generate_launch_description() -> LaunchDescription:
             DeclareLaunchArgument(
                 "params_file",
                 default_value=str(share / "config" / "server.yaml"),
-                description="Bodies, surfaces, topics and tolerances: copy config/server.yaml and edit the copy.",
+                description="Bodies, surfaces, topics, tolerances: copy config/server.yaml and edit it.",
             ),
             DeclareLaunchArgument(
                 "view", default_value="false", description="Start the visualizer and rerun's viewer."

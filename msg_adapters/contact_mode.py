@@ -55,7 +55,7 @@ def write_planar_statics(response: Any, statics: PlanarStatics) -> None:
     """Write the answers to the static questions into a response."""
     response.equilibrium = int(statics.equilibrium)
     response.jammed = int(statics.jammed)
-    response.wedged = response.CERTAIN if statics.wedged else response.NO
+    response.wedged = response.POSSIBLE if statics.wedged else response.NO
     response.stable_disturbance = statics.stable_disturbance
 
 

@@ -58,7 +58,7 @@ def origin_of_published_frame(state: BodyState, p_FB_F: FloatArray) -> FloatArra
 
 
 def origins_of_published_frame(p_WB_W: FloatArray, q_WB: FloatArray, p_FB_F: FloatArray) -> FloatArray:
-    """Return the positions of F's origin, (n, 3), m, world, from those of B, (n, 3), and quaternions x y z w, (n, 4)."""
+    """Return the positions of F's origin, (n, 3), m, world, from those of B and quaternions, (n, 4)."""
     if not p_FB_F.any():
         return p_WB_W
     vectors, w = q_WB[:, :3], q_WB[:, 3:]

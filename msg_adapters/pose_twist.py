@@ -49,7 +49,8 @@ def body_state_from_pose_twist(
         R_WF = rotation_matrix(q_WF)
         v_WF, w_WF = R_WF @ v_WF, R_WF @ w_WF
     elif twist.header.frame_id != world_frame:
-        message = f"twist header.frame_id: found {twist.header.frame_id!r}, allowed are {world_frame!r} and {body_frame!r}"
+        found = twist.header.frame_id
+        message = f"twist header.frame_id: found {found!r}, allowed are {world_frame!r} and {body_frame!r}"
         raise FrameMismatchError(message)
     return state_of_center_of_mass(
         p_WF_W=vector_from_msg(pose.pose.position),
@@ -64,7 +65,7 @@ def body_state_from_pose_twist(
 def pose_twist_from_body_state(
     state: BodyState, *, world_frame: str, p_FB_F: FloatArray
 ) -> tuple[PoseStamped, TwistStamped]:
-    """Return the state as two messages of one stamp, the twist at the published frame's origin, in world axes."""
+    """Return the state as two messages of one stamp; the twist is at the frame's origin, in world axes."""
     pose, twist = PoseStamped(), TwistStamped()
     pose.header.stamp = twist.header.stamp = stamp_to_msg(state.stamp_ns)
     pose.header.frame_id = twist.header.frame_id = world_frame

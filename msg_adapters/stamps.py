@@ -1,4 +1,7 @@
-"""Time at the border: `builtin_interfaces/Time` and int nanoseconds, never float seconds (which lose 21 ns of today's date)."""
+"""Time at the border: `builtin_interfaces/Time` and int nanoseconds.
+
+Never float seconds since 1970, which are spaced 0.24 us.
+"""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ class Response(Protocol):
 
 
 def report_error(response: Response, error: Exception) -> None:
-    """Write an error into a response: its code, and a message that says what was found and what is allowed."""
+    """Write an error into a response: its code, and what was found and what is allowed."""
     for error_type, code_name in _CODE_NAMES:
         code = getattr(response, code_name, None)
         if isinstance(error, error_type) and code is not None:

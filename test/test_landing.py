@@ -1,4 +1,4 @@
-"""Where free flights end: drops with known answers, bodies that touch already, and dense sampling as witness."""
+"""Where free flights end: drops with known answers, bodies that touch already, dense sampling as witness."""
 
 from __future__ import annotations
 

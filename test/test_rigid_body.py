@@ -33,7 +33,7 @@ quaternions = st.integers(0, 2**32 - 1).map(lambda seed: Rotation.random(random_
 
 @pytest.mark.parametrize("mass", [0.0, -1.0, math.nan, math.inf, "heavy", None])
 def test_mass_that_is_not_a_positive_number_is_refused(mass: object) -> None:
-    with pytest.raises(InvalidFieldError, match="mass: found .* allowed is a"):
+    with pytest.raises(InvalidFieldError, match=r"mass: found .* allowed is a"):
         MassProperties(mass=mass, I_B=np.eye(3))  # type: ignore[arg-type]
 
 

@@ -1,4 +1,7 @@
-"""Asks the server about a toss while it happens, as a robot would: at meaningful moments, from what was published so far."""
+"""Asks the server about a toss while it happens, as a robot would.
+
+At meaningful moments, and from what was published so far.
+"""
 
 from __future__ import annotations
 
@@ -34,10 +37,10 @@ SILENCE_S: Final = 1.0
 """The toss is over when no state has come for so long."""
 
 REST_FRAMES: Final = 2
-"""A body that was slow for so many frames is asked for its contact mode; a velocity looks back over `WINDOW`."""
+"""Frames for which a body must be slow before its contact mode is asked for."""
 
 REST_DEVIATIONS: Final = 3.0
-"""Slow is what cannot be told from rest: within so many standard deviations of the velocities' noise."""
+"""Slow is what cannot be told from rest: within so many deviations of the velocities' noise."""
 
 _START_S: Final = 30.0
 

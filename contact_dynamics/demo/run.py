@@ -1,4 +1,4 @@
-"""The demo: a recorded toss is played as published states, the server is asked about it, and the table says how well it knew.
+"""The demo: a toss is played as published states, the server is asked, and a table says how well it knew.
 
 Three processes and this one: the server, the visualizer, the publisher; this one asks. All of them are
 stopped at the end, however it comes.
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from contact_dynamics.demo.recorded_toss import Toss
 
 LISTENERS: Final = 3
-"""Subscriptions that must be there before the toss begins: the server's, the visualizer's and this process's."""
+"""Subscriptions that the toss waits for: the server's, the visualizer's and this process's."""
 
 _DRAIN_S: Final = 0.5  # for what is still on its way to log and picture when the toss is over
 
@@ -87,13 +87,13 @@ def _play(toss: Toss, given: argparse.Namespace, folder: Path, processes: Proces
 def _arguments(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="contact-dynamics demo",
-        description="Play a recorded toss, ask the server about it, and compare the answers with what was measured.",
+        description="Play a recorded toss, ask the server about it, compare with what was measured.",
     )
     parser.add_argument(
         "--toss",
         default=str(DEFAULT_RECORDING),
         metavar="PATH",
-        help="recording: a .csv like the one that comes with the package, or measured cube tosses, .npz#INDEX",
+        help="recording: a .csv like the package's own, or measured cube tosses, .npz#INDEX",
     )
     parser.add_argument("--view", action="store_true", help="open rerun's viewer and watch live")
     parser.add_argument(
@@ -110,14 +110,11 @@ def _new_folder(output: str) -> Path:
     name = datetime.now(timezone.utc).astimezone().strftime("%Y-%m-%d_%H-%M-%S")
     folder = Path(output).resolve() / name
     number = 1
-    while True:
-        try:
-            folder.mkdir(parents=True)
-        except FileExistsError:
-            number += 1
-            folder = folder.with_name(f"{name}_{number}")
-        else:
-            return folder
+    while folder.exists():
+        number += 1
+        folder = folder.with_name(f"{name}_{number}")
+    folder.mkdir(parents=True)
+    return folder
 
 
 def _terminate(_signal: int, _frame: object) -> NoReturn:

@@ -16,7 +16,7 @@ def ros_arguments(verb: str, description: str, arguments: list[str]) -> list[str
     parser = argparse.ArgumentParser(
         prog=f"contact-dynamics {verb}",
         description=description,
-        epilog="ROS's own arguments follow --ros-args: -p name:=value sets a parameter, -r from:=to renames a topic.",
+        epilog="ROS's own arguments follow --ros-args: -p name:=value sets a parameter, -r from:=to remaps.",
     )
     parser.add_argument(
         "--params-file", metavar="FILE", help="YAML file of parameters, such as config/server.yaml"

@@ -124,7 +124,7 @@ def _strike(request: Any, knowledge: Knowledge) -> _Strike:
     if request.contact_source != request.CONTACTS_FROM_GEOMETRY:
         contacts = contacts_of(request, subject, knowledge)
     elif other is not None:
-        message = "contact_source: found CONTACTS_FROM_GEOMETRY (0) for two bodies, allowed is CONTACTS_EXPLICIT (1)"
+        message = "contact_source: found CONTACTS_FROM_GEOMETRY (0) for two bodies, allowed is 1 (explicit)"
         raise NotSupportedError(message)
     else:
         seconds, state, contacts = _landing(request, subject, knowledge)

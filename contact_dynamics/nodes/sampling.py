@@ -71,7 +71,7 @@ def times_of(
 def _in_closed_form(motion: FreeMotion | ForcedMotion) -> FreeMotion:
     if isinstance(motion, FreeMotion):
         return motion
-    message = "sampling: found UNTIL_CONTACT or UNTIL_PLANE with a torque or drag, allowed are 0 to 2 in this version"
+    message = "sampling: found UNTIL_CONTACT or UNTIL_PLANE with torque or drag, allowed are 0 to 2 yet"
     raise NotSupportedError(message)
 
 
@@ -123,7 +123,7 @@ def _plane_reached(
 
 
 def _at_rate(rate: float, duration: float, end: float | None) -> FloatArray:
-    """Return times from 0 at a rate, up to the duration, or to the event that comes before, which is the last."""
+    """Return times from 0 at a rate, up to the duration, or to the event, which is then the last."""
     until = duration if end is None else end
     _check_count("rate * duration", until * rate)
     times = np.arange(math.floor(until * rate * (1.0 + 1e-12)) + 1) / rate

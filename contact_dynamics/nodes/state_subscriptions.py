@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 STATE_QOS = QoSProfile(depth=1000)
-"""Reliable, and deep: states of 1 kHz for as long as one second of a stalled process are kept, so that the log loses none."""
+"""Reliable, and deep: a second of states at 1 kHz may wait for a stalled process, and the log loses none."""
 
 _MOST_UNPAIRED = 100
 _WARN_EVERY_S = 5.0
@@ -45,7 +45,7 @@ def subscribe_to_states(
     states: StateStore,
     record: Callable[[str, bytes], None],
 ) -> dict[str, str]:
-    """Subscribe to a body's states, hand every message to ``record`` and keep every state; return topics and their types."""
+    """Subscribe to a body's states, record every message, keep every state; return topics and their types."""
 
     def keep(make_state: Callable[[], BodyState | None], topic: str) -> None:
         try:

@@ -1,4 +1,4 @@
-"""What a request is about: the body, its state and its contacts, as the request says or as the server knows them."""
+"""What a request is about: body, state and contacts, as the request says or the server knows them."""
 
 from __future__ import annotations
 

@@ -94,12 +94,13 @@ def test_the_lists_of_files_are_not_empty() -> None:
 
 
 def test_physics_imports_without_ros(tmp_path: Path) -> None:
-    """In a process in which every ROS package is made unimportable, the physics and its table of contents import."""
+    """With every ROS package made unimportable, the physics and its table of contents import."""
     import subprocess
     import sys
 
     blocked = "".join(f"sys.modules[{name!r}] = None\n" for name in sorted(ROS))
-    code = f"import sys\n{blocked}import contact_dynamics\nfor name in contact_dynamics.__all__: getattr(contact_dynamics, name)\n"
+    use = "import contact_dynamics\nfor name in contact_dynamics.__all__: getattr(contact_dynamics, name)\n"
+    code = f"import sys\n{blocked}{use}"
     result = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=False, cwd=tmp_path
     )

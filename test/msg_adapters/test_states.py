@@ -1,4 +1,4 @@
-"""States as messages: frames, points and stamps survive the border, and what does not make sense is refused by name."""
+"""States as messages: frames, points and stamps survive the border; what makes no sense is refused."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_body_state_there_and_back(state: BodyState, p_FB_F: np.ndarray) -> None
 
 
 def test_an_odometry_twist_is_in_the_child_frame_and_at_its_origin() -> None:
-    """Turned 90 degrees about z, moving along its own x, spinning about z, centre of mass 0.1 m ahead on its x."""
+    """Turned 90 degrees about z, moving along its x, spinning about z, centre of mass 0.1 m ahead."""
     msg = Odometry()
     msg.header.frame_id = "world"
     msg.pose.pose.orientation.z = msg.pose.pose.orientation.w = math.sqrt(0.5)
@@ -110,7 +110,7 @@ def test_frames_that_do_not_match_are_refused() -> None:
     pose, twist = PoseStamped(), TwistStamped()
     pose.header.frame_id = "world"
     twist.header.frame_id = "tool"
-    with pytest.raises(FrameMismatchError, match="twist header.frame_id: found 'tool'"):
+    with pytest.raises(FrameMismatchError, match=r"twist header\.frame_id: found 'tool'"):
         body_state_from_pose_twist(pose, twist, world_frame="world", body_frame="brick", p_FB_F=np.zeros(3))
     state = BodyStateMsg()
     state.header.frame_id = "odom"
@@ -130,7 +130,7 @@ def test_stamps_that_differ_are_refused() -> None:
 def test_numbers_that_are_not_finite_are_refused(bad: float) -> None:
     msg = BodyStateMsg()
     msg.linear_velocity.y = bad
-    with pytest.raises(InvalidFieldError, match="linear_velocity: found .* finite"):
+    with pytest.raises(InvalidFieldError, match=r"linear_velocity: found .* finite"):
         body_state_from_msg(msg, world_frame="world", p_FB_F=np.zeros(3))
 
 

@@ -1,4 +1,4 @@
-"""Bad input over the services: each gets its error, which names field, value and what is allowed, and the node serves on."""
+"""Bad input over the services: each gets its error by field and value, and the node serves on."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ CASES = [
     (PredictContactMode, put("gravity", 5), "INVALID_FIELD", "gravity: found 5"),
     (PredictImpact, put("state.linear_velocity.z", 1.0), "SEPARATING", "v_n = 1 m/s"),
     (PredictImpact, put("restitution_law", 3), "INVALID_FIELD", "restitution_law: found 3"),
-    (PredictImpact, put("want_covariance", True), "NOT_SUPPORTED", "want_covariance"),
+    (PredictImpact, put("want_covariance", value=True), "NOT_SUPPORTED", "want_covariance"),
     (PredictImpact, put("other_body_name", "brick"), "NO_STATE", "state of 'brick': none was published yet"),
     (PredictImpact, put("other_body_name", "cat"), "UNKNOWN_BODY", "found 'cat'"),
     (PredictImpact, put("other_inertia.m", -1.0), "INVALID_FIELD", "mass: found -1.0"),
@@ -233,7 +233,7 @@ def test_no_state_published_yet(client: Client, service: Any) -> None:
 
 
 def test_states_that_are_stale_or_make_no_sense(client: Client) -> None:
-    """A stale state is refused with its age; one with a NaN or in another frame is not taken for a state at all."""
+    """A stale state is refused with its age; one with a NaN or in another frame is not taken at all."""
     publisher = client.node.create_publisher(Odometry, "/brick/odometry", QoSProfile(depth=10))
     client.spin_until(lambda: publisher.get_subscription_count() > 0)
     nonsense = Odometry()

@@ -1,4 +1,4 @@
-"""Contact modes over the service: a block on an incline, with margins, wrench sets and statics beside closed forms."""
+"""Contact modes over the service: a block on an incline, with margins, wrench sets and statics."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from contact_dynamics_interfaces.srv import PredictContactMode
 from running_server import Client, server_and_client
 
@@ -49,11 +50,11 @@ def test_below_the_friction_angle_it_stays_and_the_margin_is_the_way_to_sliding(
     assert not mode.forces_unique  # how the feet share friction, rigid bodies do not say
     forces = np.array(mode.contact_forces).reshape(2, 3)
     np.testing.assert_allclose(forces.sum(axis=0), [0.0, 0.0, MASS * G], atol=1e-9)
-    # The wrench's distance from the edge of the friction cone of both feet, with the moment that a change of force
-    # must bring along free to choose: at most the distance in force alone.
+    # The wrench's distance from the edge of the friction cone of both feet, the change's moment being free to
+    # choose: at most the distance in force alone.
     alone = MASS * G * math.sin(math.radians(10.0))
     assert 0.0 < mode.margin <= alone + 1e-9
-    assert answer.UNIQUE == mode.margin_verdict
+    assert mode.margin_verdict == answer.UNIQUE
     assert mode.margin_modes[0] != "ff"
     assert (answer.equilibrium, answer.jammed, answer.wedged) == (answer.CERTAIN, answer.CERTAIN, answer.NO)
     assert answer.stable_disturbance == pytest.approx(mode.margin, rel=1e-9)
@@ -92,7 +93,7 @@ def test_seen_from_behind_left_and_right_change_places(client: Client) -> None:
 
 
 def test_every_mode_comes_with_the_wrenches_that_bring_it_about(client: Client) -> None:
-    """The applied wrench lies in the sets of exactly the consistent modes; generators lie in their half-spaces."""
+    """The applied wrench lies in the sets of the consistent modes alone; generators in their half-spaces."""
     request = block_on_incline(math.tan(math.radians(30.0)))
     request.want_wrenches = True
     answer = client.ask(request)

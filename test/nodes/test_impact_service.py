@@ -1,4 +1,4 @@
-"""Impacts over the service: two bodies, several contacts at once, and the next landing, beside known answers."""
+"""Impacts over the service: two bodies, several contacts at once, the next landing, beside known answers."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from geometry_msgs.msg import Vector3
+
 from contact_dynamics_interfaces.msg import BodyState, Impact
 from contact_dynamics_interfaces.srv import PredictImpact
-from geometry_msgs.msg import Vector3
 from running_server import Client, server_and_client
 
 G = 9.80665

@@ -1,4 +1,4 @@
-"""Tumbling over the service: times, stamps, first contact, planes, drag, Poinsot's constants, beside known motions."""
+"""Tumbling over the service: times, stamps, contacts, planes, drag, Poinsot, beside known motions."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
+
 from contact_dynamics_interfaces.msg import Poinsot
 from contact_dynamics_interfaces.srv import PredictTumbling
 from running_server import Client, server_and_client
-from scipy.spatial.transform import Rotation
 
 G = 9.80665
 

@@ -1,4 +1,4 @@
-"""The worked numbers of lectures 26 and 27 over the services: explicit states and contacts, another process answers."""
+"""The worked numbers of lectures 26 and 27 over the services; another process answers."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
 def planar_request(
     request: PredictContactMode.Request | PredictImpact.Request, r: np.ndarray, mu: float
 ) -> None:
-    """Fill in a body of m = I = 1 at the origin in the plane with x to the right and z up, one contact with normal z."""
+    """Fill in a body of m = I = 1 at the origin, in the plane of x (right) and z (up), with a contact."""
     request.inertia.m = 1.0
     request.inertia.ixx = request.inertia.iyy = request.inertia.izz = 1.0
     request.state_source = request.STATE_EXPLICIT
