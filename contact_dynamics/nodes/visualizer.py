@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 import sys
+import time
 import traceback
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
@@ -45,6 +46,8 @@ from msg_adapters.stamps import stamp_ns_from_msg
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from rclpy.subscription import Subscription
+
     from contact_dynamics.rigid_body import BodyState
 
 NODE_NAME: Final = "contact_dynamics_visualizer"
@@ -55,6 +58,10 @@ EVENT_QOS: Final = QoSProfile(depth=1000)
 DRAW_PERIOD_S: Final = 0.05
 """States are drawn in batches, because a batch costs what a single state does."""
 
+SERVER_WAIT_S: Final = 3.0
+"""How long a start waits for a server: as long as one that is started at the same time may take."""
+
+_POLL_S: Final = 0.02
 _SPIN_S: Final = 0.1
 _ANSWERS: Final = (
     (PredictTumbling, "predict_tumbling", TUMBLING, show_tumbling),
@@ -66,11 +73,12 @@ _ANSWERS: Final = (
 class Visualizer(Node):
     """The node `contact_dynamics_visualizer`."""
 
-    def __init__(self, *, strict: bool = False, **node_options: Any) -> None:
+    def __init__(self, *, strict: bool = False, server_wait: float = 0.0, **node_options: Any) -> None:
         """Read the parameters, open the sinks, draw the scene and listen.
 
         Args:
             strict: let errors in drawing raise, instead of telling each kind once.
+            server_wait: s, how long to wait for the server before listening to states.
             node_options: of `rclpy.node.Node`.
 
         Raises:
@@ -83,10 +91,12 @@ class Visualizer(Node):
         self._told: set[str] = set()
         parameters = read_server_parameters(self)
         self._world = parameters.world
-        server, surface_side, sinks = _read_own_parameters(self)
-        self._recording = OpenRecording(sinks, on_problem=self.get_logger().warning)
+        server, surface_side, self._sinks = _read_own_parameters(self)
+        self._recording = OpenRecording(self._sinks, on_problem=self.get_logger().warning)
         self._picture = Picture(self._recording.stream, self._world, surface_side=surface_side)
         self._states = _WaitingStates()
+        events = [self._listen(type_, f"{server}/{name}", kind, show) for type_, name, kind, show in _ANSWERS]
+        self._wait_for_server(server, events, server_wait)
         for topics in parameters.topics:
             subscribe_to_states(
                 self,
@@ -96,8 +106,6 @@ class Visualizer(Node):
                 states=self._states,
                 record=lambda _topic, _data: None,
             )
-        for service_type, name, kind, show in _ANSWERS:
-            self._listen(service_type, f"{server}/{name}", kind, show)
         self.create_timer(DRAW_PERIOD_S, self.draw_states, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.get_logger().info(f"ready: draws {server} to {self._recording.description}")
 
@@ -109,14 +117,25 @@ class Visualizer(Node):
     def close(self) -> bool:
         """Draw what is left and close the sinks; return whether they took all."""
         self.draw_states()
+        if self._sinks.viewer is ViewerMode.NONE:
+            self._guarded("the last look", self._picture.frame_all)
         return self._recording.close()
 
-    def _listen(self, service_type: Any, service: str, kind: str, show: Callable[..., None]) -> None:
+    def _wait_for_server(self, server: str, events: list[Subscription], patience: float) -> None:
+        """Wait for the server's events, so that nothing is missed by who plays states to their listeners."""
+        deadline = time.monotonic() + patience
+        while not all(subscription.get_publisher_count() for subscription in events):
+            if time.monotonic() > deadline:
+                self.get_logger().info(f"no {server} yet: its answers are drawn from when it comes")
+                return
+            time.sleep(_POLL_S)
+
+    def _listen(self, service_type: Any, service: str, kind: str, show: Callable[..., None]) -> Subscription:
         def receive(event: Any) -> None:
             if event.info.event_type == ServiceEventInfo.RESPONSE_SENT and event.response:
                 self._guarded(service, lambda: self._show(kind, event, show))
 
-        self.create_subscription(service_type.Event, f"{service}/_service_event", receive, EVENT_QOS)
+        return self.create_subscription(service_type.Event, f"{service}/_service_event", receive, EVENT_QOS)
 
     def _show(self, kind: str, event: Any, show: Callable[..., None]) -> None:
         response = event.response[0]
@@ -198,7 +217,7 @@ def main(arguments: list[str]) -> int:
     description = "Show bodies, contacts and predictions in rerun, live or to a file."
     rclpy.init(args=ros_arguments("visualizer", description, arguments))
     try:
-        visualizer = Visualizer()
+        visualizer = Visualizer(server_wait=SERVER_WAIT_S)
     except (ConfigurationError, OSError) as error:
         sys.stderr.write(f"[{NODE_NAME}] configuration: {error}\n")
         rclpy.try_shutdown()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun.blueprint as rrb
 
-from contact_dynamics.viewing import palette
+from contact_dynamics.viewing import impact, palette, trajectory
 from contact_dynamics.viewing.entities import (
     ANSWER_LOG,
     HEIGHT,
@@ -18,6 +18,8 @@ from contact_dynamics.viewing.entities import (
     SCENE,
     SPEED,
     TIMELINE,
+    impact_entity,
+    predicted_entity,
     trail_entity,
 )
 from contact_dynamics.viewing.scene import tangents
@@ -30,10 +32,13 @@ if TYPE_CHECKING:
 LOWEST_DISTANCE: Final = 0.5
 """m. The eye comes no nearer to what it looks at."""
 
-WINDOW_S: Final = 10.0
-"""s. How long a trail is, and how far back the curves go."""
+NO_TRAVEL: Final = 1e-3
+"""m. A path that leads no farther, seen from above, has no sides to choose between."""
 
-_DISTANCE: Final = 1.12  # of the eye, relative to the diagonal of what it shows
+WINDOW_S: Final = 10.0
+"""s. How long trails and earlier predictions stay in view, and how far back the curves go."""
+
+_DISTANCE: Final = 1.05  # of the eye, relative to the diagonal of what it shows
 _ELEVATION: Final = 0.33  # of the eye above what it looks at, relative to its horizontal distance
 
 
@@ -47,13 +52,15 @@ class Eye:
 
 
 def eye_on(points_W: FloatArray, *, up_W: FloatArray) -> Eye:
-    """Return an eye that sees points, (n, 3), m, world, of a path, from the side of where it leads."""
+    """Return an eye that sees all points, (n, 3), m, world, of a path: across it, from where it bulges to."""
     low, high = points_W.min(axis=0), points_W.max(axis=0)
     target = 0.5 * (low + high)
     level = points_W - np.outer(points_W @ up_W, up_W)
     travel = level[-1] - level[0]
-    side = np.cross(travel, up_W) if float(np.linalg.norm(travel)) > 1e-3 else -tangents(up_W)[1]
+    side = np.cross(travel, up_W) if float(np.linalg.norm(travel)) > NO_TRAVEL else -tangents(up_W)[1]
     side = side / np.linalg.norm(side)
+    if (level.mean(axis=0) - 0.5 * (level[0] + level[-1])) @ side < 0.0:
+        side = -side
     distance = max(LOWEST_DISTANCE, _DISTANCE * float(np.linalg.norm(high - low)))
     return Eye(position_W=target + distance * (side + _ELEVATION * up_W), target_W=target, up_W=up_W)
 
@@ -72,7 +79,7 @@ def make_blueprint(body_names: Sequence[str], *, eye: Eye | None) -> rrb.Bluepri
         background=rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor),
         line_grid=False,
         eye_controls=controls,
-        overrides={trail_entity(name): _window() for name in body_names},
+        overrides={path: _window() for name in body_names for path in _recent(name)},
     )
     return rrb.Blueprint(
         rrb.Horizontal(
@@ -103,6 +110,15 @@ def make_blueprint(body_names: Sequence[str], *, eye: Eye | None) -> rrb.Bluepri
 def _curves(origin: str, name: str) -> rrb.TimeSeriesView:
     legend = rrb.PlotLegend(corner=rrb.Corner2D.RightTop)
     return rrb.TimeSeriesView(origin=origin, name=name, plot_legend=legend, time_ranges=_window())
+
+
+def _recent(body_name: str) -> list[str]:
+    """Return what stays in view beside what comes after it."""
+    return [
+        trail_entity(body_name),
+        *(f"{predicted_entity(body_name)}/{name}" for name in trajectory.RECENT),
+        *(f"{impact_entity(body_name)}/{name}" for name in impact.RECENT),
+    ]
 
 
 def _window() -> rrb.VisibleTimeRanges:

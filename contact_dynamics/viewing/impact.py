@@ -15,8 +15,6 @@ from contact_dynamics.viewing.scene import tangents
 from contact_dynamics.viewing.trajectory import outline
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import NDArray
 
     from contact_dynamics.contact import ContactSet
@@ -26,6 +24,9 @@ if TYPE_CHECKING:
 
 ARROW_LENGTH: Final = 1.1
 """Length of the longest arrow of a kind, relative to the body's size; labels say how much it stands for."""
+
+RECENT: Final = ("body", "impulse")
+"""What stays in view beside what comes after it."""
 
 CONE_HEIGHT: Final = 0.35
 """Relative to the size of the body."""
@@ -55,17 +56,64 @@ class ImpactPicture:
         return int(np.linalg.norm(self.impulses_W, axis=1).argmax())
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Arrows:
+    """Arrows of one unit, drawn to a scale of their own."""
+
+    origins: FloatArray  # (n, 3), m, world
+    vectors: FloatArray  # (n, 3), in the unit, world axes
+    unit: str
+    colors: tuple[palette.Color, ...]  # (n,)
+
+    def drawn(self, size: float) -> rr.Arrows3D:
+        """Return the arrows, the longest of which suits a body of that size, m."""
+        return rr.Arrows3D(
+            origins=self.origins,
+            vectors=self._scaled(size),
+            colors=self._colors(),
+            radii=_ARROW_WIDTH * size,
+        )
+
+    def labels(self, size: float) -> rr.Points3D:
+        """Return how much each stands for, at its tip."""
+        lengths = np.linalg.norm(self.vectors, axis=1)
+        return rr.Points3D(
+            self.origins + self._scaled(size),
+            colors=self._colors(),
+            radii=0.0,
+            labels=[f"{length:.3g} {self.unit}" for length in lengths.tolist()],
+            show_labels=True,
+        )
+
+    def _scaled(self, size: float) -> FloatArray:
+        longest = float(np.linalg.norm(self.vectors, axis=1).max(initial=0.0))
+        scaled: FloatArray = self.vectors * (ARROW_LENGTH * size / longest if longest > 0.0 else 0.0)
+        return scaled
+
+    def _colors(self) -> NDArray[np.uint8]:
+        return np.array(self.colors, dtype=np.uint8).reshape(-1, 4)
+
+
 def draw_impact(recording: rr.RecordingStream, body_name: str, shape: Shape, picture: ImpactPicture) -> None:
     """Draw an impact in the scene, at the recording's current time."""
     path, size = impact_entity(body_name), shape.size
     struck = np.linalg.norm(picture.impulses_W, axis=1) > 0.0
     points, normals = picture.contacts.p_WC_W[struck], picture.contacts.normals_W[struck]
-    impulses = _arrows(points, picture.impulses_W[struck], [palette.IMPACT] * len(points), "N s", size)
-    recording.log(f"{path}/impulse", impulses)
-    center_W = np.tile(picture.state.p_WB_W, (2, 1))
-    velocities_W = np.array([picture.state.v_WB_W, picture.v_after_W])
-    velocities = _arrows(center_W, velocities_W, [palette.BEFORE_IMPACT, palette.AFTER_IMPACT], "m/s", size)
-    recording.log(f"{path}/velocity", velocities)
+    impulses = _Arrows(
+        origins=points,
+        vectors=picture.impulses_W[struck],
+        unit="N s",
+        colors=(palette.IMPACT,) * len(points),
+    )
+    velocities = _Arrows(
+        origins=np.tile(picture.state.p_WB_W, (2, 1)),
+        vectors=np.array([picture.state.v_WB_W, picture.v_after_W]),
+        unit="m/s",
+        colors=(palette.BEFORE_IMPACT, palette.AFTER_IMPACT),
+    )
+    for name, of_one_unit in (("impulse", impulses), ("velocity", velocities)):
+        recording.log(f"{path}/{name}", of_one_unit.drawn(size))
+        recording.log(f"{path}/{name}_label", of_one_unit.labels(size))
     height = CONE_HEIGHT * size
     width = 0.5 * _ARROW_WIDTH * size
     arrows = rr.Arrows3D(origins=points, vectors=normals * height, colors=palette.NORMAL, radii=width)
@@ -103,20 +151,4 @@ def friction_cones(
         vertex_positions=np.vstack(vertices),
         triangle_indices=np.vstack(triangles),
         albedo_factor=palette.FRICTION_CONE,
-    )
-
-
-def _arrows(
-    origins: FloatArray, vectors: FloatArray, colors: Sequence[palette.Color], unit: str, size: float
-) -> rr.Arrows3D:
-    lengths = np.linalg.norm(vectors, axis=1)
-    longest = float(lengths.max(initial=0.0))
-    scale = ARROW_LENGTH * size / longest if longest > 0.0 else 0.0
-    return rr.Arrows3D(
-        origins=origins,
-        vectors=vectors * scale,
-        colors=np.array(colors, dtype=np.uint8).reshape(-1, 4),
-        radii=_ARROW_WIDTH * size,
-        labels=[f"{length:.3g} {unit}" for length in lengths.tolist()],
-        show_labels=True,
     )

@@ -8,10 +8,10 @@ LEGEND_TEXT: Final = """\
 | drawn | means |
 | --- | --- |
 | blue grey body, trail, curves | measured |
-| orange path, outlines, curves | predicted, from the newest answer |
-| orange translucent body | end of that prediction |
-| red outline, arrow at the contact | body at the predicted impact, impulse on it |
-| pale, bright yellow arrow at its centre | velocity of the centre of mass before, after |
+| orange paths, outlines, curves | predicted, in the last 10 s |
+| orange translucent body | end of the newest prediction |
+| red outlines, arrows | bodies at predicted impacts in the last 10 s, impulses on them |
+| pale, bright yellow arrow | velocity of the centre of mass before, after the newest of them |
 | violet cone | friction cone: the impulses and forces that friction allows |
 | green, pink, cyan points and arrows | contacts that stay fixed, slide, separate; their contact forces |
 

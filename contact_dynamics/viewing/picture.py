@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import rerun as rr
 
-from contact_dynamics.viewing.blueprint import eye_on, make_blueprint
+from contact_dynamics.viewing.blueprint import WINDOW_S, eye_on, make_blueprint
 from contact_dynamics.viewing.contact_modes import draw_contact_modes
 from contact_dynamics.viewing.entities import ANSWER_LOG, LEGEND, NEWEST_ANSWERS
 from contact_dynamics.viewing.impact import draw_impact
@@ -51,6 +52,7 @@ class Picture:
         self._predictions: dict[str, _Prediction] = {}
         self._answers: dict[str, str] = {}
         self._framed = False
+        self._recent: deque[tuple[int, FloatArray]] = deque()  # stamps and positions of the last `WINDOW_S`
         gravity = float(np.linalg.norm(world.gravity_W))
         self._up_W = -world.gravity_W / gravity if gravity > 0.0 else np.array([0.0, 0.0, 1.0])
         self._draw_scene()
@@ -72,6 +74,9 @@ class Picture:
                 up_W=self._up_W,
             )
         self._newest[body_name] = states[-1]
+        self._recent.extend((state.stamp_ns, state.p_WB_W) for state in states)
+        while self._recent[-1][0] - self._recent[0][0] > WINDOW_S * 1e9:
+            self._recent.popleft()
 
     def show_trajectory(self, body_name: str, trajectory: Trajectory, *, stamp_ns: int) -> None:
         """Draw where the body was predicted to be from a stamp on."""
@@ -103,6 +108,11 @@ class Picture:
         document = "\n\n".join(f"**{kind}**: {newest}" for kind, newest in self._answers.items())
         self._recording.log(NEWEST_ANSWERS, rr.TextDocument(document, media_type=rr.MediaType.MARKDOWN))
 
+    def frame_all(self) -> None:
+        """Look at all that is in view at the end, for whoever opens the file."""
+        if self._recent:
+            self._look_at(np.array([p_WB_W for _, p_WB_W in self._recent]))
+
     def newest_stamp_ns(self) -> int | None:
         """Return the stamp of the newest measured state, if there is one."""
         return max((state.stamp_ns for state in self._newest.values()), default=None)
@@ -126,9 +136,11 @@ class Picture:
 
     def _frame(self, points_W: FloatArray) -> None:
         """Look at the first trajectory, the ground below it; later ones leave the view to whoever looks."""
-        if self._framed:
-            return
-        self._framed = True
+        if not self._framed:
+            self._framed = True
+            self._look_at(points_W)
+
+    def _look_at(self, points_W: FloatArray) -> None:
         center = 0.5 * (points_W.min(axis=0) + points_W.max(axis=0))
         for surface in self._world.surfaces:
             draw_surface(self._recording, surface, center_W=center, side=self._surface_side)

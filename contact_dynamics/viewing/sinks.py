@@ -64,9 +64,9 @@ class OpenRecording:
         self.description = ", ".join(self._open(sinks)) or "nowhere"
 
     def close(self, *, timeout: float = 5.0) -> bool:
-        """Write what is left and let go of the viewer, which stays open; return whether it took all in time, s.
+        """Write what is left and let go of the viewer, which stays open; return whether it took all.
 
-        Where it did not, rerun would wait for it for ever when the process exits.
+        Where it did not within ``timeout``, s, rerun would wait for it for ever when the process exits.
         """
         thread = threading.Thread(target=self._disconnect, daemon=True)
         thread.start()

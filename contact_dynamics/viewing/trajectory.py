@@ -20,8 +20,16 @@ if TYPE_CHECKING:
 MOST_PATH_POINTS: Final = 2000
 """More samples than a screen is wide are thinned out evenly."""
 
-OUTLINES: Final = 6
-"""Outlines of the body along the path, evenly in time, besides the one at its end."""
+MOST_OUTLINES: Final = 6
+"""Outlines of the body along the path, evenly in time, besides the one at its end. A path that is short has
+one for each length of the body."""
+
+NEARBY: Final = 0.25
+"""Relative to the size of the body: an end that is nearer to the start is not drawn, since it would only hide
+the body."""
+
+RECENT: Final = ("path", "outlines", "end")
+"""What stays in view beside what comes after it."""
 
 _PATH_WIDTH: Final = -2.0  # negative: points of the screen
 _OUTLINE_WIDTH: Final = -0.8
@@ -40,19 +48,22 @@ def draw_trajectory(
     samples = np.unique(np.linspace(0, last, min(last + 1, MOST_PATH_POINTS)).round().astype(int))
     strip = rr.LineStrips3D([trajectory.p_WB_W[samples]], colors=palette.PREDICTED, radii=_PATH_WIDTH)
     recording.log(f"{path}/path", strip)
-    times = np.linspace(trajectory.seconds[0], trajectory.seconds[-1], OUTLINES + 2)[1:-1]
-    chosen = np.unique(np.abs(trajectory.seconds[:, None] - times).argmin(axis=0))[:last]
-    edges = [edge for i in chosen for edge in outline(shape, trajectory.p_WB_W[i], trajectory.q_WB[i])]
+    travelled = float(np.linalg.norm(np.diff(trajectory.p_WB_W, axis=0), axis=1).sum())
+    count = min(MOST_OUTLINES, int(travelled / shape.size))
+    times = np.linspace(trajectory.seconds[0], trajectory.seconds[-1], count + 2)[1:-1]
+    chosen = np.abs(trajectory.seconds[:, None] - times).argmin(axis=0)
+    outlines = [outline(shape, trajectory.p_WB_W[i], trajectory.q_WB[i]) for i in chosen]
+    edges = [edge for edges in outlines for edge in edges]
     color = palette.translucent(palette.PREDICTED, 0.45)
     recording.log(f"{path}/outlines", rr.LineStrips3D(edges, colors=color, radii=_OUTLINE_WIDTH))
-    end = f"{path}/end"
-    pose = rr.Transform3D(translation=trajectory.p_WB_W[last], quaternion=trajectory.q_WB[last])
-    recording.log(end, pose)
-    if len(shape.edges_B) > 0:
-        strips = rr.LineStrips3D(list(shape.edges_B), colors=palette.PREDICTED, radii=_END_WIDTH)
-        recording.log(f"{end}/edges", strips)
-    if len(shape.triangles_B) > 0:
-        recording.log(f"{end}/faces", solid(shape, palette.translucent(palette.PREDICTED, 0.25)))
+    p_WB_W, q_WB = trajectory.p_WB_W[last], trajectory.q_WB[last]
+    moves_away = travelled > NEARBY * shape.size
+    edges = list(outline(shape, p_WB_W, q_WB)) if moves_away else []
+    recording.log(f"{path}/end", rr.LineStrips3D(edges, colors=palette.PREDICTED, radii=_END_WIDTH))
+    pose = rr.Transform3D(translation=p_WB_W, quaternion=q_WB)
+    recording.log(f"{path}/newest_end", pose)
+    faces = solid(shape, palette.translucent(palette.PREDICTED, 0.25))
+    recording.log(f"{path}/newest_end/faces", faces if moves_away else rr.Clear(recursive=False))
 
 
 def outline(shape: Shape, p_WB_W: FloatArray, q_WB: FloatArray) -> FloatArray:

@@ -219,9 +219,9 @@ def test_a_trajectory_is_that_of_the_centre_of_mass(bench: Bench) -> None:
 def test_an_impact_is_drawn_when_it_was_asked_for(bench: Bench) -> None:
     bench.answer("predict_impact", impact_answer(two_contacts()))
     drawn = bench.drawn()
-    impulse = "/world/impact/brick/impulse"
-    assert drawn.stamps(impulse, "Arrows3D:labels") == [STAMP_NS - 50_000_000]
-    assert drawn.last(impulse, "Arrows3D:labels") == ["0.5 N s"]
+    label = "/world/impact/brick/impulse_label"
+    assert drawn.stamps(label, "Points3D:labels") == [STAMP_NS - 50_000_000]
+    assert drawn.last(label, "Points3D:labels") == ["0.5 N s"]
     path = drawn.array("/impulse_space/path", "LineStrips2D:strips")[0]
     np.testing.assert_allclose(path, [[0.0, 0.0], [0.3, -0.4]], atol=1e-7)  # the second axis down
     text = drawn.last("/answers/newest", "TextDocument:text")[0]
@@ -243,7 +243,7 @@ def test_contact_modes_are_drawn_with_every_mode_in_words(bench: Bench) -> None:
     drawn = bench.drawn()
     assert drawn.last("/world/contacts/brick/points", "Points3D:labels") == ["f", "l|f"]
     assert drawn.last("/world/contacts/brick/forces", "Arrows3D:labels") == ["2 N", "2 N"]
-    assert "indeterminate: fl, ff; refused: ss" in drawn.last("/answers/newest", "TextDocument:text")[0]
+    assert "does not choose: fl, ff; refused: ss" in drawn.last("/answers/newest", "TextDocument:text")[0]
 
 
 def test_a_refusal_is_told(bench: Bench) -> None:

@@ -7,7 +7,7 @@ import pytest
 from rerun.chunk import RrdReader
 
 from contact_dynamics.viewing.blueprint import LOWEST_DISTANCE, Eye, eye_on, make_blueprint
-from contact_dynamics.viewing.entities import entity, trail_entity
+from contact_dynamics.viewing.entities import entity, impact_entity, predicted_entity, trail_entity
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -34,6 +34,14 @@ def test_the_eye_sees_all_from_above_and_from_the_side(points: np.ndarray) -> No
     assert abs(line_of_sight @ level) <= 1e-9 * distance * np.linalg.norm(level)
 
 
+def test_the_eye_is_where_the_path_bulges_to() -> None:
+    corner = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]])
+    for points in (corner, corner[::-1]):
+        eye = eye_on(points, up_W=UP)
+        nearest = np.linalg.norm(points - eye.position_W, axis=1).argmin()
+        assert nearest == 1
+
+
 @pytest.mark.parametrize(
     "eye", [None, Eye(position_W=np.array([1.0, 2.0, 3.0]), target_W=np.zeros(3), up_W=UP)]
 )
@@ -51,7 +59,9 @@ def test_the_arrangement_holds_every_view(tmp_path: Path, eye: Eye | None) -> No
     assert len(names) == 7
     assert sum("EyeControls3D" in path for path in paths) == (eye is not None)
     for name in ("brick", "arm/tool 1"):
-        assert sum(f"overrides/{trail_entity(name)}/" in path for path in paths) == 1
+        recent = [trail_entity(name), f"{predicted_entity(name)}/path", f"{impact_entity(name)}/impulse"]
+        for kept in recent:
+            assert sum(f"overrides/{kept}/" in path for path in paths) == 1
 
 
 def test_names_may_hold_any_characters() -> None:

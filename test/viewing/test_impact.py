@@ -46,7 +46,7 @@ def test_arrows_point_along_what_they_stand_for_and_say_how_much(
     impulses = np.array([[0.0, 0.0, 0.0], [0.3, 0.0, 0.4]])
     draw_impact(recording, "brick", convex_shape(body.vertices_B), picture_of(state, two_contacts, impulses))
     drawn = read()
-    assert drawn.last(f"{IMPACT}/impulse", "Arrows3D:labels") == ["0.5 N s"]
+    assert drawn.last(f"{IMPACT}/impulse_label", "Points3D:labels") == ["0.5 N s"]
     arrow = drawn.array(f"{IMPACT}/impulse", "Arrows3D:vectors")
     np.testing.assert_allclose(np.cross(arrow, impulses[1:]), [[0.0, 0.0, 0.0]], atol=1e-7)
     assert arrow[0] @ impulses[1] > 0.0

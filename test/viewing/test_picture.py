@@ -95,6 +95,27 @@ def test_the_first_trajectory_is_looked_at_with_the_ground_below_it_and_later_on
     np.testing.assert_allclose(patch.mean(axis=0), [*center[:2], 0.0], atol=1e-6)
 
 
+def test_the_last_look_is_at_what_is_in_view_then(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], world: World, state: BodyState
+) -> None:
+    picture = Picture(recording, world, surface_side=0.5)
+    picture.frame_all()  # nothing to look at yet
+    picture.add_states("brick", [state])
+    long_after = BodyState(
+        p_WB_W=np.array([70.0, 80.0, 9.0]),
+        q_WB=state.q_WB,
+        v_WB_W=np.zeros(3),
+        w_WB_W=np.zeros(3),
+        stamp_ns=STAMP_NS + 60_000_000_000,
+    )
+    picture.add_states("brick", [long_after])
+    picture.frame_all()
+    drawn = read()
+    assert drawn.blueprints == 2
+    patch = drawn.array("/world/surfaces/floor/patch", "Mesh3D:vertex_positions")
+    np.testing.assert_allclose(patch.mean(axis=0), [70.0, 80.0, 0.0], atol=1e-5)
+
+
 def test_the_newest_answer_of_each_kind_stands_in_words_and_all_in_the_log(
     recording: rr.RecordingStream, read: Callable[[], Drawn], world: World
 ) -> None:

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from contact_dynamics.rigid_body import BodyState
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.viewing.shape import convex_shape
-from contact_dynamics.viewing.trajectory import MOST_PATH_POINTS, OUTLINES, draw_trajectory
+from contact_dynamics.viewing.trajectory import MOST_OUTLINES, MOST_PATH_POINTS, draw_trajectory
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     import rerun as rr
 
-    from contact_dynamics.rigid_body import BodyState
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.world import Body
     from viewing.drawn import Drawn
@@ -30,12 +30,15 @@ def test_path_outlines_and_end_are_those_of_the_trajectory(
     drawn = read()
     path = drawn.array(f"{PREDICTED}/path", "LineStrips3D:strips")[0]
     np.testing.assert_allclose(path, trajectory.p_WB_W, atol=1e-6)
-    end = drawn.array(f"{PREDICTED}/end", "Transform3D:translation")[0]
+    end = drawn.array(f"{PREDICTED}/newest_end", "Transform3D:translation")[0]
     np.testing.assert_allclose(end, trajectory.p_WB_W[-1], atol=1e-6)
-    turned = drawn.array(f"{PREDICTED}/end", "Transform3D:quaternion")[0]
+    turned = drawn.array(f"{PREDICTED}/newest_end", "Transform3D:quaternion")[0]
     np.testing.assert_allclose(turned, trajectory.q_WB[-1], atol=1e-6)
-    outlines = drawn.array(f"{PREDICTED}/outlines", "LineStrips3D:strips").reshape(OUTLINES, 24, 3)
-    for outline in outlines:
+    outlines = drawn.array(f"{PREDICTED}/outlines", "LineStrips3D:strips").reshape(-1, 24, 3)
+    ends = drawn.array(f"{PREDICTED}/end", "LineStrips3D:strips").reshape(-1, 24, 3)
+    np.testing.assert_allclose(ends[0].mean(axis=0), trajectory.p_WB_W[-1], atol=1e-6)
+    assert len(outlines) > 0
+    for outline in (*outlines, *ends):
         sample = int(np.linalg.norm(trajectory.p_WB_W - outline.mean(axis=0), axis=1).argmin())
         turned_vertices = Rotation.from_quat(trajectory.q_WB[sample]).apply(body.vertices_B.copy())
         corners = trajectory.p_WB_W[sample] + turned_vertices
@@ -73,4 +76,23 @@ def test_a_body_without_shape_has_a_path_all_the_same(
     draw_trajectory(recording, "brick", convex_shape(np.zeros((0, 3))), trajectory)
     drawn = read()
     assert f"{PREDICTED}/path" in drawn.entities
-    assert f"{PREDICTED}/end/faces" not in drawn.entities
+    assert drawn.last(f"{PREDICTED}/end", "LineStrips3D:strips") == []
+
+
+@pytest.mark.parametrize(("speed", "count"), [(0.0, 0), (1.0, 0), (10.0, 2), (1000.0, MOST_OUTLINES)])
+def test_a_longer_path_has_more_outlines(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], *, body: Body, speed: float, count: int
+) -> None:
+    """Over 0.05 s; the box is 0.182 m from corner to corner."""
+    start = BodyState(
+        p_WB_W=np.zeros(3),
+        q_WB=np.array([0.0, 0.0, 0.0, 1.0]),
+        v_WB_W=np.array([speed, 0, 0]),
+        w_WB_W=np.zeros(3),
+    )
+    flight = free_motion(body.mass_properties, start, gravity_W=np.zeros(3)).at(np.linspace(0.0, 0.05, 50))
+    draw_trajectory(recording, "brick", convex_shape(body.vertices_B), flight)
+    drawn = read()
+    assert len(drawn.last(f"{PREDICTED}/outlines", "LineStrips3D:strips")) == 12 * count
+    assert len(drawn.last(f"{PREDICTED}/end", "LineStrips3D:strips")) == 12 * (speed > 0.0)
+    assert ((f"{PREDICTED}/newest_end/faces", "Mesh3D:vertex_positions") in drawn.values) == (speed > 0.0)
