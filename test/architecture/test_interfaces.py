@@ -42,7 +42,11 @@ def test_every_block_of_fields_begins_with_a_comment(path: Path) -> None:
 def test_every_line_is_understood(path: Path) -> None:
     for line in path.read_text(encoding="utf-8").splitlines():
         assert (
-            not line or line.startswith("#") or line == "---" or FIELD.match(line) or CONSTANT.match(line)
+            not line
+            or line.lstrip().startswith("#")
+            or line == "---"
+            or FIELD.match(line)
+            or CONSTANT.match(line)
         ), line
 
 
