@@ -1,0 +1,201 @@
+"""What tumbling costs and how well it does, beside SciPy's integrator and MuJoCo in the same run.
+
+Costs are processor time of this thread, so that a busy machine matters less. Errors are against the tests'
+reference of 50 digits, which shares nothing with the package.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import itertools
+import math
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from contact_dynamics.first_contact import first_contact
+from contact_dynamics.flips import next_flips
+from contact_dynamics.poinsot import poinsot
+from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.tumbling import FreeMotion, Precision, free_motion, rotations_of_many
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from contact_dynamics.validation import FloatArray
+
+MOMENTS: Final = (1.0, 1.4, 1.9)
+UPRIGHT: Final = (0.0, 0.0, 0.0, 1.0)
+MOTIONS: Final = {
+    "about the major axis": (0.3, -0.5, 1.2),
+    "near the middle axis": (1e-3, 1.2, 1e-4),
+    "1 - m = 5e-16": (3e-9, 1.2, 3.6e-9),
+}
+SAMPLES: Final = (1, 100, 10_000, 1_000_000)
+LONG: Final = 100.0
+"""s, the later of the two times at which errors are compared."""
+
+REPEATS: Final = 5
+
+
+def run() -> None:
+    """Print costs, then cost and error of 1 kHz trajectories beside the peers."""
+    _costs()
+    _errors_far_away()
+    _peers()
+
+
+def _best(action: Callable[[], object], calls: int = 1) -> float:
+    """Return the seconds that one call takes, at best."""
+    best = math.inf
+    for _ in range(REPEATS):
+        start = time.thread_time()
+        for _ in range(calls):
+            action()
+        best = min(best, (time.thread_time() - start) / calls)
+    return best
+
+
+def _motion(w: tuple[float, ...], precision: Precision = Precision.EXTENDED) -> FreeMotion:
+    body = MassProperties(mass=1.0, I_B=np.diag(MOMENTS))
+    state = BodyState(p_WB_W=(0.0, 0.0, 1.5), q_WB=UPRIGHT, v_WB_W=(1.0, 0.0, 2.0), w_WB_W=w)
+    return free_motion(body, state, precision=precision)
+
+
+def _costs() -> None:
+    print("Set-up and single questions, us (targets: set-up 1000 and 100 in doubles, one time 10)")
+    for name, w in MOTIONS.items():
+        motion = _motion(w)
+        costs = {
+            "set-up": _best(lambda m=motion: free_motion(m.body, m.state), 50),
+            "in doubles": _best(
+                lambda m=motion: free_motion(m.body, m.state, precision=Precision.DOUBLE), 50
+            ),
+            "one time": _best(lambda m=motion: m.sample(3.3), 1000),
+            "as BodyState": _best(lambda m=motion: m.state_at(3.3), 200),
+            "Poinsot": _best(lambda m=motion: poinsot(m), 50),
+            "3 flips": _best(lambda m=motion: next_flips(m, 3), 50),
+            "cube to floor": _best(lambda m=motion: _landing(m), 20),
+        }
+        print(f"  {name:>22}  " + "  ".join(f"{text} {1e6 * cost:.1f}" for text, cost in costs.items()))
+    print("\nTrajectories, us for n samples of position, quaternion and velocities (target: 0.2 s for 1e6)")
+    for name, w in MOTIONS.items():
+        motion = _motion(w)
+        row = []
+        for n in SAMPLES:
+            times = np.linspace(0.0, 1000.0, n)
+            row.append(f"n = {n} {1e6 * _best(lambda m=motion, t=times: m.at(t), max(1, 3000 // n)):.0f}")
+        print(f"  {name:>22}  " + "  ".join(row))
+    w = np.random.default_rng(0).normal(size=(100_000, 3))
+    seconds = _best(lambda: rotations_of_many(MOMENTS, w, 10.0)) / len(w)
+    print(f"\nMany bodies, one time each, set-up included: {1e6 * seconds:.2f} us a body (target: 3)")
+
+
+def _landing(motion: FreeMotion) -> object:
+    cube = 0.05 * np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
+    return first_contact(motion, cube, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), horizon=1.0)
+
+
+def _errors_far_away() -> None:
+    print("\nErrors of attitude, rad, after so many revolutions (target: 5e-15)")
+    for name, w in MOTIONS.items():
+        motion = _motion(w)
+        truth = _reference().ExactMotion(np.diag(MOMENTS).tolist(), UPRIGHT, w)
+        row = []
+        for revolutions in (1e0, 1e3, 1e6, 1e9, 1e12):
+            t = 2.0 * math.pi / 1.2 * revolutions
+            row.append(f"{revolutions:.0e}: {truth.errors(t, motion.sample(t).q_WB)[0]:.1e}")
+        print(f"  {name:>22}  " + "  ".join(row))
+
+
+def _reference() -> Any:
+    path = Path(__file__).parents[1] / "test" / "oracles" / "tumbling_exact.py"
+    spec = importlib.util.spec_from_file_location("tumbling_exact", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def _peers() -> None:
+    print(f"\nAt 1 kHz, set-up included: ms a simulated second; errors, rad, after 10 s and {LONG:.0f} s")
+    for name, w in MOTIONS.items():
+        print(f"  {name}")
+        truth = _reference().ExactMotion(np.diag(MOMENTS).tolist(), UPRIGHT, w)
+        ours = 0.0
+        for method, simulate in _methods().items():
+            attitudes = {}
+            for seconds in (10.0, LONG):
+                start = time.thread_time()
+                attitudes[seconds] = simulate(w, seconds)
+                cost = (time.thread_time() - start) / seconds
+            ours = ours or cost
+            errors = [truth.errors(seconds, q)[0] for seconds, q in attitudes.items()]
+            print(
+                f"    {method:>28} {1e3 * cost:9.3f} ms  {cost / ours:6.0f} x"
+                f"  {errors[0]:8.1e}  {errors[1]:8.1e}"
+            )
+
+
+def _methods() -> dict[str, Callable[[tuple[float, ...], float], FloatArray]]:
+    """Return functions from angular velocity and time to the attitude then, by way of all samples at 1 kHz."""
+    methods: dict[str, Callable[[tuple[float, ...], float], FloatArray]] = {"closed form": _closed_form}
+    for tolerance in (1e-6, 1e-9, 1e-12):
+        methods[f"SciPy DOP853, rtol {tolerance:.0e}"] = lambda w, seconds, rtol=tolerance: _dop853(
+            w, seconds, rtol
+        )
+    if importlib.util.find_spec("mujoco"):
+        for integrator in ("RK4", "implicitfast"):
+            methods[f"MuJoCo {integrator}, 1 ms"] = lambda w, seconds, name=integrator: _mujoco(
+                w, seconds, name
+            )
+    else:
+        print("  (MuJoCo is not installed)")
+    return methods
+
+
+def _closed_form(w: tuple[float, ...], seconds: float) -> FloatArray:
+    return _motion(w).at(np.linspace(0.0, seconds, round(1000 * seconds) + 1)).q_WB[-1]
+
+
+def _dop853(w: tuple[float, ...], seconds: float, rtol: float) -> FloatArray:
+    I1, I2, I3 = MOMENTS
+
+    def slope(_: float, y: FloatArray) -> list[float]:
+        qx, qy, qz, qw, w1, w2, w3 = y.tolist()
+        return [
+            0.5 * (qw * w1 + qy * w3 - qz * w2),
+            0.5 * (qw * w2 + qz * w1 - qx * w3),
+            0.5 * (qw * w3 + qx * w2 - qy * w1),
+            -0.5 * (qx * w1 + qy * w2 + qz * w3),
+            (I2 - I3) / I1 * w2 * w3,
+            (I3 - I1) / I2 * w3 * w1,
+            (I1 - I2) / I3 * w1 * w2,
+        ]
+
+    times = np.linspace(0.0, seconds, round(1000 * seconds) + 1)
+    begin = [*UPRIGHT, *w]
+    solution = solve_ivp(
+        slope, (0.0, seconds), begin, t_eval=times, method="DOP853", rtol=rtol, atol=1e-2 * rtol
+    )
+    q: FloatArray = solution.y[:4, -1]
+    return q
+
+
+def _mujoco(w: tuple[float, ...], seconds: float, integrator: str) -> FloatArray:
+    import mujoco
+
+    moments = " ".join(map(str, MOMENTS))
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><option timestep="0.001" integrator="{integrator}" gravity="0 0 0"/>'
+        f'<worldbody><body><freejoint/><inertial pos="0 0 0" mass="1" diaginertia="{moments}"/></body></worldbody></mujoco>'
+    )
+    data = mujoco.MjData(model)
+    data.qvel[3:] = w
+    mujoco.mj_step(model, data, nstep=round(1000 * seconds))
+    q: FloatArray = np.roll(data.qpos[3:7], -1)  # w x y z there
+    return q
