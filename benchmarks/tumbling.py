@@ -142,7 +142,7 @@ def _peers() -> None:
 
 
 def _methods() -> dict[str, Callable[[tuple[float, ...], float], FloatArray]]:
-    """Return functions from angular velocity and time to the attitude then, by way of all samples at 1 kHz."""
+    """Return functions from angular velocity and time to the attitude then, by all samples at 1 kHz."""
     methods: dict[str, Callable[[tuple[float, ...], float], FloatArray]] = {"closed form": _closed_form}
     for tolerance in (1e-6, 1e-9, 1e-12):
         methods[f"SciPy DOP853, rtol {tolerance:.0e}"] = lambda w, seconds, rtol=tolerance: _dop853(
@@ -192,7 +192,8 @@ def _mujoco(w: tuple[float, ...], seconds: float, integrator: str) -> FloatArray
     moments = " ".join(map(str, MOMENTS))
     model = mujoco.MjModel.from_xml_string(
         f'<mujoco><option timestep="0.001" integrator="{integrator}" gravity="0 0 0"/>'
-        f'<worldbody><body><freejoint/><inertial pos="0 0 0" mass="1" diaginertia="{moments}"/></body></worldbody></mujoco>'
+        f'<worldbody><body><freejoint/><inertial pos="0 0 0" mass="1" diaginertia="{moments}"/>'
+        "</body></worldbody></mujoco>"
     )
     data = mujoco.MjData(model)
     data.qvel[3:] = w
