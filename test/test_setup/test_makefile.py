@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import time
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
@@ -50,8 +51,13 @@ class Checkout:
         self.write("setup/make_venv.sh", MAKE_VENV).chmod(0o755)
         self.write("setup/build_interfaces.sh", f"#!/bin/sh\necho {BUILD} >>calls").chmod(0o755)
         # As in a checkout that has lain for a while: nothing is newer than what make is going to make.
-        for path in folder.rglob("*"):
-            os.utime(path, (time.time() - 100, time.time() - 100))
+        self.age(folder.rglob("*"), seconds=100)
+
+    def age(self, paths: Iterable[Path], *, seconds: float) -> None:
+        """Make files older, all to one time."""
+        then = time.time() - seconds
+        for path in paths:
+            os.utime(path, (then, then))
 
     def write(self, name: str, text: str = "") -> Path:
         """Write one file of the checkout."""
@@ -82,6 +88,8 @@ def checkout(tmp_path: Path) -> Checkout:
     """A checkout in which `make setup` was run."""
     made = Checkout(tmp_path)
     assert len(made.make("setup")) == 3
+    # What a test changes is then newer by more than a clock tick.
+    made.age((tmp_path / ".venv" / ".made").iterdir(), seconds=50)
     return made
 
 

@@ -133,6 +133,7 @@ def test_ros2_run_finds_an_executable_for_each_verb() -> None:
 def test_an_executable_is_the_verb_of_its_name(name: str) -> None:
     answer = subprocess.run(
         [sys.executable, ROOT / "executables" / name, "--help"],
+        env=os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])},
         capture_output=True,
         text=True,
         check=False,
