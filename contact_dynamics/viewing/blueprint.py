@@ -35,10 +35,13 @@ LOWEST_DISTANCE: Final = 0.5
 NO_TRAVEL: Final = 1e-3
 """m. A path that leads no farther, seen from above, has no sides to choose between."""
 
+STRAIGHT: Final = 0.01
+"""Relative to how far a path leads: one that bulges by less is straight, and is looked at from its right."""
+
 WINDOW_S: Final = 10.0
 """s. How long trails and earlier predictions stay in view, and how far back the curves go."""
 
-_DISTANCE: Final = 1.05  # of the eye, relative to the diagonal of what it shows
+_DISTANCE: Final = 1.0  # of the eye, relative to the diagonal of what it shows
 _ELEVATION: Final = 0.33  # of the eye above what it looks at, relative to its horizontal distance
 
 
@@ -51,17 +54,21 @@ class Eye:
     up_W: FloatArray  # (3,), unit, world axes
 
 
-def eye_on(points_W: FloatArray, *, up_W: FloatArray) -> Eye:
-    """Return an eye that sees all points, (n, 3), m, world, of a path: across it, from where it bulges to."""
+def eye_on(points_W: FloatArray, *, up_W: FloatArray, margin: float) -> Eye:
+    """Return an eye that sees a path, (n, 3), m, world, and ``margin``, m, about it.
+
+    It looks across the path, from the side that the path bulges to.
+    """
     low, high = points_W.min(axis=0), points_W.max(axis=0)
     target = 0.5 * (low + high)
     level = points_W - np.outer(points_W @ up_W, up_W)
     travel = level[-1] - level[0]
     side = np.cross(travel, up_W) if float(np.linalg.norm(travel)) > NO_TRAVEL else -tangents(up_W)[1]
     side = side / np.linalg.norm(side)
-    if (level.mean(axis=0) - 0.5 * (level[0] + level[-1])) @ side < 0.0:
+    bulge = float((level.mean(axis=0) - 0.5 * (level[0] + level[-1])) @ side)
+    if bulge < -STRAIGHT * float(np.linalg.norm(travel)):
         side = -side
-    distance = max(LOWEST_DISTANCE, _DISTANCE * float(np.linalg.norm(high - low)))
+    distance = max(LOWEST_DISTANCE, _DISTANCE * float(np.linalg.norm(high - low + margin)))
     return Eye(position_W=target + distance * (side + _ELEVATION * up_W), target_W=target, up_W=up_W)
 
 

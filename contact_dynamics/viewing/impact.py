@@ -69,26 +69,27 @@ class _Arrows:
         """Return the arrows, the longest of which suits a body of that size, m."""
         return rr.Arrows3D(
             origins=self.origins,
-            vectors=self._scaled(size),
+            vectors=self.tips(size) - self.origins,
             colors=self._colors(),
             radii=_ARROW_WIDTH * size,
         )
 
-    def labels(self, size: float) -> rr.Points3D:
-        """Return how much each stands for, at its tip."""
+    def labels(self, places: FloatArray) -> rr.Points3D:
+        """Return how much each stands for, at places, (n, 3), m, world."""
         lengths = np.linalg.norm(self.vectors, axis=1)
         return rr.Points3D(
-            self.origins + self._scaled(size),
+            places,
             colors=self._colors(),
             radii=0.0,
             labels=[f"{length:.3g} {self.unit}" for length in lengths.tolist()],
             show_labels=True,
         )
 
-    def _scaled(self, size: float) -> FloatArray:
+    def tips(self, size: float) -> FloatArray:
+        """Return where the arrows end, (n, 3), m, world, for a body of that size, m."""
         longest = float(np.linalg.norm(self.vectors, axis=1).max(initial=0.0))
-        scaled: FloatArray = self.vectors * (ARROW_LENGTH * size / longest if longest > 0.0 else 0.0)
-        return scaled
+        scale = ARROW_LENGTH * size / longest if longest > 0.0 else 0.0
+        return self.origins + self.vectors * scale
 
     def _colors(self) -> NDArray[np.uint8]:
         return np.array(self.colors, dtype=np.uint8).reshape(-1, 4)
@@ -111,9 +112,10 @@ def draw_impact(recording: rr.RecordingStream, body_name: str, shape: Shape, pic
         unit="m/s",
         colors=(palette.BEFORE_IMPACT, palette.AFTER_IMPACT),
     )
-    for name, of_one_unit in (("impulse", impulses), ("velocity", velocities)):
-        recording.log(f"{path}/{name}", of_one_unit.drawn(size))
-        recording.log(f"{path}/{name}_label", of_one_unit.labels(size))
+    recording.log(f"{path}/impulse", impulses.drawn(size))
+    recording.log(f"{path}/impulse_label", impulses.labels(impulses.origins))
+    recording.log(f"{path}/velocity", velocities.drawn(size))
+    recording.log(f"{path}/velocity_label", velocities.labels(velocities.tips(size)))
     height = CONE_HEIGHT * size
     width = 0.5 * _ARROW_WIDTH * size
     arrows = rr.Arrows3D(origins=points, vectors=normals * height, colors=palette.NORMAL, radii=width)

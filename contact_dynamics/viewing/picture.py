@@ -83,8 +83,9 @@ class Picture:
         set_time(self._recording, stamp_ns)
         draw_trajectory(self._recording, body_name, self._shape(body_name), trajectory)
         self._predictions[body_name] = _Prediction(begin_ns=stamp_ns, trajectory=trajectory)
-        if len(trajectory) > 0:
-            self._frame(trajectory.p_WB_W)
+        if len(trajectory) > 0 and not self._framed:
+            self._framed = True
+            self._look_at(trajectory.p_WB_W)  # later ones leave the view to whoever looks
 
     def show_impact(self, body_name: str, impact: ImpactPicture, *, stamp_ns: int) -> None:
         """Draw a predicted impact in the scene and in impulse space."""
@@ -134,15 +135,11 @@ class Picture:
             draw_body(self._recording, body_name, self._shapes[body_name])
         return self._shapes[body_name]
 
-    def _frame(self, points_W: FloatArray) -> None:
-        """Look at the first trajectory, the ground below it; later ones leave the view to whoever looks."""
-        if not self._framed:
-            self._framed = True
-            self._look_at(points_W)
-
     def _look_at(self, points_W: FloatArray) -> None:
+        """Look at a path, and put the ground below it."""
         center = 0.5 * (points_W.min(axis=0) + points_W.max(axis=0))
         for surface in self._world.surfaces:
             draw_surface(self._recording, surface, center_W=center, side=self._surface_side)
-        eye = eye_on(points_W, up_W=self._up_W)
+        margin = max((shape.size for shape in self._shapes.values()), default=0.0)
+        eye = eye_on(points_W, up_W=self._up_W, margin=margin)
         self._recording.send_blueprint(make_blueprint(list(self._shapes), eye=eye))
