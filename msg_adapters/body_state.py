@@ -6,10 +6,13 @@ world's axes.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.errors import NotSupportedError
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body import BodyState, rotation_matrix
+from contact_dynamics.uncertainty import check_covariance
 from contact_dynamics.validation import check_unit
 from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 from msg_adapters.frames import check_frame, origin_of_published_frame
@@ -19,6 +22,8 @@ from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
+_COVARIANCE_LENGTH: Final = 144
+
 
 def body_state_from_msg(msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArray) -> BodyState:
     """Return the state of the body whose centre of mass is at ``p_FB_F``, (3,), m, in its published frame.
@@ -26,12 +31,8 @@ def body_state_from_msg(msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArr
     Raises:
         FrameMismatchError: `header.frame_id` is neither empty nor the world frame.
         InvalidFieldError: a number is not finite, or the quaternion is not unit.
-        NotSupportedError: the state has a covariance, which nothing uses yet.
     """
     check_frame("state.header.frame_id", msg.header.frame_id or world_frame, world_frame)
-    if len(msg.covariance) > 0:
-        message = "state.covariance: found numbers, allowed is none: covariances are not used in this version"
-        raise NotSupportedError(message)
     q_WB = check_unit("state.pose.orientation", quaternion_from_msg(msg.pose.orientation), 4)
     return BodyState(
         p_WB_W=vector_from_msg(msg.pose.position) + rotation_matrix(q_WB) @ p_FB_F,
@@ -53,3 +54,18 @@ def body_state_to_msg(
     msg.linear_velocity = vector_to_msg(state.v_WB_W)
     msg.angular_velocity = vector_to_msg(state.w_WB_W)
     return msg
+
+
+def covariance_from_msg(msg: BodyStateMsg) -> FloatArray | None:
+    """Return the state's covariance, (12, 12), in the message's order, or None where it has none.
+
+    Raises:
+        InvalidFieldError: another length than 144; or as `contact_dynamics.uncertainty.check_covariance`.
+    """
+    if len(msg.covariance) == 0:
+        return None
+    if len(msg.covariance) != _COVARIANCE_LENGTH:
+        raise InvalidFieldError(
+            "state.covariance", f"{len(msg.covariance)} numbers", f"none or {_COVARIANCE_LENGTH}"
+        )
+    return check_covariance("state.covariance", np.array(msg.covariance).reshape(12, 12))

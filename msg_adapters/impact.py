@@ -16,7 +16,13 @@ from msg_adapters.contacts import flat
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from contact_dynamics.impact import OrderedOutcomes, PlanarImpact, SeveralImpact, SpatialImpact
+    from contact_dynamics.impact import (
+        ImpactDistribution,
+        OrderedOutcomes,
+        PlanarImpact,
+        SeveralImpact,
+        SpatialImpact,
+    )
     from contact_dynamics.planar import Vector2
     from contact_dynamics.plane_of_motion import PlanarProblem
     from contact_dynamics.rigid_body import BodyState, MassProperties
@@ -85,6 +91,13 @@ def write_orders(msg: ImpactMsg, outcomes: OrderedOutcomes) -> None:
     """Write the outcomes over the admissible orders into an impact."""
     msg.orders = [",".join(map(str, order)) for order in outcomes.orders]
     msg.order_velocities = flat(outcomes.velocities_W)
+
+
+def write_distribution(msg: ImpactMsg, distribution: ImpactDistribution) -> None:
+    """Write the covariance of the state after an impact, and the probability of each outcome, into it."""
+    msg.state_after.covariance = flat(distribution.covariance)
+    msg.outcome_probabilities = flat(distribution.probabilities)
+    msg.miss_probability = distribution.missed
 
 
 def _add_strikes(msg: ImpactMsg, impact: SeveralImpact) -> None:

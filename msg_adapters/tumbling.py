@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,8 +15,10 @@ from msg_adapters.stamps import stamp_to_msg
 
 if TYPE_CHECKING:
     from contact_dynamics.flips import Flips
+    from contact_dynamics.motion_fit import FitResult
     from contact_dynamics.poinsot import Poinsot
     from contact_dynamics.tumbling import Trajectory
+    from contact_dynamics.uncertainty import CarriedCovariance
     from contact_dynamics.validation import FloatArray
 
 
@@ -33,6 +35,20 @@ def trajectory_to_msg(
     msg.linear_velocities = flat(trajectory.v_WB_W)
     msg.angular_velocities = flat(trajectory.w_WB_W)
     return msg
+
+
+def write_covariances(msg: TrajectoryMsg, carried: CarriedCovariance) -> None:
+    """Write the covariances of its samples into a trajectory."""
+    msg.covariances = flat(carried.covariances)
+    msg.covariances_trusted = carried.trusted.tolist()
+
+
+def write_fit(response: Any, fit: FitResult | None) -> None:
+    """Write into a response which fit its state came from."""
+    if fit is not None:
+        response.fit_count = fit.count
+        response.fit_position_residual = fit.position_residual
+        response.fit_orientation_residual = fit.orientation_residual
 
 
 def poinsot_to_msg(picture: Poinsot, flips: Flips) -> PoinsotMsg:

@@ -6,21 +6,32 @@ import math
 from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.applied_wrench import ConstantWrench, Drag, WrenchAxes
-from contact_dynamics.errors import InvalidFieldError, NotSupportedError
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLargeError
 from contact_dynamics.flips import next_flips
 from contact_dynamics.forced_motion import ForcedMotion, motion_of
 from contact_dynamics.nodes.sampling import times_of
-from contact_dynamics.nodes.subject import Knowledge, gravity_of, subject_of
+from contact_dynamics.nodes.subject import Knowledge, Subject, covariance_of, gravity_of, subject_of
 from contact_dynamics.poinsot import poinsot
+from contact_dynamics.tumbling import FreeMotion
+from contact_dynamics.uncertainty import CarriedCovariance, covariance_along
 from contact_dynamics.validation import check_array
 from msg_adapters.geometry import point_to_msg, vector_from_msg, vector_to_msg
-from msg_adapters.tumbling import poinsot_to_msg, torque_acts, trajectory_to_msg
+from msg_adapters.tumbling import (
+    poinsot_to_msg,
+    torque_acts,
+    trajectory_to_msg,
+    write_covariances,
+    write_fit,
+)
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 FLIPS: Final = 3
 """How many of the next flips are told."""
+
+MOST_COVARIANCES: Final = 2000
+"""Most samples with covariances in one answer, for the same reason as `sampling.MOST_SAMPLES`."""
 
 MOST_INTEGRATED_TURNS: Final = 100.0
 """Longest motion under torque or drag in one answer, in turns at the present rate: 1 or 2 s of computing,
@@ -29,7 +40,6 @@ during which nobody else is answered."""
 
 def predict_tumbling(request: Any, response: Any, knowledge: Knowledge) -> None:
     """Answer one request, or raise a `ContactDynamicsError` that says what is wrong with it."""
-    _refuse_what_is_not_answered_yet(request)
     subject = subject_of(request, knowledge)
     motion, method = motion_of(
         subject.body.mass_properties,
@@ -48,13 +58,17 @@ def predict_tumbling(request: Any, response: Any, knowledge: Knowledge) -> None:
         _check_span(times, subject.state.w_WB_W)
         response.poinsot = torque_acts()
     else:
-        response.poinsot = poinsot_to_msg(poinsot(motion), next_flips(motion, FLIPS))
+        flips = next_flips(motion, FLIPS, covariance=subject.covariance)
+        response.poinsot = poinsot_to_msg(poinsot(motion), flips)
     response.trajectory = trajectory_to_msg(
         motion.at(times),
         stamp_ns=subject.state.stamp_ns,
         world_frame=subject.world_frame,
         p_FB_F=subject.body.p_FB_F,
     )
+    if request.want_covariance:
+        write_covariances(response.trajectory, _covariances(subject, motion, times))
+    write_fit(response, subject.fit)
     response.method = int(method)
     response.event = response.NONE if event is None else event.kind
     response.event_time = math.nan
@@ -66,11 +80,12 @@ def predict_tumbling(request: Any, response: Any, knowledge: Knowledge) -> None:
     response.state = subject.state_to_msg(subject.state)
 
 
-def _refuse_what_is_not_answered_yet(request: Any) -> None:
-    if request.fit_window != 0.0:
-        raise NotSupportedError(f"fit_window: found {request.fit_window}, allowed is zero in this version")
-    if request.want_covariance:
-        raise NotSupportedError("want_covariance: found true, allowed is false in this version")
+def _covariances(subject: Subject, motion: FreeMotion | ForcedMotion, times: FloatArray) -> CarriedCovariance:
+    if isinstance(motion, ForcedMotion):
+        raise NotSupportedError("want_covariance: found true with torque or drag, allowed is false yet")
+    if len(times) > MOST_COVARIANCES:
+        raise TooLargeError("times", f"{len(times)} samples with covariances", f"at most {MOST_COVARIANCES}")
+    return covariance_along(motion, covariance_of(subject), times)
 
 
 def _wrench_of(request: Any) -> ConstantWrench:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right, insort
+from bisect import bisect_left, bisect_right, insort
 from typing import TYPE_CHECKING
 
 from contact_dynamics.errors import NoStateError, StaleStateError
@@ -46,6 +46,13 @@ class StateStore:
             message = f"state of {body_name!r}: none was published yet"
             raise NoStateError(message)
         return self._fresh(body_name, states[-1], now_ns)
+
+    def window(self, body_name: str, newest: BodyState, seconds: float) -> list[BodyState]:
+        """Return the states of the last ``seconds`` up to ``newest``, in order of time, one a stamp."""
+        states = self._states.get(body_name, [])
+        first = bisect_left(states, newest.stamp_ns - round(seconds * _NS_PER_S), key=_stamp)
+        last = bisect_right(states, newest.stamp_ns, key=_stamp)
+        return list({state.stamp_ns: state for state in states[first:last]}.values())
 
     def at(self, body_name: str, stamp_ns: int) -> BodyState:
         """Return the newest state with at most that stamp.

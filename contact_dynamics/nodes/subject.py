@@ -9,10 +9,11 @@ import numpy as np
 
 from contact_dynamics.contact_geometry import find_contacts
 from contact_dynamics.errors import InvalidFieldError, NoContactError, TooLargeError
+from contact_dynamics.motion_fit import FitResult, fit_free_motion
 from contact_dynamics.plane_of_motion import PlanarProblem, PlaneOfMotion, best_plane, project
 from contact_dynamics.validation import check_not_negative
 from contact_dynamics.world import Body
-from msg_adapters.body_state import body_state_from_msg, body_state_to_msg
+from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, covariance_from_msg
 from msg_adapters.contacts import contacts_from_msg
 from msg_adapters.frames import (
     origin_of_published_frame,
@@ -54,6 +55,8 @@ class Subject:
     body: Body
     state: BodyState
     world_frame: str
+    covariance: FloatArray | None = None  # (12, 12), of the state; None: not known
+    fit: FitResult | None = None  # where the state is a fit to several
 
     def state_to_msg(self, state: BodyState) -> BodyStateMsg:
         """Return a state of this body as a message."""
@@ -73,7 +76,17 @@ def subject_of(request: Any, knowledge: Knowledge) -> Subject:
             "state_source", request.state_source, "STATE_PUBLISHED (0) or STATE_EXPLICIT (1)"
         )
     explicit = request.state if request.state_source == request.STATE_EXPLICIT else None
-    return _subject(request.body_name, request.inertia, explicit, request.stamp, knowledge)
+    window = check_not_negative("fit_window", getattr(request, "fit_window", 0.0))
+    if window > 0.0 and explicit is not None:
+        raise InvalidFieldError("fit_window", window, "0 for an explicit state: published states are fitted")
+    return _subject(
+        request.body_name,
+        request.inertia,
+        knowledge,
+        explicit=explicit,
+        stamp=request.stamp,
+        window=window,
+    )
 
 
 def other_subject_of(request: Any, knowledge: Knowledge) -> Subject | None:
@@ -85,24 +98,53 @@ def other_subject_of(request: Any, knowledge: Knowledge) -> Subject | None:
     explicit = request.other_state[0] if request.other_state else None
     if not request.other_body_name and request.other_inertia.m == 0.0 and explicit is None:
         return None
-    return _subject(request.other_body_name, request.other_inertia, explicit, request.stamp, knowledge)
+    return _subject(
+        request.other_body_name, request.other_inertia, knowledge, explicit=explicit, stamp=request.stamp
+    )
+
+
+def covariance_of(subject: Subject) -> FloatArray:
+    """Return the covariance of a subject's state, (12, 12); without one raise `InvalidFieldError`."""
+    if subject.covariance is None:
+        raise InvalidFieldError(
+            "state.covariance",
+            "none",
+            "144 numbers of an explicit state, or a fit_window",
+        )
+    return subject.covariance
 
 
 def _subject(
-    name: str, inertia: Inertia, explicit: BodyStateMsg | None, stamp: Time, knowledge: Knowledge
+    name: str,
+    inertia: Inertia,
+    knowledge: Knowledge,
+    *,
+    explicit: BodyStateMsg | None,
+    stamp: Time,
+    window: float = 0.0,
 ) -> Subject:
     parameters = knowledge.parameters
     body = _body_of(name, inertia, knowledge)
     if explicit is not None:
-        state = body_state_from_msg(explicit, world_frame=parameters.world_frame, p_FB_F=body.p_FB_F)
-    else:
-        if not name:
-            raise InvalidFieldError("body_name", name, "the name of a configured body, or an explicit state")
-        state = _published_state(name, stamp, knowledge)
-        configured = parameters.world.body(name)
-        if body is not configured:
-            state = _carried_over(state, configured, body)
-    return Subject(body=body, state=state, world_frame=parameters.world_frame)
+        return Subject(
+            body=body,
+            state=body_state_from_msg(explicit, world_frame=parameters.world_frame, p_FB_F=body.p_FB_F),
+            world_frame=parameters.world_frame,
+            covariance=covariance_from_msg(explicit),
+        )
+    if not name:
+        raise InvalidFieldError("body_name", name, "the name of a configured body, or an explicit state")
+    newest = _published_state(name, stamp, knowledge)
+    states = knowledge.states.window(name, newest, window) if window > 0.0 else [newest]
+    configured = parameters.world.body(name)
+    if body is not configured:
+        states = [_carried_over(state, configured, body) for state in states]
+    if window == 0.0:
+        return Subject(body=body, state=states[-1], world_frame=parameters.world_frame)
+    fit = fit_free_motion(body.mass_properties, states, gravity_W=parameters.world.gravity_W)
+    return Subject(
+        body=body, state=fit.state, world_frame=parameters.world_frame, covariance=fit.covariance, fit=fit
+    )
 
 
 def contacts_of(request: Any, subject: Subject, knowledge: Knowledge) -> ContactSet:

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from nav_msgs.msg import Odometry
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.errors import FrameMismatchError, InvalidFieldError, NotSupportedError
+from contact_dynamics.errors import FrameMismatchError, InvalidFieldError
 from contact_dynamics.rigid_body import BodyState
 from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
-from msg_adapters.body_state import body_state_from_msg, body_state_to_msg
+from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, covariance_from_msg
 from msg_adapters.odometry import body_state_from_odometry, odometry_from_body_state
 from msg_adapters.pose_twist import body_state_from_pose_twist, pose_twist_from_body_state
 
@@ -143,7 +143,12 @@ def test_a_quaternion_that_is_not_unit_is_refused() -> None:
         body_state_from_msg(msg, world_frame="world", p_FB_F=np.zeros(3))
 
 
-def test_a_covariance_is_refused_rather_than_ignored() -> None:
-    msg = BodyStateMsg(covariance=[0.0] * 144)
-    with pytest.raises(NotSupportedError, match=r"state\.covariance"):
-        body_state_from_msg(msg, world_frame="world", p_FB_F=np.zeros(3))
+def test_a_covariance_is_read_whole_or_refused() -> None:
+    assert covariance_from_msg(BodyStateMsg()) is None
+    matrix = np.diag(np.arange(12.0))
+    found = covariance_from_msg(BodyStateMsg(covariance=matrix.ravel().tolist()))
+    np.testing.assert_array_equal(found, matrix)
+    with pytest.raises(InvalidFieldError, match=r"covariance: found 36 numbers, allowed is none or 144"):
+        covariance_from_msg(BodyStateMsg(covariance=[0.0] * 36))
+    with pytest.raises(InvalidFieldError, match=r"state\.covariance: found variances"):
+        covariance_from_msg(BodyStateMsg(covariance=(-matrix).ravel().tolist()))

@@ -1,0 +1,111 @@
+"""Uncertain and noisy states over the services: covariances carried along, and fits to what was published."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from nav_msgs.msg import Odometry
+from rclpy.qos import QoSProfile
+
+from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
+from running_server import Client, server_and_client
+
+G = 9.80665
+RATE = 100.0
+COVARIANCE = np.diag([1e-6] * 3 + [1e-6] * 3 + [1e-4] * 3 + [1e-2] * 3)  # m, rad, m/s, rad/s, squared
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
+    with server_and_client(Path(tmp_path_factory.mktemp("log"))) as client:
+        yield client
+
+
+def test_a_ball_in_flight_spreads_by_its_velocity(client: Client) -> None:
+    """Without tumbling: var(p) = var(p0) + t^2 var(v), and the same of the orientation."""
+    request = PredictTumbling.Request(
+        state_source=PredictTumbling.Request.STATE_EXPLICIT, want_covariance=True
+    )
+    request.inertia.m = request.inertia.ixx = request.inertia.iyy = request.inertia.izz = 1.0
+    request.state.covariance = COVARIANCE.ravel().tolist()
+    request.times = [0.0, 0.5]
+    answer = client.ask(request)
+    assert answer.status == answer.OK, answer.message
+    carried = np.array(answer.trajectory.covariances).reshape(2, 12, 12)
+    np.testing.assert_allclose(carried[0], COVARIANCE, atol=1e-18)
+    np.testing.assert_allclose(carried[1].diagonal()[:3], 1e-6 + 0.25 * 1e-4, rtol=1e-9)
+    np.testing.assert_allclose(carried[1].diagonal()[3:6], 1e-6 + 0.25 * 1e-2, rtol=1e-9)
+    np.testing.assert_allclose(carried[1].diagonal()[6:], COVARIANCE.diagonal()[6:], rtol=1e-9)
+    assert list(answer.trajectory.covariances_trusted) == [True, True]
+
+
+def test_an_uncertain_landing_has_probabilities_that_sum_to_one(client: Client) -> None:
+    request = PredictImpact.Request(body_name="brick", state_source=PredictImpact.Request.STATE_EXPLICIT)
+    request.state.pose.position.z = 0.5
+    request.state.pose.orientation.y, request.state.pose.orientation.w = math.sin(0.3), math.cos(0.3)
+    request.state.linear_velocity.x = 0.5
+    request.state.angular_velocity.x = 3.0
+    request.state.covariance = COVARIANCE.ravel().tolist()
+    request.want_covariance = True
+    answer = client.ask(request)
+    assert answer.status == answer.OK, answer.message
+    impact = answer.impact
+    assert math.fsum(impact.outcome_probabilities) + impact.miss_probability == pytest.approx(1.0, abs=1e-12)
+    assert impact.outcome_probabilities[impact.outcome] > 0.0
+    after = np.array(impact.state_after.covariance).reshape(12, 12)
+    np.testing.assert_allclose(after, after.T, atol=1e-15)
+    assert np.linalg.eigvalsh(after).min() > -1e-12
+
+
+def test_a_fit_to_the_last_states_does_not_care_for_a_bad_velocity(client: Client) -> None:
+    """Exact poses of a free fall with spin about z, published with velocities that are all wrong."""
+    publisher = client.node.create_publisher(Odometry, "/brick/odometry", QoSProfile(depth=100))
+    client.spin_until(lambda: publisher.get_subscription_count() > 0)
+    begin_ns = client.node.get_clock().now().nanoseconds
+    spin, rise = 4.0, 2.0
+    count = 12
+    for i in range(count):
+        t = i / RATE
+        msg = Odometry()
+        stamp_ns = begin_ns + round(1e9 * t)
+        msg.header.stamp.sec, msg.header.stamp.nanosec = divmod(stamp_ns, 1_000_000_000)
+        msg.header.frame_id = "world"
+        msg.pose.pose.position.z = 1.0 + rise * t - 0.5 * G * t * t
+        msg.pose.pose.orientation.z = math.sin(0.5 * spin * t)
+        msg.pose.pose.orientation.w = math.cos(0.5 * spin * t)
+        msg.twist.twist.linear.x = 9.0
+        publisher.publish(msg)
+    last = (count - 1) / RATE
+    request = PredictTumbling.Request(body_name="brick", fit_window=1.0, times=[0.0], want_covariance=True)
+    request.stamp = msg.header.stamp
+    answers = []
+
+    def all_arrived() -> bool:
+        answers.append(client.ask(request))
+        return answers[-1].fit_count == count
+
+    client.spin_until(all_arrived)
+    answer = answers[-1]
+    assert answer.status == answer.OK, answer.message
+    velocity, rate = answer.state.linear_velocity, answer.state.angular_velocity
+    fitted = [velocity.x, velocity.y, velocity.z - (rise - G * last), rate.x, rate.y, rate.z - spin]
+    # Stamps are whole nanoseconds: 0.5 ns of 3 m/s over 0.1 s, and rounding of the fit, are some 1e-7.
+    np.testing.assert_allclose(fitted, 0.0, atol=1e-6)
+    assert answer.fit_position_residual < 1e-8
+    assert answer.fit_orientation_residual < 1e-8
+    assert len(answer.trajectory.covariances) == 144
+    raw = client.ask(PredictTumbling.Request(body_name="brick", times=[0.0], stamp=msg.header.stamp))
+    assert raw.state.linear_velocity.x != pytest.approx(0.0, abs=1.0)
+    assert raw.fit_count == 0
+
+
+def test_a_window_that_holds_too_little_is_refused(client: Client) -> None:
+    request = PredictTumbling.Request(body_name="brick", fit_window=1e-6, times=[0.0])
+    answer = client.ask(request)
+    assert answer.status in {answer.INVALID_FIELD, answer.STALE_STATE}
+    if answer.status == answer.INVALID_FIELD:
+        assert "fit window: found 1 states, allowed is at least 3" in answer.message
