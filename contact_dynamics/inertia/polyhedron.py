@@ -4,6 +4,9 @@ Each triangle spans a tetrahedron with the origin, its volume signed by the side
 over it, polynomials integrate in closed form from its corners (Tonon 2004; Eberly 2002, "Polyhedral mass
 properties"). The origin is put at a vertex mean, then at the centre of mass: a mesh far away loses no digits.
 
+Rounding leaves errors of some 1e-15, but for a needle of a times its thickness that lies askew to the axes: up
+to 1e-16 a^2 (measured for a = 1e3 and 1e6: 4e-13 and 4e-7 of the volume).
+
 Nothing is checked here: the surface must be closed and wound outwards.
 """
 
@@ -35,11 +38,8 @@ def polyhedron(p_FV_F: FloatArray, triangles: NDArray[np.int64]) -> Polyhedron:
     points = p_FV_F - origin
     volume, first, _ = _integrals(points, triangles)
     center = first / volume
-    volume, first, second = _integrals(points - center, triangles)
-    rest = first / volume  # what rounding left of the first moment
-    return Polyhedron(
-        volume=volume, center_F=origin + (center + rest), second=second - volume * np.outer(rest, rest)
-    )
+    volume, _, second = _integrals(points - center, triangles)
+    return Polyhedron(volume=volume, center_F=origin + center, second=second)
 
 
 def signed_volumes(points: FloatArray, triangles: NDArray[np.int64]) -> FloatArray:

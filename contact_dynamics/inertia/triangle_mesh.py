@@ -67,12 +67,11 @@ def convex_hull(
     if len(vertices) < 4:
         raise flat
     points = vertices - vertices.mean(axis=0)
-    # Linear maps keep a hull's facets. Qhull joins those that are nearly flat, so slim clouds are made round.
-    rounded, sizes, _ = np.linalg.svd(points, full_matrices=False)
-    if sizes[2] <= _EPSILON * len(vertices) * float(np.abs(vertices).max()):
+    thickness = float(np.linalg.svd(points, compute_uv=False)[2])
+    if thickness <= _EPSILON * len(vertices) * float(np.abs(vertices).max()):
         raise flat
     try:
-        triangles: NDArray[np.int64] = ConvexHull(rounded).simplices.astype(np.int64)
+        triangles: NDArray[np.int64] = ConvexHull(points).simplices.astype(np.int64)
     except QhullError:
         raise flat from None
     inward = signed_volumes(points, triangles) < 0.0  # their mean is inside
