@@ -346,7 +346,7 @@ def test_answers_of_a_server_are_drawn_by_a_process_beside_it(tmp_path: Path) ->
         answer = client.ask(asked)
         assert answer.status == answer.OK, answer.message
         # Events from before the two processes have found each other are lost: ask until one is drawn.
-        client.spin_until(lambda: client.ask(asked) and b"predicted/brick/path" in path.read_bytes())
+        client.spin_until(lambda: client.ask(asked) and b"brick/newest_end" in path.read_bytes())
     assert started.returncode == 0
     drawn = read_drawn(path)
     strip = drawn.array("/world/predicted/brick/path", "LineStrips3D:strips")[0]
