@@ -12,6 +12,7 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.linearised_motion import state_derivatives
 from contact_dynamics.rigid_body import BodyState, MassProperties, angular_momentum
 from contact_dynamics.tumbling import FreeMotion, free_motion
+from oracles.tumbling_draws import draw
 from tumbling.known_motions import MOTIONS, motion_of
 
 BOUNDED = sorted(set(MOTIONS) - {"about the middle axis", "separatrix", "its other branch"})
@@ -114,6 +115,31 @@ def test_volume_of_phase_space_is_kept(name: str) -> None:
     determinants = [np.linalg.det(body.inertia_in_world(state.R_WB)) for state in (first, last)]
     assert np.linalg.det(J) == pytest.approx(determinants[0] / determinants[1], rel=1e-7)
     assert angular_momentum(body, first) == pytest.approx(angular_momentum(body, last))
+
+
+def test_what_is_given_near_every_singular_end_is_right(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pieces of other lengths round otherwise: what they agree on is right, and the rest is NaN."""
+    rng, count, finite = np.random.default_rng(7), 0, 0
+    rows = np.r_[3:6, 9:12]
+    for _ in range(150):
+        drawn = draw(rng)
+        if np.linalg.cond(drawn.I_B) > 1e3:
+            continue  # thinner rods: less is claimed
+        count += 1
+        state = BodyState(p_WB_W=np.zeros(3), q_WB=drawn.q_WB, v_WB_W=np.zeros(3), w_WB_W=drawn.w_WB_W)
+        motion = free_motion(MassProperties(mass=1.0, I_B=drawn.I_B), state)
+        speed = np.linalg.norm(drawn.w_WB_W)
+        units = np.repeat([1.0, speed], [9, 3])  # angular velocities beside the body's own
+        answers = []
+        for piece in (0.5, 0.27):
+            monkeypatch.setattr("contact_dynamics.linearised_motion.PIECE", piece)
+            J = state_derivatives(motion, np.array([0.3, -2.0, 20.0, 500.0]) / speed)
+            answers.append((J / units[:, None] * units)[:, rows[:, None], rows])
+        given = np.isfinite(answers).all(axis=(0, 2, 3))
+        finite += given.sum()
+        assert (relative(answers[0][given], answers[1][given]) < 1e-2).all(), drawn
+    assert count > 100
+    assert finite > 0.8 * 4 * count
 
 
 def test_the_cost_does_not_grow_with_time() -> None:

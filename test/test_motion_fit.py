@@ -163,7 +163,7 @@ def test_without_a_known_noise_residuals_tell_it() -> None:
 
 @pytest.mark.parametrize("name", ["about the major axis", "a rod", "near the middle axis"])
 def test_it_predicts_better_than_the_newest_state(name: str) -> None:
-    """Published rates with five times the noise of what a fit makes of the poses."""
+    """Where a body will be 0.4 s on, from the fit and from the newest published state alone."""
     motion, ahead = motion_of(name), 0.4
     of_fit, of_newest = [], []
     for seed in range(20):
