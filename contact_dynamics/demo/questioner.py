@@ -19,7 +19,7 @@ from contact_dynamics.demo.toss_publisher import QOS, WORLD_FRAME, topic_of
 from contact_dynamics.demo.velocity_estimate import WINDOW
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.odometry import body_state_from_odometry
-from msg_adapters.stamps import NS_PER_S
+from msg_adapters.stamps import NS_PER_S, stamp_to_msg
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -63,6 +63,7 @@ class Questioner(Node):
         self._toss = toss
         self._epoch_ns: int | None = None
         self._now = 0.0
+        self._flying_since = 0.0  # s on the recording's clock, as predicted
         self._heard = time.monotonic()
         self._recent: deque[BodyState] = deque(maxlen=REST_FRAMES)
         self._executor = SingleThreadedExecutor()
@@ -102,7 +103,8 @@ class Questioner(Node):
                 self._ask_contact_mode()
             elif landing is not None and self._now >= landing - LAST_MOMENT:
                 self._ask_impact()
-                blind_until = landing + 1.5 * WINDOW
+                self._flying_since = landing + 0.5 * WINDOW
+                blind_until = self._flying_since + WINDOW
                 landing = None
             elif landing is None and self._now >= max(blind_until, WINDOW) and not self.modes:
                 landing = self._ask_landing()
@@ -110,6 +112,10 @@ class Questioner(Node):
                     blind_until = self._now + WINDOW
         if self.received and not self.modes:  # recordings may end as soon as the body does not move
             self._ask_contact_mode()
+
+    def _flight_seen(self) -> float:
+        """Return how long the body has been flying, s, less one frame, which may have touched."""
+        return max(0.0, self._now - self._flying_since - 1.0 / self._toss.rate)
 
     def _receive(self, msg: Odometry) -> None:
         state = body_state_from_odometry(msg, world_frame=WORLD_FRAME, p_FB_F=self._toss.body.p_FB_F)
@@ -134,7 +140,9 @@ class Questioner(Node):
         )
 
     def _ask_landing(self) -> float | None:
-        request = PredictTumbling.Request(body_name=self._toss.body.name, rate=self._toss.rate)
+        request = PredictTumbling.Request(
+            body_name=self._toss.body.name, rate=self._toss.rate, fit_window=self._flight_seen()
+        )
         request.sampling = request.UNTIL_CONTACT
         asked = self._ask(request)
         landing = self.seconds_of(asked.response.state.header.stamp) + float(asked.response.event_time)
@@ -144,7 +152,7 @@ class Questioner(Node):
         return landing
 
     def _ask_impact(self) -> None:
-        request = PredictImpact.Request(body_name=self._toss.body.name)
+        request = PredictImpact.Request(body_name=self._toss.body.name, fit_window=self._flight_seen())
         self.impacts.append(self._ask(request))
 
     def _ask_contact_mode(self) -> None:
@@ -156,6 +164,9 @@ class Questioner(Node):
         return (stamp.sec * NS_PER_S + stamp.nanosec - (self._epoch_ns or 0)) / NS_PER_S
 
     def _ask(self, request: Any) -> Asked:
+        request.stamp = stamp_to_msg(
+            self._recent[-1].stamp_ns
+        )  # of this state, however far the toss has gone
         client = next(
             self._askers[service] for service in self._askers if isinstance(request, service.Request)
         )

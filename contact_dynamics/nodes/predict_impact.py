@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     from contact_dynamics_interfaces.msg import Impact as ImpactMsg
 
 SAMPLES: Final = 200
-"""Drawn states of an uncertain impact: probabilities to 0.035, in some 0.1 s; nobody else is answered then."""
+"""Drawn states of an uncertain impact: probabilities to 0.035; some 0.1 s, in which nobody else is served."""
 
 _NO_WRENCH: Final = np.zeros(3)
 Law = TypeVar("Law", bound=Enum)
