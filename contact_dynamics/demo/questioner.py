@@ -166,7 +166,7 @@ class Questioner(Node):
     def _ask(self, request: Any) -> Asked:
         request.stamp = stamp_to_msg(
             self._recent[-1].stamp_ns
-        )  # of this state, however far the toss has gone
+        )  # however far the toss has gone
         client = next(
             self._askers[service] for service in self._askers if isinstance(request, service.Request)
         )
