@@ -32,6 +32,14 @@ CONTACT_MODE: Final = "Contact mode"
 MOST_LISTED: Final = 8
 """More refused modes than this are counted, not listed."""
 
+VERDICTS: Final = {
+    ModeVerdict.UNIQUE: "has one consistent mode",
+    ModeVerdict.INDETERMINATE: "has several consistent modes, and mechanics does not choose",
+    ModeVerdict.INCONSISTENT: "has no consistent mode: an impact without approach",
+    ModeVerdict.IMPACT: "approaches: no mode before the impact is resolved",
+}
+"""In words."""
+
 REGIMES: Final = {
     Poinsot.UNKNOWN: "a torque acts",
     Poinsot.AT_REST: "it does not rotate",
@@ -85,7 +93,7 @@ def show_impact(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns: 
     picture.show_impact(name, shown, stamp_ns=stamp_ns)
     outcome = ImpactOutcome(impact.outcome).name.replace("_", " ").lower()
     words = [
-        f"in {response.time_to_contact:.4g} s: {outcome}",
+        f"strikes in {response.time_to_contact:.4g} s: {outcome}",
         f"velocity ({numbers(state.v_WB_W)}) becomes ({numbers(after)}) m/s",
         f"impulse {np.linalg.norm(impulses.sum(axis=0)):.3g} N s",
         f"{impact.kinetic_energy_before - impact.kinetic_energy_after:.3g} J lost",
@@ -104,7 +112,8 @@ def show_contact_modes(picture: Picture, response: Any, *, p_FB_F: FloatArray, n
     forces = rows(response.modes[0].contact_forces) if modes else np.zeros((len(contacts), 3))
     shown = ContactModesPicture(contacts=contacts, modes=modes, forces_W=forces)
     picture.show_contact_modes(name, shown, stamp_ns=stamp_ns)
-    words = [f"{ModeVerdict(response.verdict).name.lower()}: {', '.join(modes) or 'no mode'}"]
+    verdict = VERDICTS[ModeVerdict(response.verdict)]
+    words = [f"{verdict}: {', '.join(modes)}" if modes else verdict]
     refused = response.refused_modes
     if refused:
         more = f" and {len(refused) - MOST_LISTED} more" if len(refused) > MOST_LISTED else ""
