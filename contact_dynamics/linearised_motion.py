@@ -19,8 +19,8 @@ coefficient with K^3 = -nu^2 K, and is in closed form. Motion that turns by less
 with dL as well, because e would grow without bounds.
 
 Accuracy, relative to the largest entry: 1e-13 for compact bodies; thin rods amplify rounding, to 1e-9 where
-moments are as 1 to 1000 and to some percent at 1 to 50 000. Near the middle axis neighbours part by a factor G
-before a flip and meet again after it, which leaves 1e-15 G^2 at the most: 1e-9 for 1e-3 rad from that axis.
+moments are as 1 to 1000 and to some percent at 1 to 50 000. Near the middle axis neighbours part by a factor
+G before a flip and meet again after it, which leaves 1e-15 G^2 at the most: 1e-9 for 1e-3 rad from that axis.
 
 Not covered: torque. The answer is NaN where G is beyond 1e6 or so and a flip has come, and where neighbours
 part so fast that no double holds it.
