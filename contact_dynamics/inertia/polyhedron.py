@@ -4,8 +4,8 @@ Each triangle spans a tetrahedron with the origin, its volume signed by the side
 over it, polynomials integrate in closed form from its corners (Tonon 2004; Eberly 2002, "Polyhedral mass
 properties"). The origin is put at a vertex mean, then at the centre of mass: a mesh far away loses no digits.
 
-Rounding leaves errors of some 1e-15, but for a needle of a times its thickness that lies askew to the axes: up
-to 1e-16 a^2 (measured for a = 1e3 and 1e6: 4e-13 and 4e-7 of the volume).
+Rounding leaves errors of some 1e-15, but for a needle of a times its thickness that lies askew to the axes:
+up to 1e-16 a^2 (measured for a = 1e3 and 1e6: 4e-13 and 4e-7 of the volume).
 
 Nothing is checked here: the surface must be closed and wound outwards.
 """
