@@ -3,8 +3,11 @@
 The table of contents, chapters in reading order; everything here is plain NumPy and knows no ROS.
 
 - Lecture 24, 25, rigid bodies: `MassProperties`, `BodyState`, momenta and energies (`rigid_body`).
+- Lecture 24, 25, mass properties from particles, shapes and meshes: `MassDistribution` (`inertia`).
 - Lecture 25, tumbling: `free_motion` and its `FreeMotion` (`tumbling`); Poinsot's picture of it is in
   `contact_dynamics.poinsot`.
+- Motion under wrenches and drag: `motion_of`. A state from several: `fit_free_motion`. Its covariance along
+  the way: `propagate_covariance`.
 - Where a flight ends: `first_contact`, `next_landing`, in a `World` of `Body` and `Surface`.
 - Contacts: `ContactSet` in space (`contact`), from geometry (`find_contacts`); `PlanarContact` and its kin in
   the plane (`planar`), reached from space by a `PlaneOfMotion`.
@@ -22,22 +25,29 @@ from contact_dynamics.contact_modes import (
     Refusal,
     RefusedMode,
     planar_contact_modes,
+    planar_mode_margins,
+    spatial_contact_modes,
 )
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.first_contact import FirstContact, first_contact
+from contact_dynamics.forced_motion import motion_of
 from contact_dynamics.impact import (
     ImpactOutcome,
     PlanarImpact,
     RestitutionLaw,
     SpatialImpact,
     planar_impact,
+    several_impact,
     spatial_impact,
 )
+from contact_dynamics.inertia import MassDistribution
 from contact_dynamics.landing import Landing, next_landing
+from contact_dynamics.motion_fit import fit_free_motion
 from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.plane_of_motion import PlanarProblem, PlaneOfMotion, best_plane, project
 from contact_dynamics.rigid_body import BodyState, MassProperties, angular_momentum, kinetic_energy, momentum
 from contact_dynamics.tumbling import FreeMotion, Regime, Trajectory, free_motion
+from contact_dynamics.uncertainty import propagate_covariance
 from contact_dynamics.world import Body, Surface, World, box_vertices
 
 __all__ = [
@@ -51,6 +61,7 @@ __all__ = [
     "FreeMotion",
     "ImpactOutcome",
     "Landing",
+    "MassDistribution",
     "MassProperties",
     "ModeVerdict",
     "PlanarBody",
@@ -73,12 +84,18 @@ __all__ = [
     "box_vertices",
     "find_contacts",
     "first_contact",
+    "fit_free_motion",
     "free_motion",
     "kinetic_energy",
     "momentum",
+    "motion_of",
     "next_landing",
     "planar_contact_modes",
     "planar_impact",
+    "planar_mode_margins",
     "project",
+    "propagate_covariance",
+    "several_impact",
+    "spatial_contact_modes",
     "spatial_impact",
 ]

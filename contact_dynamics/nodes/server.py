@@ -11,6 +11,7 @@ import time
 import traceback
 from typing import TYPE_CHECKING, Any
 
+from nav_msgs.msg import Path
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -28,6 +29,7 @@ from contact_dynamics.nodes.state_store import StateStore
 from contact_dynamics.nodes.state_subscriptions import STATE_QOS, subscribe_to_states
 from contact_dynamics.nodes.subject import Knowledge
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from msg_adapters.path import path_from_trajectory
 from msg_adapters.status import report_error
 
 if TYPE_CHECKING:
@@ -39,6 +41,9 @@ EVENT_QOS = QoSProfile(depth=1000)
 
 SERVICE_QOS = QoSProfile(depth=1000)
 """Of the services. With the usual depth of 10, replies get lost when several clients ask at once."""
+
+PATH_QOS = QoSProfile(depth=1)
+"""Of the newest predicted trajectory as a path: a picture, of which the last one matters."""
 
 _SERVICES = (
     (PredictContactMode, "PredictContactMode", "predict_contact_mode", predict_contact_mode),
@@ -81,6 +86,7 @@ class Server(Node):
             )
             for topic, type_name in types.items():
                 self._log.add_topic(topic, type_name, STATE_QOS)
+        self._path = self.create_publisher(Path, "~/predicted_path", PATH_QOS)
         for service in _SERVICES:
             self._serve(*service)
         self._log.start()
@@ -104,6 +110,8 @@ class Server(Node):
                 response = service_type.Response()
                 report_error(response, error)
             response.computation_time = time.perf_counter() - start
+            if service_type is PredictTumbling and response.status == response.OK:
+                self._publish_path(response.trajectory)
             return response
 
         service = self.create_service(service_type, f"~/{name}", handle, qos_profile=SERVICE_QOS)
@@ -113,6 +121,11 @@ class Server(Node):
         self.create_subscription(
             service_type.Event, events, lambda data: self._log.record(events, data), EVENT_QOS, raw=True
         )
+
+    def _publish_path(self, trajectory: Any) -> None:
+        """Publish the newest trajectory for RViz, if somebody listens."""
+        if self._path.get_subscription_count() > 0:
+            self._path.publish(path_from_trajectory(trajectory))
 
     def _run_description(self) -> dict[str, str]:
         names = sorted(self._parameters)

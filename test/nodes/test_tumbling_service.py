@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from nav_msgs.msg import Path as RosPath
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics_interfaces.msg import Poinsot
@@ -200,3 +201,26 @@ def test_the_longest_trajectory_arrives_whole(client: Client) -> None:
     assert len(answer.trajectory.orientations) == 4 * n
     norms = np.linalg.norm(np.array(answer.trajectory.orientations).reshape(-1, 4), axis=1)
     np.testing.assert_allclose(norms, 1.0, atol=1e-15)
+
+
+def test_a_path_for_rviz_is_published_while_somebody_listens(client: Client) -> None:
+    paths: list[RosPath] = []
+    topic = "/contact_dynamics/predicted_path"
+    subscription = client.node.create_subscription(RosPath, topic, paths.append, 1)
+    request = spinning(w=(0.0, 0.0, 2.0), moments=(0.1, 0.2, 0.25))
+    request.gravity = request.GRAVITY_NONE
+    request.state.linear_velocity.x = 1.0
+    request.sampling, request.rate, request.duration = request.AT_RATE, 1000.0, 1.0
+
+    def heard() -> bool:
+        client.ask(request)
+        return bool(paths)
+
+    client.spin_until(heard)
+    client.node.destroy_subscription(subscription)
+    path = paths[0]
+    assert path.header.frame_id == "world"
+    assert 2 < len(path.poses) <= 200
+    assert [path.poses[0].pose.position.x, path.poses[-1].pose.position.x] == [0.0, 1.0]
+    assert path.poses[-1].header.stamp.sec == 1
+    assert path.poses[-1].pose.orientation.z == pytest.approx(math.sin(1.0), abs=1e-14)

@@ -1,0 +1,34 @@
+"""Trajectories to `nav_msgs/Path`, which RViz draws."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import Path
+
+from msg_adapters.geometry import pose_to_msg
+from msg_adapters.stamps import ns_after, stamp_ns_from_msg, stamp_to_msg
+
+if TYPE_CHECKING:
+    from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
+
+MOST_POSES: Final = 200
+"""A pose costs some 0.1 ms as a nested message, and a drawn line needs no more of them."""
+
+
+def path_from_trajectory(trajectory: TrajectoryMsg) -> Path:
+    """Return the poses of a trajectory's message, first and last included, thinned out to `MOST_POSES`."""
+    count = len(trajectory.times)
+    chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_POSES)).round().astype(int)).tolist()
+    positions = np.array(trajectory.positions).reshape(-1, 3)
+    orientations = np.array(trajectory.orientations).reshape(-1, 4)
+    begin_ns = stamp_ns_from_msg(trajectory.header.stamp)
+    path = Path(header=trajectory.header)
+    for i in chosen:
+        pose = PoseStamped(pose=pose_to_msg(positions[i], orientations[i]))
+        pose.header.frame_id = trajectory.header.frame_id
+        pose.header.stamp = stamp_to_msg(ns_after(begin_ns, trajectory.times[i]))
+        path.poses.append(pose)
+    return path
