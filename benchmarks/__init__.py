@@ -1,0 +1,1 @@
+"""Speed and accuracy, with peers beside us: `python -m benchmarks`."""
