@@ -58,7 +58,9 @@ def noisy_covariance(w_deviation: float, angle_deviation: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", FLIPPING)
-@pytest.mark.parametrize(("w_deviation", "angle_deviation"), [(1e-5, 0.0), (0.0, 1e-5), (1e-4, 3e-5)])
+@pytest.mark.parametrize(
+    ("w_deviation", "angle_deviation"), [(1e-5, 0.0), (0.0, 1e-5), (3e-4, 1e-4), (3e-3, 0.0)]
+)
 def test_deviations_are_those_of_noisy_states(name: str, w_deviation: float, angle_deviation: float) -> None:
     motion = motion_of(name)
     flips = next_flips(motion, 2, covariance=noisy_covariance(w_deviation, angle_deviation))
@@ -75,8 +77,8 @@ def test_deviations_are_those_of_noisy_states(name: str, w_deviation: float, ang
             w_WB_W=state.w_WB_W + rng.normal(scale=w_deviation, size=3) + w_B_change,
         )
         samples.append(next_flips(free_motion(motion.body, other), 2).seconds)
-    # 400 samples know a deviation to 4 %; six sigma points of a logarithm know it to a fifth.
-    assert flips.deviations == pytest.approx(np.std(samples, axis=0), rel=0.25)
+    # 400 samples know the deviation of a logarithm, with its long tail, to some 10 %; 1000 to 6 %.
+    assert flips.deviations == pytest.approx(np.std(samples, axis=0), rel=0.3)
 
 
 def test_a_covariance_of_another_shape_is_refused() -> None:

@@ -45,19 +45,37 @@ def rotations_of_many(
     Raises:
         InvalidFieldError: an array of another shape, a number that is not finite, a moment that is not > 0.
     """
-    w = check_array("angular_velocities", w_P, (None, 3))
+    w, given = _checked(moments, w_P)
     n = len(w)
-    given = check_array("moments", moments, (3,) if np.ndim(moments) == 1 else (n, 3))
-    if not (given > 0.0).all():
-        raise InvalidFieldError("moments", float(given.min()), "numbers > 0")
     times = np.broadcast_to(check_array("times", seconds, () if np.ndim(seconds) == 0 else (n,)), (n,))
-    given = np.broadcast_to(given, (n, 3))
     q, w_then = np.empty((n, 4)), np.empty((n, 3))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # in rows of steady spin, set after
         for start in range(0, n, CHUNK):
             part = slice(start, start + CHUNK)
             _turn(given[part], w[part], times[part], q[part], w_then[part])
     return q, w_then
+
+
+def flips_of_many(moments: ArrayLike, w_P: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Return the time, s, of one flip of each body, and the time from flip to flip; (n,) each.
+
+    A flip is where the angular velocity has no component along the middle axis, whatever the rotation. Steady
+    spin has none: NaN. Arguments and errors are those of `rotations_of_many`.
+    """
+    w, given = _checked(moments, w_P)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # in rows of steady spin
+        r = _tumbles(given, w)
+        rate = np.where(r.steady, np.nan, r.z_rate)
+        return -r.z_offset / rate, np.divide(np.pi, np.abs(rate))
+
+
+def _checked(moments: ArrayLike, w_P: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Return the angular velocities and the moments, (n, 3) each."""
+    w = check_array("angular_velocities", w_P, (None, 3))
+    given = check_array("moments", moments, (3,) if np.ndim(moments) == 1 else (len(w), 3))
+    if not (given > 0.0).all():
+        raise InvalidFieldError("moments", float(given.min()), "numbers > 0")
+    return w, np.broadcast_to(given, w.shape)
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,23 +13,29 @@ import mpmath
 from mpmath import mpf
 
 DIGITS = 80
-NOTHING = mpf(10) ** (20 - DIGITS)
-"""Relative rounding that may be left of what is zero."""
+"""Unless more are asked for; 20 of them may be lost before what is left of a sum counts as zero."""
 
 
 class ExactMotion:
     """Torque-free rotation from ``q_WB`` (x, y, z, w, of any length) and ``w_WB_W`` at time 0."""
 
     def __init__(
-        self, I_B: Sequence[Sequence[float]], q_WB: Sequence[float], w_WB_W: Sequence[float]
+        self,
+        I_B: Sequence[Sequence[float]],
+        q_WB: Sequence[float],
+        w_WB_W: Sequence[float],
+        *,
+        digits: int = DIGITS,
     ) -> None:
-        with mpmath.workdps(DIGITS):
+        self.digits = digits
+        with mpmath.workdps(digits):
+            self.nothing = mpf(10) ** (20 - digits)
             self.R_W0 = rotation_matrix(q_WB)
             self.w_W = mpmath.matrix([mpf(x) for x in w_WB_W])
             moments, R_BP = _principal(I_B)
             w = list(R_BP.T * (self.R_W0.T * self.w_W))
             twist = sum(abs((moments[i] - moments[j]) * w[i] * w[j]) for i, j in ((0, 1), (1, 2), (2, 0)))
-            self.steady = twist <= NOTHING * sum(i * x**2 for i, x in zip(moments, w, strict=True))
+            self.steady = twist <= self.nothing * sum(i * x**2 for i, x in zip(moments, w, strict=True))
             if not self.steady:
                 self._begin(moments, R_BP, w)
 
@@ -54,7 +60,7 @@ class ExactMotion:
         self.c = mpmath.sqrt((L2 - self.T2 * I1) / (I3 * (I3 - I1))) * (1 if w[2] >= 0 else -1)
         self.rate = (I3 - I2) / I1 * self.b * self.c / self.a
         self.m = (L2 - self.T2 * I3) * (I1 - I2) / ((L2 - self.T2 * I1) * (I3 - I2))
-        if abs(sum(excess)) <= NOTHING * sum(abs(x) for x in excess):
+        if abs(sum(excess)) <= self.nothing * sum(abs(x) for x in excess):
             self.m = mpf(1)
         self.n = -self.m * (I3 * self.c / (I1 * self.a)) ** 2
         self.K = mpmath.ellipk(self.m)
@@ -64,7 +70,7 @@ class ExactMotion:
 
     def rotation(self, seconds: float) -> mpmath.matrix:
         """Return the attitude at a time as a rotation matrix, body to world."""
-        with mpmath.workdps(DIGITS):
+        with mpmath.workdps(self.digits):
             t = mpf(seconds)
             if self.steady:
                 return _turn(self.w_W * t) * self.R_W0
@@ -99,7 +105,7 @@ class ExactMotion:
     def errors(self, seconds: float, *answers: Sequence[float]) -> list[float]:
         """Return the angles, rad, by which quaternions (of any length) are off the attitude at a time."""
         R = self.rotation(seconds)
-        with mpmath.workdps(DIGITS):
+        with mpmath.workdps(self.digits):
             return [angle_between(R, rotation_matrix(q_WB)) for q_WB in answers]
 
 
