@@ -96,14 +96,13 @@ def _covariance_in_body(motion: FreeMotion, covariance: FloatArray) -> FloatArra
 
 
 def _deviations(motion: FreeMotion, spread: FloatArray, times: FloatArray) -> FloatArray:
-    """Return the deviations, (n,), s, of the flips nearest to ``times``, over angular velocities that spread so."""
+    """Return the deviations, (n,), s, of the flips nearest to ``times``, over angular velocities so spread."""
     frame = in_doubles(motion.frame)
     first, second = np.array(frame.axes_B[0]), np.array(frame.axes_B[1])
     R_BP = np.column_stack([first, second, np.cross(first, second)])
     variances, directions = np.linalg.eigh(spread)
-    steps = (
-        np.random.default_rng(0).normal(size=(DRAWS, 3)) * np.sqrt(np.maximum(variances, 0.0)) @ directions.T
-    )
+    draws = np.random.default_rng(0).normal(size=(DRAWS, 3))
+    steps = (draws * np.sqrt(np.maximum(variances, 0.0))) @ directions.T
     w_B = motion.state.R_WB.T @ motion.state.w_WB_W
     one, between = flips_of_many(frame.moments, np.vstack([w_B + steps, w_B - steps]) @ R_BP)
     nearest = one + between * np.rint((times[0] - one) / between)
