@@ -6,6 +6,7 @@ middleware does. Calls alternate between the two, so that a change of the machin
 
 from __future__ import annotations
 
+import contextlib
 import os
 import statistics
 import subprocess
@@ -17,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import rclpy
-from rclpy.executors import SingleThreadedExecutor
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
@@ -183,8 +184,9 @@ def _serve_empty() -> None:
         node.create_service(service, f"~/{name}", untouched, qos_profile=QOS)
     executor = EventsExecutor()  # the same as the server's
     executor.add_node(node)
-    while rclpy.ok():
-        executor.spin_once(timeout_sec=0.1)
+    with contextlib.suppress(ExternalShutdownException):
+        while rclpy.ok():
+            executor.spin_once(timeout_sec=0.1)
 
 
 if __name__ == "__main__" and sys.argv[1:] == ["empty"]:
