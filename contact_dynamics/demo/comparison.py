@@ -76,7 +76,8 @@ def print_table(toss: Toss, events: MeasuredEvents, questioner: Questioner) -> N
             print(f"  {row.quantity:32}{row.predicted:>27}{row.measured:>27}{row.difference:>16}")
     print(
         f"\nThe states that were published carry noise: {1e3 * toss.velocity_noise:.0f} mm/s and "
-        f"{toss.angular_velocity_noise:.2f} rad/s in each component of their velocities."
+        f"{toss.angular_velocity_noise:.2f} rad/s in each component of their velocities.\n"
+        f"They were on their way for at most {1e3 * questioner.latest:.0f} ms."
     )
 
 

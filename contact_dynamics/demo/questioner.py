@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import rclpy
+from builtin_interfaces.msg import Time
 from nav_msgs.msg import Odometry
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -43,6 +44,7 @@ REST_DEVIATIONS: Final = 3.0
 """Slow is what cannot be told from rest: within so many deviations of the velocities' noise."""
 
 _START_S: Final = 30.0
+_NOW: Final = Time()  # zero asks about the newest state
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,10 +60,11 @@ class Questioner(Node):
     """The node `demo`: listens to a body's states and asks."""
 
     def __init__(self, toss: Toss) -> None:
-        """Subscribe, and look for the services."""
+        """Look for the services."""
         super().__init__("demo")
         self._toss = toss
         self._epoch_ns: int | None = None
+        self._newest = Time()
         self._now = 0.0
         self._flying_since = 0.0  # s on the recording's clock, as predicted
         self._heard = time.monotonic()
@@ -76,26 +79,30 @@ class Questioner(Node):
                 (PredictContactMode, "predict_contact_mode"),
             )
         }
-        self.create_subscription(Odometry, topic_of(toss), self._receive, QOS)
         self.received = 0
+        self.latest = 0.0  # s, the longest that a state was on its way
         self.flights: list[Asked] = []
         self.impacts: list[Asked] = []
         self.modes: list[Asked] = []
 
-    def wait_for_server(self) -> None:
-        """Wait until all services are there; raise `TimeoutError` where they do not come."""
+    def get_ready(self) -> None:
+        """Wait until all services are there, and only then subscribe, as the publisher waits for that.
+
+        Raises:
+            TimeoutError: they do not come.
+        """
         for client in self._askers.values():
             if not client.wait_for_service(_START_S):
                 message = f"the server does not serve {client.srv_name}"
                 raise TimeoutError(message)
+        self.create_subscription(Odometry, topic_of(self._toss), self._receive, QOS)
 
     def watch(self, playing: Callable[[], bool]) -> None:
         """Listen and ask until the toss is over."""
         self._heard = time.monotonic() + _START_S  # until the first state, as long as a start may take
         landing: float | None = None  # predicted, s on the recording's clock
-        blind_until = (
-            0.0  # velocities look back over WINDOW: no question before that much flight has been seen
-        )
+        # velocities look back over WINDOW: no question before that much flight has been seen
+        blind_until = 0.0
         while playing() or time.monotonic() - self._heard < SILENCE_S:
             if not self._spin():
                 continue
@@ -111,7 +118,7 @@ class Questioner(Node):
                 if landing is None:
                     blind_until = self._now + WINDOW
         if self.received and not self.modes:  # recordings may end as soon as the body does not move
-            self._ask_contact_mode()
+            self._ask_contact_mode(self._newest)  # by its stamp, as it is too old by now to be taken for now
 
     def _flight_seen(self) -> float:
         """Return how long the body has been flying, s, less one frame, which may have touched."""
@@ -121,7 +128,10 @@ class Questioner(Node):
         state = body_state_from_odometry(msg, world_frame=WORLD_FRAME, p_FB_F=self._toss.body.p_FB_F)
         if self._epoch_ns is None:
             self._epoch_ns = state.stamp_ns - round(float(self._toss.times[0]) * NS_PER_S)
+        self._newest = msg.header.stamp
         self._now = (state.stamp_ns - self._epoch_ns) / NS_PER_S
+        late_ns = self.get_clock().now().nanoseconds - state.stamp_ns
+        self.latest = max(self.latest, late_ns / NS_PER_S)
         self._recent.append(state)
         self._heard = time.monotonic()
         self.received += 1
@@ -155,8 +165,8 @@ class Questioner(Node):
         request = PredictImpact.Request(body_name=self._toss.body.name, fit_window=self._flight_seen())
         self.impacts.append(self._ask(request))
 
-    def _ask_contact_mode(self) -> None:
-        request = PredictContactMode.Request(body_name=self._toss.body.name)
+    def _ask_contact_mode(self, stamp: Time = _NOW) -> None:
+        request = PredictContactMode.Request(body_name=self._toss.body.name, stamp=stamp)
         self.modes.append(self._ask(request))
 
     def seconds_of(self, stamp: Any) -> float:
@@ -164,9 +174,7 @@ class Questioner(Node):
         return (stamp.sec * NS_PER_S + stamp.nanosec - (self._epoch_ns or 0)) / NS_PER_S
 
     def _ask(self, request: Any) -> Asked:
-        request.stamp = stamp_to_msg(
-            self._recent[-1].stamp_ns
-        )  # however far the toss has gone
+        request.stamp = stamp_to_msg(self._recent[-1].stamp_ns)  # however far the toss has gone
         client = next(
             self._askers[service] for service in self._askers if isinstance(request, service.Request)
         )

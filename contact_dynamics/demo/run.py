@@ -7,6 +7,7 @@ stopped at the end, however it comes.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import signal
 import sys
@@ -21,7 +22,7 @@ from rclpy.signals import SignalHandlerOptions
 from contact_dynamics.demo.comparison import print_table
 from contact_dynamics.demo.measured_events import measure_events
 from contact_dynamics.demo.parameters import write_parameters
-from contact_dynamics.demo.processes import Processes
+from contact_dynamics.demo.processes import STOP_SIGNALS, Processes
 from contact_dynamics.demo.questioner import Questioner
 from contact_dynamics.demo.toss import DEFAULT_RECORDING, read_toss
 from contact_dynamics.errors import ContactDynamicsError
@@ -43,8 +44,13 @@ def main(arguments: list[str]) -> int:
     except (ContactDynamicsError, OSError) as error:
         print(error, file=sys.stderr)
         return 2
-    signal.signal(signal.SIGTERM, _terminate)
-    folder = _new_folder(given.output)
+    try:
+        folder = _new_folder(given.output)
+    except OSError as error:
+        print(f"--output: found {given.output!r}, allowed is a folder to write in ({error})", file=sys.stderr)
+        return 2
+    for number in STOP_SIGNALS:
+        signal.signal(number, _terminate)
     try:
         with Processes(folder) as processes:
             asked = _play(toss, given, folder, processes)
@@ -74,7 +80,7 @@ def _play(toss: Toss, given: argparse.Namespace, folder: Path, processes: Proces
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     questioner = Questioner(toss)
     try:
-        questioner.wait_for_server()
+        questioner.get_ready()
         questioner.watch(lambda: publisher.poll() is None and processes.all_alive())
         if publisher.wait() != 0 or not questioner.received:
             raise RuntimeError(f"the toss was not played: {processes.printed_by('toss_publisher')}")
@@ -110,11 +116,12 @@ def _new_folder(output: str) -> Path:
     name = datetime.now(timezone.utc).astimezone().strftime("%Y-%m-%d_%H-%M-%S")
     folder = Path(output).resolve() / name
     number = 1
-    while folder.exists():
+    while True:
+        with contextlib.suppress(FileExistsError):
+            folder.mkdir(parents=True)
+            return folder
         number += 1
         folder = folder.with_name(f"{name}_{number}")
-    folder.mkdir(parents=True)
-    return folder
 
 
 def _terminate(_signal: int, _frame: object) -> NoReturn:

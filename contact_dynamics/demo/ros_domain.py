@@ -1,0 +1,54 @@
+"""A ROS domain of one's own, so that demos and tests which run side by side do not hear each other.
+
+Linux only: the claim is a socket in the abstract namespace, which goes with the process that holds it.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import socket
+from pathlib import Path
+from typing import Final
+
+_DOMAINS: Final = 100
+"""ROS_DOMAIN_ID 1 to 100 use ports below the ephemeral ones of Linux."""
+
+_FIRST_PORT: Final = 7400
+_PORTS: Final = 250
+"""A domain's ports begin at `_FIRST_PORT` + `_PORTS` times its number (OMG, DDSI-RTPS 2.2, section 9.6.1)."""
+
+_LOCAL_PORT: Final = re.compile(r"^ *\d+: [0-9A-F]+:([0-9A-F]{4}) ", re.MULTILINE)
+
+
+def claim_domain() -> int:
+    """Return a ROS_DOMAIN_ID that no other process here uses or has claimed; it is kept until this one ends.
+
+    Raises:
+        RuntimeError: there is none.
+    """
+    in_use = _domains_in_use()
+    for offset in range(_DOMAINS):
+        domain = 1 + (os.getpid() + offset) % _DOMAINS
+        if domain not in in_use and _claim(domain):
+            return domain
+    raise RuntimeError(f"ROS domains 1 to {_DOMAINS}: found all in use, needed is a free one")
+
+
+def _claim(domain: int) -> bool:
+    claim = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+    try:
+        claim.bind(f"\0contact_dynamics ROS domain {domain}")
+    except OSError:
+        claim.close()
+        return False
+    claim.detach()  # stays open until the process ends
+    return True
+
+
+def _domains_in_use() -> set[int]:
+    """Return the domains in whose ports somebody listens, whoever it is."""
+    tables = [Path("/proc/net/udp"), Path("/proc/net/udp6")]
+    text = "\n".join(table.read_text(encoding="ascii") for table in tables if table.is_file())
+    ports = [int(port, 16) for port in _LOCAL_PORT.findall(text)]
+    return {(port - _FIRST_PORT) // _PORTS for port in ports}
