@@ -96,7 +96,7 @@ def _covariance_in_body(motion: FreeMotion, covariance: FloatArray) -> FloatArra
 
 
 def _deviations(motion: FreeMotion, spread: FloatArray, times: FloatArray) -> FloatArray:
-    """Return the deviations, (n,), s, of the flips nearest to ``times``, over angular velocities so spread."""
+    """Return the deviations, (n,), s, of the flips nearest to ``times``, for angular velocities so spread."""
     frame = in_doubles(motion.frame)
     first, second = np.array(frame.axes_B[0]), np.array(frame.axes_B[1])
     R_BP = np.column_stack([first, second, np.cross(first, second)])

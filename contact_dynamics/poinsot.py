@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 CONSTANT_RATE: Final = (Regime.AT_REST, Regime.SPHERICAL, Regime.PRINCIPAL_AXIS)
 """Where the angular velocity does not change, or only within rounding: there is no polhode to speak of."""
 
+SMALLEST_COMPLEMENT: Final = 1e-100
+"""Of 1 - m. Below it the sensitivity is beyond 1e90: infinite for all that numbers can say."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Poinsot:
@@ -45,16 +48,14 @@ class Poinsot:
     principal_moments: FloatArray  # (3,), kg m^2, ascending
     principal_axes_B: FloatArray  # (3, 3), columns: their axes in body coordinates, right-handed
     ellipsoid_semi_axes: FloatArray  # (3,), rad/s, of the energy ellipsoid, along those axes: sqrt(2 T / I)
-    sensitivity: (
-        float  # rad of attitude per rad turned and per relative error of the angular velocity; NaN at rest
-    )
+    sensitivity: float  # attitude error per rad turned and relative error of the rate; NaN at rest
 
 
 def poinsot(motion: FreeMotion) -> Poinsot:
     """Return Poinsot's picture of a free motion."""
     rotation = motion.rotation
     L_W = angular_momentum(motion.body, motion.state)
-    twice_energy = motion.w_along * math.sqrt(L_W @ L_W)
+    twice_energy = motion.w_along * math.hypot(*L_W.tolist())
     moments = np.array([float(moment) for moment in motion.frame.moments])
     first, second = (np.array([float(x) for x in axis]) for axis in motion.frame.axes_B[:2])
     period = math.nan if motion.regime in CONSTANT_RATE else polhode_period(rotation)
@@ -95,29 +96,30 @@ def sensitivity(motion: FreeMotion) -> float:
     rotation = motion.rotation
     if isinstance(rotation, Spin) or motion.regime is Regime.SPHERICAL:
         return _sensitivity_of_spin(motion)
-    if rotation.m1 == 0:
+    m1 = float(rotation.m1)
+    if m1 < SMALLEST_COMPLEMENT:
         return math.inf
-    I1, _, I3 = (float(moment) for moment in rotation.moments)
-    gap21, gap32, gap31 = (float(gap) for gap in rotation.gaps)
-    P, L, c2, m1 = (float(x) for x in (rotation.precession, rotation.L, rotation.c2, rotation.m1))
-    T2 = motion.w_along * L
-    excess = c2 * gap31 * L * L / I3  # L^2 - 2 T I_1
-    m_T = 2.0 * L * L * gap31 * gap21 / (excess * excess * gap32)
-    K_m = average_over_period(math.sqrt(rotation.m1), 1.0, 1.0, 0.0, numbers=DOUBLES)[1] / (2.0 * m1)
-    nu_T = -I1 / excess - K_m * m_T  # of log nu, as is the next
-    nu_L = (1.0 - T2 * nu_T) / L
-    P_T = (1.0 + (L * P - T2) * nu_T) / L
-    P_L = (P - T2 * P_T) / L
+    # In units in which I_3 and L are 1.
+    unit, rate_unit = float(rotation.moments[2]), float(rotation.L) / float(rotation.moments[2])
+    moments = np.array([float(moment) / unit for moment in rotation.moments])
+    gap21, gap32, gap31 = (float(gap) / unit for gap in rotation.gaps)
+    P, T2, c2 = float(rotation.precession) / rate_unit, motion.w_along / rate_unit, float(rotation.c2)
+    excess = c2 * gap31  # L^2 - 2 T I_1
+    m_T = 2.0 * gap31 * gap21 / (excess * excess * gap32)
+    K_m = average_over_period(math.sqrt(m1), 1.0, 1.0, 0.0, numbers=DOUBLES)[1] / (2.0 * m1)
+    nu_T = -moments[0] / excess - K_m * m_T  # of log nu, as is the next
+    nu_L = 1.0 - T2 * nu_T
+    P_T = 1.0 + (P - T2) * nu_T
+    P_L = P - T2 * P_T
     # d P z + (d nu / nu) (w - P z) = (dP - P d nu / nu) z + (d nu / nu) w
     along_T, along_L = P_T - P * nu_T, P_L - P * nu_L
     axes = np.array([[float(x) for x in axis] for axis in rotation.axes_B])
-    moments = np.array([float(moment) for moment in rotation.moments])
-    momentum = moments * (axes @ (motion.state.R_WB.T @ motion.state.w_WB_W))
-    T_w, L_w = momentum, moments * momentum / L  # gradients over w in P
+    T_w = moments * (axes @ (motion.state.R_WB.T @ motion.state.w_WB_W)) / rate_unit
+    L_w = moments * T_w  # gradients over w in P
     a, b = along_T * T_w + along_L * L_w, nu_T * T_w + nu_L * L_w
-    w2 = largest_rate(rotation) ** 2
-    trace = float(a @ a + 2.0 * motion.w_along * (a @ b) + w2 * (b @ b))
-    determinant = float((a @ a) * (b @ b) - (a @ b) ** 2) * (w2 - motion.w_along**2)
+    w2 = (largest_rate(rotation) / rate_unit) ** 2
+    trace = float(a @ a + 2.0 * T2 * (a @ b) + w2 * (b @ b))
+    determinant = float((a @ a) * (b @ b) - (a @ b) ** 2) * (w2 - T2 * T2)
     return math.sqrt(0.5 * (trace + math.sqrt(max(trace * trace - 4.0 * determinant, 0.0))))
 
 

@@ -50,6 +50,10 @@ NANOSECONDS: Final = 1_000_000_000
 CHUNK: Final = 8192
 """Samples at a time: their intermediate arrays stay in the processor's cache."""
 
+SMALL: Final = 1e-60
+LARGE: Final = 1e60
+"""rad/s and kg m^2, between which powers of rates and moments stay in the range of doubles."""
+
 FEW: Final = 16
 """Samples that cost less one by one than NumPy's calls do."""
 
@@ -217,10 +221,10 @@ def free_motion(
     gravity = check_array("gravity", gravity_W, (3,))
     frame = principal_frame(body.I_B)
     rotation: Rotation
-    if precision is Precision.EXTENDED:
-        rotation, form = _rotation(frame, state, DECIMALS)
-    else:
+    if precision is Precision.DOUBLE and _far_from_the_ends(body, state):
         rotation, form = _rotation(in_doubles(frame), state, DOUBLES)
+    else:
+        rotation, form = _rotation(frame, state, DECIMALS)
     q_WB = normalised(state.q_WB.tolist())
     if isinstance(rotation, Spin):
         rate = float(rotation.rate)
@@ -231,7 +235,7 @@ def free_motion(
         L, (I1, I2, I3) = float(rotation.L), (float(moment) for moment in rotation.moments)
         # w . L / |L| = L (l_1^2 / I_1 + l_2^2 / I_2 + l_3^2 / I_3), at u = 0
         along = L * (float(rotation.a2) / I1 + float(rotation.c2) / I3)
-        across = L * float(rotation.gaps[0]) / (I1 * I2), -L * float(rotation.gaps[1]) / (I2 * I3)
+        across = L / I1 * (float(rotation.gaps[0]) / I2), -L / I3 * (float(rotation.gaps[1]) / I2)
         q_PB = from_rows([[float(x) for x in axis] for axis in rotation.axes_B])
         alpha, beta, _, _ = _cayley_klein(form, 0.0)
         q_LP = (beta.imag, -beta.real, alpha.imag, alpha.real)
@@ -260,6 +264,12 @@ def _cayley_klein(form: AttitudeForm, seconds: float) -> tuple[complex, complex,
     scale = 1.0 / math.sqrt(norm2 * (1.0 + tangent * tangent))
     factor = complex(scale, scale * tangent)
     return factor * complex(A_re, A_im), factor * complex(B_re, B_im), C / norm2, D / norm2
+
+
+def _far_from_the_ends(body: MassProperties, state: BodyState) -> bool:
+    """Whether powers of moments and rates are in the range of doubles; if not, decimals serve instead."""
+    rate, moment = float(abs(state.w_WB_W).max()), float(abs(body.I_B).max())
+    return SMALL < rate < LARGE and SMALL < moment < LARGE
 
 
 def _rotation(

@@ -96,7 +96,7 @@ def tumble_or_spin(
         c2 = I3 * d1 / (gap31 * squared)
         m = d3 * gap21 / (d1 * gap32)
         m1 = d2 * gap31 / (d1 * gap32)
-        rate2 = d1 * gap32 / (I1 * I2 * I3)  # omega_p^2
+        rate2 = (d1 / I1) * (gap32 / I2) / I3  # omega_p^2
     with within(numbers.rates):
         L = numbers.sqrt(squared)
         omega_p = numbers.sqrt(rate2)
@@ -104,7 +104,7 @@ def tumble_or_spin(
         cn2 = momentum[0] * momentum[0] / (squared * a2)
         dn2 = momentum[2] * momentum[2] / (squared * c2)
         u0 = sn * carlson_rf(cn2, dn2, one, numbers=numbers)
-        if on_separatrix:
+        if m1 == 0:
             quarter, precession = zero, L / I2
         else:
             elongation = b2 / a2

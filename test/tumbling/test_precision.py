@@ -48,3 +48,22 @@ def test_drawn_motions(seed: int, turned: float) -> None:
     motion = free_motion(MassProperties(mass=1.0, I_B=drawn.I_B), state)
     limit = LAST_BITS * (1.0 + sensitivity(motion)) * (1.0 + abs(turned))
     assert difference(motion, turned / rate) <= limit
+
+
+@pytest.mark.parametrize("precision", Precision)
+@pytest.mark.parametrize(
+    ("moment_unit", "rate_unit"), [(1e-250, 1.0), (1e250, 1e20), (1.0, 1e-150), (1e-20, 1e-90)]
+)
+@pytest.mark.parametrize("w", [(0.3, -0.5, 1.2), (1e-3, 1.0, 1e-4)])
+def test_the_unit_does_not_matter(
+    w: tuple[float, ...], moment_unit: float, rate_unit: float, precision: Precision
+) -> None:
+    def motion(moment_unit: float, rate_unit: float) -> FreeMotion:
+        body = MassProperties(mass=1.0, I_B=moment_unit * np.diag((1.0, 1.4, 1.9)))
+        rates = rate_unit * np.array(w)
+        state = BodyState(p_WB_W=np.zeros(3), q_WB=(0.0, 0.0, 0.0, 1.0), v_WB_W=np.zeros(3), w_WB_W=rates)
+        return free_motion(body, state, precision=precision)
+
+    usual, other = motion(1.0, 1.0), motion(moment_unit, rate_unit)
+    assert other.sample(3.0 / rate_unit).q_WB == pytest.approx(usual.sample(3.0).q_WB, abs=5e-15)
+    assert sensitivity(other) == pytest.approx(sensitivity(usual), rel=1e-9)
