@@ -69,6 +69,8 @@ class BagReader:
             channels: dict[int, tuple[str, str]] = {}
             for record in self._records(path):
                 if isinstance(record, Message):
+                    if record.channel_id not in channels:  # what defined it was damaged beyond recognition
+                        return self._report_damage(path, "(a message is of a channel that it does not define)")
                     topic, type_name = channels[record.channel_id]
                     if topics is None or topic in topics:
                         yield LoggedMessage(
@@ -103,16 +105,18 @@ class BagReader:
                 except InvalidMagic as error:
                     if stream.tell() <= len(_MAGIC):
                         raise NotALogError(f"{path} is not an MCAP file") from error
-                    return self._report_damage(path, stream.tell(), error)
+                    return self._report_damage(path, _near(stream.tell(), error))
                 except Exception as error:  # noqa: BLE001  damaged bytes make the library raise nearly anything
-                    return self._report_damage(path, stream.tell(), error)
+                    return self._report_damage(path, _near(stream.tell(), error))
                 yield record
 
-    def _report_damage(self, path: Path, position: int, error: Exception) -> None:
-        self.damage = (
-            f"{path} is damaged or was cut short near byte {position} ({type(error).__name__}: {error})"
-        )
+    def _report_damage(self, path: Path, what: str) -> None:
+        self.damage = f"{path} is damaged or was cut short {what}"
         warnings.warn(self.damage, DamagedLogWarning, stacklevel=4)
+
+
+def _near(position: int, error: Exception) -> str:
+    return f"near byte {position} ({type(error).__name__}: {error})"
 
 
 _MAGIC: Final = b"\x89MCAP0\r\n"
