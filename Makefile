@@ -30,7 +30,7 @@ test: lint types $(MADE)/test ## lint, types and the tests
 	@$(BIN)/python -m pytest
 
 test-slow: $(MADE)/test ## the sweeps that are too slow for `make test`
-	@$(BIN)/python -m pytest -m slow
+	@HYPOTHESIS_PROFILE=explore $(BIN)/python -m pytest -m slow
 
 lint: $(MADE)/test ## ruff
 	@$(BIN)/ruff check

@@ -2,6 +2,14 @@
 
 import os
 
+from hypothesis import settings
+
 # Jazzy's message classes check their fields only where this is set, before the first of them is imported.
 os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+
+# The suite draws the same examples each time, so that a change is what makes it fail.
+# HYPOTHESIS_PROFILE=explore draws new ones. No deadline: a busy machine is not a wrong answer.
+settings.register_profile("suite", derandomize=True, deadline=None)
+settings.register_profile("explore", deadline=None)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "suite"))

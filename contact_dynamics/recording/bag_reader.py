@@ -70,7 +70,7 @@ class BagReader:
             for record in self._records(path):
                 if isinstance(record, Message):
                     if record.channel_id not in channels:  # what defined it was damaged beyond recognition
-                        return self._report_damage(path, "(a message is of a channel that it does not define)")
+                        return self._report_damage(path, "(a message of a channel that it does not define)")
                     topic, type_name = channels[record.channel_id]
                     if topics is None or topic in topics:
                         yield LoggedMessage(
