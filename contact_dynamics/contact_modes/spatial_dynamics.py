@@ -33,7 +33,7 @@ from contact_dynamics.validation import check_array, check_not_negative
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from contact_dynamics.contact import ContactSet
     from contact_dynamics.rigid_body import BodyState, MassProperties
@@ -156,7 +156,7 @@ class _Motion:
 
 
 def _consistent_modes(
-    motion: _Motion, contacts: ContactSet, sliding: FloatArray, leaving: FloatArray, facets: int
+    motion: _Motion, contacts: ContactSet, sliding: FloatArray, leaving: NDArray[np.bool_], facets: int
 ) -> Iterator[SpatialMode]:
     """Yield the consistent modes: groups of letters are split, the largest first, while they may hold."""
     problem = _stated(motion, contacts, sliding, leaving, facets)
@@ -175,7 +175,7 @@ def _consistent_modes(
 
 
 def _stated(
-    motion: _Motion, contacts: ContactSet, sliding: FloatArray, leaving: FloatArray, facets: int
+    motion: _Motion, contacts: ContactSet, sliding: FloatArray, leaving: NDArray[np.bool_], facets: int
 ) -> _Problem:
     """Lay out the edge forces of all contacts and what each letter asks of them."""
     pyramids = []

@@ -81,7 +81,7 @@ DECIMALS: Final = Arithmetic(
 
 ARRAYS: Final = Arithmetic(
     number=np.asarray,
-    any=np.any,
+    any=lambda x: bool(np.any(x)),
     largest=lambda x, y, z: np.maximum(np.maximum(x, y), z),
     sqrt=np.sqrt,
     pi=np.asarray(math.pi),
