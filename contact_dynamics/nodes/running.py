@@ -41,14 +41,16 @@ class RunnableNode(Protocol):
     def destroy_service(self, service: Service) -> bool:
         """End a service, as `rclpy.node.Node` does."""
 
-    def close(self) -> None:
-        """Finish files and sinks."""
+    def close(self) -> bool:
+        """Finish files and sinks; return whether all of them are."""
 
 
 def run_node(
     make_node: Callable[[], RunnableNode], *, verb: str, description: str, arguments: list[str]
 ) -> int:
-    """Run a node until SIGINT or SIGTERM; return the exit code: 0, or 2 for a configuration that is refused.
+    """Run a node until SIGINT or SIGTERM; return the exit code.
+
+    That is 0; 1 where something could not be finished; or 2 for a configuration that is refused.
 
     Args:
         make_node: the node's class; it may raise `ContactDynamicsError` or `OSError`.

@@ -93,9 +93,10 @@ class Server(Node):
         bodies = ", ".join(body.name for body in parameters.world.bodies) or "none"
         self.get_logger().info(f"ready: bodies {bodies}; log {self._log.folder or 'off'}")
 
-    def close(self) -> None:
-        """Finish the log and say where it is."""
+    def close(self) -> bool:
+        """Finish the log and say where it is; return True, since a log that fails has been told."""
         self.get_logger().info(self._log.close())
+        return True
 
     def _serve(self, service_type: type[Any], type_name: str, name: str, answer: Callable[..., None]) -> None:
         def handle(request: Any, response: Any) -> Any:

@@ -15,16 +15,13 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import rclpy
 import rerun as rr
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.clock import Clock, ClockType
-from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from service_msgs.msg import ServiceEventInfo
 
-from contact_dynamics.nodes.arguments import ros_arguments
 from contact_dynamics.nodes.parameters import ConfigurationError, read_server_parameters
 from contact_dynamics.nodes.pictured_answers import (
     CONTACT_MODE,
@@ -36,6 +33,7 @@ from contact_dynamics.nodes.pictured_answers import (
     show_impact,
     show_tumbling,
 )
+from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.state_store import StateStore
 from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
 from contact_dynamics.viewing.picture import Picture
@@ -62,7 +60,6 @@ SERVER_WAIT_S: Final = 3.0
 """How long a start waits for a server: as long as one that is started at the same time may take."""
 
 _POLL_S: Final = 0.02
-_SPIN_S: Final = 0.1
 _ANSWERS: Final = (
     (PredictTumbling, "predict_tumbling", TUMBLING, show_tumbling),
     (PredictImpact, "predict_impact", IMPACT, show_impact),
@@ -214,24 +211,13 @@ def _read_own_parameters(node: Node) -> tuple[str, float, Sinks]:
 
 def main(arguments: list[str]) -> int:
     """Run the visualizer until it is told to stop; return the exit code."""
-    description = "Show bodies, contacts and predictions in rerun, live or to a file."
-    rclpy.init(args=ros_arguments("visualizer", description, arguments))
-    try:
-        visualizer = Visualizer(server_wait=SERVER_WAIT_S)
-    except (ConfigurationError, OSError) as error:
-        sys.stderr.write(f"[{NODE_NAME}] configuration: {error}\n")
-        rclpy.try_shutdown()
-        return 2
-    executor = EventsExecutor()
-    executor.add_node(visualizer)
-    try:
-        while rclpy.ok():
-            executor.spin_once(timeout_sec=_SPIN_S)
-    except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
-        pass
-    finally:
-        complete = visualizer.close()
-        rclpy.try_shutdown()
-        if not complete:
-            os._exit(1)  # a usual exit would wait for a viewer that hangs
-    return 0
+    exit_code = run_node(
+        lambda: Visualizer(server_wait=SERVER_WAIT_S),
+        verb="visualizer",
+        description="Show bodies, contacts and predictions in rerun, live or to a file.",
+        arguments=arguments,
+    )
+    if exit_code == 1:
+        sys.stdout.flush()
+        os._exit(exit_code)  # a usual exit would wait for a viewer that hangs
+    return exit_code
