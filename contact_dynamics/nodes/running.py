@@ -2,12 +2,13 @@
 
 rclpy's own signal handlers end the context at once, so that messages which have come already cannot be taken
 any more, and Python's raise `KeyboardInterrupt` wherever the process happens to be, also while it closes its
-files. Here SIGINT and SIGTERM set an event, however often they come; the node then stops serving, takes what
-has come, and closes.
+files. Here the signals that end a process set an event, however often they come; the node then stops serving,
+takes what has come, and closes.
 """
 
 from __future__ import annotations
 
+import os
 import signal
 import threading
 import time
@@ -42,15 +43,25 @@ class RunnableNode(Protocol):
         """End a service, as `rclpy.node.Node` does."""
 
     def close(self) -> bool:
+<<<<<<< Updated upstream
         """Finish files and sinks; return whether all of them are."""
+=======
+        """Finish files and sinks; return False where one hangs, for which a usual exit would wait."""
+>>>>>>> Stashed changes
 
 
 def run_node(
     make_node: Callable[[], RunnableNode], *, verb: str, description: str, arguments: list[str]
 ) -> int:
+<<<<<<< Updated upstream
     """Run a node until SIGINT or SIGTERM; return the exit code.
 
     That is 0; 1 where something could not be finished; or 2 for a configuration that is refused.
+=======
+    """Run a node until it is told to stop; return the exit code: 0, or 2 for a configuration that is refused.
+
+    Where closing hangs, the process ends here, with 1.
+>>>>>>> Stashed changes
 
     Args:
         make_node: the node's class; it may raise `ContactDynamicsError` or `OSError`.
@@ -59,7 +70,7 @@ def run_node(
         arguments: all that follows the verb.
     """
     args = ros_arguments(verb, description, arguments)
-    with _stop_signals() as stop:
+    with stop_signals() as stop:
         try:
             rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
         except RuntimeError as error:  # what rclpy raises for arguments and files that it cannot read
@@ -72,12 +83,16 @@ def run_node(
 
 
 @contextmanager
-def _stop_signals() -> Iterator[threading.Event]:
+def stop_signals() -> Iterator[threading.Event]:
+    """Yield an event that Ctrl-C, `kill` and a terminal that is closed set, until the context is left.
+
+    For the main thread, and with ``rclpy.init(signal_handler_options=SignalHandlerOptions.NO)``.
+    """
     stop = threading.Event()
-    before = {
-        number: signal.signal(number, lambda _number, _frame: stop.set())
-        for number in (signal.SIGINT, signal.SIGTERM)
-    }
+    numbers = [signal.SIGINT, signal.SIGTERM]
+    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # which is what `nohup` makes of it
+        numbers.append(signal.SIGHUP)
+    before = {number: signal.signal(number, lambda _number, _frame: stop.set()) for number in numbers}
     try:
         yield stop
     finally:
@@ -94,7 +109,10 @@ def _run(make_node: Callable[[], RunnableNode], verb: str, stop: threading.Event
     try:
         _spin(node, stop)
     finally:
-        node.close()
+        complete = node.close()
+    if not complete:
+        rclpy.try_shutdown()
+        os._exit(1)
     return 0
 
 
