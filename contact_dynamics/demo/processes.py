@@ -7,7 +7,6 @@ import os
 import signal
 import subprocess
 import sys
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final
 
 from typing_extensions import Self
@@ -15,15 +14,12 @@ from typing_extensions import Self
 from contact_dynamics.demo.ros_domain import claim_domain
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
     from types import TracebackType
 
 STOP_PATIENCE_S: Final = 10.0
 """How long a process may take to finish its files after SIGINT before it is killed."""
-
-STOP_SIGNALS: Final = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-"""What ends a run early: Ctrl-C, `kill`, and a terminal that is closed."""
 
 
 class Processes:
@@ -52,7 +48,7 @@ class Processes:
     def start(self, verb: str, arguments: Sequence[str]) -> subprocess.Popen[bytes]:
         """Start a verb of the command line; what it prints goes to a file."""
         command = [sys.executable, "-m", "contact_dynamics", verb, *arguments]
-        with (self._log_folder / f"{verb}.txt").open("wb") as output, _uninterrupted() as came:
+        with (self._log_folder / f"{verb}.txt").open("wb") as output:
             # A session of its own: Ctrl-C reaches the children through us alone, and each closes its files in
             # order.
             process = subprocess.Popen(
@@ -62,9 +58,7 @@ class Processes:
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
             )
-            self._running.append((verb, process))
-        if came:
-            raise KeyboardInterrupt
+        self._running.append((verb, process))
         return process
 
     def all_alive(self) -> bool:
@@ -81,29 +75,13 @@ class Processes:
         return (self._log_folder / f"{verb}.txt").read_text(encoding="utf-8", errors="replace")
 
     def stop(self) -> None:
-        """Ask each process to finish, wait, kill the one that does not; a second Ctrl-C changes nothing."""
-        with _uninterrupted():
-            while self._running:
-                _, process = self._running.pop()
-                if process.poll() is None:
-                    process.send_signal(signal.SIGINT)
-                    with contextlib.suppress(subprocess.TimeoutExpired):
-                        process.wait(STOP_PATIENCE_S)
-                with contextlib.suppress(ProcessLookupError):
-                    os.killpg(process.pid, signal.SIGKILL)
-                process.wait()
-
-
-@contextmanager
-def _uninterrupted() -> Iterator[list[int]]:
-    """Hold back the signals that end a run, and yield the list of those that came."""
-    came: list[int] = []
-    # a function, not SIG_IGN, which a process started meanwhile would inherit
-    before = {
-        number: signal.signal(number, lambda number, _frame: came.append(number)) for number in STOP_SIGNALS
-    }
-    try:
-        yield came
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+        """Ask each process to finish, wait, and kill the one that does not."""
+        while self._running:
+            _, process = self._running.pop()
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    process.wait(STOP_PATIENCE_S)
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()

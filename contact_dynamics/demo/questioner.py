@@ -44,6 +44,7 @@ REST_DEVIATIONS: Final = 3.0
 """Slow is what cannot be told from rest: within so many deviations of the velocities' noise."""
 
 _START_S: Final = 30.0
+_POLL_S: Final = 0.1
 _NOW: Final = Time()  # zero asks about the newest state
 
 
@@ -85,16 +86,22 @@ class Questioner(Node):
         self.impacts: list[Asked] = []
         self.modes: list[Asked] = []
 
-    def get_ready(self) -> None:
+    def get_ready(self, go_on: Callable[[], object]) -> None:
         """Wait until all services are there, and only then subscribe, as the publisher waits for that.
+
+        Args:
+            go_on: raises where there is no use in waiting longer.
 
         Raises:
             TimeoutError: they do not come.
         """
+        deadline = time.monotonic() + _START_S
         for client in self._askers.values():
-            if not client.wait_for_service(_START_S):
-                message = f"the server does not serve {client.srv_name}"
-                raise TimeoutError(message)
+            while not client.wait_for_service(_POLL_S):
+                go_on()
+                if time.monotonic() > deadline:
+                    message = f"the server does not serve {client.srv_name}"
+                    raise TimeoutError(message)
         self.create_subscription(Odometry, topic_of(self._toss), self._receive, QOS)
 
     def watch(self, playing: Callable[[], bool]) -> None:

@@ -9,12 +9,11 @@ from __future__ import annotations
 import argparse
 import contextlib
 import os
-import signal
 import sys
 import time
 from datetime import datetime, timezone
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, NoReturn
+from typing import TYPE_CHECKING, Final
 
 import rclpy
 from rclpy.signals import SignalHandlerOptions
@@ -22,12 +21,15 @@ from rclpy.signals import SignalHandlerOptions
 from contact_dynamics.demo.comparison import print_table
 from contact_dynamics.demo.measured_events import measure_events
 from contact_dynamics.demo.parameters import write_parameters
-from contact_dynamics.demo.processes import STOP_SIGNALS, Processes
+from contact_dynamics.demo.processes import Processes
 from contact_dynamics.demo.questioner import Questioner
 from contact_dynamics.demo.toss import DEFAULT_RECORDING, read_toss
 from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.nodes.running import stop_signals
 
 if TYPE_CHECKING:
+    import threading
+
     from contact_dynamics.demo.recorded_toss import Toss
 
 LISTENERS: Final = 3
@@ -49,11 +51,9 @@ def main(arguments: list[str]) -> int:
     except OSError as error:
         print(f"--output: found {given.output!r}, allowed is a folder to write in ({error})", file=sys.stderr)
         return 2
-    for number in STOP_SIGNALS:
-        signal.signal(number, _terminate)
     try:
-        with Processes(folder) as processes:
-            asked = _play(toss, given, folder, processes)
+        with stop_signals() as stop, Processes(folder) as processes:
+            asked = _play(toss, given, folder, processes, stop)
     except KeyboardInterrupt:
         print("\nstopped", file=sys.stderr)
         return 130
@@ -68,7 +68,14 @@ def main(arguments: list[str]) -> int:
     return 0
 
 
-def _play(toss: Toss, given: argparse.Namespace, folder: Path, processes: Processes) -> Questioner:
+def _play(
+    toss: Toss, given: argparse.Namespace, folder: Path, processes: Processes, stop: threading.Event
+) -> Questioner:
+    def go_on() -> bool:
+        if stop.is_set():
+            raise KeyboardInterrupt
+        return processes.all_alive()
+
     print(f"playing {toss.source}: {len(toss)} states at {toss.rate:g} Hz", flush=True)
     parameters = folder / "parameters.yaml"
     write_parameters(parameters, toss, log_directory=folder)
@@ -80,11 +87,12 @@ def _play(toss: Toss, given: argparse.Namespace, folder: Path, processes: Proces
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     questioner = Questioner(toss)
     try:
-        questioner.get_ready()
-        questioner.watch(lambda: publisher.poll() is None and processes.all_alive())
+        questioner.get_ready(go_on)
+        questioner.watch(lambda: go_on() and publisher.poll() is None)
         if publisher.wait() != 0 or not questioner.received:
             raise RuntimeError(f"the toss was not played: {processes.printed_by('toss_publisher')}")
         time.sleep(_DRAIN_S)
+        go_on()
     finally:
         questioner.close()
     return questioner
@@ -122,7 +130,3 @@ def _new_folder(output: str) -> Path:
             return folder
         number += 1
         folder = folder.with_name(f"{name}_{number}")
-
-
-def _terminate(_signal: int, _frame: object) -> NoReturn:
-    raise KeyboardInterrupt

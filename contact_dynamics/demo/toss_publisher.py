@@ -22,7 +22,7 @@ WORLD_FRAME: Final = "world"
 QOS: Final = QoSProfile(depth=1000)
 
 _DISCOVERY_S: Final = 30.0  # how long to wait for the listeners that were asked for
-_LEAD_S: Final = 0.2  # between the last listener's arrival and the first sample
+_LEAD_S: Final = 1.0  # between the last listener's arrival and the toss
 
 
 def topic_of(toss: Toss) -> str:
@@ -46,21 +46,24 @@ class TossPublisher(Node):
             if time.monotonic() > deadline:
                 return False
             time.sleep(0.02)
-        time.sleep(_LEAD_S)
         return True
 
     def play(self) -> None:
-        """Publish every sample when its time has come, stamped with that time."""
+        """Publish every sample when its time has come, stamped with that time; but the first one at once.
+
+        A listener that this process has found may take some tenths of a second longer to find it. The first
+        sample waits for that, and all others come on time.
+        """
         toss = self._toss
-        begin_ns = self.get_clock().now().nanoseconds
-        epoch_ns = begin_ns - round(float(toss.times[0]) * 1e9)
+        lead_ns = round((_LEAD_S - float(toss.times[0])) * 1e9)
+        epoch_ns = self.get_clock().now().nanoseconds + lead_ns
         for sample in range(len(toss)):
             state = toss.state(sample, epoch_ns=epoch_ns)
             msg = odometry_from_body_state(
                 state, world_frame=WORLD_FRAME, child_frame=toss.body.name, p_FB_F=toss.body.p_FB_F
             )
             wait_ns = state.stamp_ns - self.get_clock().now().nanoseconds
-            if wait_ns > 0:
+            if wait_ns > 0 and sample > 0:
                 time.sleep(wait_ns * 1e-9)
             self._publisher.publish(msg)
 
