@@ -8,7 +8,6 @@ takes what has come, and closes.
 
 from __future__ import annotations
 
-import os
 import signal
 import threading
 import time
@@ -43,25 +42,15 @@ class RunnableNode(Protocol):
         """End a service, as `rclpy.node.Node` does."""
 
     def close(self) -> bool:
-<<<<<<< Updated upstream
         """Finish files and sinks; return whether all of them are."""
-=======
-        """Finish files and sinks; return False where one hangs, for which a usual exit would wait."""
->>>>>>> Stashed changes
 
 
 def run_node(
     make_node: Callable[[], RunnableNode], *, verb: str, description: str, arguments: list[str]
 ) -> int:
-<<<<<<< Updated upstream
-    """Run a node until SIGINT or SIGTERM; return the exit code.
+    """Run a node until it is told to stop; return the exit code.
 
     That is 0; 1 where something could not be finished; or 2 for a configuration that is refused.
-=======
-    """Run a node until it is told to stop; return the exit code: 0, or 2 for a configuration that is refused.
-
-    Where closing hangs, the process ends here, with 1.
->>>>>>> Stashed changes
 
     Args:
         make_node: the node's class; it may raise `ContactDynamicsError` or `OSError`.
@@ -109,10 +98,7 @@ def _run(make_node: Callable[[], RunnableNode], verb: str, stop: threading.Event
     try:
         _spin(node, stop)
     finally:
-        complete = node.close()
-    if not complete:
-        rclpy.try_shutdown()
-        os._exit(1)
+        node.close()
     return 0
 
 

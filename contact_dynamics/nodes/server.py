@@ -94,11 +94,7 @@ class Server(Node):
         self.get_logger().info(f"ready: bodies {bodies}; log {self._log.folder or 'off'}")
 
     def close(self) -> bool:
-<<<<<<< Updated upstream
         """Finish the log and say where it is; return True, since a log that fails has been told."""
-=======
-        """Finish the log and say where it is."""
->>>>>>> Stashed changes
         self.get_logger().info(self._log.close())
         return True
 

@@ -7,6 +7,8 @@ topics, and its own (`config/visualizer.yaml`). A drawing that fails is told onc
 
 from __future__ import annotations
 
+import os
+import sys
 import time
 import traceback
 from functools import partial
@@ -209,7 +211,6 @@ def _read_own_parameters(node: Node) -> tuple[str, float, Sinks]:
 
 def main(arguments: list[str]) -> int:
     """Run the visualizer until it is told to stop; return the exit code."""
-<<<<<<< Updated upstream
     exit_code = run_node(
         lambda: Visualizer(server_wait=SERVER_WAIT_S),
         verb="visualizer",
@@ -220,8 +221,3 @@ def main(arguments: list[str]) -> int:
         sys.stdout.flush()
         os._exit(exit_code)  # a usual exit would wait for a viewer that hangs
     return exit_code
-=======
-    description = "Show bodies, contacts and predictions in rerun, live or to a file."
-    start = partial(Visualizer, server_wait=SERVER_WAIT_S)
-    return run_node(start, verb="visualizer", description=description, arguments=arguments)
->>>>>>> Stashed changes
