@@ -98,8 +98,8 @@ def _run(make_node: Callable[[], RunnableNode], verb: str, stop: threading.Event
     try:
         _spin(node, stop)
     finally:
-        node.close()
-    return 0
+        complete = node.close()
+    return 0 if complete else 1
 
 
 def _spin(node: RunnableNode, stop: threading.Event) -> None:
