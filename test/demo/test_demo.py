@@ -226,7 +226,8 @@ def test_the_brick_lands_and_leaves_as_predicted(brick: Run) -> None:
     that lands with 4.1 m/s, 0.6 ms. Allowed are five of each.
 
     The impact is asked for 25 ms before the strike. Half the friction would make the velocity after it wrong
-    by 8 % of its jump and the spin by 100 %, a restitution of 0.3 instead of 0.45 by 9 and 8 %: allowed are 5 %.
+    by 8 % of its jump and the spin by 100 %, a restitution of 0.3 instead of 0.45 by 9 and 8 %: allowed are
+    5 %.
     """
     flight, impact = brick.sections("where will it be?")[0], brick.sections("what after the impact?")[0]
     predicted, measured, _ = numbers("time of landing, s", flight)
