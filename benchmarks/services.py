@@ -23,6 +23,7 @@ from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
+from contact_dynamics.demo.ros_domain import claim_domain
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 
 CALLS = 500
@@ -42,7 +43,7 @@ def run() -> None:
     environment = {
         **os.environ,
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-        "ROS_DOMAIN_ID": str(1 + os.getpid() % 100),
+        "ROS_DOMAIN_ID": str(claim_domain()),
     }
     os.environ.update(environment)
     with tempfile.TemporaryDirectory() as log:

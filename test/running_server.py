@@ -19,10 +19,11 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
+from contact_dynamics.demo.ros_domain import claim_domain
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 
 ROOT = Path(__file__).parents[1]
-DOMAIN_ID = 1 + os.getpid() % 100  # of this test run alone; above 101 the ports collide with ephemeral ones
+DOMAIN_ID = claim_domain()  # of this test run alone
 PATIENCE_S = 30.0
 SERVICES = {
     PredictContactMode: "/contact_dynamics/predict_contact_mode",

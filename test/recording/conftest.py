@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from contact_dynamics.demo.ros_domain import claim_domain
 from contact_dynamics.recording import BagWriter, Recorder, RecorderStatus
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ def real_log(tmp_path_factory: pytest.TempPathFactory) -> RealLog:
     """Return the log of a session between two processes."""
     pytest.importorskip("rclpy")
     folder = tmp_path_factory.mktemp("logs") / "session"
-    domain = 40 + os.getpid() % 60  # runs side by side do not hear each other
+    domain = claim_domain()
     range_before = os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE")
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     try:

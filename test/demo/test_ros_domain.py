@@ -1,0 +1,44 @@
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+
+import pytest
+
+from contact_dynamics.demo import ros_domain
+from contact_dynamics.demo.ros_domain import claim_domain
+
+
+@pytest.fixture
+def nobody_listens(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ros_domain, "_domains_in_use", set)
+
+
+@pytest.mark.usefixtures("nobody_listens")
+def test_claims_differ_within_a_process_and_between_processes() -> None:
+    mine = [claim_domain(), claim_domain()]
+    # another process, which tries the same ones first
+    code = f"import os; os.getpid = lambda: {os.getpid()}\n"
+    code += "from contact_dynamics.demo.ros_domain import claim_domain; print(claim_domain())"
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=30.0, check=True
+    )
+    assert len({*mine, int(done.stdout)}) == 3
+    assert all(1 <= domain <= 100 for domain in mine)
+
+
+def test_a_domain_in_which_somebody_listens_is_left_out() -> None:
+    """Whoever that is: another ROS on this machine claims nothing."""
+    domain = claim_domain()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("127.0.0.1", 7400 + 250 * domain + 10))  # unicast discovery of its first participant
+        assert domain in ros_domain._domains_in_use()
+    assert domain not in ros_domain._domains_in_use()
+
+
+def test_it_says_when_none_is_free(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ros_domain, "_domains_in_use", lambda: set(range(1, 101)))
+    with pytest.raises(RuntimeError, match="found all in use"):
+        claim_domain()
