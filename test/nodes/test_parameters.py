@@ -67,13 +67,13 @@ class Declarations(dict[str, tuple[Any, Any]]):
 def declared(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[dict[str, dict[str, Any]]]:
     """What the server declares, and what the visualizer declares besides, with the files as they are."""
     files = ["--ros-args", "--params-file", str(SERVER_FILE), "--params-file", str(VISUALIZER_FILE)]
-    rclpy.init(args=[*files, "-p", "log:=false"])
+    # the command line wins over the files, else the visualizer would refuse to draw to nowhere
+    rclpy.init(args=[*files, "-p", "log:=false", "-p", f"rrd_path:={tmp_path / 'picture.rrd'}"])
     declarations = Declarations(monkeypatch)
     try:
         server.Server().destroy_node()
         of_server = declarations.ours()
-        picture = Parameter("rrd_path", value=str(tmp_path / "picture.rrd"))
-        drawing = visualizer.Visualizer(parameter_overrides=[picture])
+        drawing = visualizer.Visualizer()
         drawing.close()
         drawing.destroy_node()
         of_visualizer = {name: d for name, d in declarations.ours().items() if name not in of_server}
