@@ -63,7 +63,7 @@ def _new_bag(directory: str, run: Mapping[str, str]) -> BagWriter:
     name = datetime.now(timezone.utc).astimezone().strftime("contact_dynamics_%Y_%m_%d-%H_%M_%S")
     number = 1
     while True:
-        folder = Path(directory) / (name if number == 1 else f"{name}_{number}")
+        folder = Path(directory).expanduser() / (name if number == 1 else f"{name}_{number}")
         try:
             return BagWriter(folder, run=run)
         except LogExistsError:

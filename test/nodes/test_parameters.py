@@ -17,6 +17,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from contact_dynamics.nodes import server, visualizer
+from contact_dynamics.nodes.log import Log
 from running_server import DOMAIN_ID, PATIENCE_S, ROOT, environment
 
 CONFIG = ROOT / "config"
@@ -204,6 +205,15 @@ WRONG = [
     (put(log="perhaps"), "log"),
     (put(log_directory=str(Path(__file__))), "log_directory: "),
 ]
+
+
+def test_the_log_may_go_below_the_home_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    log = Log("~/logs", run={}, on_problem=pytest.fail)
+    assert log.folder is not None
+    assert log.folder.parent == tmp_path / "logs"
+    log.start()
+    log.close()
 
 
 def parameters_file(folder: Path, values: dict[str, Any]) -> Path:
