@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import rclpy
+from rcl_interfaces.srv import GetParameters
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -25,6 +26,7 @@ from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, P
 ROOT = Path(__file__).parents[1]
 DOMAIN_ID = claim_domain()  # of this test run alone
 PATIENCE_S = 30.0
+DEEP = QoSProfile(depth=1000)
 SERVICES = {
     PredictContactMode: "/contact_dynamics/predict_contact_mode",
     PredictImpact: "/contact_dynamics/predict_impact",
@@ -88,13 +90,29 @@ class Client:
         self.node = Node("test_client", context=self._context)
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
-        qos = QoSProfile(depth=1000)
+        self._namespace = namespace
         self._clients = {
-            service: self.node.create_client(service, namespace + name, qos_profile=qos)
+            service: self.node.create_client(service, namespace + name, qos_profile=DEEP)
             for service, name in SERVICES.items()
         }
         for client in self._clients.values():
             assert client.wait_for_service(PATIENCE_S)
+
+    def publisher(self, msg_type: Any, topic: str, qos: QoSProfile = DEEP) -> Any:
+        """Return a publisher that the server listens to.
+
+        That it is matched here says nothing of the server, which may find it later and then takes nothing
+        that was sent before. DDS announces the endpoints of a process in the order they were made in, so a
+        server that answers a client made after the publisher has found the publisher.
+        """
+        made = self.node.create_publisher(msg_type, topic, qos)
+        self.spin_until(lambda: made.get_subscription_count() > 0)
+        probe = self.node.create_client(GetParameters, self._namespace + "/contact_dynamics/get_parameters")
+        assert probe.wait_for_service(PATIENCE_S)
+        answer = probe.call_async(GetParameters.Request(names=["bodies"]))
+        self.spin_until(answer.done)
+        self.node.destroy_client(probe)
+        return made
 
     def ask(self, request: Any) -> Any:
         """Call the service that a request belongs to; return the response."""

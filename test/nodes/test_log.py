@@ -24,7 +24,6 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from nav_msgs.msg import Odometry
 from rclpy.duration import Duration
-from rclpy.qos import QoSProfile
 from rosbags.highlevel import AnyReader
 
 from contact_dynamics.recording import BagReader, decode, service_calls
@@ -108,7 +107,7 @@ def session(tmp_path_factory: pytest.TempPathFactory) -> Session:
     arguments = ("--params-file", file, "--ros-args", "-p", f"log_directory:={directory}")
     with process("server", *arguments, ready="ready") as server:
         client = Client()
-        publisher = client.node.create_publisher(Odometry, STATES_TOPIC, QoSProfile(depth=1000))
+        publisher = client.publisher(Odometry, STATES_TOPIC)
 
         def publish(count: int) -> None:
             for _ in range(count):
@@ -116,7 +115,6 @@ def session(tmp_path_factory: pytest.TempPathFactory) -> Session:
                 publisher.publish(states[-1])
 
         began_ns = client.node.get_clock().now().nanoseconds
-        client.spin_until(lambda: publisher.get_subscription_count() > 0)
         for number in range(ROUNDS):
             publish(STATES_A_ROUND)
             for request in questions(number):

@@ -32,6 +32,7 @@ BRICK_MASS = BRICK["body.brick.mass"]  # kg
 BRICK_MOMENTS = BRICK["body.brick.inertia"][:3]  # kg m^2, about the axes of its frame
 SIDES = 0.5 * np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 BRICK_CORNERS = SIDES * BRICK["body.brick.box"]  # m
+BEST_EFFORT = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
 STAMPS_NS = count(time.time_ns(), 10_000_000)  # each state is the newest, 10 ms later than the one before
 GRAVITY = 9.80665  # m/s^2
 OFFSET = np.array([0.1, -0.03, 0.02])  # m, centre of mass of club and disc in their published frames
@@ -157,16 +158,6 @@ def clients(*namespaces: str) -> Iterator[list[Client]]:
             client.close()
 
 
-def publisher(
-    client: Client, msg_type: Any, topic: str, reliability: ReliabilityPolicy = ReliabilityPolicy.RELIABLE
-) -> Any:
-    """Return a publisher once the server listens to it."""
-    qos = QoSProfile(depth=1000, reliability=reliability)
-    made = client.node.create_publisher(msg_type, topic, qos)
-    client.spin_until(lambda: made.get_subscription_count() > 0)
-    return made
-
-
 def known(client: Client, body_name: str, stamp_ns: int) -> Any:
     """Ask until the newest state is the one with that stamp, as states and questions go by different ways."""
     answers: list[Any] = []
@@ -211,7 +202,7 @@ def check_flight(trajectory: Any, body: Body, moments: tuple[float, ...], offset
 
 def test_tumbling_from_the_newest_state(servers: Servers) -> None:
     client = servers.brick
-    states = publisher(client, Odometry, "/brick/odometry")
+    states = client.publisher(Odometry, "/brick/odometry")
     bodies = [Body(p=np.array([0.1 * i, 0.0, 1.0])) for i in range(3)]
     for body in (bodies[0], bodies[2], bodies[1]):  # the newest is the one with the latest stamp
         states.publish(body.odometry("brick"))
@@ -225,7 +216,7 @@ def test_tumbling_from_the_newest_state(servers: Servers) -> None:
 @pytest.mark.parametrize("service", [PredictTumbling, PredictImpact])
 def test_a_past_stamp_takes_the_state_before_it(servers: Servers, service: Any) -> None:
     client = servers.brick
-    states = publisher(client, Odometry, "/brick/odometry")
+    states = client.publisher(Odometry, "/brick/odometry")
     bodies = [Body(p=np.array([0.1 * i, 0.0, 1.0])) for i in range(4)]
     for body in bodies:
         states.publish(body.odometry("brick"))
@@ -252,7 +243,7 @@ def test_a_past_stamp_takes_the_state_before_it(servers: Servers, service: Any) 
 def test_impact_after_the_newest_state(servers: Servers) -> None:
     """Until the time of the impact every corner is above the floor, and then one is at it and comes down."""
     client = servers.brick
-    states = publisher(client, Odometry, "/brick/odometry")
+    states = client.publisher(Odometry, "/brick/odometry")
     body = Body()
     states.publish(body.odometry("brick"))
     known(client, "brick", body.stamp_ns)
@@ -280,7 +271,7 @@ def test_impact_after_the_newest_state(servers: Servers) -> None:
 
 def test_contact_mode_of_the_newest_state(servers: Servers) -> None:
     client = servers.brick
-    states = publisher(client, Odometry, "/brick/odometry")
+    states = client.publisher(Odometry, "/brick/odometry")
     still = np.zeros(3)
     body = Body(
         p=np.array([0.3, 0.2, -BRICK_CORNERS[:, 2].min()]), q=about((0.0, 0.0, 1.0), 0.4), v=still, w=still
@@ -337,7 +328,7 @@ def test_four_clients_at_once_lose_no_answer() -> None:
 def test_odometry_of_a_body_whose_centre_of_mass_is_elsewhere(servers: Servers) -> None:
     """In a namespace, on a topic that is remapped, from a driver that sends best effort."""
     client = servers.robot
-    states = publisher(client, Odometry, "/mocap/club", ReliabilityPolicy.BEST_EFFORT)
+    states = client.publisher(Odometry, "/mocap/club", BEST_EFFORT)
     body = Body()
     for _ in range(5):  # one of them may get lost
         states.publish(body.odometry("club"))
@@ -352,8 +343,8 @@ def test_odometry_of_a_body_whose_centre_of_mass_is_elsewhere(servers: Servers) 
 @pytest.mark.parametrize("pose_first", [True, False])
 def test_pose_and_twist_of_one_stamp_are_a_state(servers: Servers, *, frame: str, pose_first: bool) -> None:
     client = servers.robot
-    poses = publisher(client, PoseStamped, "/robot1/disc/pose")
-    twists = publisher(client, TwistStamped, "/robot1/disc/twist")
+    poses = client.publisher(PoseStamped, "/robot1/disc/pose")
+    twists = client.publisher(TwistStamped, "/robot1/disc/twist")
     body = Body()
     if pose_first:
         poses.publish(body.pose())
@@ -381,8 +372,8 @@ def test_services_stand_in_the_namespace(servers: Servers) -> None:
 def test_time_comes_from_the_clock_topic(servers: Servers) -> None:
     """A simulation that is started again goes back in time, and its new states count."""
     client = servers.clock
-    clock = publisher(client, Clock, "/clock")
-    states = publisher(client, Odometry, "/simulated/odometry")
+    clock = client.publisher(Clock, "/clock")
+    states = client.publisher(Odometry, "/simulated/odometry")
     first, again = Body(stamp_ns=1_000_000_000_000), Body(v=np.zeros(3), stamp_ns=10_000_000_000)
 
     def answer_at(seconds: float, body: Body, status: int) -> Any:

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from nav_msgs.msg import Odometry
-from rclpy.qos import QoSProfile
 
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 from running_server import Client, server_and_client
@@ -63,8 +62,7 @@ def test_an_uncertain_landing_has_probabilities_that_sum_to_one(client: Client) 
 
 def test_a_fit_to_the_last_states_does_not_care_for_a_bad_velocity(client: Client) -> None:
     """Exact poses of a free fall with spin about z, published with velocities that are all wrong."""
-    publisher = client.node.create_publisher(Odometry, "/brick/odometry", QoSProfile(depth=100))
-    client.spin_until(lambda: publisher.get_subscription_count() > 0)
+    publisher = client.publisher(Odometry, "/brick/odometry")
     begin_ns = client.node.get_clock().now().nanoseconds
     spin, rise = 4.0, 2.0
     count = 12

@@ -71,7 +71,6 @@ def main() -> None:
     change = node.create_client(ChangeState, "/probe/change", qos_profile=qos)
     if not (plan.wait_for_service(20.0) and change.wait_for_service(20.0)):
         raise TimeoutError("no services")
-    publish_states(node, publishers, states)
     answers = []
     for index in range(calls):
         request = GetPlan.Request(tolerance=float(index))
@@ -79,6 +78,7 @@ def main() -> None:
         change_request = ChangeState.Request()
         change_request.transition.label = f"step {index}"
         call(node, change, change_request)
+    publish_states(node, publishers, states)  # who has answered has found the publishers
     stamps_ns = [FIRST_STAMP_NS + index * STAMP_STEP_NS for index in range(states)]
     sys.stdout.write(json.dumps({"answers": answers, "stamps_ns": stamps_ns}))
     node.destroy_node()
