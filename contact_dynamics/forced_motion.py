@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import enum
 import math
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
@@ -84,6 +84,14 @@ class ForcedMotion:
         side = self.ahead if seconds >= 0.0 else self.back
         return self.law.sample(seconds, side.at(seconds).tolist())
 
+    def step_at(self, seconds: float) -> IntegratedStep:
+        """Return the integrator's step that holds a time >= 0, s, and where two meet, the later.
+
+        Raises:
+            InvalidFieldError: as `sample`.
+        """
+        return self.ahead.step_at(seconds)
+
     def state_at(self, seconds: float) -> BodyState:
         """Return the body's state at one time, s after the state's stamp.
 
@@ -115,6 +123,15 @@ class ForcedMotion:
         p_WB_W, q_WB, v_WB_W, w_WB_W = np.split(numbers.reshape(-1, _SIZE), (3, 7, 10), axis=1)
         _make_continuous(q_WB, self.state.q_WB)
         return Trajectory(seconds=times, p_WB_W=p_WB_W, q_WB=q_WB, v_WB_W=v_WB_W, w_WB_W=w_WB_W)
+
+
+class IntegratedStep(NamedTuple):
+    """One step of the integrator: all variables are polynomials of degree 7 in time."""
+
+    start: float  # s
+    end: float  # s, > start
+    variables: Callable[[FloatArray], FloatArray]  # (n,), s, to (13, n), as `_SIZE` says; L is scaled so:
+    scale: float  # kg m^2, L = scale times the last three variables
 
 
 class ChosenMotion(NamedTuple):
@@ -279,6 +296,12 @@ class _Steps:
             return self.law.start
         value: FloatArray = self.dense[max(bisect_left(self.ends, abs(seconds)) - 1, 0)](seconds)
         return value
+
+    def step_at(self, seconds: float) -> IntegratedStep:
+        """Return the step that holds a time on this side."""
+        self._reach(math.nextafter(seconds, self.end))
+        step = bisect_right(self.ends, abs(seconds)) - 1
+        return IntegratedStep(self.ends[step], self.ends[step + 1], self.dense[step], self.law.scale)
 
     def at_many(self, seconds: FloatArray) -> FloatArray:
         """Return the variables, (n, 13), at times (n,) on this side."""
