@@ -1,4 +1,4 @@
-"""When and how a free body's flight ends: its first contact with the world, and all contacts there."""
+"""When and how a body's flight ends: its first contact with the world, and all contacts there."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ import numpy as np
 from contact_dynamics.contact_geometry import find_contacts
 from contact_dynamics.first_contact import first_contact
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, VELOCITY_TOLERANCE
-from contact_dynamics.tumbling import FreeMotion, free_motion
+from contact_dynamics.tumbling import free_motion
 
 if TYPE_CHECKING:
     from contact_dynamics.contact import ContactSet
+    from contact_dynamics.motion_bounds import Motion
     from contact_dynamics.rigid_body import BodyState
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Landing:
-    """The end of a free flight: the body touches."""
+    """The end of a flight: the body touches."""
 
     seconds: float  # s after the state's stamp; 0 where it touches already
     state: BodyState  # just then
@@ -38,13 +39,13 @@ def next_landing(
     horizon: float,
     distance_tolerance: float = DISTANCE_TOLERANCE,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
-    motion: FreeMotion | None = None,
+    motion: Motion | None = None,
 ) -> Landing | None:
     """Return where a body's flight ends within ``horizon`` (s), or None.
 
     A vertex within ``distance_tolerance`` (m) of a surface touches it. A body that touches flies only if each
     of its contacts leaves faster than ``velocity_tolerance`` (m/s); what counts then is where it comes down.
-    ``motion`` is the flight, where it is known already; None: the state's, in the world's gravity.
+    ``motion`` is the flight, in closed form or under forces; None: that of the state in the world's gravity.
     """
     now = _touching(body, state, world, distance_tolerance)
     if now is not None and (now.approach <= velocity_tolerance).any():
