@@ -32,6 +32,7 @@ import numpy as np
 from contact_dynamics.applied_wrench import NO_DRAG, NO_WRENCH, ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body import BodyState, MassProperties, angular_momentum
+from contact_dynamics.rotations import make_continuous
 from contact_dynamics.tumbling import FreeMotion, Sample, Trajectory, free_motion
 from contact_dynamics.tumbling.quaternions import Quaternion, conjugate, normalised, product, rotated
 from contact_dynamics.validation import FloatArray, check_array, check_finite
@@ -43,8 +44,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     WrenchFunction: TypeAlias = Callable[[float, Sample], tuple[Sequence[float], Sequence[float]]]
-
-NANOSECONDS: Final = 1_000_000_000
 
 RELATIVE_TOLERANCE: Final = 3e-14
 """Of each step. SciPy allows 2e-14 at the least, where rounding begins to make steps pointlessly short."""
@@ -70,6 +69,9 @@ class ForcedMotion:
     body: MassProperties
     state: BodyState  # at time 0
     gravity_W: FloatArray  # (3,), m/s^2, world axes
+    wrench: ConstantWrench
+    drag: Drag
+    wrench_of: WrenchFunction | None  # a user's, of time and state
     law: _Law
     ahead: _Steps  # what has been stepped into the future
     back: _Steps  # and into the past
@@ -92,20 +94,36 @@ class ForcedMotion:
         """
         return self.ahead.step_at(seconds)
 
+    def from_state(self, state: BodyState) -> ForcedMotion:
+        """Return the motion of the same body under the same forces from another state at time 0."""
+        return forced_motion(
+            self.body,
+            state,
+            gravity_W=self.gravity_W,
+            wrench=self.wrench,
+            drag=self.drag,
+            wrench_of=self.wrench_of,
+        )
+
+    def steps_to(self, seconds: float) -> FloatArray:
+        """Return the times, s, from 0 to ``seconds`` of either sign, between which the integrator steps.
+
+        Raises:
+            InvalidFieldError: as `sample`.
+        """
+        side = self.ahead if seconds >= 0.0 else self.back
+        side.at(seconds)
+        ends = np.array(side.ends[: bisect_left(side.ends, abs(seconds))])
+        times: FloatArray = np.copysign(np.append(ends, abs(seconds)), seconds)
+        return times
+
     def state_at(self, seconds: float) -> BodyState:
         """Return the body's state at one time, s after the state's stamp.
 
         Raises:
             InvalidFieldError: the time is not finite, or beyond what `sample` reaches.
         """
-        sample = self.sample(check_finite("time", seconds))
-        return BodyState(
-            p_WB_W=np.array(sample.p_WB_W),
-            q_WB=np.array(sample.q_WB),
-            v_WB_W=np.array(sample.v_WB_W),
-            w_WB_W=np.array(sample.w_WB_W),
-            stamp_ns=self.state.stamp_ns + round(seconds * NANOSECONDS),
-        )
+        return self.sample(check_finite("time", seconds)).as_state(self.state.stamp_ns, seconds)
 
     def at(self, seconds: ArrayLike) -> Trajectory:
         """Return the motion at times (n,), s after the state's stamp, of any sign and in any order.
@@ -121,7 +139,7 @@ class ForcedMotion:
         rows = [self.law.sample(t, y) for t, y in zip(times.tolist(), values.tolist(), strict=True)]
         numbers = np.array([[*row.p_WB_W, *row.q_WB, *row.v_WB_W, *row.w_WB_W] for row in rows])
         p_WB_W, q_WB, v_WB_W, w_WB_W = np.split(numbers.reshape(-1, _SIZE), (3, 7, 10), axis=1)
-        _make_continuous(q_WB, self.state.q_WB)
+        make_continuous(q_WB, self.state.q_WB)
         return Trajectory(seconds=times, p_WB_W=p_WB_W, q_WB=q_WB, v_WB_W=v_WB_W, w_WB_W=w_WB_W)
 
 
@@ -191,6 +209,9 @@ def forced_motion(
         body=body,
         state=state,
         gravity_W=law.gravity_W,
+        wrench=wrench,
+        drag=drag,
+        wrench_of=wrench_of,
         law=law,
         ahead=_Steps(law, math.inf),
         back=_Steps(law, -math.inf),
@@ -364,10 +385,3 @@ def _checked(wrench: Any) -> tuple[Sequence[float], Sequence[float]]:
 def _length(vector: Sequence[float]) -> float:
     x, y, z = vector
     return math.sqrt(x * x + y * y + z * z)
-
-
-def _make_continuous(q: FloatArray, first: FloatArray) -> None:
-    """Choose of q and -q, one attitude, the one nearer to the row before, and at first to ``first``."""
-    before = np.vstack([first, q[:-1]])
-    signs = np.copysign(1.0, np.einsum("ij,ij->i", q, before[: len(q)]))
-    q *= np.cumprod(signs)[:, None]

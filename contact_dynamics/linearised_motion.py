@@ -33,6 +33,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.collocation import NODES, POINTS, integrals, nodes_of, slopes, solutions
 from contact_dynamics.poinsot import polhode_period
 from contact_dynamics.rigid_body import angular_momentum, cross_matrix
 from contact_dynamics.rotations import cross_matrices, matrices_of
@@ -43,20 +44,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from contact_dynamics.tumbling import FreeMotion
-
-NODES: Final = 12
-"""Gauss's points in a piece."""
-
-_ON_BOTH_SIDES, _DOUBLE_WEIGHTS = np.polynomial.legendre.leggauss(NODES)
-POINTS: Final = 0.5 * (1.0 + _ON_BOTH_SIDES)
-WEIGHTS: Final = 0.5 * _DOUBLE_WEIGHTS
-
-_TO_LEGENDRE: Final = (
-    np.polynomial.legendre.legvander(_ON_BOTH_SIDES, NODES - 1)
-    * WEIGHTS[:, None]
-    * (2 * np.arange(NODES) + 1)
-).T
-"""(NODES, NODES): from values at the points to coefficients of Legendre's polynomials."""
 
 PIECE: Final = 0.5
 """Length of a piece in u, the argument of the elliptic functions. Their nearest poles are pi/2 away, so the
@@ -125,8 +112,8 @@ def _slowly(motion: FreeMotion, times: FloatArray) -> tuple[FloatArray, FloatArr
             span = float(times[side][np.argmax(np.abs(times[side]))])
             inverse = _inverse_inertia(motion, matrices_of(motion.at(span * POINTS).q_WB))
             forcing = span * np.concatenate([inverse @ L_cross, inverse], axis=2)[None]
-            slopes = _slopes(forcing[..., :3], forcing)[0]
-            answers[side] = np.einsum("nk,kij->nij", _integrals(times[side] / span), slopes)
+            rates = slopes(forcing[..., :3], forcing)[0]
+            answers[side] = np.einsum("nk,kij->nij", integrals(times[side] / span), rates)
     return np.eye(3) + answers[:, :, :3], answers[:, :, 3:]
 
 
@@ -182,19 +169,11 @@ def _in_pieces(motion: FreeMotion, times: FloatArray, rate: float) -> tuple[Floa
             continue
         ahead = np.abs(times[here])
         edges = _edges(float(ahead.max()), rate, largest_rate(motion.rotation))
-        lengths = np.diff(edges)
-        nodes = edges[:-1, None] + lengths[:, None] * POINTS
-        K = _coefficients(motion, sign * nodes.ravel()).reshape(-1, NODES, 3, 3)
-        K *= sign * lengths[:, None, None, None]
-        slopes = _slopes(K, K)
-        begin = [np.eye(3)]
-        for step in np.einsum("k,nkij->nij", WEIGHTS, slopes):
-            begin.append(begin[-1] + step @ begin[-1])
-        which = np.minimum(np.searchsorted(edges, ahead, side="right") - 1, len(lengths) - 1)
-        shares = _integrals((ahead - edges[which]) / lengths[which])
-        first = np.array(begin)[which]
-        answers[here] = first + np.einsum("nk,nkij->nij", shares, slopes[which]) @ first
-        errors[here] = ROUNDING * np.square(np.maximum.accumulate(_largest(np.array(begin)))[which])
+        edges *= sign
+        K = _coefficients(motion, nodes_of(edges).ravel()).reshape(-1, NODES, 3, 3)
+        begin, answers[here] = solutions(K, edges, times[here])
+        which = np.minimum(np.searchsorted(np.abs(edges), ahead, side="right") - 1, len(edges) - 2)
+        errors[here] = ROUNDING * np.square(np.maximum.accumulate(_largest(begin))[which])
     return answers, errors
 
 
@@ -218,16 +197,6 @@ def _edges(farthest: float, rate: float, w: float) -> FloatArray:
     return edges
 
 
-def _slopes(K: FloatArray, forcing: FloatArray) -> FloatArray:
-    """Return D' at the nodes, (n, NODES, 3, m), of D' = K D + forcing on [0, 1], with D = 0 at 0."""
-    n, m = len(K), forcing.shape[-1]
-    # (1 - a_kj K_k) acting on the D'_j of all nodes
-    matrix = -np.einsum("kj,nkab->nkajb", _integrals(POINTS), K).reshape(n, 3 * NODES, 3 * NODES)
-    matrix += np.eye(3 * NODES)
-    slopes: FloatArray = np.linalg.solve(matrix, forcing.reshape(n, 3 * NODES, m)).reshape(n, NODES, 3, m)
-    return slopes
-
-
 def _coefficients(motion: FreeMotion, times: FloatArray) -> FloatArray:
     """Return I^-1 [L] - [w] in body axes, (n, 3, 3), 1/s."""
     then = motion.at(times)
@@ -240,13 +209,3 @@ def _coefficients(motion: FreeMotion, times: FloatArray) -> FloatArray:
 def _inverse_inertia(motion: FreeMotion, R: FloatArray) -> FloatArray:
     inverse: FloatArray = R @ np.linalg.inv(motion.body.I_B) @ R.transpose(0, 2, 1)
     return inverse
-
-
-def _integrals(s: FloatArray) -> FloatArray:
-    """Return the integrals from 0 to s, (n,), of the node's Lagrange polynomials on [0, 1], (n, NODES)."""
-    # of Legendre's P_k: (P_k+1 - P_k-1) / (2 k + 1), zero at -1
-    P = np.polynomial.legendre.legvander(2.0 * s - 1.0, NODES)
-    k = np.arange(1, NODES)
-    of_P = np.column_stack([2.0 * s, (P[:, 2:] - P[:, :-2]) / (2 * k + 1)])
-    integrals: FloatArray = 0.5 * of_P @ _TO_LEGENDRE
-    return integrals

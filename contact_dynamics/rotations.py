@@ -54,3 +54,15 @@ def turned(q: FloatArray, theta: FloatArray) -> FloatArray:
     u, w = q[:, :3], q[:, 3]
     vector = c[:, None] * u + w[:, None] * a + np.cross(a, u)
     return np.column_stack([vector, c * w - np.einsum("ij,ij->i", a, u)])
+
+
+def make_continuous(q: FloatArray, first: FloatArray) -> None:
+    """Choose of q and -q, one attitude, the one nearer to the row before, and at first to ``first``, (4,)."""
+    if len(q) == 0:
+        return
+    signs = np.empty(len(q))
+    signs[0] = q[0] @ first
+    np.einsum("ij,ij->i", q[1:], q[:-1], out=signs[1:])
+    np.copysign(1.0, signs, out=signs)
+    np.cumprod(signs, out=signs)
+    q *= signs[:, None]

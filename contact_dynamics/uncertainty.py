@@ -1,4 +1,4 @@
-"""How uncertain a free body's future is: its state's covariance, carried along the motion.
+"""How uncertain a body's future is: its state's covariance, carried along a free or a forced motion.
 
 Covariances are (12, 12), in the order position (m), rotation vector (rad, world axes, a small rotation
 applied after the attitude: R_true = Exp(theta) R), linear velocity (m/s), angular velocity (rad/s, world
@@ -27,6 +27,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.forced_motion import ForcedMotion
+from contact_dynamics.linearised_forced_motion import forced_state_derivatives
 from contact_dynamics.linearised_motion import state_derivatives
 from contact_dynamics.poinsot import polhode_period
 from contact_dynamics.rigid_body import BodyState, MassProperties
@@ -92,7 +94,7 @@ def propagate_covariance(
 
 
 def covariance_along(
-    motion: FreeMotion,
+    motion: FreeMotion | ForcedMotion,
     covariance: ArrayLike,
     times: ArrayLike,
     *,
@@ -102,7 +104,8 @@ def covariance_along(
 ) -> CarriedCovariance:
     """Return the covariance of the state of a motion at hand, as `propagate_covariance`.
 
-    ``samples`` and ``seed`` serve sampling only, which costs the set-up of so many motions.
+    ``samples`` and ``seed`` serve sampling only, which costs so many motions: of free ones the set-up, of
+    forced ones the integration.
 
     Raises:
         InvalidFieldError: as `propagate_covariance`; or fewer than `FEWEST_SAMPLES` samples.
@@ -158,8 +161,11 @@ def check_covariance(field: str, value: ArrayLike) -> FloatArray:
     return _symmetric(matrix)
 
 
-def _linearised(motion: FreeMotion, start: FloatArray, seconds: FloatArray) -> FloatArray:
-    J = state_derivatives(motion, seconds)
+def _linearised(motion: FreeMotion | ForcedMotion, start: FloatArray, seconds: FloatArray) -> FloatArray:
+    if isinstance(motion, ForcedMotion):
+        J = forced_state_derivatives(motion, seconds)
+    else:
+        J = state_derivatives(motion, seconds)
     return _symmetric(J @ start @ J.transpose(0, 2, 1))
 
 
@@ -177,7 +183,9 @@ def _draws(start: FloatArray, samples: int, seed: int) -> FloatArray:
     return np.concatenate([half, -half])
 
 
-def _sampled(motion: FreeMotion, start: FloatArray, seconds: FloatArray, *, draws: FloatArray) -> FloatArray:
+def _sampled(
+    motion: FreeMotion | ForcedMotion, start: FloatArray, seconds: FloatArray, *, draws: FloatArray
+) -> FloatArray:
     """Return the mean squares of deviations from ``motion``, (n, 12, 12)."""
     state, center = motion.state, motion.at(seconds)
     attitudes = turned(np.tile(state.q_WB, (len(draws), 1)), draws[:, 3:6])
@@ -189,8 +197,7 @@ def _sampled(motion: FreeMotion, start: FloatArray, seconds: FloatArray, *, draw
             v_WB_W=state.v_WB_W + draw[6:9],
             w_WB_W=state.w_WB_W + draw[9:],
         )
-        neighbour = free_motion(motion.body, other, gravity_W=motion.gravity_W, precision=Precision.DOUBLE)
-        then = neighbour.at(seconds)
+        then = _from_state(motion, other).at(seconds)
         deviation = np.hstack(
             [
                 then.p_WB_W - center.p_WB_W,
@@ -203,11 +210,23 @@ def _sampled(motion: FreeMotion, start: FloatArray, seconds: FloatArray, *, draw
     return covariances / len(draws)
 
 
-def _probes(motion: FreeMotion, seconds: FloatArray) -> FloatArray:
-    """Return times on the way to ``seconds``: over one period, after which growth repeats itself and adds."""
+def _from_state(motion: FreeMotion | ForcedMotion, state: BodyState) -> FreeMotion | ForcedMotion:
+    if isinstance(motion, ForcedMotion):
+        return motion.from_state(state)
+    return free_motion(motion.body, state, gravity_W=motion.gravity_W, precision=Precision.DOUBLE)
+
+
+def _probes(motion: FreeMotion | ForcedMotion, seconds: FloatArray) -> FloatArray:
+    """Return times on the way to ``seconds``: the integrator's own, or in closed form over one period.
+
+    After a period, growth repeats itself and adds.
+    """
+    ends = float(seconds.max(initial=0.0)), float(seconds.min(initial=0.0))
+    if isinstance(motion, ForcedMotion):
+        return np.concatenate([motion.steps_to(end) for end in ends])
     period = polhode_period(motion.rotation)
     longest = period if math.isfinite(period) else math.inf
-    ends = (min(float(seconds.max(initial=0.0)), longest), max(float(seconds.min(initial=0.0)), -longest))
+    ends = min(ends[0], longest), max(ends[1], -longest)
     return np.concatenate([np.linspace(0.0, end, PROBES) for end in ends])
 
 

@@ -7,7 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from contact_dynamics.applied_wrench import ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.forced_motion import forced_motion
 from contact_dynamics.rigid_body import BodyState, MassProperties
 from contact_dynamics.uncertainty import (
     CarriedCovariance,
@@ -93,6 +95,44 @@ def test_once_lost_stays_lost_although_it_comes_near_again() -> None:
     assert not carried.trusted[first:].any()
     # Asked for alone, the late times are no more trusted.
     assert not covariance_along(motion, covariance, times[first:][near]).trusted.any()
+
+
+FORCED = forced_motion(
+    MassProperties(mass=1.3, I_B=np.diag([1.0, 1.4, 1.9])),
+    BodyState(
+        p_WB_W=[0.1, 0.2, 1.5], q_WB=[0.5, 0.5, 0.5, 0.5], v_WB_W=[3.0, 0.0, 2.0], w_WB_W=[0.9, -1.4, 0.6]
+    ),
+    wrench=ConstantWrench(torque=[0.2, -0.1, 0.3], force=[1.0, 0.0, 0.0], axes=WrenchAxes.BODY),
+    drag=Drag(linear=0.2, quadratic=0.1, linear_angular=0.05, quadratic_angular=0.1),
+)
+"""With every kind of force, and a covariance that fades in parts and grows in others."""
+
+
+@pytest.mark.parametrize(("deviation", "limit"), [(1e-5, 3e-6), (1e-2, 0.05)])
+def test_under_forces_clouds_move_as_the_derivative_says(deviation: float, limit: float) -> None:
+    """What is left is curvature: deviations, in the square with what a flow of this kind bends, some 3."""
+    times = [0.0, 0.5, 3.0, -0.3]
+    linearised = covariance_along(FORCED, drawn_covariance(1, deviation), times)
+    sampled = covariance_along(
+        FORCED, drawn_covariance(1, deviation), times, method=PropagationMethod.SAMPLED, samples=60
+    )
+    assert apart(linearised, sampled).max() < limit
+    assert linearised.trusted.all()
+
+
+def test_under_forces_too_what_is_lost_on_the_way_stays_lost() -> None:
+    """Drag that turns nothing: the spread of attitudes, and where it is lost, are as in closed form."""
+    free = motion_of("about the minor axis alone")
+    forced = forced_motion(free.body, free.state, drag=Drag(linear=1e-3))
+    covariance = np.zeros((12, 12))
+    covariance[3:6, 3:6] = 0.08**2 * np.eye(3)
+    times = np.linspace(0.0, 50.0, 401)
+    one, other = (covariance_along(motion, covariance, times) for motion in (free, forced))
+    np.testing.assert_allclose(one.covariances, other.covariances, rtol=0.0, atol=1e-9)
+    assert one.trusted.tolist() == other.trusted.tolist()
+    near = (other.orientation_deviations < 0.1) & ~other.trusted
+    assert near.any()
+    assert not covariance_along(forced, covariance, times[near]).trusted.any()
 
 
 def test_a_sphere_and_its_place() -> None:

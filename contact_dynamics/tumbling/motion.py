@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.rotations import make_continuous
 from contact_dynamics.tumbling.arithmetic import DECIMALS, DOUBLES, Arithmetic, Precision, Scalar, within
 from contact_dynamics.tumbling.attitude_form import AttitudeForm, attitude_form
 from contact_dynamics.tumbling.polhode import Rotation, Spin, Tumble, tumble_or_spin
@@ -81,6 +82,16 @@ class Sample(NamedTuple):
     v_WB_W: tuple[float, float, float]  # m/s
     w_WB_W: tuple[float, float, float]  # rad/s
 
+    def as_state(self, begin_ns: int, seconds: float) -> BodyState:
+        """Return it as the state at a time, s after the stamp ``begin_ns``, ns."""
+        return BodyState(
+            p_WB_W=np.array(self.p_WB_W),
+            q_WB=np.array(self.q_WB),
+            v_WB_W=np.array(self.v_WB_W),
+            w_WB_W=np.array(self.w_WB_W),
+            stamp_ns=begin_ns + round(seconds * NANOSECONDS),
+        )
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FreeMotion:
@@ -134,14 +145,7 @@ class FreeMotion:
         Raises:
             InvalidFieldError: the time is not finite.
         """
-        sample = self.sample(check_finite("time", seconds))
-        return BodyState(
-            p_WB_W=np.array(sample.p_WB_W),
-            q_WB=np.array(sample.q_WB),
-            v_WB_W=np.array(sample.v_WB_W),
-            w_WB_W=np.array(sample.w_WB_W),
-            stamp_ns=self.state.stamp_ns + round(seconds * NANOSECONDS),
-        )
+        return self.sample(check_finite("time", seconds)).as_state(self.state.stamp_ns, seconds)
 
     def at(self, seconds: ArrayLike) -> Trajectory:
         """Return the motion at times (n,), s after the state's stamp, of any sign and in any order.
@@ -151,7 +155,7 @@ class FreeMotion:
         """
         times = check_array("times", seconds, (None,))
         q_WB, w_WB_W = self._one_by_one(times) if len(times) <= FEW else self._in_chunks(times)
-        _make_continuous(q_WB, self.state.q_WB)
+        make_continuous(q_WB, self.state.q_WB)
         elapsed = times[:, None]
         return Trajectory(
             seconds=times,
@@ -292,15 +296,3 @@ def _body_rate(state: BodyState, numbers: Arithmetic[Scalar]) -> list[Scalar]:
         (scale * b + along * y - across * (z * a - x * c)) / norm2,
         (scale * c + along * z - across * (x * b - y * a)) / norm2,
     ]
-
-
-def _make_continuous(q: FloatArray, first: FloatArray) -> None:
-    """Choose of q and -q, one attitude, the one nearer to the row before, and at first to ``first``."""
-    if len(q) == 0:
-        return
-    signs = np.empty(len(q))
-    signs[0] = q[0] @ first
-    np.einsum("ij,ij->i", q[1:], q[:-1], out=signs[1:])
-    np.copysign(1.0, signs, out=signs)
-    np.cumprod(signs, out=signs)
-    q *= signs[:, None]
