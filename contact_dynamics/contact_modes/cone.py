@@ -8,20 +8,29 @@ out as such, because ties are decided by one tolerance and remembered as bits, n
 A cone's dual has the rows as generators: the rays found here are then its facets. So this one construction
 serves the faces of the accelerations that do not penetrate, and the cones of wrenches.
 
-Plain floats: the sets are small, and most rows change nothing, which costs three multiplications a ray.
+Plain floats: the sets are small, and most rows change nothing, which costs three multiplications a ray. Of
+many rows, arrays tell those that change nothing.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
+
+import numpy as np
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from numpy.typing import NDArray
+
+    from contact_dynamics.validation import FloatArray
+
 Vector3: TypeAlias = tuple[float, float, float]
 
-_AXES: tuple[Vector3, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+_AXES: Final[tuple[Vector3, ...]] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+_WIDE: Final = 0.1  # sine: planes that meet at more serve to start with, without a look at the others
+_MANY: Final = 24  # rows, from which on arrays are faster
 
 
 class Sector(NamedTuple):
@@ -49,8 +58,13 @@ class PolyhedralCone:
         self.tight = []
         self.rows = rows
         self._tolerance = tolerance
+        first = self._begin()
+        if first and len(rows) > _MANY:
+            self._cut_many(first)
+            return
         for index, row in enumerate(rows):
-            self._cut(row, index)
+            if index not in first:
+                self._cut(row, index)
 
     @property
     def all_rows(self) -> int:
@@ -97,6 +111,61 @@ class PolyhedralCone:
             turn = (one, two, opposite(one), opposite(two), one)
             return [Sector(turn[i], turn[i + 1], self.all_rows) for i in range(4)]
         return []
+
+    def _begin(self) -> tuple[int, ...]:
+        """Start from three independent rows at once, and return which; none: the rows have no three."""
+        rows = self.rows
+        second, width, normal = -1, self._tolerance, (0.0, 0.0, 0.0)
+        for index, row in enumerate(rows):
+            across = cross(rows[0], row)
+            sine = math.sqrt(dot(across, across))
+            if sine > width:
+                second, width, normal = index, sine, across
+                if sine > _WIDE:
+                    break
+        third, height = -1, self._tolerance * width
+        for index, row in enumerate(rows):
+            above = dot(normal, row)
+            if abs(above) > abs(height):
+                third, height = index, above
+                if abs(above) > _WIDE * width:
+                    break
+        if third < 0:
+            return ()
+        one, two, three = rows[0], rows[second], rows[third]
+        if height < 0.0:
+            second, third, two, three = third, second, three, two
+        self.lineality = []
+        self.rays = [normalised(cross(a, b)) for a, b in ((two, three), (three, one), (one, two))]
+        self.tight = [1 << second | 1 << third, 1 << third | 1, 1 | 1 << second]
+        return (0, second, third)
+
+    def _cut_many(self, first: tuple[int, ...]) -> None:
+        """Cut with all rows but the ``first``; after those that cut most, many others change nothing."""
+        matrix = np.array(self.rows)
+        waiting = np.delete(np.arange(len(matrix)), first)
+        at_once = 4
+        while len(waiting) > 0 and self.rays:
+            heights = matrix[waiting] @ np.array(self.rays).T
+            lowest = heights.min(axis=1)
+            self._touch(waiting, heights, lowest)
+            order = np.argsort(lowest)
+            order = order[: np.searchsorted(lowest[order], -self._tolerance)]
+            cutting = waiting[order]
+            for index in cutting[:at_once].tolist():
+                self._cut(self.rows[index], index)
+            waiting = cutting[at_once:]
+            at_once *= 2
+
+    def _touch(self, indices: NDArray[np.int64], heights: FloatArray, lowest: FloatArray) -> None:
+        """Remember the rows that touch the cone and do not cut it."""
+        touching = np.flatnonzero(abs(lowest) <= self._tolerance)
+        if len(touching) == 0:
+            return
+        flags = np.zeros((len(self.rays), len(self.rows)), dtype=bool)
+        flags[:, indices[touching]] = (heights[touching] <= self._tolerance).T
+        for ray, packed in enumerate(np.packbits(flags, axis=1, bitorder="little")):
+            self.tight[ray] |= int.from_bytes(packed.tobytes(), "little")
 
     def _cut(self, row: Vector3, index: int) -> None:
         if self.lineality and self._cut_lineality(row, index):

@@ -47,6 +47,27 @@ def test_rays_of_drawn_cones(seed: int) -> None:
         row = (chance.randint(-size, size), chance.randint(-size, size), chance.randint(-size, size))
         if any(row):
             rows.append(row)
+    check(rows)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_rays_of_cones_of_many_rows(seed: int) -> None:
+    chance = random.Random(seed)
+    size, height = chance.choice([(2, 2), (3, 4), (9, 9), (9, 40)])
+    kinds = {
+        "upwards": lambda: (chance.randint(-size, size), chance.randint(-size, size), height),
+        "feet": lambda: (0, 1, chance.randint(-size, size)),
+        "inclined": lambda: (chance.randint(-size, size), 1, chance.randint(-size, size)),
+        "any": lambda: (chance.randint(-1, 1), chance.randint(-1, 1), 1),
+    }
+    several = chance.sample(list(kinds.values()), chance.choice([1, 1, 2]))
+    rows = [chance.choice(several)() for _ in range(chance.randint(25, 45))]
+    if chance.random() < 0.2:
+        rows[chance.randrange(len(rows))] = (0, 0, -1)
+    check(rows)
+
+
+def check(rows: list[Whole]) -> None:
     cone = build(rows)
     assert len(cone.lineality) == 3 - rank(rows)
     # Every candidate point of the cone is a combination of its lines and rays, and these are in it.
