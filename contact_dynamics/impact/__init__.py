@@ -3,15 +3,18 @@
 In reading order: the laws and outcomes (`law`); the plane, with Routh's construction (`routh`, `planar`,
 `result`, `batch`); space, where sliding swerves (`sliding`, `series`, `stopping`, `progress`, `swerve`,
 `spatial`, `spatial_result`); two moving bodies (`pair`); several contacts at once
-(`several`, `simultaneous`); uncertain states (`uncertain`).
+(`several`, `simultaneous`); strikes in time with flight between (`sequence`, `meetings`,
+`sequence_result`); uncertain states (`uncertain`).
 """
 
 from contact_dynamics.impact.batch import PlanarImpacts, planar_impacts
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
-from contact_dynamics.impact.pair import planar_pair_impact, spatial_pair_impact
+from contact_dynamics.impact.pair import planar_pair_impact
 from contact_dynamics.impact.planar import planar_impact
 from contact_dynamics.impact.result import PlanarImpact
 from contact_dynamics.impact.routh import ImpulsePath, InverseInertia
+from contact_dynamics.impact.sequence import impact_sequence, impact_sequence_of
+from contact_dynamics.impact.sequence_result import ImpactSequence, SequenceEnd, TimedStrike
 from contact_dynamics.impact.several import (
     OrderedOutcomes,
     SeveralContactsLaw,
@@ -20,7 +23,7 @@ from contact_dynamics.impact.several import (
     outcomes_over_orders,
     several_impact,
 )
-from contact_dynamics.impact.spatial import spatial_impact
+from contact_dynamics.impact.spatial import spatial_impact, spatial_pair_impact
 from contact_dynamics.impact.spatial_result import SpatialImpact
 from contact_dynamics.impact.uncertain import (
     ImpactDistribution,
@@ -31,6 +34,7 @@ from contact_dynamics.impact.uncertain import (
 __all__ = [
     "ImpactDistribution",
     "ImpactOutcome",
+    "ImpactSequence",
     "ImpulsePath",
     "InverseInertia",
     "OrderedOutcomes",
@@ -38,10 +42,14 @@ __all__ = [
     "PlanarImpact",
     "PlanarImpacts",
     "RestitutionLaw",
+    "SequenceEnd",
     "SeveralContactsLaw",
     "SeveralImpact",
     "SeveralVerdict",
     "SpatialImpact",
+    "TimedStrike",
+    "impact_sequence",
+    "impact_sequence_of",
     "outcomes_over_orders",
     "planar_impact",
     "planar_impact_distribution",

@@ -1,0 +1,257 @@
+"""A landing in time: corners that strike some milliseconds apart, with free flight between the strikes.
+
+What looks like several contacts at once is mostly this, in recordings of real bodies: one corner strikes, the
+body flies on, another strikes. Each strike is Routh's impact at one contact (`spatial`), each flight is free
+motion in closed form (`tumbling`), and the next strike is found to rounding (`first_contact`). Nothing is
+stepped. Contacts of one instant are struck one after the other, the fastest approach first, as the sequential
+law does (`several`); there the order is a choice, between instants it is not.
+
+The sequence ends where nothing strikes any more within a window, where a contact stays, or where strikes
+accumulate: rebounds that shrink by a ratio r < 1 have, after a flight of duration d, all ended r d / (1 - r)
+after the next strike (Zeno). Then free flight is over, and which contacts stay, slide or roll is a question
+of contact modes, not of impacts.
+
+Not covered: motion on a contact that stays, and a resting contact that its own sliding jams.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.meetings import FoundMeetings, NamedMeetings
+from contact_dynamics.impact.sequence_result import ImpactSequence, SequenceEnd, TimedStrike
+from contact_dynamics.impact.spatial import spatial_impact
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE, VELOCITY_TOLERANCE
+from contact_dynamics.tumbling import free_motion
+from contact_dynamics.validation import check_array, check_not_negative, check_positive
+from contact_dynamics.world import STANDARD_GRAVITY_W
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.contact import ContactSet
+    from contact_dynamics.impact.meetings import Meetings
+    from contact_dynamics.landing import Landing
+    from contact_dynamics.rigid_body import BodyState, MassProperties
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import Body, World
+
+STRIKE_WINDOW: Final = 0.05
+"""s. A cube of 0.1 m whose first corner has struck at 1 m/s lands with the others within it."""
+
+MOST_STRIKES: Final = 200
+"""Strikes after which a sequence ends unfinished: rebounds of e = 0.9 have lost their height by then."""
+
+CHATTER_HEIGHT: Final = 1e-7
+"""m. Rebounds lower than this are not followed: a hundred times what the search for the first contact may
+overlook, and far below the roughness of surfaces."""
+
+
+def impact_sequence(
+    body: Body,
+    state: BodyState,
+    world: World,
+    *,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
+    window: float = STRIKE_WINDOW,
+    most_strikes: int = MOST_STRIKES,
+    distance_tolerance: float = DISTANCE_TOLERANCE,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+) -> ImpactSequence:
+    """Return the strikes of a body's corners on the world's surfaces, from a state in contact or in flight.
+
+    Args:
+        body: Mass properties and corners.
+        state: Pose and velocities; the first strike, too, must come within the window.
+        world: Surfaces and gravity.
+        restitution_law: What the coefficients of restitution mean.
+        window: s, > 0. The longest flight after which a strike still belongs to the landing.
+        most_strikes: How many strikes to resolve at most, >= 1.
+        distance_tolerance: m, >= 0. A corner within it of a surface touches.
+        velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
+
+    Raises:
+        InvalidFieldError: a number that is not allowed.
+    """
+    tolerance = check_positive("velocity_tolerance", velocity_tolerance)
+    meetings = FoundMeetings(
+        body,
+        world,
+        distance_tolerance=check_not_negative("distance_tolerance", distance_tolerance),
+        velocity_tolerance=tolerance,
+    )
+    sequence = _Sequence(body.mass_properties, world.gravity_W, meetings, restitution_law, tolerance)
+    return sequence.run(state, check_positive("window", window), most_strikes)
+
+
+def impact_sequence_of(
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    *,
+    gravity_W: ArrayLike = STANDARD_GRAVITY_W,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
+    window: float = STRIKE_WINDOW,
+    most_strikes: int = MOST_STRIKES,
+    distance_tolerance: float = DISTANCE_TOLERANCE,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+) -> ImpactSequence:
+    """Return the strikes at contacts that touch now: each a point of the body, and the plane it touches.
+
+    Each point strikes its own plane alone: now if it approaches, and whenever it comes back.
+
+    Args:
+        body: Mass and angular inertia.
+        state: Pose and velocities.
+        contacts: All that touch, approaching or not.
+        gravity_W: (3,), m/s^2, world axes.
+        restitution_law: What the coefficients of restitution mean.
+        window: s, > 0. The longest flight after which a strike still belongs to the landing.
+        most_strikes: How many strikes to resolve at most, >= 1.
+        distance_tolerance: m, >= 0. A point within it of its plane touches.
+        velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
+
+    Raises:
+        InvalidFieldError: a number that is not allowed.
+    """
+    tolerance = check_positive("velocity_tolerance", velocity_tolerance)
+    meetings = NamedMeetings(
+        contacts,
+        state,
+        distance_tolerance=check_not_negative("distance_tolerance", distance_tolerance),
+        velocity_tolerance=tolerance,
+    )
+    gravity = check_array("gravity", gravity_W, (3,))
+    sequence = _Sequence(body, gravity, meetings, restitution_law, tolerance)
+    return sequence.run(state, check_positive("window", window), most_strikes)
+
+
+class _Sequence:
+    """Strikes so far, and the search for the next one."""
+
+    def __init__(
+        self,
+        body: MassProperties,
+        gravity_W: FloatArray,
+        meetings: Meetings,
+        law: RestitutionLaw,
+        tolerance: float,
+    ) -> None:
+        self.body, self.gravity_W, self.meetings = body, gravity_W, meetings
+        self.law, self.tolerance = law, tolerance
+        self.strikes: list[TimedStrike] = []
+        self.ratios: dict[int, float] = {}  # of each contact's newest strike: rebound over approach
+        self.limit: float | None = None
+        self.staying: tuple[int, ...] = ()
+
+    def run(self, state: BodyState, window: float, most_strikes: int) -> ImpactSequence:
+        most = round(check_positive("most_strikes", most_strikes))
+        end = self._strike_on(state, window, most)
+        return ImpactSequence(
+            restitution_law=self.law,
+            contacts=self.meetings.contacts,
+            strikes=tuple(self.strikes),
+            end=end,
+            state=self.strikes[-1].impact.state if self.strikes else state,
+            staying=self.staying,
+            limit_seconds=self.limit,
+        )
+
+    def _strike_on(self, state: BodyState, window: float, most: int) -> SequenceEnd:
+        now, until, lifts = 0.0, window, 0  # s since the beginning
+        while True:
+            motion = free_motion(self.body, state, gravity_W=self.gravity_W)
+            landing = self.meetings.next(motion, until - now)
+            if landing is None:
+                return SequenceEnd.NOTHING_STRIKES
+            now += landing.seconds
+            if not landing.strikes:
+                wait = self._time_to_leave(landing)
+                lifts += 1
+                if wait is None or lifts > most:
+                    pressed = np.flatnonzero(self._lifting(landing) <= 0.0).tolist()
+                    self._stay(landing, pressed or [0], now)
+                    return SequenceEnd.STAYS
+                now += wait
+                if now >= until:
+                    return SequenceEnd.NOTHING_STRIKES
+                state = free_motion(self.body, landing.state, gravity_W=self.gravity_W).state_at(wait)
+                continue
+            row = int(_normal_parts(landing.velocities_W, landing.contacts).argmin())
+            remaining = self._time_of_chatter(landing, row)
+            if remaining is not None:
+                self._stay(landing, [row], now + remaining)
+                return SequenceEnd.CHATTERS
+            if len(self.strikes) == most:
+                return SequenceEnd.MOST_STRIKES
+            state = self._strike(landing, row, now)
+            until = now + window
+
+    def _strike(self, landing: Landing, row: int, now: float) -> BodyState:
+        """Resolve the strike at one contact of a landing; return the state after it."""
+        contacts = landing.contacts
+        contact = self.meetings.index(landing, row)
+        normal = contacts.normals_W[row]
+        impact = spatial_impact(
+            self.body,
+            landing.state,
+            p_WC_W=contacts.p_WC_W[row],
+            n_W=normal,
+            friction=float(contacts.frictions[row]),
+            restitution=float(contacts.restitutions[row]),
+            law=self.law,
+            # Half, since the approach was judged by another sum with other rounding.
+            velocity_tolerance=0.5 * self.tolerance,
+        )
+        self.ratios[contact] = float(impact.velocity_after_W @ normal) / -float(
+            impact.velocity_before_W @ normal
+        )
+        self.strikes.append(
+            TimedStrike(
+                seconds=now,
+                contact=contact,
+                p_WC_W=contacts.p_WC_W[row],
+                state_before=landing.state,
+                impact=impact,
+            )
+        )
+        return impact.state
+
+    def _time_to_leave(self, landing: Landing) -> float | None:
+        """Return the time, s, in which the free motion takes resting contacts off, or None if they stay."""
+        approach = _normal_parts(landing.velocities_W, landing.contacts)
+        lifting = self._lifting(landing)
+        if not (lifting > 0.0).all():
+            return None
+        return float(((2.0 * self.tolerance - approach) / lifting).max())
+
+    def _time_of_chatter(self, landing: Landing, row: int) -> float | None:
+        """Return for how long, s, a contact chatters from its present strike on, or None if it does not."""
+        ratio = self.ratios.get(self.meetings.index(landing, row), 1.0)
+        speed = -float(landing.velocities_W[row] @ landing.contacts.normals_W[row])
+        pressing = -float(self._lifting(landing)[row])
+        if ratio >= 1.0 or speed * speed > 2.0 * CHATTER_HEIGHT * pressing:
+            return None
+        return 2.0 * speed / pressing * ratio / (1.0 - ratio)
+
+    def _lifting(self, landing: Landing) -> FloatArray:
+        """Return the normal accelerations, (n,), m/s^2, that contacts have in free motion."""
+        state = landing.state
+        w = state.w_WB_W
+        inertia = self.body.inertia_in_world(state.R_WB)
+        turning = np.linalg.solve(inertia, -np.cross(w, inertia @ w))
+        arms = landing.contacts.p_WC_W - state.p_WB_W
+        accelerations = self.gravity_W + np.cross(turning, arms) + np.cross(w, np.cross(w, arms))
+        return _normal_parts(accelerations, landing.contacts)
+
+    def _stay(self, landing: Landing, rows: list[int], seconds: float) -> None:
+        self.staying = tuple(self.meetings.index(landing, row) for row in rows)
+        self.limit = seconds
+
+
+def _normal_parts(vectors: FloatArray, contacts: ContactSet) -> FloatArray:
+    parts: FloatArray = np.einsum("ij,ij->i", vectors, contacts.normals_W)
+    return parts
