@@ -30,7 +30,8 @@ Vector3: TypeAlias = tuple[float, float, float]
 
 _AXES: Final[tuple[Vector3, ...]] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _WIDE: Final = 0.1  # sine: planes that meet at more serve to start with, without a look at the others
-_MANY: Final = 24  # rows, from which on arrays are faster
+MANY: Final = 24
+"""Rows, from which on arrays are faster."""
 
 
 class Sector(NamedTuple):
@@ -59,7 +60,7 @@ class PolyhedralCone:
         self.rows = rows
         self._tolerance = tolerance
         first = self._begin()
-        if first and len(rows) > _MANY:
+        if first and len(rows) > MANY:
             self._cut_many(first)
             return
         for index, row in enumerate(rows):

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from contact_dynamics.contact_modes.cone import Vector3, dot
 from contact_dynamics.contact_modes.enumeration import FIXED, LEFT, Cell
 from contact_dynamics.contact_modes.result import ConsistentMode, Refusal, RefusedMode
-from contact_dynamics.contact_modes.wrench_cone import ModeWrenches, contact_generators
+from contact_dynamics.contact_modes.wrench_cone import ModeWrenches, edge
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
@@ -59,16 +59,16 @@ def _independent_forces(problem: PlanarProblem, cell: Cell) -> list[Vector2] | N
     lengths: list[float] = []
     for position, letter in cell.letters:
         row = problem.rows[position]
-        equations.append((_scaled(row.N, 1.0 / row.size_n), row.b_n / row.size_n))
-        wrench = row.N if letter == FIXED else _edge(row, letter)
-        unknowns = [wrench]
+        equations.append((row.unit_n, row.b_n / row.size_n))
         if letter == FIXED:
-            equations.append((_scaled(row.T, 1.0 / row.size_t), row.b_t / row.size_t))
-            unknowns.append(row.T)
-        for unknown in unknowns:
+            equations.append((row.unit_t, row.b_t / row.size_t))
+            units += (row.unit_n, row.unit_t)
+            lengths += (row.size_n, row.size_t)
+        else:
+            unknown = edge(row, _slope(row, letter))
             length = math.sqrt(dot(unknown, unknown))
             lengths.append(length)
-            units.append(_scaled(unknown, 1.0 / length))
+            units.append((unknown[0] / length, unknown[1] / length, unknown[2] / length))
     matrix = [[dot(row, unit) for unit in units] for row, _ in equations]
     right = [-dot(row, problem.w) - problem.mass * offset for row, offset in equations]
     scaled = _solved(matrix, right)
@@ -146,16 +146,11 @@ def _from_cone(
     if shortfall is not None:
         return RefusedMode(mode=mode, refusal=Refusal.NO_SOLUTION, contact=-1, amount=shortfall)
     shares, unique = wrenches.solution(accuracy)
-    forces: list[Vector2] = []
-    at = 0
-    for position, letter in cell.letters:
-        row = problem.rows[position]
-        f_t = f_n = 0.0
-        for slope, _ in contact_generators(row, letter):
-            f_n += shares[at]
-            f_t += slope * shares[at]
-            at += 1
-        forces.append((f_t, f_n))
+    sums = dict.fromkeys(wrenches.edges.positions, (0.0, 0.0))
+    for position, slope, share in zip(wrenches.edges.positions, wrenches.edges.slopes, shares, strict=True):
+        f_t, f_n = sums[position]
+        sums[position] = (f_t + slope * share, f_n + share)
+    forces = [sums[position] for position, _ in cell.letters]
     return _consistent(problem, mode, cell, forces, unique=unique)
 
 
@@ -231,16 +226,6 @@ def _solved(matrix: list[list[float]], right: list[float]) -> list[float] | None
 def _slope(row: ContactRow, letter: int) -> float:
     """Return f_t / f_n of a sliding contact: friction pushes right where it slides left."""
     return row.friction if letter == LEFT else -row.friction
-
-
-def _edge(row: ContactRow, letter: int) -> Vector3:
-    slope = _slope(row, letter)
-    N, T = row.N, row.T
-    return (N[0] + slope * T[0], N[1] + slope * T[1], N[2] + slope * T[2])
-
-
-def _scaled(a: Vector3, factor: float) -> Vector3:
-    return (a[0] * factor, a[1] * factor, a[2] * factor)
 
 
 def _size(a: Vector3) -> float:

@@ -11,7 +11,7 @@ With centripetal terms the polyhedron misses the origin; it is the section at he
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 from contact_dynamics.contact_modes.cone import PolyhedralCone, Sector, Vector3, bits, dot, normalised
 from contact_dynamics.contact_modes.problem import PlanarProblem, lifted
@@ -25,6 +25,7 @@ LEFT = ord("l")
 RIGHT = ord("r")
 FIXED = ord("f")
 
+_SLIDING: Final = {-1.0: LEFT, 0.0: 0, 1.0: RIGHT}
 
 Letters: TypeAlias = tuple[tuple[int, int], ...]
 """Contacts that stay: position in the problem's rows, letter."""
@@ -45,18 +46,21 @@ class _Tangent(NamedTuple):
 def kinematic_cells(problem: PlanarProblem) -> dict[str, Cell]:
     """Return the mode strings that can occur, each with its accelerations. At least one contact touches."""
     lift = problem.lift
-    normals = [normalised(lifted(lift, row.N, row.b_n)) for row in problem.rows]
-    tangents = [
-        _Tangent(
-            normalised(lifted(lift, row.T, row.b_t)) if row.slides == 0.0 else row.T,
-            LEFT if row.slides < 0.0 else RIGHT if row.slides > 0.0 else 0,
-        )
-        for row in problem.rows
-    ]
     below = 0
-    if lift is not None:
-        below = 1 << len(normals)
+    if lift is None:
+        normals = [row.unit_n for row in problem.rows]
+        tangents = [_Tangent(row.unit_t, _SLIDING[row.slides]) for row in problem.rows]
+    else:
+        below = 1 << len(problem.rows)
+        normals = [normalised(lifted(lift, row.N, row.b_n)) for row in problem.rows]
         normals.append((0.0, 0.0, 1.0))
+        tangents = [
+            _Tangent(
+                normalised(lifted(lift, row.T, row.b_t)) if row.slides == 0.0 else row.T,
+                _SLIDING[row.slides],
+            )
+            for row in problem.rows
+        ]
     cone = PolyhedralCone(normals, tolerance=ROW_TOLERANCE)
     base = bytearray(b"s" * len(problem.contacts))
     cells: dict[str, Cell] = {}

@@ -68,17 +68,21 @@ def planar_contact_modes(
     accuracy = check_not_negative("acceleration_tolerance", acceleration_tolerance)
     velocities = contact_velocities(velocity, contacts, v_tolerance)
     approaching = tuple(i for i, (_, v_n) in enumerate(velocities) if v_n < 0.0)
-    w = _angular_velocity(velocity, contacts, v_tolerance)
     modes: list[ConsistentMode] = []
     refused: list[RefusedMode] = []
     a_tolerance = 0.0
     if not approaching:
         touching = [i for i, (_, v_n) in enumerate(velocities) if v_n == 0.0]
         if not touching:
-            modes.append(_free_motion(body, contacts, wrench, w))
+            modes.append(_free_motion(body, contacts, wrench, _spin(velocity, contacts, v_tolerance)))
         elif len(contacts) == 1:
             modes, refused, a_tolerance = single_contact_modes(
-                body, contacts[0], wrench, v_t=velocities[0][0], w=w, accuracy=accuracy
+                body,
+                contacts[0],
+                wrench,
+                v_t=velocities[0][0],
+                w=_spin(velocity, contacts, v_tolerance),
+                accuracy=accuracy,
             )
         else:
             problem = planar_problem(
@@ -98,7 +102,7 @@ def planar_contact_modes(
     )
 
 
-def _angular_velocity(velocity: PlanarVelocity, contacts: Sequence[PlanarContact], tolerance: float) -> float:
+def _spin(velocity: PlanarVelocity, contacts: Sequence[PlanarContact], tolerance: float) -> float:
     if all(abs(velocity.w) * math.hypot(*contact.r) <= tolerance for contact in contacts):
         return 0.0
     return velocity.w

@@ -40,10 +40,12 @@ class ContactRow(NamedTuple):
     contact: int  # in the caller's order
     N: Vector3  # normal row, not unit
     T: Vector3  # tangent row, not unit
-    b_n: float  # m/s^2
-    b_t: float  # m/s^2
+    unit_n: Vector3  # along N
+    unit_t: Vector3  # along T
     size_n: float  # |N|
     size_t: float  # |T|
+    b_n: float  # m/s^2
+    b_t: float  # m/s^2
     slides: float  # -1 moves left, +1 right, 0 at rest
     friction: float
 
@@ -110,7 +112,7 @@ def planar_problem(
     ``velocity_tolerance``, m/s, counts as zero.
     """
     rho = body.radius_of_gyration
-    touching: list[tuple[int, Vector3, Vector3, float, PlanarContact]] = []
+    touching: list[tuple[int, float, Vector3, Vector3, Vector3, Vector3]] = []
     resting: list[Vector3] = []
     for index, (contact, (v_t, v_n)) in enumerate(zip(contacts, contact_velocities, strict=True)):
         if v_n != 0.0:
@@ -119,10 +121,11 @@ def planar_problem(
         r_x, r_y = contact.r
         N = (n_x, n_y, (r_x * n_y - r_y * n_x) / rho)
         T = (n_y, -n_x, -(r_x * n_x + r_y * n_y) / rho)
-        touching.append((index, N, T, v_t, contact))
-        resting.append(normalised(N))
+        unit_n, unit_t = normalised(N), normalised(T)
+        touching.append((index, v_t, N, T, unit_n, unit_t))
+        resting.append(unit_n)
         if v_t == 0.0:
-            resting.append(normalised(T))
+            resting.append(unit_t)
     twist = _unhindered((velocity.v[0], velocity.v[1], rho * velocity.w), resting)
     reach = max((math.hypot(*contact.r) for contact in contacts), default=0.0) / rho
     turns = abs(twist[2]) * reach > velocity_tolerance and abs(twist[2]) > ROW_TOLERANCE * _size(twist)
@@ -130,22 +133,23 @@ def planar_problem(
     square = omega * omega
     rows = []
     largest = 0.0
-    for index, N, T, v_t, contact in touching:
+    for index, v_t, N, T, unit_n, unit_t in touching:
         b_n = square * T[2] * rho  # T's moment arm is -r.n, N's is r.t
         b_t = -square * N[2] * rho
         largest = max(largest, abs(b_n), abs(b_t))
-        slides = (v_t > 0.0) - (v_t < 0.0)
         rows.append(
             ContactRow(
-                index,
-                N,
-                T,
-                b_n,
-                b_t,
-                _size(N),
-                _size(T),
-                float(slides),
-                contact.friction,
+                contact=index,
+                N=N,
+                T=T,
+                unit_n=unit_n,
+                unit_t=unit_t,
+                size_n=_size(N),
+                size_t=_size(T),
+                b_n=b_n,
+                b_t=b_t,
+                slides=float((v_t > 0.0) - (v_t < 0.0)),
+                friction=contacts[index].friction,
             )
         )
     return PlanarProblem(

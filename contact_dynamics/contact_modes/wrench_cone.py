@@ -14,27 +14,48 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
-from contact_dynamics.contact_modes.cone import PolyhedralCone, Vector3, bits, dot, normalised, opposite
-from contact_dynamics.contact_modes.enumeration import FIXED, LEFT, Cell
+import numpy as np
+
+from contact_dynamics.contact_modes.cone import MANY, PolyhedralCone, Vector3, bits, dot, normalised, opposite
+from contact_dynamics.contact_modes.enumeration import FIXED, RIGHT, Cell, Letters
 from contact_dynamics.contact_modes.least_force import least_force
-from contact_dynamics.contact_modes.problem import PlanarProblem, lifted
+from contact_dynamics.contact_modes.problem import Lift, PlanarProblem, lifted
 from contact_dynamics.contact_modes.span import orthonormal
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from contact_dynamics.contact_modes.problem import ContactRow
 
 
-def contact_generators(row: ContactRow, letter: int) -> list[tuple[float, Vector3]]:
-    """Return the edges of the forces that a letter allows: f_t / f_n, and the wrench of a unit f_n."""
-    if letter == FIXED:
-        slopes = [row.friction, -row.friction] if row.friction > 0.0 else [0.0]
-    else:
-        slopes = [row.friction if letter == LEFT else -row.friction]
+class Edges(NamedTuple):
+    """Edges of the friction cones: the contact forces of a mode are positive combinations of them."""
+
+    positions: list[int]  # the row of the problem that each belongs to
+    slopes: list[float]  # f_t / f_n
+    wrenches: list[Vector3]  # of a unit f_n
+
+
+def friction_edges(rows: Sequence[ContactRow], letters: Letters) -> Edges:
+    """Return the edges of the forces that the letters of a mode allow."""
+    positions: list[int] = []
+    slopes: list[float] = []
+    for position, letter in letters:
+        friction = rows[position].friction
+        if letter != RIGHT:
+            positions.append(position)
+            slopes.append(friction)
+        if letter == RIGHT or (letter == FIXED and friction > 0.0):
+            positions.append(position)
+            slopes.append(-friction)
+    return Edges(positions, slopes, [edge(rows[i], mu) for i, mu in zip(positions, slopes, strict=True)])
+
+
+def edge(row: ContactRow, slope: float) -> Vector3:
+    """Return the wrench of a contact force of unit normal part and ``slope`` f_t / f_n."""
     N, T = row.N, row.T
-    return [(mu, (N[0] + mu * T[0], N[1] + mu * T[1], N[2] + mu * T[2])) for mu in slopes]
+    return (N[0] + slope * T[0], N[1] + slope * T[1], N[2] + slope * T[2])
 
 
 class HalfSpace(NamedTuple):
@@ -47,34 +68,23 @@ class HalfSpace(NamedTuple):
 class ModeWrenches:
     """The cone of applied wrenches of one mode, and where the problem's own wrench stands in it."""
 
-    __slots__ = ("_common", "_generators", "_problem", "_rays", "_seen", "_target", "dual")
+    __slots__ = ("_common", "_lengths", "_problem", "_rays", "_seen", "_target", "dual", "edges")
 
     def __init__(self, problem: PlanarProblem, cell: Cell) -> None:
         """Build the cone; its rays stand first among the columns of ``dual``, then the seen reactions."""
         lift = problem.lift
         self._problem = problem
         self._rays = cell.rays
-        self._generators = [
-            generator
-            for position, letter in cell.letters
-            for _, generator in contact_generators(problem.rows[position], letter)
-        ]
-        self._seen: list[tuple[int, float]] = []  # generators that act across the line of symmetry, lengths
-        columns = list(cell.rays)
-        for index, (c_x, c_y, c_z) in enumerate(self._generators):
-            reaction = lifted(lift, (-c_x, -c_y, -c_z), 0.0)
-            length = math.sqrt(dot(reaction, reaction))
-            if length > ROW_TOLERANCE * math.sqrt(c_x * c_x + c_y * c_y + c_z * c_z):
-                self._seen.append((index, length))
-                columns.append((reaction[0] / length, reaction[1] / length, reaction[2] / length))
-        self.dual = PolyhedralCone(columns, tolerance=ROW_TOLERANCE)
+        self.edges = friction_edges(problem.rows, cell.letters)
+        self._seen, self._lengths, reactions = _reactions(lift, self.edges.wrenches)
+        self.dual = PolyhedralCone([*cell.rays, *reactions], tolerance=ROW_TOLERANCE)
         self._target = lifted(lift, problem.w, problem.mass * lift.scale * lift.scale if lift else 0.0)
         self._common = self.dual.all_rows
 
     def generated_by(self) -> tuple[list[Vector3], list[Vector3]]:
         """Return vertices, N, and rays whose averages and positive combinations are the mode's wrenches."""
         lift = self._problem.lift
-        rays = [(-x, -y, -z) for x, y, z in self._generators]
+        rays = [opposite(wrench) for wrench in self.edges.wrenches]
         if lift is None:
             return [(0.0, 0.0, 0.0)], [*self._rays, *rays]
         rays += [lift.line, opposite(lift.line)]
@@ -129,7 +139,7 @@ class ModeWrenches:
         return None if strict else 0.0
 
     def solution(self, accuracy: float) -> tuple[list[float], tuple[bool, bool]]:
-        """Return the least forces (a factor for each generator), and whether forces and motion are unique.
+        """Return the least forces (f_n along each of ``edges``), and whether forces and motion are unique.
 
         Only after `shortfall` has returned None.
         """
@@ -152,26 +162,29 @@ class ModeWrenches:
         absent = [_three(unit) for unit in orthonormal(fixed)]
         used = bits(self._common)
         found = least_force([self.dual.rows[i] for i in used], rest, absent)
-        shares = [0.0] * len(self._generators)
-        acting = set(range(len(self._generators))) - {index for index, _ in self._seen}
+        wrenches = self.edges.wrenches
+        shares = [0.0] * len(wrenches)
+        idle = set(self._seen)  # the others act along the line of symmetry: any of them may
         for column, value in zip(used, found, strict=True):
             if column >= len(self._rays):
-                index, length = self._seen[column - len(self._rays)]
-                shares[index] = value / length
-                acting.add(index)
-        return shares, self._uniqueness([self._generators[i] for i in sorted(acting)])
+                index = self._seen[column - len(self._rays)]
+                shares[index] = value / self._lengths[column - len(self._rays)]
+                idle.remove(index)
+        return shares, self._uniqueness([wrench for i, wrench in enumerate(wrenches) if i not in idle])
 
     def _uniqueness(self, acting: list[Vector3]) -> tuple[bool, bool]:
-        """Return whether forces and motion are unique, ``acting`` being all generators that can act."""
-        motions: list[tuple[float, ...]] = [self._with_height(ray) for ray in self._rays]
-        height: tuple[float, ...] = ()
+        """Return whether forces and motion are unique, ``acting`` being all wrenches that can act."""
+        motions = orthonormal(self._motions())
+        height = () if self._problem.lift is None else (0.0,)
+        forces = orthonormal((*normalised(wrench), *height) for wrench in acting)
+        total = len(orthonormal([*motions, *forces])) if motions else len(forces)
+        return total == len(motions) + len(acting), total == len(motions) + len(forces)
+
+    def _motions(self) -> Iterator[tuple[float, ...]]:
+        for ray in self._rays:
+            yield self._with_height(ray)
         if self._problem.lift is not None:
-            height = (0.0,)
-            motions.append((*self._problem.lift.line, *height))
-        forces: list[tuple[float, ...]] = [(*normalised(generator), *height) for generator in acting]
-        motion_rank, force_rank = len(orthonormal(motions)), len(orthonormal(forces))
-        total = len(orthonormal(motions + forces))
-        return total == motion_rank + len(acting), total == motion_rank + force_rank
+            yield (*self._problem.lift.line, 0.0)
 
     def _unlifted(self, z: Vector3) -> tuple[Vector3, float]:
         """Return a and b of a . w + b for the height of the wrench w over the facet ``z``."""
@@ -197,6 +210,34 @@ class ModeWrenches:
             return ray
         one, two = lift.across
         return (*(ray[0] * x + ray[1] * y for x, y in zip(one, two, strict=True)), ray[2])
+
+
+def _reactions(
+    lift: Lift | None, wrenches: Sequence[Vector3]
+) -> tuple[list[int], list[float], list[Vector3]]:
+    """Return which wrenches act across the line of symmetry, their lengths there, and unit reactions."""
+    if len(wrenches) > MANY:
+        return _many_reactions(lift, wrenches)
+    seen, lengths, units = [], [], []
+    for index, wrench in enumerate(wrenches):
+        x, y, z = lifted(lift, wrench, 0.0)
+        length = math.sqrt(x * x + y * y + z * z)
+        if lift is None or length > ROW_TOLERANCE * math.sqrt(dot(wrench, wrench)):
+            seen.append(index)
+            lengths.append(length)
+            units.append((-x / length, -y / length, -z / length))
+    return seen, lengths, units
+
+
+def _many_reactions(
+    lift: Lift | None, wrenches: Sequence[Vector3]
+) -> tuple[list[int], list[float], list[Vector3]]:
+    rows = np.array(wrenches)
+    across = rows if lift is None else np.column_stack([rows @ np.array(lift.across).T, np.zeros(len(rows))])
+    lengths = np.sqrt(np.einsum("ij,ij->i", across, across))
+    seen = np.flatnonzero(lengths > ROW_TOLERANCE * np.sqrt(np.einsum("ij,ij->i", rows, rows)))
+    units = -across[seen] / lengths[seen, None]
+    return seen.tolist(), lengths[seen].tolist(), [(x, y, z) for x, y, z in units.tolist()]
 
 
 def _total(rays: Sequence[Vector3]) -> Vector3:
