@@ -80,8 +80,8 @@ class ForcedMotion:
         """Return the motion at one time, s after the state's stamp, in plain floats.
 
         Raises:
-            InvalidFieldError: the integrator does not get there: more than `MOST_STEPS`, or the motion grows
-                without bounds before, as under drag into the past.
+            InvalidFieldError: the integrator does not get there: more steps than are allowed, or the motion
+                grows without bounds before, as under drag into the past.
         """
         side = self.ahead if seconds >= 0.0 else self.back
         return self.law.sample(seconds, side.at(seconds).tolist())
@@ -103,6 +103,7 @@ class ForcedMotion:
             wrench=self.wrench,
             drag=self.drag,
             wrench_of=self.wrench_of,
+            most_steps=self.ahead.most,
         )
 
     def steps_to(self, seconds: float) -> FloatArray:
@@ -167,6 +168,7 @@ def motion_of(
     wrench: ConstantWrench = NO_WRENCH,
     drag: Drag = NO_DRAG,
     wrench_of: WrenchFunction | None = None,
+    most_steps: int = MOST_STEPS,
 ) -> ChosenMotion:
     """Return a body's motion by the best method: in closed form where no torque and no drag acts.
 
@@ -176,7 +178,13 @@ def motion_of(
     turns = bool(np.any(wrench.torque)) or (wrench.axes is WrenchAxes.BODY and bool(np.any(wrench.force)))
     if turns or drag != NO_DRAG or wrench_of is not None:
         forced = forced_motion(
-            body, state, gravity_W=gravity_W, wrench=wrench, drag=drag, wrench_of=wrench_of
+            body,
+            state,
+            gravity_W=gravity_W,
+            wrench=wrench,
+            drag=drag,
+            wrench_of=wrench_of,
+            most_steps=most_steps,
         )
         return ChosenMotion(forced, Method.INTEGRATED)
     fall = check_array("gravity", gravity_W, (3,)) + wrench.force / body.mass
@@ -191,11 +199,13 @@ def forced_motion(
     wrench: ConstantWrench = NO_WRENCH,
     drag: Drag = NO_DRAG,
     wrench_of: WrenchFunction | None = None,
+    most_steps: int = MOST_STEPS,
 ) -> ForcedMotion:
     """Return the motion of a body on which a constant wrench, drag and a function act, by an integrator.
 
     Gravity is (3,), m/s^2, world axes. ``wrench_of(seconds, sample)`` returns a force, N, and a torque about
-    the centre of mass, N m, three numbers each, in world axes; seconds count from the state's stamp.
+    the centre of mass, N m, three numbers each, in world axes; seconds count from the state's stamp. Times
+    further away than ``most_steps`` of the integrator are refused when they are asked for.
 
     Raises:
         InvalidFieldError: gravity is not three finite numbers; or, then and whenever the motion is asked for,
@@ -213,8 +223,8 @@ def forced_motion(
         drag=drag,
         wrench_of=wrench_of,
         law=law,
-        ahead=_Steps(law, math.inf),
-        back=_Steps(law, -math.inf),
+        ahead=_Steps(law, math.inf, most_steps),
+        back=_Steps(law, -math.inf, most_steps),
     )
 
 
@@ -303,9 +313,10 @@ class _Law:
 class _Steps:
     """What has been integrated in one direction of time, and how to go on."""
 
-    def __init__(self, law: _Law, end: float) -> None:
+    def __init__(self, law: _Law, end: float, most: int) -> None:
         self.law = law
         self.end = end  # s, of time: inf or -inf
+        self.most = most
         self.solver: Any = None
         self.ends: list[float] = [0.0]  # s, |time| at the end of each step
         self.dense: list[Any] = []  # and the interpolant of each
@@ -354,8 +365,8 @@ class _Steps:
                     atol=ABSOLUTE_TOLERANCE,
                 )
         while self.ends[-1] < distance:
-            if len(self.dense) >= MOST_STEPS:
-                self._refuse(distance, f"{MOST_STEPS} steps of the integrator reach")
+            if len(self.dense) >= self.most:
+                self._refuse(distance, f"{self.most} steps of the integrator reach")
             if self.solver.status != "running":
                 self._refuse(distance, "the motion stays within bounds")
             with np.errstate(all="ignore"):  # what grows without bounds is seen by its steps

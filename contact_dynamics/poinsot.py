@@ -16,20 +16,27 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.inertia.principal import principal_axes
 from contact_dynamics.rigid_body import angular_momentum, rotation_matrix
-from contact_dynamics.tumbling.arithmetic import DOUBLES
-from contact_dynamics.tumbling.elliptic import average_over_period
-from contact_dynamics.tumbling.polhode import Rotation, Spin, largest_rate
+from contact_dynamics.tumbling.arithmetic import ARRAYS, DOUBLES
+from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
+from contact_dynamics.tumbling.polhode import Rotation, Spin, Tumble, largest_rate
 from contact_dynamics.tumbling.regime import Regime
 from contact_dynamics.validation import FloatArray, check_array
 
 if TYPE_CHECKING:
+    from decimal import Decimal
+
     from numpy.typing import ArrayLike
 
     from contact_dynamics.tumbling import FreeMotion
 
 CONSTANT_RATE: Final = (Regime.AT_REST, Regime.SPHERICAL, Regime.PRINCIPAL_AXIS)
 """Where the angular velocity does not change, or only within rounding: there is no polhode to speak of."""
+
+SEPARATRIX_END: Final = 1e-6
+"""rad of Jacobi's amplitude. The motion is this near to spin about the middle axis 14 time constants before
+and after its flip."""
 
 SMALLEST_COMPLEMENT: Final = 1e-100
 """Of 1 - m. Below it the sensitivity is beyond 1e90: infinite for all that numbers can say."""
@@ -46,7 +53,7 @@ class Poinsot:
     polhode_period: float  # s; inf on the separatrix, NaN where the angular velocity is constant
     precession_per_period: float  # rad, turn about L in one period; NaN where there is no period
     principal_moments: FloatArray  # (3,), kg m^2, ascending
-    principal_axes_B: FloatArray  # (3, 3), columns: their axes in body coordinates, right-handed
+    principal_axes_B: FloatArray  # (3, 3), columns: their axes in body coordinates; see `inertia.principal`
     ellipsoid_semi_axes: FloatArray  # (3,), rad/s, of the energy ellipsoid, along those axes: sqrt(2 T / I)
     sensitivity: float  # attitude error per rad turned and relative error of the rate; NaN at rest
 
@@ -56,8 +63,7 @@ def poinsot(motion: FreeMotion) -> Poinsot:
     rotation = motion.rotation
     L_W = angular_momentum(motion.body, motion.state)
     twice_energy = motion.w_along * math.hypot(*L_W.tolist())
-    moments = np.array([float(moment) for moment in motion.frame.moments])
-    first, second = (np.array([float(x) for x in axis]) for axis in motion.frame.axes_B[:2])
+    axes = principal_axes(motion.body.I_B)
     period = math.nan if motion.regime in CONSTANT_RATE else polhode_period(rotation)
     return Poinsot(
         regime=motion.regime,
@@ -66,9 +72,9 @@ def poinsot(motion: FreeMotion) -> Poinsot:
         invariable_plane_distance=motion.w_along if motion.regime is not Regime.AT_REST else math.nan,
         polhode_period=period,
         precession_per_period=_precession(rotation) * period if math.isfinite(period) else math.nan,
-        principal_moments=moments,
-        principal_axes_B=np.column_stack([first, second, np.cross(first, second)]),
-        ellipsoid_semi_axes=np.sqrt(twice_energy / moments),
+        principal_moments=axes.moments,
+        principal_axes_B=axes.R_BP,
+        ellipsoid_semi_axes=np.sqrt(twice_energy / axes.moments),
         sensitivity=sensitivity(motion),
     )
 
@@ -134,17 +140,57 @@ def _sensitivity_of_spin(motion: FreeMotion) -> float:
     return math.inf if abs(middle_B @ w_B) > 0.5 * np.linalg.norm(w_B) else 1.0
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RollingCurves:
+    """Polhode and herpolhode, which roll on each other: row i of both is where they touch at ``seconds[i]``.
+
+    Arcs of the two between the same rows are equally long.
+    """
+
+    seconds: FloatArray  # (n,), s after the state's stamp, ascending; 0 throughout where nothing moves
+    polhode_B: FloatArray  # (n, 3), rad/s, angular velocity in body axes
+    herpolhode_W: FloatArray  # (n, 3), rad/s, the same in world axes, in the invariable plane
+
+
+def rolling_curves(motion: FreeMotion, count: int) -> RollingCurves:
+    """Return ``count`` points of `polhode` with the times at which the motion passes them, and where then.
+
+    They go once around the polhode, through the period that holds time 0; see `polhode` for what has none.
+    """
+    rotation = motion.rotation
+    if isinstance(rotation, Spin) or motion.regime in CONSTANT_RATE:
+        return RollingCurves(
+            seconds=np.zeros(count),
+            polhode_B=polhode(motion, count),
+            herpolhode_W=np.tile(motion.state.w_WB_W, (count, 1)),
+        )
+    angle = _amplitudes(rotation, count)
+    cos2, sin = np.square(np.cos(angle)), np.sin(angle)
+    m1 = float(rotation.m1)
+    u = sin * carlson_rf(cos2, cos2 + m1 * sin * sin, np.ones(count), numbers=ARRAYS)
+    if m1:  # sin u is of the nearest half turn
+        halves = np.rint(angle / math.pi)
+        u = np.where(halves % 2.0 == 0.0, u, -u) + halves * (math.pi / float(rotation.quarter))
+    seconds = (u - float(rotation.u0)) / float(rotation.omega_p)
+    order = slice(None) if float(rotation.omega_p) > 0.0 else slice(None, None, -1)
+    return RollingCurves(
+        seconds=seconds[order],
+        polhode_B=polhode(motion, count)[order],
+        herpolhode_W=motion.at(seconds[order]).w_WB_W,
+    )
+
+
 def polhode(motion: FreeMotion, count: int) -> FloatArray:
     """Return ``count`` points of the polhode, (count, 3), rad/s, body axes, in order along it.
 
-    The curve is closed: the last point is the first again. On the separatrix it is the arc from one
-    middle-axis spin to the other; of a steady spin all points are one.
+    The curve is closed: the last point is the first again. On the separatrix, whose ends are infinitely far
+    away in time, it is the arc from one middle-axis spin to the other, to `SEPARATRIX_END` of each; where the
+    angular velocity is constant all points are one.
     """
     rotation = motion.rotation
-    if isinstance(rotation, Spin):
+    if isinstance(rotation, Spin) or motion.regime in CONSTANT_RATE:
         return np.tile(motion.state.R_WB.T @ motion.state.w_WB_W, (count, 1))
-    whole = math.pi if rotation.m1 else 0.5 * math.pi
-    angle = np.linspace(-whole, whole, count)  # Jacobi's amplitude of u
+    angle = _amplitudes(rotation, count)
     cos, sin = np.cos(angle), np.sin(angle)
     a, b, c = (math.sqrt(x) for x in (rotation.a2, rotation.b2, rotation.c2))
     dn = np.sqrt(cos * cos + float(rotation.m1) * sin * sin)
@@ -153,6 +199,12 @@ def polhode(motion: FreeMotion, count: int) -> FloatArray:
     w_P = np.column_stack([a * first * cos, b * middle * sin, c * third * dn])
     points: FloatArray = w_P @ np.array([[float(x) for x in axis] for axis in rotation.axes_B])
     return points
+
+
+def _amplitudes(rotation: Tumble[Decimal] | Tumble[float], count: int) -> FloatArray:
+    """Return Jacobi's amplitudes of u, rad, evenly over one period of the polhode."""
+    whole = math.pi if rotation.m1 else 0.5 * math.pi - SEPARATRIX_END
+    return np.linspace(-whole, whole, count)
 
 
 def herpolhode(motion: FreeMotion, seconds: ArrayLike) -> FloatArray:

@@ -16,7 +16,7 @@ from msg_adapters.stamps import stamp_to_msg
 if TYPE_CHECKING:
     from contact_dynamics.flips import Flips
     from contact_dynamics.motion_fit import FitResult
-    from contact_dynamics.poinsot import Poinsot
+    from contact_dynamics.poinsot import Poinsot, RollingCurves
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.uncertainty import CarriedCovariance
     from contact_dynamics.validation import FloatArray
@@ -51,9 +51,9 @@ def write_fit(response: Any, fit: FitResult | None) -> None:
         response.fit_orientation_residual = fit.orientation_residual
 
 
-def poinsot_to_msg(picture: Poinsot, flips: Flips) -> PoinsotMsg:
-    """Return Poinsot's picture of a motion, with the next flips of its middle axis."""
-    return PoinsotMsg(
+def poinsot_to_msg(picture: Poinsot, flips: Flips, curves: RollingCurves | None) -> PoinsotMsg:
+    """Return Poinsot's picture of a motion, with the next flips of its middle axis, and curves if any."""
+    msg = PoinsotMsg(
         regime=int(picture.regime),
         rotational_energy=picture.rotational_energy,
         angular_momentum=picture.L_W,
@@ -66,6 +66,11 @@ def poinsot_to_msg(picture: Poinsot, flips: Flips) -> PoinsotMsg:
         flip_times=flat(flips.seconds),
         flip_time_deviations=flat(flips.deviations),
     )
+    if curves is not None:
+        msg.curve_times = flat(curves.seconds)
+        msg.polhode = flat(curves.polhode_B)
+        msg.herpolhode = flat(curves.herpolhode_W)
+    return msg
 
 
 def torque_acts() -> PoinsotMsg:

@@ -6,13 +6,12 @@ import math
 from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.applied_wrench import ConstantWrench, Drag, WrenchAxes
-from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLargeError
+from contact_dynamics.errors import TooLargeError
 from contact_dynamics.flips import next_flips
 from contact_dynamics.forced_motion import ForcedMotion, motion_of
-from contact_dynamics.nodes.sampling import times_of
+from contact_dynamics.nodes.sampling import MOST_INTEGRATED_STEPS, times_of
 from contact_dynamics.nodes.subject import Knowledge, Subject, covariance_of, gravity_of, subject_of
-from contact_dynamics.poinsot import poinsot
-from contact_dynamics.tumbling import FreeMotion
+from contact_dynamics.poinsot import poinsot, rolling_curves
 from contact_dynamics.uncertainty import CarriedCovariance, covariance_along
 from contact_dynamics.validation import check_array
 from msg_adapters.geometry import point_to_msg, vector_from_msg, vector_to_msg
@@ -25,7 +24,9 @@ from msg_adapters.tumbling import (
 )
 
 if TYPE_CHECKING:
+    from contact_dynamics.tumbling import FreeMotion
     from contact_dynamics.validation import FloatArray
+    from contact_dynamics_interfaces.msg import Poinsot as PoinsotMsg
 
 FLIPS: Final = 3
 """How many of the next flips are told."""
@@ -33,9 +34,8 @@ FLIPS: Final = 3
 MOST_COVARIANCES: Final = 2000
 """Most samples with covariances in one answer, for the same reason as `sampling.MOST_SAMPLES`."""
 
-MOST_INTEGRATED_TURNS: Final = 100.0
-"""Longest motion under torque or drag in one answer, in turns at the present rate: 1 or 2 s of computing,
-during which nobody else is answered."""
+MOST_CURVE_POINTS: Final = 10_000
+"""Of polhode and herpolhode, for the same reason."""
 
 
 def predict_tumbling(request: Any, response: Any, knowledge: Knowledge) -> None:
@@ -52,14 +52,13 @@ def predict_tumbling(request: Any, response: Any, knowledge: Knowledge) -> None:
             linear_angular=request.linear_angular_drag,
             quadratic_angular=request.quadratic_angular_drag,
         ),
+        most_steps=MOST_INTEGRATED_STEPS,
     )
     times, event = times_of(request, response, subject, motion, knowledge)
     if isinstance(motion, ForcedMotion):
-        _check_span(times, subject.state.w_WB_W)
         response.poinsot = torque_acts()
     else:
-        flips = next_flips(motion, FLIPS, covariance=subject.covariance)
-        response.poinsot = poinsot_to_msg(poinsot(motion), flips)
+        response.poinsot = _poinsot(request, subject, motion)
     response.trajectory = trajectory_to_msg(
         motion.at(times),
         stamp_ns=subject.state.stamp_ns,
@@ -80,9 +79,18 @@ def predict_tumbling(request: Any, response: Any, knowledge: Knowledge) -> None:
     response.state = subject.state_to_msg(subject.state)
 
 
+def _poinsot(request: Any, subject: Subject, motion: FreeMotion) -> PoinsotMsg:
+    count = request.curve_points
+    if count > MOST_CURVE_POINTS:
+        raise TooLargeError("curve_points", count, f"at most {MOST_CURVE_POINTS}")
+    return poinsot_to_msg(
+        poinsot(motion),
+        next_flips(motion, FLIPS, covariance=subject.covariance),
+        rolling_curves(motion, count) if count else None,
+    )
+
+
 def _covariances(subject: Subject, motion: FreeMotion | ForcedMotion, times: FloatArray) -> CarriedCovariance:
-    if isinstance(motion, ForcedMotion):
-        raise NotSupportedError("want_covariance: found true with torque or drag, allowed is false yet")
     if len(times) > MOST_COVARIANCES:
         raise TooLargeError("times", f"{len(times)} samples with covariances", f"at most {MOST_COVARIANCES}")
     return covariance_along(motion, covariance_of(subject), times)
@@ -95,13 +103,3 @@ def _wrench_of(request: Any) -> ConstantWrench:
         torque=check_array("applied_wrench.torque", vector_from_msg(wrench.torque), (3,)),
         axes=WrenchAxes.BODY if request.wrench_in_body_axes else WrenchAxes.WORLD,
     )
-
-
-def _check_span(times: FloatArray, w_WB_W: FloatArray) -> None:
-    turns = float(abs(times).max(initial=0.0)) * math.sqrt(w_WB_W @ w_WB_W) / (2.0 * math.pi)
-    if turns > MOST_INTEGRATED_TURNS:
-        raise InvalidFieldError(
-            "times",
-            f"{turns:.6g} turns of the body ahead",
-            f"at most {MOST_INTEGRATED_TURNS:g} under torque or drag",
-        )

@@ -8,22 +8,29 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLargeError
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.first_contact import first_contact
+from contact_dynamics.forced_motion import ForcedMotion
 from contact_dynamics.landing import next_landing
 from contact_dynamics.nodes.subject import Knowledge, Subject, check_has_shape, or_configured
-from contact_dynamics.tumbling import FreeMotion
 from contact_dynamics.validation import check_array, check_unit
 from msg_adapters.geometry import vector_from_msg
 from msg_adapters.stamps import seconds_between
 
 if TYPE_CHECKING:
-    from contact_dynamics.forced_motion import ForcedMotion
+    from contact_dynamics.tumbling import FreeMotion
     from contact_dynamics.validation import FloatArray
 
 MOST_SAMPLES: Final = 20_000
 """Longest trajectory in one answer: 2.2 MB of numbers. More would stall the middleware for longer than the
 answer takes."""
+
+MOST_INTEGRATED_TURNS: Final = 100.0
+"""Longest motion under torque or drag in one answer, in turns at the present rate: 1 or 2 s of computing,
+during which nobody else is answered."""
+
+MOST_INTEGRATED_STEPS: Final = 4000
+"""Of the integrator, for the same reason: what a torque spins up takes more than its present rate says."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,34 +56,31 @@ def times_of(
         times = _ascending("times", np.array(request.times))
         if len(times) > 0 and times[0] < 0.0:
             raise InvalidFieldError("times[0]", times[0], "a number >= 0 (AT_STAMPS reaches into the past)")
+        _check_reach(motion, times)
         return times, None
     if request.sampling == request.AT_STAMPS:
         stamps_ns = request.stamps_ns
         _check_count("stamps_ns", len(stamps_ns))
         seconds = [seconds_between(subject.state.stamp_ns, stamp) for stamp in stamps_ns]
-        return _ascending("stamps_ns", np.array(seconds)), None
+        times = _ascending("stamps_ns", np.array(seconds))
+        _check_reach(motion, times)
+        return times, None
     duration = or_configured("duration", request.duration, knowledge.parameters.horizon)
     rate = or_configured("rate", request.rate, knowledge.parameters.rate)
+    _check_reach(motion, np.array([duration]))
     if request.sampling == request.AT_RATE:
         event = None
     elif request.sampling == request.UNTIL_CONTACT:
-        event = _contact(response, subject, _in_closed_form(motion), knowledge, duration)
+        event = _contact(response, subject, motion, knowledge, duration)
     elif request.sampling == request.UNTIL_PLANE:
-        event = _plane_reached(request, response, subject, _in_closed_form(motion), duration)
+        event = _plane_reached(request, response, subject, motion, duration)
     else:
         raise InvalidFieldError("sampling", request.sampling, "AT_TIMES (0) to UNTIL_PLANE (4)")
     return _at_rate(rate, duration, None if event is None else event.seconds), event
 
 
-def _in_closed_form(motion: FreeMotion | ForcedMotion) -> FreeMotion:
-    if isinstance(motion, FreeMotion):
-        return motion
-    message = "sampling: found UNTIL_CONTACT or UNTIL_PLANE with torque or drag, allowed are 0 to 2 yet"
-    raise NotSupportedError(message)
-
-
 def _contact(
-    response: Any, subject: Subject, motion: FreeMotion, knowledge: Knowledge, duration: float
+    response: Any, subject: Subject, motion: FreeMotion | ForcedMotion, knowledge: Knowledge, duration: float
 ) -> Event | None:
     check_has_shape(subject.body)
     parameters = knowledge.parameters
@@ -101,7 +105,7 @@ def _contact(
 
 
 def _plane_reached(
-    request: Any, response: Any, subject: Subject, motion: FreeMotion, duration: float
+    request: Any, response: Any, subject: Subject, motion: FreeMotion | ForcedMotion, duration: float
 ) -> Event | None:
     point_B = check_array("body_point", vector_from_msg(request.body_point), (3,)) - subject.body.p_FB_F
     found = first_contact(
@@ -120,6 +124,20 @@ def _plane_reached(
         velocity_W=found.v_WC_W,
         surface="",
     )
+
+
+def _check_reach(motion: FreeMotion | ForcedMotion, times: FloatArray) -> None:
+    """Refuse what would be integrated for too long, before it is; the closed form reaches everywhere."""
+    if not isinstance(motion, ForcedMotion):
+        return
+    w_WB_W = motion.state.w_WB_W
+    turns = float(np.abs(times).max(initial=0.0)) * math.sqrt(w_WB_W @ w_WB_W) / (2.0 * math.pi)
+    if turns > MOST_INTEGRATED_TURNS:
+        raise InvalidFieldError(
+            "times",
+            f"{turns:.6g} turns of the body ahead",
+            f"at most {MOST_INTEGRATED_TURNS:g} under torque or drag",
+        )
 
 
 def _at_rate(rate: float, duration: float, end: float | None) -> FloatArray:

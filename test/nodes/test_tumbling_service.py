@@ -165,6 +165,72 @@ def test_a_torque_in_body_axes_spins_up_and_a_force_alone_stays_in_closed_form(c
     np.testing.assert_allclose(answer.trajectory.positions, 0.0, atol=1e-14)
 
 
+def test_first_contact_under_drag(client: Client) -> None:
+    """Falling from rest with linear drag: z = z0 - (g/k) (t - (1 - e^(-k t)) / k), solved for the floor."""
+    request = PredictTumbling.Request(body_name="brick", state_source=PredictTumbling.Request.STATE_EXPLICIT)
+    k, t = 0.8, 0.7
+    request.linear_drag = k * 0.4  # kg, as configured
+    request.state.pose.position.z = 0.025 + G / k * (t + math.expm1(-k * t) / k)
+    request.sampling, request.rate = request.UNTIL_CONTACT, 100.0
+    answer = client.ask(request)
+    assert answer.status == answer.OK, answer.message
+    assert (answer.method, answer.event) == (answer.INTEGRATED, answer.CONTACT)
+    assert answer.event_surface == "floor"
+    assert answer.event_time == pytest.approx(t, abs=1e-9)
+    assert answer.event_velocity.z == pytest.approx(G / k * math.expm1(-k * t), abs=1e-8)
+    assert answer.trajectory.times[-1] == answer.event_time
+
+
+def test_a_plane_is_reached_while_a_torque_spins_up(client: Client) -> None:
+    """A point 0.5 m out on x, turning down about y by N t^2 / 2 I from rest, 30 degrees far."""
+    request = spinning(w=(0.0, 0.0, 0.0), moments=(0.1, 0.1, 0.1))
+    request.gravity = request.GRAVITY_NONE
+    request.applied_wrench.torque.y = 0.3
+    request.sampling, request.rate, request.duration = request.UNTIL_PLANE, 50.0, 2.0
+    request.body_point.x, request.plane_point.z, request.plane_normal.z = 0.5, -0.25, 1.0
+    answer = client.ask(request)
+    assert answer.status == answer.OK, answer.message
+    assert (answer.method, answer.event) == (answer.INTEGRATED, answer.PLANE_REACHED)
+    t = math.sqrt(2.0 * 0.1 / 0.3 * math.pi / 6.0)
+    assert answer.event_time == pytest.approx(t, abs=1e-9)
+    assert answer.event_velocity.z == pytest.approx(-0.5 * math.cos(math.pi / 6.0) * 3.0 * t, abs=1e-8)
+
+
+def test_what_a_torque_spins_up_beyond_reason_is_refused(client: Client) -> None:
+    request = spinning(w=(0.0, 0.0, 0.1), moments=(0.1, 0.1, 0.1))
+    request.applied_wrench.torque.z = 100.0
+    request.times = [60.0]
+    answer = client.ask(request)
+    assert answer.status == answer.INVALID_FIELD
+    assert (
+        "times: found 60 s, allowed is no further than 4000 steps of the integrator reach" in answer.message
+    )
+
+
+def test_curves_of_poinsots_picture_on_request(client: Client) -> None:
+    request = spinning(w=(0.3, -0.5, 1.2), moments=(0.1, 0.14, 0.19))
+    picture = client.ask(request).poinsot
+    assert (len(picture.polhode), len(picture.herpolhode), len(picture.curve_times)) == (0, 0, 0)
+    request.curve_points = 101
+    answer = client.ask(request)
+    assert answer.status == answer.OK, answer.message
+    picture, I_B = answer.poinsot, np.diag([0.1, 0.14, 0.19])
+    curve, plane = np.array(picture.polhode).reshape(101, 3), np.array(picture.herpolhode).reshape(101, 3)
+    np.testing.assert_allclose(
+        np.einsum("ni,ij,nj->n", curve, I_B, curve), 2.0 * picture.rotational_energy, rtol=1e-13
+    )
+    L = np.array(picture.angular_momentum)
+    np.testing.assert_allclose(plane @ L / np.linalg.norm(L), picture.invariable_plane_distance, rtol=1e-13)
+    np.testing.assert_allclose(np.linalg.norm(curve, axis=1), np.linalg.norm(plane, axis=1), rtol=1e-12)
+    assert picture.curve_times[-1] - picture.curve_times[0] == pytest.approx(
+        picture.polhode_period, rel=1e-12
+    )
+    request.curve_points = 1_000_000
+    answer = client.ask(request)
+    assert answer.status == answer.TOO_LARGE
+    assert "curve_points: found 1000000, allowed is at most 10000" in answer.message
+
+
 def test_hours_under_drag_are_refused_rather_than_computed(client: Client) -> None:
     request = spinning(w=(0.0, 0.0, 10.0), moments=(0.1, 0.1, 0.1))
     request.linear_drag, request.times = 0.1, [3600.0]

@@ -42,6 +42,30 @@ def test_a_ball_in_flight_spreads_by_its_velocity(client: Client) -> None:
     assert list(answer.trajectory.covariances_trusted) == [True, True]
 
 
+def test_drag_lets_errors_of_velocity_fade(client: Client) -> None:
+    """With linear drag k: var(v) e^(-2 k t), and var(p) + var(v) ((1 - e^(-k t)) / k)^2."""
+    request = PredictTumbling.Request(
+        state_source=PredictTumbling.Request.STATE_EXPLICIT, want_covariance=True
+    )
+    request.inertia.m = request.inertia.ixx = request.inertia.iyy = request.inertia.izz = 1.0
+    request.state.covariance = COVARIANCE.ravel().tolist()
+    request.state.linear_velocity.x = 3.0
+    request.linear_drag, request.linear_angular_drag = 0.5, 2.0
+    request.times = [0.0, 0.8]
+    answer = client.ask(request)
+    assert answer.status == answer.OK, answer.message
+    assert answer.method == answer.INTEGRATED
+    carried = np.array(answer.trajectory.covariances).reshape(2, 12, 12)
+    np.testing.assert_allclose(carried[0], COVARIANCE, atol=1e-18)
+    variances = carried[1].diagonal()
+    for first, k in ((0, 0.5), (3, 2.0)):
+        before = COVARIANCE[first, first], COVARIANCE[first + 6, first + 6]
+        gone, left = -math.expm1(-0.8 * k) / k, math.exp(-0.8 * k)
+        np.testing.assert_allclose(variances[first : first + 3], before[0] + before[1] * gone**2, rtol=1e-9)
+        np.testing.assert_allclose(variances[first + 6 : first + 9], before[1] * left**2, rtol=1e-9)
+    assert list(answer.trajectory.covariances_trusted) == [True, True]
+
+
 def test_an_uncertain_landing_has_probabilities_that_sum_to_one(client: Client) -> None:
     request = PredictImpact.Request(body_name="brick", state_source=PredictImpact.Request.STATE_EXPLICIT)
     request.state.pose.position.z = 0.5
