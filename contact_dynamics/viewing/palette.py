@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import colorsys
 from typing import Final, TypeAlias
 
 Color: TypeAlias = tuple[int, int, int, int]
@@ -42,6 +43,9 @@ FIXED: Final[Color] = (95, 210, 105, 255)
 UNDECIDED: Final[Color] = (255, 255, 255, 255)
 """White: a contact whose letter differs between the consistent modes, or that has none."""
 
+NO_MODE: Final[Color] = (0, 0, 0, 255)
+"""Black, in the map of modes: wrenches under which no mode is consistent."""
+
 SURFACE: Final[Color] = (150, 160, 150, 70)
 """Translucent grey: a surface of the world."""
 
@@ -65,3 +69,19 @@ def translucent(color: Color, opacity: float) -> Color:
     """Return the colour with that opacity, 0 to 1."""
     red, green, blue, _ = color
     return (red, green, blue, round(255 * opacity))
+
+
+def mode_color(mode: str, index: int) -> Color:
+    """Return the colour of a mode's region in the map of modes, ``index`` being its place among all modes.
+
+    A body that stays fixed has the colour of a fixed contact, one that leaves that of a separating one. The
+    other hues are a golden section of the circle apart, so that neighbours in the list differ.
+    """
+    if set(mode) <= {"f"}:
+        return FIXED
+    if set(mode) <= {"s"}:
+        return SEPARATE
+    hue = (0.62 + index * 0.618034) % 1.0
+    lightness = 0.48 + 0.1 * (index % 3)
+    red, green, blue = colorsys.hls_to_rgb(hue, lightness, 0.55)
+    return (round(255 * red), round(255 * green), round(255 * blue), 255)

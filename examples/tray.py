@@ -1,0 +1,87 @@
+"""Lecture 26's wrench in a tray: which contact mode comes about under which applied wrench, as a map.
+
+A hex key lies in the lower right corner of a tray, flush with the floor and the wall. Writes `tray.rrd`
+(or the path given) for rerun's viewer: `rerun tray.rrd`.
+"""
+
+import sys
+
+import numpy as np
+import rerun as rr
+import rerun.blueprint as rrb
+
+from contact_dynamics import (
+    PlanarBody,
+    PlanarContact,
+    PlanarVelocity,
+    PlanarWrench,
+    planar_contact_modes,
+    planar_mode_margins,
+)
+from contact_dynamics.contact_modes import planar_mode_map
+from contact_dynamics.viewing.force_dual import draw_force_dual
+from contact_dynamics.viewing.mode_map import color_of_modes, draw_mode_map
+from contact_dynamics.viewing.palette import BACKGROUND
+from contact_dynamics.viewing.planar_scene import draw_planar_scene
+from contact_dynamics.viewing.wrench_chart import DirectionChart, ForceDualChart, bounds
+
+FLAT, TALL, BEND, THICK = 0.08, 0.06, 0.03, 0.012  # m: flush on the floor, on the wall; outer radius; bar
+
+# The key, with the tray's corner as the origin, from the floor's side around to the inner edge and back.
+turn = np.linspace(-0.5 * np.pi, 0.0, 40)
+arc = np.column_stack([np.cos(turn), np.sin(turn)])
+centre = np.array([-BEND, BEND])
+ends = np.array([[-BEND - FLAT, 0.0]]), np.array([[0.0, BEND + TALL]])
+outer = np.vstack([ends[0], centre + BEND * arc, ends[1]])
+inner = np.vstack([ends[0] + (0.0, THICK), centre + (BEND - THICK) * arc, ends[1] - (THICK, 0.0)])
+
+# Mass and inertia of 60 g, as particles along the bar.
+middle = 0.5 * (outer + inner)
+lengths = np.linalg.norm(np.diff(middle, axis=0), axis=1)
+share = 0.06 * lengths / lengths.sum()
+between = 0.5 * (middle[1:] + middle[:-1])
+mass_centre = share @ between / 0.06
+inertia = share @ (((between - mass_centre) ** 2).sum(axis=1) + lengths**2 / 12.0)
+key = PlanarBody(mass=0.06, inertia=float(inertia))
+
+floor, wall = (0.0, 1.0), (-1.0, 0.0)
+on_floor, on_wall = ((-BEND - FLAT, 0.0), (-BEND, 0.0)), ((0.0, BEND), (0.0, BEND + TALL))
+contacts = [
+    PlanarContact(r=tuple(np.array(point) - mass_centre), normal=normal, friction=0.5)
+    for points, normal in ((on_floor, floor), (on_wall, wall))
+    for point in points
+]
+
+modes = planar_mode_map(key, contacts)
+print(f"{len(modes)} of 4^{len(contacts)} strings are possible: {', '.join(one.mode for one in modes)}")
+
+applied = PlanarWrench(f=(0.5, 0.1), moment=0.03)  # gravity along the tilted tray, and a finger
+at_rest = PlanarVelocity(v=(0.0, 0.0), w=0.0)
+answer = planar_contact_modes(key, at_rest, contacts, applied)
+(margin,) = planar_mode_margins(key, at_rest, contacts, applied)
+print(f"{applied} brings about {margin.mode}; {margin.margin:.3f} N more: {' or '.join(margin.modes_beyond)}")
+
+outline = np.vstack([outer, inner[::-1], outer[:1]]) - mass_centre
+tray = np.array([[-0.16, 0.0], [0.0, 0.0], [0.0, 0.11]]) - mass_centre
+chosen = next(one for one in modes if one.mode == margin.mode)
+with rr.RecordingStream("contact_dynamics") as recording:
+    recording.save(sys.argv[1] if len(sys.argv) > 1 else "tray.rrd")
+    draw_planar_scene(recording, outline, contacts, walls=[tray], mode=answer.modes[0])
+    chart = ForceDualChart(
+        length=key.radius_of_gyration, half_side=0.13, centre=(-0.02, 0.05), resolution=700
+    )
+    color = color_of_modes([margin.mode], [one.mode for one in modes])
+    draw_force_dual(recording, chosen, contacts, chart, outlines=[outline, tray], color=color)
+    discs = DirectionChart(length=key.radius_of_gyration, resolution=900)
+    draw_mode_map(recording, modes, discs, applied=applied, change=margin.change)
+    around = rrb.VisualBounds2D(x_range=(-0.12, 0.09), y_range=(-0.12, 0.09))
+    views = [
+        rrb.Spatial2DView(origin=origin, name=name, visual_bounds=shown, background=BACKGROUND)
+        for origin, name, shown in (
+            ("planar_scene", f"{margin.mode}: contact forces, accelerations", around),
+            ("force_dual", f"{margin.mode}: acceleration centres and force duals", bounds(chart)),
+            ("mode_map", "Which applied wrench brings about which mode", bounds(discs)),
+        )
+    ]
+    rows = rrb.Vertical(rrb.Horizontal(*views[:2], column_shares=[1, 2]), views[2], row_shares=[2, 3])
+    recording.send_blueprint(rrb.Blueprint(rows, collapse_panels=True))

@@ -1,0 +1,62 @@
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from contact_dynamics.contact_modes import planar_contact_modes
+from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.viewing.planar_scene import cone_edges, draw_planar_scene
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import rerun as rr
+
+    from viewing.drawn import Drawn
+
+BLOCK = [PlanarContact(r=(x, -0.5), normal=(0.0, 1.0), friction=0.5) for x in (-1.0, 1.0)]
+OUTLINE = np.array([[-1.0, -0.5], [1.0, -0.5], [1.0, 0.5], [-1.0, 0.5], [-1.0, -0.5]])
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3, 2.0])
+def test_a_cone_opens_by_the_friction_angle_about_the_normal(friction: float) -> None:
+    contact = PlanarContact(r=(0.2, 0.1), normal=(-0.6, 0.8), friction=friction)
+    right, tip, left = cone_edges(contact, length=2.0)
+    np.testing.assert_allclose(tip, contact.r)
+    for edge, sign in ((right - tip, 1.0), (left - tip, -1.0)):
+        assert np.linalg.norm(edge) == pytest.approx(2.0)
+        along, across = edge @ np.array(contact.normal), edge @ np.array(contact.tangent)
+        assert math.atan2(across, along) == pytest.approx(sign * math.atan(friction))
+
+
+def test_letters_forces_and_accelerations_of_a_mode(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    body = PlanarBody(mass=1.0, inertia=0.5)
+    wrench = PlanarWrench(f=(8.0, -10.0))  # more than friction holds
+    (mode,) = planar_contact_modes(body, PlanarVelocity(v=(0.0, 0.0), w=0.0), BLOCK, wrench).modes
+    draw_planar_scene(recording, OUTLINE, BLOCK, mode=mode)
+    drawn = read()
+    assert drawn.last("/planar_scene/letters", "Points2D:labels") == [
+        f"1 {mode.mode[0]}",
+        f"2 {mode.mode[1]}",
+    ]
+    arrows = drawn.array("/planar_scene/forces", "Arrows2D:vectors")
+    pressing = [force for force in mode.contact_forces if force[1] > 0.0]
+    assert len(arrows) == len(pressing)
+    for arrow, (f_t, f_n) in zip(arrows, pressing, strict=True):  # the second coordinate is downwards
+        np.testing.assert_allclose(arrow / -arrow[1], [f_t / f_n, -1.0], atol=1e-6)
+    accelerations = drawn.array("/planar_scene/accelerations", "Arrows2D:vectors")
+    assert np.all(accelerations[:, 0] > 0.0)
+
+
+def test_without_a_mode_contacts_are_numbered(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    draw_planar_scene(recording, OUTLINE, BLOCK)
+    drawn = read()
+    assert drawn.last("/planar_scene/letters", "Points2D:labels") == ["1", "2"]
+    assert "/planar_scene/forces" not in drawn.entities
