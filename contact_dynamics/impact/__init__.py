@@ -2,12 +2,13 @@
 
 In reading order: the laws and outcomes (`law`); the plane, with Routh's construction (`routh`, `planar`,
 `result`, `batch`); space, where sliding swerves (`sliding`, `series`, `stopping`, `progress`, `swerve`,
-`spatial`, `spatial_result`); two moving bodies (`pair`); several contacts at once
-(`several`, `simultaneous`); strikes in time with flight between (`sequence`, `meetings`,
-`sequence_result`); uncertain states (`uncertain`).
+`spatial`, `spatial_result`); two moving bodies (`pair`); several contacts at once (`several`,
+`several_planar`, `bodies`, `simultaneous`, `several_result`); strikes in time with
+flight between (`sequence`, `meetings`, `sequence_result`); uncertain states (`uncertain`).
 """
 
 from contact_dynamics.impact.batch import PlanarImpacts, planar_impacts
+from contact_dynamics.impact.bodies import bodies_impact
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.impact.pair import planar_pair_impact
 from contact_dynamics.impact.planar import planar_impact
@@ -15,13 +16,14 @@ from contact_dynamics.impact.result import PlanarImpact
 from contact_dynamics.impact.routh import ImpulsePath, InverseInertia
 from contact_dynamics.impact.sequence import impact_sequence, impact_sequence_of
 from contact_dynamics.impact.sequence_result import ImpactSequence, SequenceEnd, TimedStrike
-from contact_dynamics.impact.several import (
+from contact_dynamics.impact.several import outcomes_over_orders, several_impact
+from contact_dynamics.impact.several_planar import planar_several_impact
+from contact_dynamics.impact.several_result import (
+    BodiesImpact,
     OrderedOutcomes,
     SeveralContactsLaw,
     SeveralImpact,
     SeveralVerdict,
-    outcomes_over_orders,
-    several_impact,
 )
 from contact_dynamics.impact.spatial import spatial_impact, spatial_pair_impact
 from contact_dynamics.impact.spatial_result import SpatialImpact
@@ -32,6 +34,7 @@ from contact_dynamics.impact.uncertain import (
 )
 
 __all__ = [
+    "BodiesImpact",
     "ImpactDistribution",
     "ImpactOutcome",
     "ImpactSequence",
@@ -48,6 +51,7 @@ __all__ = [
     "SeveralVerdict",
     "SpatialImpact",
     "TimedStrike",
+    "bodies_impact",
     "impact_sequence",
     "impact_sequence_of",
     "outcomes_over_orders",
@@ -55,6 +59,7 @@ __all__ = [
     "planar_impact_distribution",
     "planar_impacts",
     "planar_pair_impact",
+    "planar_several_impact",
     "several_impact",
     "spatial_impact",
     "spatial_impact_distribution",

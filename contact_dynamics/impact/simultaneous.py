@@ -11,20 +11,21 @@ compression (Anitescu and Potra 1997). Friction acts on the velocity at the end 
 of them sliding does not reverse.
 
 Method: block Gauss-Seidel over the contacts on the exact (round) friction cones, each block by projection,
-until no impulse changes. Redundant contacts leave the share of each undetermined; the body's velocity is what
-converges.
+until no impulse changes. Redundant contacts leave the share of each undetermined; the bodies' velocities are
+what converges.
 """
 
 from __future__ import annotations
 
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact import ContactSet
 from contact_dynamics.impact.law import RestitutionLaw
-from contact_dynamics.rigid_body import BodyState, MassProperties
-from contact_dynamics.validation import FloatArray
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact import ContactSet
+    from contact_dynamics.validation import FloatArray
 
 MOST_SWEEPS: Final = 5000
 """Sweeps after which the problem counts as not converged."""
@@ -34,22 +35,28 @@ CONVERGED: Final = 1e-13
 
 
 def simultaneous_impulses(
-    body: MassProperties, state: BodyState, contacts: ContactSet, law: RestitutionLaw, tolerance: float
+    contacts: ContactSet,
+    law: RestitutionLaw,
+    *,
+    jacobian: FloatArray,
+    inverse_mass: FloatArray,
+    twist: FloatArray,
+    tolerance: float,
 ) -> tuple[FloatArray, bool]:
     """Return the impulses, (n, 3), N s, world axes, and whether the iteration converged.
 
     Contacts whose normal velocity is above ``tolerance``, m/s, take part with it: they strike if the others
-    turn the body into them.
+    turn the bodies into them.
+
+    Args:
+        contacts: Normals, frictions and restitutions.
+        law: Poisson's or Newton's.
+        jacobian: (n, 3, 6 k), takes the k bodies' velocities, v then w of each, into those of the contacts.
+        inverse_mass: (6 k, 6 k), 1/kg and 1/(kg m^2), takes impulses and their moments into velocities.
+        twist: (6 k,), m/s and rad/s, the bodies' velocities just before.
+        tolerance: m/s. A contact that approaches less fast does not bounce.
     """
     normals, frictions = contacts.normals_W, contacts.frictions
-    arms = contacts.p_WC_W - state.p_WB_W
-    jacobian = np.zeros((len(contacts), 3, 6))  # contact velocity = jacobian @ (v, w)
-    for i, (x, y, z) in enumerate(arms):
-        jacobian[i] = np.array([[1, 0, 0, 0, z, -y], [0, 1, 0, -z, 0, x], [0, 0, 1, y, -x, 0]])
-    inverse_mass = np.zeros((6, 6))
-    inverse_mass[:3, :3] = np.eye(3) / body.mass
-    inverse_mass[3:, 3:] = np.linalg.inv(body.inertia_in_world(state.R_WB))
-    twist = np.concatenate([state.v_WB_W, state.w_WB_W])
     approach = np.minimum(np.einsum("ij,ij->i", jacobian @ twist, normals), 0.0)
     approach[approach >= -tolerance] = 0.0
 
@@ -79,7 +86,7 @@ def _solve(
     bounce: FloatArray,
 ) -> tuple[FloatArray, bool]:
     """Return impulses of at least ``least`` that leave velocities of at least ``bounce``, along normals."""
-    response = inverse_mass @ jacobian.transpose(0, 2, 1)  # (n, 6, 3)
+    response = inverse_mass @ jacobian.transpose(0, 2, 1)  # (n, 6 k, 3)
     blocks = jacobian @ response  # (n, 3, 3)
     impulses = least[:, None] * normals
     twist = twist + np.einsum("ijk,ik->j", response, impulses)
