@@ -1,6 +1,7 @@
 """Contacts of a body with the world: where, along which normal, with which friction and restitution.
 
-A contact is a point of the body on a flat of the world. The normal points into the body.
+A contact is a point of the body on a flat of the world, unless curvatures say otherwise
+(`contact_curvature`). The normal points into the body.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from typing import Final
 
 import numpy as np
 
+from contact_dynamics.contact_curvature import Curvatures, check_pairs, checked_curvatures
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.tolerances import UNIT_LENGTH_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array
@@ -25,8 +27,8 @@ class ContactSet:
 
     Raises:
         InvalidFieldError: arrays of unequal length, a number that is not finite, a normal that is not unit,
-        mu < 0, or
-            e outside [0, 1].
+        mu < 0, e outside
+            [0, 1], or curvatures with which the sides do not touch in one point.
         TooLargeError: more than `MOST_CONTACTS` contacts.
     """
 
@@ -35,6 +37,8 @@ class ContactSet:
     frictions: FloatArray  # (n,), Coulomb's mu, >= 0
     restitutions: FloatArray  # (n,), e, in [0, 1]
     surfaces: tuple[str, ...] = ()  # the surface that each contact touches; empty: not known
+    body_curvatures: Curvatures | None = None  # of the body at each contact; None: its points touch
+    surface_curvatures: Curvatures | None = None  # of the world at each contact; None: its flats are touched
 
     def __post_init__(self) -> None:
         """Check every array and normalise the normals to rounding."""
@@ -63,6 +67,10 @@ class ContactSet:
         object.__setattr__(self, "frictions", frictions)
         object.__setattr__(self, "restitutions", restitutions)
         object.__setattr__(self, "surfaces", tuple(self.surfaces))
+        for name in ("body_curvatures", "surface_curvatures"):
+            checked = checked_curvatures(f"contacts.{name}", getattr(self, name), normals)
+            object.__setattr__(self, name, checked)
+        check_pairs(normals, self.body_curvatures, self.surface_curvatures)
 
     def __len__(self) -> int:
         """Return the number of contacts."""
@@ -77,4 +85,8 @@ class ContactSet:
             frictions=self.frictions[chosen],
             restitutions=self.restitutions[chosen],
             surfaces=tuple(self.surfaces[i] for i in chosen) if self.surfaces else (),
+            body_curvatures=None if self.body_curvatures is None else self.body_curvatures.subset(chosen),
+            surface_curvatures=(
+                None if self.surface_curvatures is None else self.surface_curvatures.subset(chosen)
+            ),
         )

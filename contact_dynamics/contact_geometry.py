@@ -1,23 +1,49 @@
-"""Contacts found from geometry: the vertices of a convex body that touch the world's flats at a pose.
+"""Contacts found from geometry: the points of a convex body that touch the world's flats at a pose.
 
-A face or an edge that lies flush gives its vertices, which are its extreme points: they carry every force
-that the whole face or edge can. Not covered: smooth shapes, and edges that cross edges.
+A face or an edge that lies flush gives its extreme points, which carry every force that the whole face or
+edge can: the corners of a face, the two ends of a cylinder's or a capsule's line. A ball touches in one
+point. A rim touches in its lowest point, and one that lies flush as a whole in `RIM_POINTS` points evenly
+spaced, the first towards the body's x axis (for a rim about x: its y axis): their wrenches are a cone
+inscribed in that of the whole rim, with at least 92 % of its tipping moments (the cosine of 22.5 degrees).
+
+Where a body is round its curvature comes with the contact (`contact_curvature`): that of the ball that rolls
+over the shape, and along a rim of radius R whose plane is tilted by theta, sin(theta) / R.
+
+Not covered: edges that cross edges, and surfaces with edges.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from contact_dynamics.contact import ContactSet
+from contact_dynamics.contact_curvature import Curvatures
+from contact_dynamics.rim_descent import radii_of
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.rim_descent import Radii
+    from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, Surface
+
+RIM_POINTS: Final = 8
+"""Contacts of a rim that lies flush."""
+
+
+class _Touch(NamedTuple):
+    """One point of the body on a surface."""
+
+    surface: Surface
+    p_WC_W: FloatArray  # (3,), m
+    direction_W: FloatArray  # (3,), unit, tangent: the body's first principal direction there
+    along: float  # 1/m, the body's curvature along it
+    across: float  # 1/m
 
 
 def find_contacts(
@@ -27,12 +53,42 @@ def find_contacts(
     *,
     distance_tolerance: float = DISTANCE_TOLERANCE,
 ) -> ContactSet:
-    """Return the contacts of a body's vertices with the surfaces, in the order of surfaces, then vertices.
+    """Return the contacts of a body with the surfaces, in the order of surfaces, then corners, then rims.
 
-    A vertex touches where its height above the surface is at most ``distance_tolerance`` (m); one below the
-    surface touches, since measured poses penetrate by their noise. The set may be empty.
+    A point touches where its height above the surface is at most ``distance_tolerance`` (m); one below the
+    surface touches, since measured poses penetrate by their noise. A rim lies flush where all of it touches.
+    The set may be empty.
     """
-    points = state.p_WB_W + body.vertices_B @ state.R_WB.T
+    shape, R_WB = body.shape, state.R_WB
+    points = state.p_WB_W + shape.vertices @ R_WB.T
+    if shape.is_polyhedron:
+        return _corners(points, surfaces, distance_tolerance)
+    rims = [_turned(radii_of(rim), state.p_WB_W, R_WB) for rim in shape.rims]
+    rounding = shape.rounding
+    touches: list[_Touch] = []
+    for surface in surfaces:
+        n_W = surface.normal_W
+        corner = 1.0 / rounding if rounding > 0.0 else math.inf
+        for i in np.flatnonzero(surface.gaps(points) - rounding <= distance_tolerance):
+            p_WC_W = points[i] - rounding * n_W
+            touches.append(_Touch(surface, p_WC_W, _any_tangent(n_W), corner, corner))
+        for rim in rims:
+            touches += _of_rim(rim, surface, rounding, distance_tolerance)
+    return ContactSet(
+        p_WC_W=np.array([touch.p_WC_W for touch in touches]).reshape(-1, 3),
+        normals_W=np.array([touch.surface.normal_W for touch in touches]).reshape(-1, 3),
+        frictions=np.array([touch.surface.friction for touch in touches]),
+        restitutions=np.array([touch.surface.restitution for touch in touches]),
+        surfaces=tuple(touch.surface.name for touch in touches),
+        body_curvatures=Curvatures(
+            along=np.array([touch.along for touch in touches]),
+            across=np.array([touch.across for touch in touches]),
+            directions_W=np.array([touch.direction_W for touch in touches]).reshape(-1, 3),
+        ),
+    )
+
+
+def _corners(points: FloatArray, surfaces: Sequence[Surface], distance_tolerance: float) -> ContactSet:
     touching = [np.flatnonzero(surface.gaps(points) <= distance_tolerance) for surface in surfaces]
     counts = [len(indices) for indices in touching]
     return ContactSet(
@@ -42,3 +98,47 @@ def find_contacts(
         restitutions=np.repeat(np.array([s.restitution for s in surfaces]), counts),
         surfaces=tuple(s.name for s, count in zip(surfaces, counts, strict=True) for _ in range(count)),
     )
+
+
+class _RimW(NamedTuple):
+    """A rim in the world."""
+
+    center: FloatArray  # (3,), m
+    first: FloatArray  # (3,), m, a radius
+    second: FloatArray  # (3,), m, one across
+    radius: float  # m
+
+
+def _turned(radii: Radii, p_WB_W: FloatArray, R_WB: FloatArray) -> _RimW:
+    first, second = R_WB @ radii.first, R_WB @ radii.second
+    return _RimW(p_WB_W + R_WB @ radii.center, first, second, math.sqrt(first @ first))
+
+
+def _of_rim(rim: _RimW, surface: Surface, rounding: float, tolerance: float) -> Iterator[_Touch]:
+    n_W = surface.normal_W
+    height = float(surface.gaps(rim.center)) - rounding
+    a_1, a_2 = float(n_W @ rim.first), float(n_W @ rim.second)
+    size = math.hypot(a_1, a_2)  # m, R sin(theta)
+    if height - size > tolerance:
+        return
+    flush = height + size <= tolerance
+    corner = 1.0 / rounding if rounding > 0.0 else math.inf
+    if flush:
+        turns = [2.0 * math.pi * i / RIM_POINTS for i in range(RIM_POINTS)]
+        directions = [(math.cos(turn), math.sin(turn)) for turn in turns]
+    else:
+        directions = [(-a_1 / size, -a_2 / size)]
+    for cosine, sine in directions:
+        p_WC_W = rim.center + cosine * rim.first + sine * rim.second - rounding * n_W
+        if flush:
+            yield _Touch(surface, p_WC_W, _any_tangent(n_W), corner, corner)
+        else:
+            around = (cosine * rim.second - sine * rim.first) / rim.radius  # level: along the rim
+            radius = rim.radius * rim.radius / size + rounding
+            yield _Touch(surface, p_WC_W, around, 1.0 / radius, corner)
+
+
+def _any_tangent(n_W: FloatArray) -> FloatArray:
+    least = np.eye(3)[int(np.abs(n_W).argmin())]
+    tangent: FloatArray = least - (least @ n_W) * n_W
+    return tangent / math.sqrt(tangent @ tangent)

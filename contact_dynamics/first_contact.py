@@ -1,10 +1,12 @@
-"""The first time at which a moving body's corners reach a plane: where the flight of lecture 25 ends.
+"""The first time at which a moving body reaches a plane: where the flight of lecture 25 ends.
 
-The height of a corner has a second derivative that is bounded along the motion (`motion_bounds`): for all
-time without torque, and for each step of the integrator under forces. A height and its rate thus give a time
-before which the corner cannot arrive. The search goes there, and on from there; nothing is stepped over,
-however short, but dips of less than `GRAZING_DEPTH`, and the crossing is then found to rounding. Under forces
-this holds for the motion as it is integrated: to some 1e-12 of its lengths, see `forced_motion`.
+The shape is a convex one (`convex_shape`), of which corners and rims are what arrives: its parts, corners
+first. The height of a corner, of a ball's centre and of each point of a rim has a second derivative that is
+bounded along the motion (`motion_bounds`): for all time without torque, and for each step of the integrator
+under forces. A height and its rate thus give a time before which it cannot arrive (`rim_descent`: for all
+points of a rim together). The search goes there, and on from there; nothing is stepped over, however short,
+but dips of less than `GRAZING_DEPTH`, and the crossing is then found to rounding. Under forces this holds for
+the motion as it is integrated: to some 1e-12 of its lengths, see `forced_motion`.
 
 Not covered: edges of the plane, curved surfaces, several bodies.
 """
@@ -13,11 +15,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.convex_shape import ConvexShape
 from contact_dynamics.motion_bounds import Bound, bounds_of
+from contact_dynamics.rim_descent import RimAbove, radii_of
 from contact_dynamics.tolerances import GRAZING_DEPTH
 from contact_dynamics.tumbling.quaternions import conjugate, rotated
 from contact_dynamics.validation import FloatArray, check_array, check_not_negative, check_unit
@@ -34,27 +38,33 @@ _MOST_ROOT_STEPS: Final = 100
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FirstContact:
-    """A corner's arrival at a plane."""
+    """A body's arrival at a plane."""
 
     seconds: float  # s after the state's stamp, >= 0
     vertices: tuple[
         int, ...
-    ]  # the corner that arrives, then those within `GRAZING_DEPTH` of the plane as well
-    p_WC_W: FloatArray  # (3,), m, the corner that arrives, world
+    ]  # the part (corner; after the corners, rim) that arrives, then those within `GRAZING_DEPTH` as well
+    p_WC_W: FloatArray  # (3,), m, the point that arrives, world
     v_WC_W: FloatArray  # (3,), m/s, its velocity, world axes
 
 
 def first_contact(
-    motion: Motion, vertices_B: ArrayLike, p_WS_W: ArrayLike, normal_W: ArrayLike, *, horizon: float
+    motion: Motion,
+    shape_B: ConvexShape | ArrayLike,
+    p_WS_W: ArrayLike,
+    normal_W: ArrayLike,
+    *,
+    horizon: float,
 ) -> FirstContact | None:
-    """Return the first time in [0, horizon] at which a corner is on or below a plane and not rising, or None.
+    """Return the first time in [0, horizon] at which a body is on or below a plane and not rising, or None.
 
-    A corner above the plane arrives so when it comes down to it. One on or below the plane at time 0 arrives
+    A part above the plane arrives so when it comes down to it. One on or below the plane at time 0 arrives
     at once if it sinks or rests; if it rises, when it comes down again.
 
     Args:
         motion: the flight, in closed form or integrated (`motion_of`).
-        vertices_B: (k, 3), m, corners in body axes, from the centre of mass; none never arrive.
+        shape_B: the shape, body axes, from the centre of mass; or (k, 3), m, the corners of a polyhedron, or
+            one point of the body. An empty one never arrives.
         p_WS_W: (3,), m, a point of the plane, world.
         normal_W: (3,), unit normal into the free side, world axes.
         horizon: s after the state's stamp, how far to search.
@@ -65,59 +75,69 @@ def first_contact(
     """
     search = _Search(
         motion,
-        check_array("vertices", vertices_B, (None, 3)),
+        shape_B if isinstance(shape_B, ConvexShape) else ConvexShape(vertices=np.asarray(shape_B)),
         check_array("plane_point", p_WS_W, (3,)),
         check_unit("plane_normal", normal_W, 3),
     )
     until = check_not_negative("horizon", horizon)
-    return search.run(until) if len(search.vertices_B) else None
+    return None if search.shape.is_empty else search.run(until)
+
+
+class _At(NamedTuple):
+    """A shape above a plane at one time."""
+
+    heights: FloatArray  # (k + m,), m, of corners, then of the lowest points of rims
+    rates: FloatArray  # (k + m,), m/s
+    rims: list[RimAbove]
+    centre: float  # m, of the centre of mass
+    centre_rate: float  # m/s
 
 
 class _Search:
-    """Heights of all corners above one plane, and the way down through time."""
+    """Heights of all parts of a shape above one plane, and the way down through time."""
 
-    def __init__(
-        self, motion: Motion, vertices_B: FloatArray, p_WS_W: FloatArray, normal_W: FloatArray
-    ) -> None:
+    def __init__(self, motion: Motion, shape: ConvexShape, p_WS_W: FloatArray, normal_W: FloatArray) -> None:
         self.motion = motion
-        self.vertices_B = vertices_B  # (k, 3), m
+        self.shape = shape
+        self.rims = [radii_of(rim) for rim in shape.rims]
         self.normal_W: Vector = tuple(normal_W.tolist())
-        self.offset = float(p_WS_W @ normal_W)  # m
+        self.offset = float(p_WS_W @ normal_W) + shape.rounding  # m, a ball's centre is as much higher
         self.bound_from = bounds_of(motion, normal_W)
-        self.arms = np.sqrt(np.einsum("ij,ij->i", vertices_B, vertices_B))  # (k,), m
-        self.reach = float(self.arms.max(initial=0.0))  # m
+        self.arms = np.sqrt(np.einsum("ij,ij->i", shape.vertices, shape.vertices))  # (k,), m
+        self.reach = max([float(self.arms.max(initial=0.0)), *(rim.reach for rim in self.rims)])  # m
 
     def run(self, horizon: float) -> FirstContact | None:
         now, before = 0.0, None
         while True:
-            heights, rates, centre, centre_rate = self.at(now)
-            down = heights <= 0.0
+            at = self.at(now)
+            down = at.heights <= 0.0
             if down.any():
                 crossed = down & (before[1] > 0.0) if before else np.zeros_like(down)
                 if before and crossed.any():
-                    return self.found(*self.crossing(before[0], now, before[1], heights))
-                arrived = np.flatnonzero(down & (rates <= 0.0))
+                    return self.found(*self.crossing(before[0], now, before[1], at.heights))
+                arrived = np.flatnonzero(down & (at.rates <= 0.0))
                 if len(arrived):
-                    return self.found(now, int(arrived[heights[arrived].argmin()]))
+                    return self.found(now, int(arrived[at.heights[arrived].argmin()]))
             if now >= horizon:
                 return None
             bound = self.bound_from(now)
-            step = self.free_for(heights, rates, centre, centre_rate, bound)
-            before = now, heights
-            now = min(now + step, bound.until, horizon)
+            before = now, at.heights
+            now = min(now + self.free_for(at, bound), bound.until, horizon)
 
-    def free_for(
-        self, heights: FloatArray, rates: FloatArray, centre: float, centre_rate: float, bound: Bound
-    ) -> float:
-        """Return for how long, s, no corner can arrive while a bound holds."""
-        step = float(_free_for(heights, rates, bound.fall + self.arms * bound.turning).min())
-        if centre > self.reach:
-            alone = np.array([[centre - self.reach], [centre_rate], [bound.fall]])
+    def free_for(self, at: _At, bound: Bound) -> float:
+        """Return for how long, s, no part can arrive while a bound holds."""
+        corners = len(self.arms)
+        pulls = bound.fall + self.arms * bound.turning
+        step = float(_free_for(at.heights[:corners], at.rates[:corners], pulls).min(initial=math.inf))
+        for radii, rim in zip(self.rims, at.rims, strict=True):
+            step = min(step, rim.free_for(bound.fall + radii.reach * bound.turning))
+        if at.centre > self.reach:
+            alone = np.array([[at.centre - self.reach], [at.centre_rate], [bound.fall]])
             step = max(step, float(_free_for(*alone)[0]))
         return step
 
-    def at(self, seconds: float) -> tuple[FloatArray, FloatArray, float, float]:
-        """Return the corners' heights (k,), m, and their rates (k,), m/s, and those of the centre of mass."""
+    def at(self, seconds: float) -> _At:
+        """Return how the shape is above the plane at one time."""
         sample = self.motion.sample(seconds)
         a, b, c = self.normal_W
         x, y, z = sample.w_WB_W
@@ -128,30 +148,41 @@ class _Search:
         )  # n . (w x r) = r . (n x w)
         centre = _dot(self.normal_W, sample.p_WB_W) - self.offset
         centre_rate = _dot(self.normal_W, sample.v_WB_W)
-        return (
-            self.vertices_B @ normal_B + centre,
-            self.vertices_B @ turning_B + centre_rate,
-            centre,
-            centre_rate,
+        heights = self.shape.vertices @ normal_B + centre
+        rates = self.shape.vertices @ turning_B + centre_rate
+        if not self.rims:
+            return _At(heights, rates, [], centre, centre_rate)
+        rims = [
+            RimAbove(
+                centre + _dot(normal_B, rim.center),
+                centre_rate + _dot(turning_B, rim.center),
+                (_dot(normal_B, rim.first), _dot(normal_B, rim.second)),
+                (_dot(turning_B, rim.first), _dot(turning_B, rim.second)),
+            )
+            for rim in self.rims
+        ]
+        lowest = np.array([rim.lowest()[:2] for rim in rims])
+        return _At(
+            np.append(heights, lowest[:, 0]), np.append(rates, lowest[:, 1]), rims, centre, centre_rate
         )
 
     def crossing(self, low: float, high: float, above: FloatArray, below: FloatArray) -> tuple[float, int]:
-        """Return the first time between two at which a corner reaches the plane from above, and which."""
+        """Return the first time between two at which a part reaches the plane from above, and which."""
         waiting = np.flatnonzero((above > 0.0) & (below <= 0.0))
         while True:
-            corner = int(waiting[below[waiting].argmin()])
-            high = self.root(corner, low, high)
-            below = self.at(high)[0]
-            waiting = waiting[(below[waiting] < 0.0) & (waiting != corner)]
+            part = int(waiting[below[waiting].argmin()])
+            high = self.root(part, low, high)
+            below = self.at(high).heights
+            waiting = waiting[(below[waiting] < 0.0) & (waiting != part)]
             if len(waiting) == 0:
-                return high, corner
+                return high, part
 
-    def root(self, corner: int, low: float, high: float) -> float:
-        """Return the time at which a corner reaches the plane: above it at ``low`` and not at ``high``."""
+    def root(self, part: int, low: float, high: float) -> float:
+        """Return the time at which a part reaches the plane: above it at ``low`` and not at ``high``."""
         now = high
         for _ in range(_MOST_ROOT_STEPS):
-            heights, rates, _, _ = self.at(now)
-            height, rate = float(heights[corner]), float(rates[corner])
+            at = self.at(now)
+            height, rate = float(at.heights[part]), float(at.rates[part])
             low, high = (now, high) if height > 0.0 else (low, now)
             following = now - height / rate if rate < 0.0 else low
             if not low < following < high:
@@ -161,15 +192,23 @@ class _Search:
             now = following
         return now
 
-    def found(self, seconds: float, corner: int) -> FirstContact:
+    def found(self, seconds: float, part: int) -> FirstContact:
         """Gather the evidence of a contact."""
-        heights = self.at(seconds)[0]
+        at = self.at(seconds)
         sample = self.motion.sample(seconds)
-        arm_W = rotated(sample.q_WB, self.vertices_B[corner].tolist())
-        others = np.flatnonzero(np.abs(heights) <= GRAZING_DEPTH).tolist()
+        corners = len(self.arms)
+        if part < corners:
+            arm_B = self.shape.vertices[part]
+        else:
+            rim, (_, _, (cosine, sine)) = self.rims[part - corners], at.rims[part - corners].lowest()
+            arm_B = np.add(rim.center, np.multiply(cosine, rim.first) + np.multiply(sine, rim.second))
+        arm_W = np.array(rotated(sample.q_WB, arm_B.tolist()))
+        if self.shape.rounding > 0.0:
+            arm_W -= self.shape.rounding * np.array(self.normal_W)
+        others = np.flatnonzero(np.abs(at.heights) <= GRAZING_DEPTH).tolist()
         return FirstContact(
             seconds=seconds,
-            vertices=(corner, *(i for i in others if i != corner)),
+            vertices=(part, *(i for i in others if i != part)),
             p_WC_W=np.add(sample.p_WB_W, arm_W),
             v_WC_W=np.add(sample.v_WB_W, np.cross(sample.w_WB_W, arm_W)),
         )

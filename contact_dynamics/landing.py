@@ -55,9 +55,7 @@ def next_landing(
     arrivals = [
         found.seconds
         for surface in world.surfaces
-        if (
-            found := first_contact(motion, body.vertices_B, surface.p_WS_W, surface.normal_W, horizon=horizon)
-        )
+        if (found := first_contact(motion, body.shape, surface.p_WS_W, surface.normal_W, horizon=horizon))
     ]
     if not arrivals:
         return None

@@ -7,15 +7,15 @@ from typing import Final
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError, TooLargeError, UnknownBodyError
+from contact_dynamics.convex_shape import MOST_VERTICES, NO_SHAPE, ConvexShape, box_vertices
+from contact_dynamics.errors import InvalidFieldError, UnknownBodyError
 from contact_dynamics.rigid_body import MassProperties
 from contact_dynamics.validation import FloatArray, check_array, check_not_negative, check_unit, check_within
 
+__all__ = ["MOST_VERTICES", "STANDARD_GRAVITY_W", "Body", "Surface", "World", "box_vertices"]
+
 STANDARD_GRAVITY_W: Final = (0.0, 0.0, -9.80665)
 """m/s^2, world axes, z up (REP 103); the conventional value of the third CGPM, 1901."""
-
-MOST_VERTICES: Final = 10_000
-"""Longest list of vertices accepted: above it a convex shape should be simplified, not searched."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -23,8 +23,9 @@ class Body:
     """A rigid body that questions name.
 
     Raises:
-        InvalidFieldError: a number is not finite, or an array has another shape.
-        TooLargeError: more than `MOST_VERTICES` vertices.
+        InvalidFieldError: a number is not finite, an array has another shape, or both vertices and a shape
+            are given.
+        TooLargeError: more vertices than `MOST_VERTICES`.
     """
 
     name: str
@@ -34,15 +35,17 @@ class Body:
     )  # (3,), m, centre of mass in the published frame F
     vertices_B: FloatArray = field(
         default_factory=lambda: np.zeros((0, 3))
-    )  # (k, 3), m, corners of a convex shape, body axes
+    )  # (k, 3), m, corners of the shape, body axes; given, they are short for the polyhedron of these corners
+    shape: ConvexShape = NO_SHAPE  # what can touch, body axes
 
     def __post_init__(self) -> None:
-        """Check both arrays."""
+        """Check the arrays, and make corners and shape say the same."""
         object.__setattr__(self, "p_FB_F", check_array("center_of_mass", self.p_FB_F, (3,)))
-        vertices = check_array("vertices", self.vertices_B, (None, 3))
-        if len(vertices) > MOST_VERTICES:
-            raise TooLargeError("vertices", f"{len(vertices)} vertices", f"at most {MOST_VERTICES}")
-        object.__setattr__(self, "vertices_B", vertices)
+        if self.shape is NO_SHAPE:
+            object.__setattr__(self, "shape", ConvexShape(vertices=self.vertices_B))
+        elif len(self.vertices_B) > 0 and self.vertices_B is not self.shape.vertices:
+            raise InvalidFieldError("vertices", "vertices and a shape", "one of them")
+        object.__setattr__(self, "vertices_B", self.shape.vertices)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -101,9 +104,3 @@ class World:
         known = ", ".join(repr(body.name) for body in self.bodies) or "none"
         message = f"body_name: found {name!r}, allowed are the configured bodies: {known}"
         raise UnknownBodyError(message)
-
-
-def box_vertices(size: tuple[float, float, float]) -> FloatArray:
-    """Return the 8 corners, (8, 3), m, of a box with those full side lengths, centred on the origin."""
-    signs = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
-    return signs * (0.5 * check_array("size", size, (3,)))
