@@ -1,4 +1,4 @@
-"""What tumbling costs and how well it does, beside SciPy's integrator and MuJoCo in the same run.
+"""What tumbling costs and how well it does, beside SciPy's integrator, MuJoCo and Drake in the same run.
 
 Costs are processor time of this thread, so that a busy machine matters less. Errors are against the tests'
 reference of 50 digits, which shares nothing with the package.
@@ -11,7 +11,7 @@ import itertools
 import math
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -38,6 +38,9 @@ SAMPLES: Final = (1, 100, 10_000, 1_000_000)
 LONG: Final = 100.0
 """s, the later of the two times at which errors are compared."""
 
+PATIENCE: Final = 30.0
+"""s. A peer that would take longer for a trajectory is not run, but reckoned from a shorter one."""
+
 REPEATS: Final = 5
 
 
@@ -45,7 +48,9 @@ def run() -> None:
     """Print costs, then cost and error of 1 kHz trajectories beside the peers."""
     _costs()
     _errors_far_away()
-    _peers()
+    methods = _methods()
+    _peers(methods)
+    _peers_by_count(methods)
 
 
 def _best(action: Callable[[], object], calls: int = 1) -> float:
@@ -121,13 +126,17 @@ def _reference() -> Any:
     return module
 
 
-def _peers() -> None:
+Method: TypeAlias = "Callable[[tuple[float, ...], float], FloatArray]"
+"""From angular velocity and time, s, to the attitude then, by way of all samples at 1 kHz."""
+
+
+def _peers(methods: dict[str, Method]) -> None:
     print(f"\nAt 1 kHz, set-up included: ms a simulated second; errors, rad, after 10 s and {LONG:.0f} s")
     for name, w in MOTIONS.items():
         print(f"  {name}")
         truth = _reference().ExactMotion(np.diag(MOMENTS).tolist(), UPRIGHT, w)
         ours = 0.0
-        for method, simulate in _methods().items():
+        for method, simulate in methods.items():
             attitudes = {}
             for seconds in (10.0, LONG):
                 start = time.thread_time()
@@ -141,9 +150,29 @@ def _peers() -> None:
             )
 
 
-def _methods() -> dict[str, Callable[[tuple[float, ...], float], FloatArray]]:
-    """Return functions from angular velocity and time to the attitude then, by all samples at 1 kHz."""
-    methods: dict[str, Callable[[tuple[float, ...], float], FloatArray]] = {"closed form": _closed_form}
+def _peers_by_count(methods: dict[str, Method]) -> None:
+    print("\nn samples at 1 kHz, set-up included, us a sample; peers take one step for n = 1 ('~': reckoned)")
+    w = MOTIONS["about the major axis"]
+    for method, simulate in methods.items():
+        row, last = [], 0.0
+        for n in SAMPLES:
+            expected = last * n
+            if expected < PATIENCE:
+                repeats = 1 if expected > 1.0 else 3
+                last = min(_once(simulate, w, 1e-3 * n) for _ in range(repeats)) / n
+            row.append(f"n = {n} {'' if expected < PATIENCE else '~'}{1e6 * last:.2f}")
+        print(f"    {method:>28}  " + "  ".join(row))
+
+
+def _once(simulate: Method, w: tuple[float, ...], seconds: float) -> float:
+    start = time.thread_time()
+    simulate(w, seconds)
+    return time.thread_time() - start
+
+
+def _methods() -> dict[str, Method]:
+    """Return those that can be run here, ours first, and say which cannot."""
+    methods: dict[str, Method] = {"closed form": _closed_form}
     for tolerance in (1e-6, 1e-9, 1e-12):
         methods[f"SciPy DOP853, rtol {tolerance:.0e}"] = lambda w, seconds, rtol=tolerance: _dop853(
             w, seconds, rtol
@@ -154,7 +183,15 @@ def _methods() -> dict[str, Callable[[tuple[float, ...], float], FloatArray]]:
                 w, seconds, name
             )
     else:
-        print("  (MuJoCo is not installed)")
+        print("\n  MuJoCo is not installed: not compared")
+    if importlib.util.find_spec("pydrake"):
+        for accuracy in (1e-6, 1e-9):
+            methods[f"Drake RK3, accuracy {accuracy:.0e}"] = lambda w, seconds, to=accuracy: _drake(
+                w, seconds, accuracy=to
+            )
+        methods["Drake discrete, 1 ms"] = lambda w, seconds: _drake(w, seconds, time_step=1e-3)
+    else:
+        print("\n  Drake is not installed: not compared")
     return methods
 
 
@@ -199,4 +236,33 @@ def _mujoco(w: tuple[float, ...], seconds: float, integrator: str) -> FloatArray
     data.qvel[3:] = w
     mujoco.mj_step(model, data, nstep=round(1000 * seconds))
     q: FloatArray = np.roll(data.qpos[3:7], -1)  # w x y z there
+    return q
+
+
+def _drake(
+    w: tuple[float, ...], seconds: float, *, accuracy: float | None = None, time_step: float = 0.0
+) -> FloatArray:
+    from pydrake.math import RigidTransform
+    from pydrake.multibody.math import SpatialVelocity
+    from pydrake.multibody.plant import MultibodyPlant
+    from pydrake.multibody.tree import SpatialInertia, UnitInertia
+    from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
+
+    plant = MultibodyPlant(time_step)
+    inertia = SpatialInertia(1.0, np.zeros(3), UnitInertia(*MOMENTS))
+    body = plant.AddRigidBody("body", inertia)
+    plant.mutable_gravity_field().set_gravity_vector(np.zeros(3))
+    plant.Finalize()
+    simulator = Simulator(plant)
+    context = simulator.get_mutable_context()
+    plant.SetFreeBodyPose(context, body, RigidTransform())
+    plant.SetFreeBodySpatialVelocity(context, body, SpatialVelocity(w, np.zeros(3)))
+    if accuracy is not None:
+        config = SimulatorConfig(
+            integration_scheme="runge_kutta3", accuracy=accuracy, use_error_control=True, max_step_size=0.1
+        )
+        ApplySimulatorConfig(config, simulator)
+    simulator.Initialize()
+    simulator.AdvanceTo(seconds)
+    q: FloatArray = np.roll(plant.GetPositions(context)[:4], -1)  # w x y z there
     return q
