@@ -14,6 +14,7 @@ import math
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from contact_dynamics.contact_curvature import planar_gap_acceleration
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.tolerances import UNIT_LENGTH_TOLERANCE
 from contact_dynamics.validation import check_finite, check_not_negative, check_positive, check_within
@@ -79,16 +80,22 @@ class PlanarWrench:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlanarContact:
-    """A point of the body on a flat of the world.
+    """A point of the body on a flat of the world; or sides that are curved, as `contact_curvature` has it.
+
+    A corner of the world that a flat of the body slides over has ``body_curvature=0`` and
+    ``surface_curvature=math.inf``; a disc of radius R on a floor has ``body_curvature=1 / R``.
 
     Raises:
-        InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, or e outside [0, 1].
+        InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, e outside [0, 1], or two
+            sides that do not touch in one point of one normal: curvatures of a sum <= 0, or two corners.
     """
 
     r: Vector2  # m, from the centre of mass to the contact
     normal: Vector2  # unit, into the body
     friction: float  # Coulomb's mu, >= 0
     restitution: float = 0.0  # e, in [0, 1]; contact modes do not use it
+    body_curvature: float = math.inf  # 1/m, of the body at the contact, convex positive; inf: a corner
+    surface_curvature: float = 0.0  # 1/m, of what it touches, likewise
 
     def __post_init__(self) -> None:
         """Check all fields and normalise the normal to rounding."""
@@ -100,6 +107,26 @@ class PlanarContact:
         object.__setattr__(self, "normal", (n_x / length, n_y / length))
         object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
         object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
+        if self.body_curvature != math.inf or self.surface_curvature != 0.0:
+            self._check_curvatures()
+
+    def _check_curvatures(self) -> None:
+        one, other = self.body_curvature, self.surface_curvature
+        if (one == math.inf and other == math.inf) or not one + other > 0.0:
+            raise InvalidFieldError(
+                "contact curvatures",
+                f"{one} of the body, {other} of the surface, 1/m",
+                "a sum > 0, and at most one corner",
+            )
+
+    def gap_acceleration(self, v_t: float, w: float) -> float:
+        """Return what the gap's second derivative has besides the contact point's a_n, m/s^2.
+
+        For a tangential velocity, m/s, of the body's point at the contact, and an angular one, rad/s.
+        """
+        if self.body_curvature == math.inf and self.surface_curvature == 0.0:
+            return 0.0
+        return planar_gap_acceleration(self.body_curvature, self.surface_curvature, v_t=v_t, w=w)
 
     @property
     def tangent(self) -> Vector2:

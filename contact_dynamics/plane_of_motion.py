@@ -128,18 +128,48 @@ def project(
         body=planar_body,
         velocity=PlanarVelocity(v=_pair(axes @ state.v_WB_W), w=float(state.w_WB_W @ normal)),
         contacts=tuple(
-            PlanarContact(r=_pair(r), normal=_unit_pair(n), friction=mu, restitution=e)
-            for r, n, mu, e in zip(
+            PlanarContact(
+                r=_pair(r),
+                normal=_unit_pair(n),
+                friction=mu,
+                restitution=e,
+                body_curvature=k,
+                surface_curvature=K,
+            )
+            for r, n, mu, e, (k, K) in zip(
                 r_W @ axes.T,
                 contacts.normals_W @ axes.T,
                 contacts.frictions.tolist(),
                 contacts.restitutions.tolist(),
+                _curvatures_in(plane, contacts),
                 strict=True,
             )
         ),
         wrench=PlanarWrench(f=_pair(axes @ force_W), moment=float(torque_W @ normal)),
         out_of_plane=out_of_plane,
     )
+
+
+def _curvatures_in(plane: PlaneOfMotion, contacts: ContactSet) -> list[tuple[float, float]]:
+    """Return the curvatures in a plane, 1/m, of the body and of the surface at each contact."""
+    if contacts.body_curvatures is None and contacts.surface_curvatures is None:
+        return [(math.inf, 0.0)] * len(contacts)
+    pairs = []
+    for i, normal in enumerate(contacts.normals_W):
+        tangent = _normalised(cross_matrix(plane.normal_W) @ normal)
+        sides = []
+        for name, curvatures, default in (
+            ("body_curvatures", contacts.body_curvatures, math.inf),
+            ("surface_curvatures", contacts.surface_curvatures, 0.0),
+        ):
+            found = default if curvatures is None else curvatures.in_direction(i, tangent)
+            if found is None:
+                raise OutOfPlaneError(
+                    f"contacts.{name}[{i}]", "a principal direction at an angle to the plane", "one within it"
+                )
+            sides.append(found)
+        pairs.append((sides[0], sides[1]))
+    return pairs
 
 
 def out_of_plane_speed(plane: PlaneOfMotion, state: BodyState, contacts: ContactSet) -> float:

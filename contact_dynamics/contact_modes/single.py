@@ -1,15 +1,15 @@
 """Modes of one planar contact by the lecture's case analysis, in closed form (Mason, lecture 26).
 
-Model: a rigid body, a point of which touches a flat of the fixed world with Coulomb friction. In contact axes
+Model: a rigid body touches the fixed world in one point with Coulomb friction. In contact axes
 the contact's acceleration is affine in the contact force,
 
     a_t = w_t + a f_t + b f_n,        a_n = w_n + b f_t + c f_n,
 
-with w the acceleration without contact force, centripetal part included. Each letter adds its two equations;
-what contradicts the letter's inequalities is discarded. Plain floats throughout: this is the path of one
-answer in microseconds.
+with w the acceleration without contact force, terms of velocities included. Each letter adds its two
+equations; what contradicts the letter's inequalities is discarded. Plain floats throughout: this is the path
+of one answer in microseconds.
 
-Does not cover: several contacts (`planar`), a flat of the body on a point of the world, moving surfaces.
+Does not cover: several contacts (`planar`), moving surfaces.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ def single_contact_modes(
         w: rad/s, angular velocity of the body.
         accuracy: Relative size of what counts as zero.
     """
-    axes = _contact_axes(body, contact, wrench, w=w, accuracy=accuracy)
+    axes = _contact_axes(body, contact, wrench, v_t=v_t, w=w, accuracy=accuracy)
     trials: list[tuple[str, _Solution | _Failure]] = [("s", _separating(axes))]
     if v_t <= 0.0:
         trials.append(("l", _sliding(axes, direction=-1.0, at_rest=v_t == 0.0)))
@@ -87,7 +87,7 @@ def single_contact_modes(
 
 
 def _contact_axes(
-    body: PlanarBody, contact: PlanarContact, wrench: PlanarWrench, *, w: float, accuracy: float
+    body: PlanarBody, contact: PlanarContact, wrench: PlanarWrench, *, v_t: float, w: float, accuracy: float
 ) -> _ContactAxes:
     n_x, n_y = contact.normal
     r_x, r_y = contact.r
@@ -98,8 +98,9 @@ def _contact_axes(
     per_inertia = 1.0 / body.inertia
     alpha = wrench.moment * per_inertia
     w_t = (f_x * n_y - f_y * n_x) * per_mass - r_n * alpha - w * w * r_t
-    w_n = (f_x * n_x + f_y * n_y) * per_mass + r_t * alpha - w * w * r_n
-    scale = (abs(f_x) + abs(f_y)) * per_mass + (abs(r_t) + abs(r_n)) * (abs(alpha) + w * w)
+    rolling = contact.gap_acceleration(v_t, w)
+    w_n = (f_x * n_x + f_y * n_y) * per_mass + r_t * alpha - w * w * r_n + rolling
+    scale = (abs(f_x) + abs(f_y)) * per_mass + (abs(r_t) + abs(r_n)) * (abs(alpha) + w * w) + abs(rolling)
     tolerance = accuracy * scale
     return _ContactAxes(
         a=per_mass + r_n * r_n * per_inertia,
