@@ -59,7 +59,7 @@ class PolyhedralCone:
         self.tight = []
         self.rows = rows
         self._tolerance = tolerance
-        first = self._begin()
+        first = self._begin() if len(rows) > 1 else ()
         if first and len(rows) > MANY:
             self._cut_many(first)
             return
@@ -114,16 +114,20 @@ class PolyhedralCone:
         return []
 
     def _begin(self) -> tuple[int, ...]:
-        """Start from three independent rows at once, and return which; none: the rows have no three."""
+        """Start from as many independent rows as there are, and return which; none: all are parallel."""
         rows = self.rows
-        second, width, normal = -1, self._tolerance, (0.0, 0.0, 0.0)
-        for index, row in enumerate(rows):
-            across = cross(rows[0], row)
+        one = rows[0]
+        second, width, normal = 0, self._tolerance, (0.0, 0.0, 0.0)
+        for index in range(1, len(rows)):
+            across = cross(one, rows[index])
             sine = math.sqrt(dot(across, across))
             if sine > width:
                 second, width, normal = index, sine, across
                 if sine > _WIDE:
                     break
+        if second == 0:
+            return ()
+        two = rows[second]
         third, height = -1, self._tolerance * width
         for index, row in enumerate(rows):
             above = dot(normal, row)
@@ -132,8 +136,12 @@ class PolyhedralCone:
                 if abs(above) > _WIDE * width:
                     break
         if third < 0:
-            return ()
-        one, two, three = rows[0], rows[second], rows[third]
+            line = normalised(normal)
+            self.lineality = [line]
+            self.rays = [cross(line, one), cross(two, line)]
+            self.tight = [1, 1 << second]
+            return (0, second)
+        three = rows[third]
         if height < 0.0:
             second, third, two, three = third, second, three, two
         self.lineality = []
@@ -275,6 +283,8 @@ def normalised(a: Vector3) -> Vector3:
 
 def bits(mask: int) -> list[int]:
     """Return the positions of the bits that are set, in order."""
+    if mask.bit_count() > MANY:
+        return [position for position, bit in enumerate(bin(mask)[:1:-1]) if bit == "1"]
     found = []
     while mask:
         lowest = mask & -mask

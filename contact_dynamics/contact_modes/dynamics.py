@@ -11,12 +11,12 @@ matters is whether the applied wrench lies in the cone of those that can bring t
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.contact_modes.cone import Vector3, dot
-from contact_dynamics.contact_modes.enumeration import FIXED, LEFT, Cell
+from contact_dynamics.contact_modes.enumeration import FIXED, LEFT, Cell, Letters
 from contact_dynamics.contact_modes.result import ConsistentMode, Refusal, RefusedMode
-from contact_dynamics.contact_modes.wrench_cone import ModeWrenches, edge
+from contact_dynamics.contact_modes.wrench_cone import ModeWrenches
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact_modes.problem import ContactRow, PlanarProblem
     from contact_dynamics.planar import Vector2
+
+_MOST_EQUATIONS: Final = 3  # that can be independent: a planar body's freedoms
 
 
 def judge_all(
@@ -45,19 +47,22 @@ def solve_mode(
     problem: PlanarProblem, mode: str, cell: Cell, accuracy: float
 ) -> ConsistentMode | RefusedMode:
     """Return the solution of one mode, or the first reason against it."""
-    if sum(2 if letter == FIXED else 1 for _, letter in cell.letters) <= 3:
-        forces = _independent_forces(problem, cell)
-        if forces is not None:
-            return _judged(problem, mode, cell, forces, accuracy)
-    return _from_cone(problem, mode, cell, accuracy)
+    forces = _independent_forces(problem, cell.letters)
+    if forces is None:
+        return _from_cone(problem, mode, cell, accuracy)
+    return _judged(problem, mode, cell, forces, accuracy)
 
 
-def _independent_forces(problem: PlanarProblem, cell: Cell) -> list[Vector2] | None:
+def _independent_forces(problem: PlanarProblem, letters: Letters) -> list[Vector2] | None:
     """Return (f_t, f_n) of each staying contact from the mode's equations; None: they are not independent."""
+    if len(letters) > _MOST_EQUATIONS:
+        return None
+    if len(letters) == 1 and letters[0][1] != FIXED:
+        return _sliding_force(problem, *letters[0])
     equations: list[tuple[Vector3, float]] = []  # unit row, its offset
     units: list[Vector3] = []  # wrench of each unknown, unit
     lengths: list[float] = []
-    for position, letter in cell.letters:
+    for position, letter in letters:
         row = problem.rows[position]
         equations.append((row.unit_n, row.b_n / row.size_n))
         if letter == FIXED:
@@ -65,10 +70,12 @@ def _independent_forces(problem: PlanarProblem, cell: Cell) -> list[Vector2] | N
             units += (row.unit_n, row.unit_t)
             lengths += (row.size_n, row.size_t)
         else:
-            unknown = edge(row, _slope(row, letter))
+            unknown = _edge(row, _slope(row, letter))
             length = math.sqrt(dot(unknown, unknown))
             lengths.append(length)
             units.append((unknown[0] / length, unknown[1] / length, unknown[2] / length))
+    if len(equations) > _MOST_EQUATIONS:
+        return None
     matrix = [[dot(row, unit) for unit in units] for row, _ in equations]
     right = [-dot(row, problem.w) - problem.mass * offset for row, offset in equations]
     scaled = _solved(matrix, right)
@@ -76,11 +83,23 @@ def _independent_forces(problem: PlanarProblem, cell: Cell) -> list[Vector2] | N
         return None
     found = iter([value / length for value, length in zip(scaled, lengths, strict=True)])
     forces: list[Vector2] = []
-    for position, letter in cell.letters:
+    for position, letter in letters:
         f_n = next(found)
         f_t = next(found) if letter == FIXED else _slope(problem.rows[position], letter) * f_n
         forces.append((f_t, f_n))
     return forces
+
+
+def _sliding_force(problem: PlanarProblem, position: int, letter: int) -> list[Vector2] | None:
+    """Return the same for one contact that slides, the most frequent case: one equation."""
+    row = problem.rows[position]
+    slope = _slope(row, letter)
+    unknown = _edge(row, slope)
+    gain = dot(row.unit_n, unknown)
+    if abs(gain) <= ROW_TOLERANCE * math.sqrt(dot(unknown, unknown)):
+        return None
+    f_n = -(dot(row.unit_n, problem.w) + problem.mass * row.b_n / row.size_n) / gain
+    return [(slope * f_n, f_n)]
 
 
 def _judged(
@@ -91,7 +110,7 @@ def _judged(
     accuracy: float,
 ) -> ConsistentMode | RefusedMode:
     """Keep the forces and the motion they give, unless a letter of the mode contradicts them."""
-    load = _size(problem.w) + problem.mass * (problem.lift.scale if problem.lift else 0.0)
+    load = problem.load
     for (position, _), (f_t, f_n) in zip(cell.letters, forces, strict=True):
         row = problem.rows[position]
         load += abs(f_n) * row.size_n + abs(f_t) * row.size_t
@@ -166,16 +185,18 @@ def _consistent(
     alpha = q[2] / problem.rho
     square = problem.omega * problem.omega
     accelerations: list[Vector2] = []
+    a_x, a_y, _ = q
     for contact in problem.contacts:
         n_x, n_y = contact.normal
         r_x, r_y = contact.r
-        c_x = q[0] - alpha * r_y - square * r_x
-        c_y = q[1] + alpha * r_x - square * r_y
+        c_x = a_x - alpha * r_y - square * r_x
+        c_y = a_y + alpha * r_x - square * r_y
         accelerations.append((c_x * n_y - c_y * n_x, c_x * n_x + c_y * n_y))
     all_forces: list[Vector2] = [(0.0, 0.0)] * len(problem.contacts)
     for (position, letter), (f_t, f_n) in zip(cell.letters, forces, strict=True):
-        index = problem.rows[position].contact
-        edge = problem.rows[position].friction * f_n
+        row = problem.rows[position]
+        index = row.contact
+        edge = row.friction * f_n
         if f_n > 0.0:  # rounding at the cone's apex and edges is taken out
             all_forces[index] = (max(-edge, min(edge, f_t)), f_n)
         # What the mode says is zero is zero, without rounding.
@@ -183,7 +204,7 @@ def _consistent(
     forces_unique, motion_unique = unique
     return ConsistentMode(
         mode=mode,
-        acceleration=(q[0], q[1]),
+        acceleration=(a_x, a_y),
         angular_acceleration=alpha,
         contact_forces=tuple(all_forces),
         contact_accelerations=tuple(accelerations),
@@ -223,10 +244,12 @@ def _solved(matrix: list[list[float]], right: list[float]) -> list[float] | None
     return right
 
 
+def _edge(row: ContactRow, slope: float) -> Vector3:
+    """Return the wrench of a force of unit normal part along the edge of a friction cone."""
+    N, T = row.N, row.T
+    return (N[0] + slope * T[0], N[1] + slope * T[1], N[2] + slope * T[2])
+
+
 def _slope(row: ContactRow, letter: int) -> float:
     """Return f_t / f_n of a sliding contact: friction pushes right where it slides left."""
     return row.friction if letter == LEFT else -row.friction
-
-
-def _size(a: Vector3) -> float:
-    return math.sqrt(dot(a, a))

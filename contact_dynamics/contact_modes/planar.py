@@ -89,7 +89,7 @@ def planar_contact_modes(
                 body, velocity, contacts, velocities, wrench, velocity_tolerance=v_tolerance
             )
             modes, refused = judge_all(problem, kinematic_cells(problem), accuracy)
-            a_tolerance = accuracy * problem.largest_acceleration
+            a_tolerance = accuracy * problem.load / body.mass
     found = tuple(modes)
     return ContactModeAnswer(
         verdict=ModeVerdict.IMPACT if approaching else verdict_on(found),

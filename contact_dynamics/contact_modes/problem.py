@@ -6,7 +6,8 @@ The accelerations of a contact's point along its normal and its tangent are
 
     a_n = N . q + b_n,  a_t = T . q + b_t,  N = (n, r x n / rho),  T = (t, r x t / rho),  b = -w^2 r . (n, t),
 
-and the same rows are the wrenches of a unit normal and a unit tangential force.
+to b_n of which a contact of curved sides adds its own (`PlanarContact.gap_acceleration`). The same rows are
+the wrenches of a unit normal and a unit tangential force.
 
 A moving body: velocities within tolerance count as zero, and the motion that remains is the velocity's part
 that moves no contact along its normal, nor one at rest along its tangent. Where that part turns, all rows of
@@ -70,9 +71,9 @@ class PlanarProblem(NamedTuple):
     lift: Lift | None  # None: centripetal terms vanish, the problem is a cone as it stands
 
     @property
-    def largest_acceleration(self) -> float:
-        """Return what accelerations are compared with, m/s^2: the applied wrench's, plus the centripetal."""
-        return _size(self.w) / self.mass + (self.lift.scale if self.lift else 0.0)
+    def load(self) -> float:
+        """Return what forces are compared with, N: the applied wrench plus the centripetal terms."""
+        return _size(self.w) + (self.mass * self.lift.scale if self.lift else 0.0)
 
 
 def contact_velocities(
@@ -112,7 +113,7 @@ def planar_problem(
     ``velocity_tolerance``, m/s, counts as zero.
     """
     rho = body.radius_of_gyration
-    touching: list[tuple[int, float, Vector3, Vector3, Vector3, Vector3]] = []
+    touching: list[tuple[int, float, Vector3, Vector3]] = []
     resting: list[Vector3] = []
     for index, (contact, (v_t, v_n)) in enumerate(zip(contacts, contact_velocities, strict=True)):
         if v_n != 0.0:
@@ -121,37 +122,31 @@ def planar_problem(
         r_x, r_y = contact.r
         N = (n_x, n_y, (r_x * n_y - r_y * n_x) / rho)
         T = (n_y, -n_x, -(r_x * n_x + r_y * n_y) / rho)
-        unit_n, unit_t = normalised(N), normalised(T)
-        touching.append((index, v_t, N, T, unit_n, unit_t))
-        resting.append(unit_n)
+        touching.append((index, v_t, N, T))
+        resting.append(N)
         if v_t == 0.0:
-            resting.append(unit_t)
-    twist = _unhindered((velocity.v[0], velocity.v[1], rho * velocity.w), resting)
-    reach = max((math.hypot(*contact.r) for contact in contacts), default=0.0) / rho
-    turns = abs(twist[2]) * reach > velocity_tolerance and abs(twist[2]) > ROW_TOLERANCE * _size(twist)
-    omega = twist[2] / rho if turns else 0.0
+            resting.append(T)
+    twist = (velocity.v[0], velocity.v[1], rho * velocity.w)
+    if twist != (0.0, 0.0, 0.0):
+        twist = _unhindered(twist, [normalised(row) for row in resting])
+    omega = 0.0
+    if abs(twist[2]) > ROW_TOLERANCE * _size(twist):
+        reach = max(math.hypot(*contact.r) for contact in contacts)
+        if abs(twist[2]) * reach > velocity_tolerance * rho:
+            omega = twist[2] / rho
     square = omega * omega
     rows = []
     largest = 0.0
-    for index, v_t, N, T, unit_n, unit_t in touching:
+    for index, v_t, N, T in touching:
         b_n = square * T[2] * rho  # T's moment arm is -r.n, N's is r.t
+        b_n += contact.gap_acceleration(dot(T, twist), omega)
         b_t = -square * N[2] * rho
         largest = max(largest, abs(b_n), abs(b_t))
-        rows.append(
-            ContactRow(
-                contact=index,
-                N=N,
-                T=T,
-                unit_n=unit_n,
-                unit_t=unit_t,
-                size_n=_size(N),
-                size_t=_size(T),
-                b_n=b_n,
-                b_t=b_t,
-                slides=float((v_t > 0.0) - (v_t < 0.0)),
-                friction=contacts[index].friction,
-            )
-        )
+        size_n, size_t = _size(N), _size(T)
+        unit_n, unit_t = _divided(N, size_n), _divided(T, size_t)
+        slides = float((v_t > 0.0) - (v_t < 0.0))
+        friction = contacts[index].friction
+        rows.append(ContactRow(index, N, T, unit_n, unit_t, size_n, size_t, b_n, b_t, slides, friction))
     return PlanarProblem(
         contacts=contacts,
         mass=body.mass,
@@ -165,7 +160,7 @@ def planar_problem(
 
 def _unhindered(twist: Vector3, resting: list[Vector3]) -> Vector3:
     """Return the part of ``twist`` orthogonal to all ``resting`` rows."""
-    if twist == (0.0, 0.0, 0.0) or not resting:
+    if not resting:
         return twist
     first = resting[0]
     apart = max((cross(first, row) for row in resting), key=lambda normal: dot(normal, normal))
@@ -188,6 +183,10 @@ def _lift(twist: Vector3, scale: float) -> Lift:
 
 def _size(a: Vector3) -> float:
     return math.sqrt(dot(a, a))
+
+
+def _divided(a: Vector3, by: float) -> Vector3:
+    return (a[0] / by, a[1] / by, a[2] / by)
 
 
 def lifted(lift: Lift | None, row: Vector3, offset: float) -> Vector3:

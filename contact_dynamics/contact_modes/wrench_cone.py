@@ -12,14 +12,14 @@ With centripetal terms the same is said of (wrench across the line of symmetry, 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.cone import MANY, PolyhedralCone, Vector3, bits, dot, normalised, opposite
+from contact_dynamics.contact_modes.cone import PolyhedralCone, Vector3, bits, dot, normalised, opposite
 from contact_dynamics.contact_modes.enumeration import FIXED, RIGHT, Cell, Letters
 from contact_dynamics.contact_modes.least_force import least_force
-from contact_dynamics.contact_modes.problem import Lift, PlanarProblem, lifted
+from contact_dynamics.contact_modes.problem import PlanarProblem, lifted
 from contact_dynamics.contact_modes.span import orthonormal
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
@@ -27,6 +27,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from contact_dynamics.contact_modes.problem import ContactRow
+    from contact_dynamics.validation import FloatArray
+
+
+_MOST_INDEPENDENT: Final = 3  # wrenches in the plane
 
 
 class Edges(NamedTuple):
@@ -34,7 +38,7 @@ class Edges(NamedTuple):
 
     positions: list[int]  # the row of the problem that each belongs to
     slopes: list[float]  # f_t / f_n
-    wrenches: list[Vector3]  # of a unit f_n
+    wrenches: FloatArray  # (k, 3), of a unit f_n
 
 
 def friction_edges(rows: Sequence[ContactRow], letters: Letters) -> Edges:
@@ -49,13 +53,8 @@ def friction_edges(rows: Sequence[ContactRow], letters: Letters) -> Edges:
         if letter == RIGHT or (letter == FIXED and friction > 0.0):
             positions.append(position)
             slopes.append(-friction)
-    return Edges(positions, slopes, [edge(rows[i], mu) for i, mu in zip(positions, slopes, strict=True)])
-
-
-def edge(row: ContactRow, slope: float) -> Vector3:
-    """Return the wrench of a contact force of unit normal part and ``slope`` f_t / f_n."""
-    N, T = row.N, row.T
-    return (N[0] + slope * T[0], N[1] + slope * T[1], N[2] + slope * T[2])
+    both = np.array([rows[position].N + rows[position].T for position in positions]).reshape(-1, 6)
+    return Edges(positions, slopes, both[:, :3] + np.array(slopes)[:, None] * both[:, 3:])
 
 
 class HalfSpace(NamedTuple):
@@ -76,7 +75,18 @@ class ModeWrenches:
         self._problem = problem
         self._rays = cell.rays
         self.edges = friction_edges(problem.rows, cell.letters)
-        self._seen, self._lengths, reactions = _reactions(lift, self.edges.wrenches)
+        across = self.edges.wrenches
+        lengths = _lengths(across)
+        seen = np.arange(len(across))
+        if lift is not None:
+            sizes = lengths
+            across = np.column_stack([across @ np.array(lift.across).T, np.zeros(len(across))])
+            lengths = _lengths(across)
+            seen = np.flatnonzero(lengths > ROW_TOLERANCE * sizes)
+            across, lengths = across[seen], lengths[seen]
+        self._seen: list[int] = seen.tolist()
+        self._lengths: list[float] = lengths.tolist()
+        reactions = [(x, y, z) for x, y, z in (across / -lengths[:, None]).tolist()]
         self.dual = PolyhedralCone([*cell.rays, *reactions], tolerance=ROW_TOLERANCE)
         self._target = lifted(lift, problem.w, problem.mass * lift.scale * lift.scale if lift else 0.0)
         self._common = self.dual.all_rows
@@ -84,7 +94,7 @@ class ModeWrenches:
     def generated_by(self) -> tuple[list[Vector3], list[Vector3]]:
         """Return vertices, N, and rays whose averages and positive combinations are the mode's wrenches."""
         lift = self._problem.lift
-        rays = [opposite(wrench) for wrench in self.edges.wrenches]
+        rays = [(x, y, z) for x, y, z in (-self.edges.wrenches).tolist()]
         if lift is None:
             return [(0.0, 0.0, 0.0)], [*self._rays, *rays]
         rays += [lift.line, opposite(lift.line)]
@@ -147,7 +157,7 @@ class ModeWrenches:
         target = self._target
         fixed: list[Vector3] = list(self.dual.lineality)
         largest = math.inf
-        inner = _total(self._rays)
+        inner = _total(self._rays) if self._rays else (0.0, 0.0, 0.0)
         for z in self.dual.rays:
             height = dot(z, target)
             if height <= tolerance:
@@ -170,13 +180,17 @@ class ModeWrenches:
                 index = self._seen[column - len(self._rays)]
                 shares[index] = value / self._lengths[column - len(self._rays)]
                 idle.remove(index)
-        return shares, self._uniqueness([wrench for i, wrench in enumerate(wrenches) if i not in idle])
+        return shares, self._uniqueness([i for i in range(len(wrenches)) if i not in idle])
 
-    def _uniqueness(self, acting: list[Vector3]) -> tuple[bool, bool]:
-        """Return whether forces and motion are unique, ``acting`` being all wrenches that can act."""
+    def _uniqueness(self, acting: list[int]) -> tuple[bool, bool]:
+        """Return whether forces and motion are unique, ``acting`` being all edges that can act."""
         motions = orthonormal(self._motions())
+        if not motions and len(acting) > _MOST_INDEPENDENT:
+            return False, True
         height = () if self._problem.lift is None else (0.0,)
-        forces = orthonormal((*normalised(wrench), *height) for wrench in acting)
+        forces = orthonormal(
+            (*normalised((x, y, z)), *height) for x, y, z in self.edges.wrenches[acting].tolist()
+        )
         total = len(orthonormal([*motions, *forces])) if motions else len(forces)
         return total == len(motions) + len(acting), total == len(motions) + len(forces)
 
@@ -212,32 +226,9 @@ class ModeWrenches:
         return (*(ray[0] * x + ray[1] * y for x, y in zip(one, two, strict=True)), ray[2])
 
 
-def _reactions(
-    lift: Lift | None, wrenches: Sequence[Vector3]
-) -> tuple[list[int], list[float], list[Vector3]]:
-    """Return which wrenches act across the line of symmetry, their lengths there, and unit reactions."""
-    if len(wrenches) > MANY:
-        return _many_reactions(lift, wrenches)
-    seen, lengths, units = [], [], []
-    for index, wrench in enumerate(wrenches):
-        x, y, z = lifted(lift, wrench, 0.0)
-        length = math.sqrt(x * x + y * y + z * z)
-        if lift is None or length > ROW_TOLERANCE * math.sqrt(dot(wrench, wrench)):
-            seen.append(index)
-            lengths.append(length)
-            units.append((-x / length, -y / length, -z / length))
-    return seen, lengths, units
-
-
-def _many_reactions(
-    lift: Lift | None, wrenches: Sequence[Vector3]
-) -> tuple[list[int], list[float], list[Vector3]]:
-    rows = np.array(wrenches)
-    across = rows if lift is None else np.column_stack([rows @ np.array(lift.across).T, np.zeros(len(rows))])
-    lengths = np.sqrt(np.einsum("ij,ij->i", across, across))
-    seen = np.flatnonzero(lengths > ROW_TOLERANCE * np.sqrt(np.einsum("ij,ij->i", rows, rows)))
-    units = -across[seen] / lengths[seen, None]
-    return seen.tolist(), lengths[seen].tolist(), [(x, y, z) for x, y, z in units.tolist()]
+def _lengths(rows: FloatArray) -> FloatArray:
+    lengths: FloatArray = np.sqrt(np.einsum("ij,ij->i", rows, rows))
+    return lengths
 
 
 def _total(rays: Sequence[Vector3]) -> Vector3:
