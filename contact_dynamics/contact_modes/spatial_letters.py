@@ -1,71 +1,166 @@
 """What the letters of one contact in space ask for: separate, stick, or slide within which sector.
 
-Unknowns are the edge forces of all contacts' friction pyramids. Letters come in groups, a tree whose leaves
-are letters and whose groups ask for no more than each of their letters does, so that a group which cannot
-hold ends the trial of all its letters (`spatial_dynamics`).
+Letters come in groups, a tree whose leaves are letters and whose groups ask for no more than each of their
+letters does, so that a group which cannot hold ends the trial of all its letters (`spatial_search`).
+
+The edges of a contact's friction pyramid are numbered around it, and items of sliding with them: 2 j is the
+sector of directions opposite to edge j, 2 j + 1 its border with the next sector.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
+
+from contact_dynamics.friction import linearised_cone, tangents
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
+STRICT: Final = 1e-8
+"""Relative to the largest acceleration: what an inequality must have to hold strictly. A thousand times what
+a condition may miss (`spatial_program`)."""
 
-class Trial(NamedTuple):
-    """A letter of one contact, or several together; rows act on the edge forces and end in a constant."""
+MILDER: Final = 0.1
+"""How much less an arc must hold than its letters, whose rows are differences of unit ones."""
 
-    letter: str  # c also for an arc of sliding directions; empty: several
-    silent: list[int]  # edge forces that are zero
-    zero: FloatArray  # (k, K + 1)
-    positive: FloatArray  # (k, K + 1), strictly where it is a letter
-    parts: list[Trial]  # the letters that it stands for, in groups; empty where it is a letter
+_AT_BORDER: Final = 1e-9
+"""In sectors: how far beyond its border a sector's edge still counts as acting."""
 
 
-def any_letter(tangential: FloatArray, own: list[int], normal: FloatArray, point: FloatArray) -> Trial:
-    """Return all letters of one touching contact, with ``tangential`` the edges' parts along the surface."""
-    nothing = np.zeros((0, len(normal)))
-    separates = Trial("s", own, nothing, normal[None, :], [])
-    if len(own) == 1:
-        stays = Trial("c", [], normal[None, :], nothing, [])
+class Letters(NamedTuple):
+    """A letter of one contact, or several together; rows are (motion, constant), 7 numbers."""
+
+    letter: str  # s, f, c; c also for an arc of sliding directions; empty: several
+    item: int  # of sliding; -1: none, or several
+    zeroed: frozenset[int]  # edge forces, and normal acceleration, that are zero
+    raised: int | None  # the normal acceleration's name, where that is positive
+    rows: FloatArray  # (k, 7), zero or not negative
+    equalities: int  # how many rows are zero; the first ones
+    parts: tuple[Letters, ...]  # the letters that it stands for, in groups; empty where it is a letter
+
+
+class Pyramid(NamedTuple):
+    """The edges of a contact's force: a friction pyramid, or one edge where friction or sliding is known."""
+
+    edges: FloatArray  # (K, 3), of unit normal force
+    frame: tuple[FloatArray, FloatArray] | None  # unit tangents, edge 0 along the first; None: one edge
+    first: int  # name of the first edge force; the others follow
+
+
+def pyramid_of(
+    normal: FloatArray,
+    friction: float,
+    *,
+    sliding: FloatArray,
+    free: FloatArray,
+    facets: int,
+    first: int,
+) -> Pyramid:
+    """Return the force edges of a touching contact.
+
+    Args:
+        normal: (3,), unit.
+        friction: Coulomb's mu.
+        sliding: (3,), its tangential velocity; zero: it is at rest.
+        free: (3,), its acceleration without contact forces: edge 0 opposes it.
+        facets: Edges of the pyramid.
+        first: Name of the first edge force.
+    """
+    speed = float(np.linalg.norm(sliding))
+    if friction == 0.0:
+        return Pyramid(normal[None, :], None, first)
+    if speed > 0.0:
+        return Pyramid((normal - friction * sliding / speed)[None, :], None, first)
+    edges = linearised_cone(normal, friction, facets, towards=-free)
+    return Pyramid(edges, tangents(normal, -free), first)
+
+
+def any_letter(pyramid: Pyramid, point: FloatArray, normal_name: int) -> Letters:
+    """Return all letters of one touching contact.
+
+    Args:
+        pyramid: Its force edges.
+        point: (3, 7), its acceleration as a function of the motion.
+        normal_name: The name of its normal acceleration.
+    """
+    own = range(pyramid.first, pyramid.first + len(pyramid.edges))
+    nothing = np.zeros((0, 7))
+    separates = Letters("s", -1, frozenset(own), normal_name, nothing, 0, ())
+    zeroed = frozenset([normal_name])
+    if pyramid.frame is None:
+        stays = Letters("c", -1, zeroed, None, nothing, 0, ())
     else:
-        along = (tangential / np.linalg.norm(tangential, axis=1)[:, None]) @ point
-        sticks = Trial("f", [], np.vstack([normal, _across(tangential, point)]), nothing, [])
+        frame = np.array(pyramid.frame) @ point
+        sticks = Letters("f", -1, frozenset(), None, frame, 2, ())
+        count = len(own)
+        angles = 2.0 * math.pi * np.arange(count) / count
+        along = np.column_stack([np.cos(angles), np.sin(angles)]) @ frame
         # Sectors and borders alternate around the circle; no arc may be wider than a third of it.
-        arcs = np.array_split(np.arange(2 * len(own)), len(own) if len(own) < 6 else 4)
-        slides = [_slides(arc.tolist(), own, normal, along) for arc in arcs]
-        stays = Trial("", [], normal[None, :], nothing, [sticks, *slides])
-    return Trial("", [], nothing, normal[None, :], [separates, stays])
+        arcs = np.array_split(np.arange(2 * count), count if count < 6 else 4)
+        slides = [_slides(arc.tolist(), pyramid.first, along) for arc in arcs]
+        stays = Letters("", -1, zeroed, None, nothing, 0, (sticks, *slides))
+    return Letters("", -1, frozenset(), None, nothing, 0, (separates, stays))
 
 
-def _slides(arc: list[int], own: list[int], normal: FloatArray, along: FloatArray) -> Trial:
-    """Return the letters of sliding within an arc: 2 j is the sector of edge j, 2 j + 1 its far border.
+def _slides(arc: list[int], first_name: int, along: FloatArray) -> Letters:
+    """Return the letters of sliding within an arc of items.
 
     The edge that opposes the sliding most has the least product with it, alone or with its neighbour.
     """
-    count = len(own)
+    count = len(along)
     first, last = arc[0], arc[-1]
     acting = {(item + side) // 2 % count for item in arc for side in (0, 1)}
-    silent = [edge for j, edge in enumerate(own) if j not in acting]
+    silent = frozenset(first_name + j for j in range(count) if j not in acting)
     if len(arc) > 1:
         low, high = (first - 1) // 2, last // 2
         middle = -np.mean([along[item // 2] for item in arc if item % 2 == 0], axis=0)
+        middle[-1] -= MILDER * STRICT
         sides = [
             along[low % count] - along[(low + 1) % count],
             along[(high + 1) % count] - along[high % count],
         ]
-        parts = [_slides(half, own, normal, along) for half in (arc[: len(arc) // 2], arc[len(arc) // 2 :])]
-        return Trial("c", silent, normal[None, :], np.array([middle, *sides]), parts)
+        halves = (arc[: len(arc) // 2], arc[len(arc) // 2 :])
+        parts = tuple(_slides(half, first_name, along) for half in halves)
+        return Letters("c", -1, silent, None, np.array([middle, *sides]), 0, parts)
     j, k = first // 2, (first + 1) // 2 % count
     sides = [along[(j - 1) % count] - along[j], along[(k + 1) % count] - along[k]]
-    zero = normal[None, :] if j == k else np.array([normal, along[j] - along[k]])
-    return Trial("c", silent, zero, np.array(sides), [])
+    for side in sides:
+        side[-1] -= STRICT
+    if j == k:
+        return Letters("c", first, silent, None, np.array(sides), 0, ())
+    return Letters("c", first, silent, None, np.array([along[j] - along[k], *sides]), 1, ())
 
 
-def _across(tangential: FloatArray, point: FloatArray) -> FloatArray:
-    """Return the contact's acceleration along two orthonormal tangents, (2, K + 1)."""
-    tangents: FloatArray = np.linalg.svd(tangential)[2][:2]
-    return tangents @ point
+def acting_edges(directions: list[tuple[float, float]], count: int) -> set[int] | None:
+    """Return the edges, of ``count``, that oppose some sliding among positive sums of directions.
+
+    Args:
+        directions: In the pyramid's frame.
+        count: Edges of the pyramid.
+
+    None: any may act, because the sum can vanish.
+    """
+    angles = []
+    for x, y in directions:
+        if math.hypot(x, y) <= _AT_BORDER:
+            return None
+        angles.append(math.atan2(y, x))
+    angles.sort()
+    gaps = [b - a for a, b in zip(angles, [*angles[1:], angles[0] + 2.0 * math.pi], strict=True)]
+    widest = max(range(len(gaps)), key=gaps.__getitem__)
+    if gaps[widest] <= math.pi + _AT_BORDER:
+        return None
+    low = angles[(widest + 1) % len(angles)]
+    sector = 2.0 * math.pi / count
+    start = (low - math.pi) / sector + 0.5
+    end = start + (2.0 * math.pi - gaps[widest]) / sector
+    return {j % count for j in range(math.floor(start - _AT_BORDER), math.floor(end + _AT_BORDER) + 1)}
+
+
+def with_acting(letters: Letters, silent: frozenset[int], own: frozenset[int]) -> Letters:
+    """Return a group without the slides whose ``own`` edges are all ``silent``."""
+    parts = tuple(with_acting(part, silent, own) for part in letters.parts if own - part.zeroed - silent)
+    return letters._replace(parts=parts)

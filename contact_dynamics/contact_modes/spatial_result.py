@@ -33,3 +33,4 @@ class SpatialModeAnswer:
     approaching: tuple[int, ...]  # contacts that approach; not empty exactly where the verdict is IMPACT
     velocity_tolerance: float  # m/s, below which a contact's velocity counted as zero
     friction_facets: int  # edges of the pyramids
+    examined: int  # letters, and groups of them, that were tried
