@@ -1,4 +1,4 @@
-"""Answers about contact modes in a plane of motion to the service's response, in world axes."""
+"""Answers about contact modes, in the plane and in space, to the service's response, in world axes."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contact_dynamics.plane_to_space import equal_shares
 from contact_dynamics_interfaces.msg import ContactMode, ModeWrenches
 from msg_adapters.contacts import flat
 
@@ -19,16 +20,23 @@ if TYPE_CHECKING:
         ModeMargin,
         ModeWrenchSet,
         PlanarStatics,
+        SpatialMode,
+        SpatialModeAnswer,
     )
     from contact_dynamics.planar import PlanarWrench, Vector2
     from contact_dynamics.plane_of_motion import PlanarProblem, PlaneOfMotion
     from contact_dynamics.validation import FloatArray
 
 
-def write_planar_answer(response: Any, answer: ContactModeAnswer, problem: PlanarProblem) -> None:
-    """Write an answer in the plane into a `PredictContactMode` response, in world axes."""
+def write_planar_answer(
+    response: Any, answer: ContactModeAnswer, problem: PlanarProblem, partners: tuple[int, ...]
+) -> None:
+    """Write an answer in the plane into a `PredictContactMode` response, in world axes.
+
+    ``partners`` are the mirror images of the contacts in the plane, with which they share their forces.
+    """
     response.verdict = int(answer.verdict)
-    response.modes = [_mode_to_msg(mode, problem) for mode in answer.modes]
+    response.modes = planar_modes_to_msgs(answer.modes, problem, partners)
     response.approaching_contacts = list(answer.approaching)
     response.contact_velocities = flat(_lift(answer.contact_velocities, problem))
     response.refused_modes = [refused.mode for refused in answer.refused]
@@ -39,6 +47,50 @@ def write_planar_answer(response: Any, answer: ContactModeAnswer, problem: Plana
     response.stable_disturbance = float("nan")
     response.velocity_tolerance = answer.velocity_tolerance
     response.acceleration_tolerance = answer.acceleration_tolerance
+
+
+def write_spatial_answer(
+    response: Any,
+    answer: SpatialModeAnswer,
+    *,
+    kinematic_modes: Sequence[str],
+    contact_velocities_W: FloatArray,
+) -> None:
+    """Write an answer in space into a `PredictContactMode` response."""
+    response.verdict = int(answer.verdict)
+    response.modes = spatial_modes_to_msgs(answer.modes)
+    response.approaching_contacts = list(answer.approaching)
+    response.contact_velocities = flat(contact_velocities_W)
+    response.kinematic_modes = list(kinematic_modes)
+    response.stable_disturbance = float("nan")
+    response.velocity_tolerance = answer.velocity_tolerance
+    response.acceleration_tolerance = float("nan")
+    response.friction_facets = answer.friction_facets
+
+
+def spatial_modes_to_msgs(modes: Sequence[SpatialMode]) -> list[ContactMode]:
+    """Return modes in space as messages."""
+    return [
+        ContactMode(
+            mode=mode.mode,
+            linear_acceleration=mode.acceleration_W,
+            angular_acceleration=mode.angular_acceleration_W,
+            contact_forces=flat(mode.contact_forces_W),
+            forces_unique=mode.forces_unique,
+            motion_unique=mode.motion_unique,
+            contact_accelerations=flat(mode.contact_accelerations_W),
+            tangential_directions=flat(mode.tangential_directions_W),
+            margin=float("nan"),
+        )
+        for mode in modes
+    ]
+
+
+def planar_modes_to_msgs(
+    modes: Sequence[ConsistentMode], problem: PlanarProblem, partners: tuple[int, ...]
+) -> list[ContactMode]:
+    """Return modes in the plane as messages; contacts share their forces with their mirror images."""
+    return [_mode_to_msg(mode, problem, partners) for mode in modes]
 
 
 def write_planar_margins(response: Any, margins: Sequence[ModeMargin], plane: PlaneOfMotion) -> None:
@@ -84,13 +136,13 @@ def _wrench_row(wrench: PlanarWrench, plane: PlaneOfMotion) -> FloatArray:
     return np.concatenate([plane.lift(wrench.f), wrench.moment * plane.normal_W])
 
 
-def _mode_to_msg(mode: ConsistentMode, problem: PlanarProblem) -> ContactMode:
+def _mode_to_msg(mode: ConsistentMode, problem: PlanarProblem, partners: tuple[int, ...]) -> ContactMode:
     plane = problem.plane
     return ContactMode(
         mode=mode.mode,
         linear_acceleration=plane.lift(mode.acceleration),
         angular_acceleration=mode.angular_acceleration * plane.normal_W,
-        contact_forces=flat(_lift(mode.contact_forces, problem)),
+        contact_forces=flat(equal_shares(_lift(mode.contact_forces, problem), partners)),
         forces_unique=mode.forces_unique,
         motion_unique=mode.motion_unique,
         contact_accelerations=flat(_lift(mode.contact_accelerations, problem)),

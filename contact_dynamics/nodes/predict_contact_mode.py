@@ -1,18 +1,22 @@
-"""Answers `~/predict_contact_mode`."""
+"""Answers `~/predict_contact_mode`: in a plane of motion, or in space."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import math
+from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.contact_modes import (
-    ModeVerdict,
     planar_contact_modes,
     planar_mode_map,
     planar_mode_margins,
     planar_statics,
+    spatial_contact_modes,
+    spatial_kinematic_modes,
 )
-from contact_dynamics.errors import InvalidFieldError, NotSupportedError
-from contact_dynamics.impact import planar_impact
+from contact_dynamics.contact_modes.spatial_dynamics import FRICTION_FACETS
+from contact_dynamics.contact_modes.touching import spatial_contact_velocities
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError, OutOfPlaneError
+from contact_dynamics.nodes.settled_impact import Question, settle_in_plane, settle_in_space
 from contact_dynamics.nodes.subject import (
     contacts_of,
     distance_tolerance_of,
@@ -21,47 +25,101 @@ from contact_dynamics.nodes.subject import (
     subject_of,
     velocity_tolerance_of,
 )
+from contact_dynamics.plane_to_space import check_mirrored, mirror_partners
 from contact_dynamics.validation import check_array, check_not_negative
 from msg_adapters.contact_mode import (
     wrench_set_to_msg,
     write_planar_answer,
     write_planar_margins,
     write_planar_statics,
+    write_spatial_answer,
 )
 from msg_adapters.contacts import contacts_to_msg
 from msg_adapters.geometry import vector_from_msg, vector_to_msg
-from msg_adapters.impact import Before, planar_impact_to_msg
 
 if TYPE_CHECKING:
-    from contact_dynamics.nodes.subject import Knowledge, Subject
+    from contact_dynamics.nodes.subject import Knowledge
     from contact_dynamics.plane_of_motion import PlanarProblem
-    from contact_dynamics_interfaces.msg import Impact as ImpactMsg
+
+MOST_FRICTION_FACETS: Final = 32
+"""More edges of a friction pyramid are refused: 32 hold 99.5 % of the round cone, and more cost more."""
 
 
 def predict_contact_mode(request: Any, response: Any, knowledge: Knowledge) -> None:
     """Answer one request, or raise a `ContactDynamicsError` that says what is wrong with it."""
-    if request.problem == request.SPATIAL:
-        message = "problem: found SPATIAL (2), allowed are AUTOMATIC (0) and PLANAR (1) in this version"
-        raise NotSupportedError(message)
-    if request.problem not in (request.AUTOMATIC, request.PLANAR):
+    if request.problem not in {request.AUTOMATIC, request.PLANAR, request.SPATIAL}:
         raise InvalidFieldError("problem", request.problem, "AUTOMATIC (0), PLANAR (1) or SPATIAL (2)")
+    question = _question(request, knowledge)
+    problem, reason = _in_plane(request, question, knowledge)
+    if problem is None:
+        response.problem, response.out_of_plane_reason = request.SPATIAL, reason
+        _answer_in_space(request, response, question)
+    else:
+        response.problem = request.PLANAR
+        _answer_in_plane(request, response, question, problem)
+    response.state = question.subject.state_to_msg(question.subject.state)
+    response.contacts = contacts_to_msg(question.contacts)
+    response.distance_tolerance = question.distance_tolerance
+
+
+def _question(request: Any, knowledge: Knowledge) -> Question:
     subject = subject_of(request, knowledge)
     contacts = contacts_of(request, subject, knowledge)
-    body = subject.body.mass_properties
     force_W = check_array("applied_wrench.force", vector_from_msg(request.applied_wrench.force), (3,))
-    force_W = force_W + body.mass * gravity_of(request, knowledge)
-    torque_W = check_array("applied_wrench.torque", vector_from_msg(request.applied_wrench.torque), (3,))
-    problem = planar_problem_of(
-        request, subject.body, subject.state, contacts, knowledge, force_W=force_W, torque_W=torque_W
+    return Question(
+        subject=subject,
+        contacts=contacts,
+        force_W=force_W + subject.body.mass_properties.mass * gravity_of(request, knowledge),
+        torque_W=check_array("applied_wrench.torque", vector_from_msg(request.applied_wrench.torque), (3,)),
+        velocity_tolerance=velocity_tolerance_of(request, knowledge),
+        distance_tolerance=distance_tolerance_of(request, knowledge),
+        friction_facets=_friction_facets(request),
     )
+
+
+def _in_plane(
+    request: Any, question: Question, knowledge: Knowledge
+) -> tuple[PlanarProblem, str] | tuple[None, str]:
+    """Return the problem in its plane of motion; or None, and what AUTOMATIC found to be out of the plane."""
+    if request.problem == request.SPATIAL:
+        return None, ""
+    subject, contacts = question.subject, question.contacts
+    try:
+        problem = planar_problem_of(
+            request,
+            subject.body,
+            subject.state,
+            contacts,
+            knowledge,
+            force_W=question.force_W,
+            torque_W=question.torque_W,
+        )
+        if request.problem == request.AUTOMATIC:
+            check_mirrored(
+                problem.plane, subject.state, contacts, distance_tolerance=question.distance_tolerance
+            )
+    except OutOfPlaneError as error:
+        if request.problem == request.PLANAR:
+            raise
+        return None, str(error)
+    return problem, ""
+
+
+def _answer_in_plane(request: Any, response: Any, question: Question, problem: PlanarProblem) -> None:
     answer = planar_contact_modes(
         problem.body,
         problem.velocity,
         problem.contacts,
         problem.wrench,
-        velocity_tolerance=velocity_tolerance_of(request, knowledge),
+        velocity_tolerance=question.velocity_tolerance,
     )
-    write_planar_answer(response, answer, problem)
+    partners = mirror_partners(
+        problem.plane,
+        question.subject.state,
+        question.contacts,
+        distance_tolerance=question.distance_tolerance,
+    )
+    write_planar_answer(response, answer, problem, partners)
     if request.want_margins:
         margins = planar_mode_margins(
             problem.body,
@@ -85,14 +143,40 @@ def predict_contact_mode(request: Any, response: Any, knowledge: Knowledge) -> N
             problem.body, problem.contacts, problem.wrench, margin_length=_margin_length(request)
         )
         write_planar_statics(response, statics)
-    if request.want_impact and answer.verdict in {ModeVerdict.INCONSISTENT, ModeVerdict.IMPACT}:
-        response.impact = [_settling_impact(subject, problem, answer.velocity_tolerance)]
-    response.problem = request.PLANAR
-    response.state = subject.state_to_msg(subject.state)
-    response.contacts = contacts_to_msg(contacts)
+    if request.want_impact:
+        settle_in_plane(response, question, problem, answer.verdict, partners)
     response.plane_normal = vector_to_msg(problem.plane.normal_W)
     response.out_of_plane = problem.out_of_plane
-    response.distance_tolerance = distance_tolerance_of(request, knowledge)
+
+
+def _answer_in_space(request: Any, response: Any, question: Question) -> None:
+    for field in ("want_margins", "want_wrenches", "want_statics"):
+        if getattr(request, field):
+            why = f" ({response.out_of_plane_reason})" if response.out_of_plane_reason else ""
+            raise NotSupportedError(f"{field}: found true in space, allowed in a plane of motion only{why}")
+    subject, contacts = question.subject, question.contacts
+    answer = spatial_contact_modes(
+        subject.body.mass_properties,
+        subject.state,
+        contacts,
+        force_W=question.force_W,
+        torque_W=question.torque_W,
+        friction_facets=question.friction_facets,
+        velocity_tolerance=question.velocity_tolerance,
+    )
+    write_spatial_answer(
+        response,
+        answer,
+        kinematic_modes=spatial_kinematic_modes(
+            subject.state, contacts, velocity_tolerance=question.velocity_tolerance
+        ),
+        contact_velocities_W=spatial_contact_velocities(
+            subject.state, contacts, velocity_tolerance=question.velocity_tolerance
+        ),
+    )
+    if request.want_impact:
+        settle_in_space(response, question, answer.verdict)
+    response.out_of_plane = math.nan
 
 
 def _margin_length(request: Any) -> float | None:
@@ -100,13 +184,9 @@ def _margin_length(request: Any) -> float | None:
     return check_not_negative("margin_length", request.margin_length) or None
 
 
-def _settling_impact(subject: Subject, problem: PlanarProblem, velocity_tolerance: float) -> ImpactMsg:
-    """Return the impact that an approaching or inconsistent contact comes to (lecture 26's last remark)."""
-    if len(problem.contacts) > 1:
-        message = f"want_impact: found {len(problem.contacts)} contacts, allowed is 1 in this version"
-        raise NotSupportedError(message)
-    impact = planar_impact(
-        problem.body, problem.velocity, problem.contacts[0], velocity_tolerance=velocity_tolerance
-    )
-    before = Before(body=subject.body.mass_properties, state=subject.state, state_to_msg=subject.state_to_msg)
-    return planar_impact_to_msg(impact, problem, before)
+def _friction_facets(request: Any) -> int:
+    facets = int(request.friction_facets)
+    if facets != 0 and not 3 <= facets <= MOST_FRICTION_FACETS:
+        allowed = f"0, or a whole number from 3 to {MOST_FRICTION_FACETS}"
+        raise InvalidFieldError("friction_facets", facets, allowed)
+    return facets or FRICTION_FACETS

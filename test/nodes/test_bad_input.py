@@ -123,6 +123,16 @@ def out_of_plane(request: Any) -> None:
     request.state.angular_velocity.x = 0.25
 
 
+def in_space(field: str) -> Callable[[Any], None]:
+    """Return what asks in space for what only the plane answers."""
+
+    def change(request: Any) -> None:
+        request.problem = request.SPATIAL
+        setattr(request, field, True)
+
+    return change
+
+
 def margin_length(request: Any) -> None:
     """A metric without sense, where it is used."""
     request.want_margins, request.margin_length = True, -1.0
@@ -147,7 +157,17 @@ CASES = [
         for service in (PredictContactMode, PredictImpact)
     ],
     (PredictContactMode, put("applied_wrench.force.x", math.nan), "INVALID_FIELD", "applied_wrench.force"),
-    (PredictContactMode, put("problem", 2), "NOT_SUPPORTED", "problem: found SPATIAL"),
+    (
+        PredictContactMode,
+        put("friction_facets", 2),
+        "INVALID_FIELD",
+        "friction_facets: found 2, allowed is 0",
+    ),
+    (PredictContactMode, put("friction_facets", 33), "INVALID_FIELD", "friction_facets: found 33"),
+    *[
+        (PredictContactMode, in_space(field), "NOT_SUPPORTED", f"{field}: found true in space")
+        for field in ("want_margins", "want_wrenches", "want_statics")
+    ],
     (PredictContactMode, margin_length, "INVALID_FIELD", "margin_length: found -1.0"),
     (PredictContactMode, put("gravity", 5), "INVALID_FIELD", "gravity: found 5"),
     (PredictImpact, put("state.linear_velocity.z", 1.0), "SEPARATING", "v_n = 1 m/s"),

@@ -1,0 +1,65 @@
+"""Linear complementarity: find z >= 0 with w = M z + q >= 0 and z . w = 0, by Lemke's pivots.
+
+Friction makes M unsymmetric and copositive; then Lemke's method ends at a solution wherever w >= 0 can be met
+at all (Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, 4.4). Ties, which redundant contacts
+make, are broken by a covering vector in general position, drawn once and for all.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from contact_dynamics.validation import FloatArray
+
+_NO_PIVOT: Final = 1e-11
+"""Relative to the column's largest entry: what is smaller is rounding, not a pivot."""
+
+_SOLVED: Final = 1e-12
+"""Relative to the largest of q: the covering variable's size that counts as zero."""
+
+_PIVOTS_A_ROW: Final = 50
+"""Pivots, for each row, after which the search counts as failed; solutions take one to three."""
+
+
+def solve_complementarity(M: FloatArray, q: FloatArray) -> FloatArray | None:
+    """Return z, (m,), with z >= 0, M z + q >= 0 and z . (M z + q) = 0; None: the method ended on a ray.
+
+    Args:
+        M: (m, m).
+        q: (m,), scaled like M z.
+    """
+    m = len(q)
+    if np.all(q >= 0.0):
+        return np.zeros(m)
+    cover = 1.0 + np.random.default_rng(26).uniform(size=m)
+    # Columns: w, z, the covering variable, the right-hand side. Rows: the basic variables.
+    table = np.hstack([np.eye(m), -M, -cover[:, None], q[:, None]])
+    basis = list(range(m))
+    solved = _SOLVED * float(np.abs(q).max())
+    leaving_row = int((q / cover).argmin())
+    entering = 2 * m
+    for _ in range(_PIVOTS_A_ROW * m):
+        table[leaving_row] /= table[leaving_row, entering]
+        others = np.arange(m) != leaving_row
+        table[others] -= np.outer(table[others, entering], table[leaving_row])
+        leaving, basis[leaving_row] = basis[leaving_row], entering
+        if leaving == 2 * m:
+            z = np.zeros(2 * m + 1)
+            z[basis] = np.maximum(table[:, -1], 0.0)
+            return z[m : 2 * m]
+        entering = leaving + m if leaving < m else leaving - m
+        column = table[:, entering]
+        rising = column > _NO_PIVOT * float(np.abs(column).max())
+        if not rising.any():
+            return None
+        ratios = np.full(m, np.inf)
+        ratios[rising] = np.maximum(table[rising, -1], 0.0) / column[rising]
+        leaving_row = int(ratios.argmin())
+        # The covering variable leaves as soon as it may: then the problem is solved.
+        covering = basis.index(2 * m)
+        if table[covering, -1] - ratios[leaving_row] * column[covering] <= solved:
+            leaving_row = covering
+    return None
