@@ -1,10 +1,12 @@
 """Which contacts of a body come next: those found from its shape and the world, or points that were named.
 
-Both answer with a `Landing` and know each contact again when it comes back.
+Both answer with a `Landing` and know each contact again when it comes back: a corner, a ball, a named point.
+On a rim each point is a contact of its own.
 """
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -58,7 +60,7 @@ class FoundMeetings:
     def index(self, landing: Landing, row: int) -> int:
         """Return the number of a contact; the first time, it gets the next one."""
         contact = landing.contacts.subset([row])
-        point_B = landing.state.R_WB.T @ (contact.p_WC_W[0] - landing.state.p_WB_W)
+        point_B = landing.state.R_WB.T @ (_feature(contact) - landing.state.p_WB_W)
         for i, (met, known_B) in enumerate(zip(self._met, self._points_B, strict=True)):
             if met.surfaces == contact.surfaces and float(abs(known_B - point_B).max()) <= DISTANCE_TOLERANCE:
                 return i
@@ -76,6 +78,17 @@ class FoundMeetings:
             restitutions=np.array([float(contact.restitutions[0]) for contact in self._met]),
             surfaces=tuple(name for contact in self._met for name in contact.surfaces),
         )
+
+
+def _feature(contact: ContactSet) -> FloatArray:
+    """Return by what, (3,), m, a contact of the body is known again: its point, or its ball's centre."""
+    point: FloatArray = contact.p_WC_W[0]
+    round_there = contact.body_curvatures
+    if round_there is not None:
+        along, across = float(round_there.along[0]), float(round_there.across[0])
+        if along == across and 0.0 < along < math.inf:
+            point = point + contact.normals_W[0] / along
+    return point
 
 
 class NamedMeetings:

@@ -7,8 +7,8 @@ stepped. Contacts of one instant are struck one after the other, the fastest app
 law does (`several`); there the order is a choice, between instants it is not.
 
 The sequence ends where nothing strikes any more within a window, where a contact stays, or where strikes
-accumulate: rebounds that shrink by a ratio r < 1 have, after a flight of duration d, all ended r d / (1 - r)
-after the next strike (Zeno). Then free flight is over, and which contacts stay, slide or roll is a question
+accumulate: rebounds that shrink by a ratio r < 1 have all ended d / (1 - r) after a strike whose rebound
+takes d (Zeno). Then free flight is over, and which contacts stay, slide or roll is a question
 of contact modes, not of impacts.
 
 Not covered: motion on a contact that stays, and a resting contact that its own sliding jams.
@@ -20,6 +20,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.contact_curvature import velocity_accelerations
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.meetings import FoundMeetings, NamedMeetings
 from contact_dynamics.impact.sequence_result import ImpactSequence, SequenceEnd, TimedStrike
@@ -48,6 +50,9 @@ MOST_STRIKES: Final = 200
 CHATTER_HEIGHT: Final = 1e-7
 """m. Rebounds lower than this are not followed: a hundred times what the search for the first contact may
 overlook, and far below the roughness of surfaces."""
+
+PAUSE: Final = 1e-6
+"""s. When to look again where a contact that leaves, at the height of rounding, was found as arriving."""
 
 
 def impact_sequence(
@@ -115,9 +120,11 @@ def impact_sequence_of(
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
 
     Raises:
-        InvalidFieldError: a number that is not allowed.
+        InvalidFieldError: a number that is not allowed, or a contact with curvature: it is no fixed point.
     """
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
+    if contacts.body_curvatures is not None or contacts.surface_curvatures is not None:
+        raise InvalidFieldError("contacts.curvatures", "some", "none: a point of the body on a plane")
     meetings = NamedMeetings(
         contacts,
         state,
@@ -143,7 +150,7 @@ class _Sequence:
         self.body, self.gravity_W, self.meetings = body, gravity_W, meetings
         self.law, self.tolerance = law, tolerance
         self.strikes: list[TimedStrike] = []
-        self.ratios: dict[int, float] = {}  # of each contact's newest strike: rebound over approach
+        self.chattering: tuple[int, float] | None = None  # the contact struck last, if so, and its limit time
         self.limit: float | None = None
         self.staying: tuple[int, ...] = ()
 
@@ -165,6 +172,10 @@ class _Sequence:
         while True:
             motion = free_motion(self.body, state, gravity_W=self.gravity_W)
             landing = self.meetings.next(motion, until - now)
+            if self.chattering is not None and not self._strikes_elsewhere(landing, now):
+                contact, self.limit = self.chattering
+                self.staying = (contact,)
+                return SequenceEnd.CHATTERS
             if landing is None:
                 return SequenceEnd.NOTHING_STRIKES
             now += landing.seconds
@@ -173,26 +184,22 @@ class _Sequence:
                 lifts += 1
                 if wait is None or lifts > most:
                     pressed = np.flatnonzero(self._lifting(landing) <= 0.0).tolist()
-                    self._stay(landing, pressed or [0], now)
+                    self.staying = tuple(self.meetings.index(landing, row) for row in pressed)
+                    self.limit = now
                     return SequenceEnd.STAYS
                 now += wait
                 if now >= until:
                     return SequenceEnd.NOTHING_STRIKES
                 state = free_motion(self.body, landing.state, gravity_W=self.gravity_W).state_at(wait)
                 continue
-            row = int(_normal_parts(landing.velocities_W, landing.contacts).argmin())
-            remaining = self._time_of_chatter(landing, row)
-            if remaining is not None:
-                self._stay(landing, [row], now + remaining)
-                return SequenceEnd.CHATTERS
             if len(self.strikes) == most:
                 return SequenceEnd.MOST_STRIKES
-            state = self._strike(landing, row, now)
+            state = self._strike(landing, now)
             until = now + window
 
-    def _strike(self, landing: Landing, row: int, now: float) -> BodyState:
-        """Resolve the strike at one contact of a landing; return the state after it."""
-        contacts = landing.contacts
+    def _strike(self, landing: Landing, now: float) -> BodyState:
+        """Resolve the strike at the contact that approaches fastest; return the state after it."""
+        contacts, row = landing.contacts, _fastest(landing)
         contact = self.meetings.index(landing, row)
         normal = contacts.normals_W[row]
         impact = spatial_impact(
@@ -206,9 +213,12 @@ class _Sequence:
             # Half, since the approach was judged by another sum with other rounding.
             velocity_tolerance=0.5 * self.tolerance,
         )
-        self.ratios[contact] = float(impact.velocity_after_W @ normal) / -float(
-            impact.velocity_before_W @ normal
-        )
+        approach, rebound = float(-impact.velocity_before_W @ normal), float(impact.velocity_after_W @ normal)
+        pressing = -float(self._lifting(landing)[row])
+        self.chattering = None
+        if self.tolerance < rebound < approach and rebound * rebound <= 2.0 * CHATTER_HEIGHT * pressing:
+            flight = 2.0 * rebound / pressing
+            self.chattering = contact, now + flight / (1.0 - rebound / approach)
         self.strikes.append(
             TimedStrike(
                 seconds=now,
@@ -224,32 +234,34 @@ class _Sequence:
         """Return the time, s, in which the free motion takes resting contacts off, or None if they stay."""
         approach = _normal_parts(landing.velocities_W, landing.contacts)
         lifting = self._lifting(landing)
+        if len(lifting) == 0:
+            return PAUSE
         if not (lifting > 0.0).all():
             return None
         return float(((2.0 * self.tolerance - approach) / lifting).max())
 
-    def _time_of_chatter(self, landing: Landing, row: int) -> float | None:
-        """Return for how long, s, a contact chatters from its present strike on, or None if it does not."""
-        ratio = self.ratios.get(self.meetings.index(landing, row), 1.0)
-        speed = -float(landing.velocities_W[row] @ landing.contacts.normals_W[row])
-        pressing = -float(self._lifting(landing)[row])
-        if ratio >= 1.0 or speed * speed > 2.0 * CHATTER_HEIGHT * pressing:
-            return None
-        return 2.0 * speed / pressing * ratio / (1.0 - ratio)
+    def _strikes_elsewhere(self, landing: Landing | None, now: float) -> bool:
+        """Return whether another contact strikes before the one that chatters has come to rest."""
+        if landing is None or self.chattering is None or not landing.strikes:
+            return False
+        contact, limit = self.chattering
+        return now + landing.seconds < limit and self.meetings.index(landing, _fastest(landing)) != contact
 
     def _lifting(self, landing: Landing) -> FloatArray:
-        """Return the normal accelerations, (n,), m/s^2, that contacts have in free motion."""
-        state = landing.state
+        """Return the accelerations, (n,), m/s^2, that the contacts' gaps have in free motion."""
+        state, contacts = landing.state, landing.contacts
         w = state.w_WB_W
         inertia = self.body.inertia_in_world(state.R_WB)
         turning = np.linalg.solve(inertia, -np.cross(w, inertia @ w))
-        arms = landing.contacts.p_WC_W - state.p_WB_W
+        arms = contacts.p_WC_W - state.p_WB_W
         accelerations = self.gravity_W + np.cross(turning, arms) + np.cross(w, np.cross(w, arms))
-        return _normal_parts(accelerations, landing.contacts)
+        rolling = velocity_accelerations(contacts, landing.velocities_W, w)
+        return _normal_parts(accelerations + rolling, contacts)
 
-    def _stay(self, landing: Landing, rows: list[int], seconds: float) -> None:
-        self.staying = tuple(self.meetings.index(landing, row) for row in rows)
-        self.limit = seconds
+
+def _fastest(landing: Landing) -> int:
+    """Return the row of the contact that approaches fastest."""
+    return int(_normal_parts(landing.velocities_W, landing.contacts).argmin())
 
 
 def _normal_parts(vectors: FloatArray, contacts: ContactSet) -> FloatArray:

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from contact_dynamics.contact import ContactSet
+from contact_dynamics.convex_shape import ConvexShape
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact import (
     ImpactSequence,
@@ -344,3 +345,25 @@ def test_refusals() -> None:
     with pytest.raises(InvalidFieldError, match="gravity"):
         impact_sequence_of(PIN.mass_properties, state, contacts, gravity_W=[math.nan, 0.0, 0.0])
     assert STANDARD_GRAVITY_W[2] == -G
+
+
+def test_a_ball_that_spins_bounces_as_one_that_does_not() -> None:
+    """Its point of contact moves over it, which the gap knows nothing of: it rests when a point would."""
+    radius, e = 0.05, 0.5
+    ball = Body(
+        name="ball",
+        mass_properties=MassProperties(mass=0.2, I_B=2e-4 * np.eye(3)),
+        shape=ConvexShape(vertices=np.zeros((1, 3)), rounding=radius),
+    )
+    state = BodyState(
+        p_WB_W=np.array([0.0, 0.0, radius]),
+        q_WB=IDENTITY,
+        v_WB_W=np.array([0.0, 0.0, -0.2]),
+        w_WB_W=np.array([0.0, 40.0, 0.0]),  # w^2 r = 80 m/s^2: far above g
+    )
+    sequence = impact_sequence(ball, state, world_of(ball, floor(e=e)), window=0.2)
+    assert sequence.end is SequenceEnd.CHATTERS
+    assert set(sequence.order) == {0}
+    assert sequence.limit_seconds == pytest.approx(2.0 * e * 0.2 / (G * (1.0 - e)), abs=1e-10)
+    still = impact_sequence(ball, state, world_of(ball, floor(e=0.0)))
+    assert (still.end, still.order, still.staying) == (SequenceEnd.STAYS, (0,), (0,))
