@@ -6,11 +6,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from contact_dynamics.contact_modes import ModeVerdict
 from contact_dynamics.impact.law import ImpactOutcome
 from contact_dynamics.rigid_body import rotation_matrix
 from contact_dynamics.tumbling import Trajectory
-from contact_dynamics.viewing.contact_modes import ContactModesPicture
 from contact_dynamics.viewing.impact import ImpactPicture
 from contact_dynamics_interfaces.msg import Poinsot
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
@@ -27,18 +25,6 @@ if TYPE_CHECKING:
 
 TUMBLING: Final = "Tumbling"
 IMPACT: Final = "Impact"
-CONTACT_MODE: Final = "Contact mode"
-
-MOST_LISTED: Final = 8
-"""More refused modes than this are counted, not listed."""
-
-VERDICTS: Final = {
-    ModeVerdict.UNIQUE: "has one consistent mode",
-    ModeVerdict.INDETERMINATE: "has several consistent modes, and mechanics does not choose",
-    ModeVerdict.INCONSISTENT: "has no consistent mode: an impact without approach",
-    ModeVerdict.IMPACT: "approaches: no mode before the impact is resolved",
-}
-"""In words."""
 
 REGIMES: Final = {
     Poinsot.UNKNOWN: "a torque acts",
@@ -68,7 +54,7 @@ def show_tumbling(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns
         speed = np.linalg.norm(vector_from_msg(response.event_velocity))
         where = response.event_surface or "the plane"
         event = f"reaches {where} in {response.event_time:.4g} s at ({point}) m with {speed:.3g} m/s"
-    _tell(picture, TUMBLING, [event, REGIMES[response.poinsot.regime]], response, stamp_ns=stamp_ns)
+    tell(picture, TUMBLING, [event, REGIMES[response.poinsot.regime]], response, stamp_ns=stamp_ns)
 
 
 def show_impact(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns: int) -> None:
@@ -100,25 +86,7 @@ def show_impact(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns: 
     ]
     if impact.creates_energy:
         words.append("the law creates energy: do not trust this answer")
-    _tell(picture, IMPACT, words, response, stamp_ns=stamp_ns)
-
-
-def show_contact_modes(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns: int) -> None:  # noqa: ARG001
-    """Show an answer of `~/predict_contact_mode`; contacts are in the world, wherever the body's frame is."""
-    stamp_ns = stamp_ns_from_msg(response.state.header.stamp) or now_ns
-    name = response.state.body_name
-    contacts = contacts_from_msg(response.contacts)
-    modes = tuple(mode.mode for mode in response.modes)
-    forces = rows(response.modes[0].contact_forces) if modes else np.zeros((len(contacts), 3))
-    shown = ContactModesPicture(contacts=contacts, modes=modes, forces_W=forces)
-    picture.show_contact_modes(name, shown, stamp_ns=stamp_ns)
-    verdict = VERDICTS[ModeVerdict(response.verdict)]
-    words = [f"{verdict}: {', '.join(modes)}" if modes else verdict]
-    refused = response.refused_modes
-    if refused:
-        more = f" and {len(refused) - MOST_LISTED} more" if len(refused) > MOST_LISTED else ""
-        words.append(f"refused: {', '.join(refused[:MOST_LISTED])}{more}")
-    _tell(picture, CONTACT_MODE, words, response, stamp_ns=stamp_ns)
+    tell(picture, IMPACT, words, response, stamp_ns=stamp_ns)
 
 
 def show_error(picture: Picture, kind: str, response: Any, *, now_ns: int) -> None:
@@ -156,7 +124,8 @@ def body_name_of(response: Any) -> str:
     return name
 
 
-def _tell(picture: Picture, kind: str, words: Sequence[str], response: Any, *, stamp_ns: int) -> None:
+def tell(picture: Picture, kind: str, words: Sequence[str], response: Any, *, stamp_ns: int) -> None:
+    """Tell an answer in words, with what the server adds to it and the time it took."""
     said = [*words, response.message] if response.message else words
     took = f"({response.computation_time * 1e3:.2g} ms)"
     text = f"{body_name_of(response) or 'a body'} {'; '.join(said)} {took}"

@@ -24,15 +24,14 @@ from service_msgs.msg import ServiceEventInfo
 
 from contact_dynamics.nodes.parameters import ConfigurationError, read_server_parameters
 from contact_dynamics.nodes.pictured_answers import (
-    CONTACT_MODE,
     IMPACT,
     TUMBLING,
     body_name_of,
-    show_contact_modes,
     show_error,
     show_impact,
     show_tumbling,
 )
+from contact_dynamics.nodes.pictured_contact_modes import CONTACT_MODE, show_contact_modes
 from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.state_store import StateStore
 from contact_dynamics.nodes.state_subscriptions import subscribe_to_states

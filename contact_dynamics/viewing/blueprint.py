@@ -8,16 +8,19 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun.blueprint as rrb
 
-from contact_dynamics.viewing import impact, palette, trajectory
+from contact_dynamics.viewing import contact_modes, impact, palette, trajectory
 from contact_dynamics.viewing.entities import (
     ANSWER_LOG,
     HEIGHT,
     IMPULSE_SPACE,
     LEGEND,
+    MODE_MAP,
     NEWEST_ANSWERS,
+    PLANAR_MODES,
     SCENE,
     SPEED,
     TIMELINE,
+    contacts_entity,
     impact_entity,
     predicted_entity,
     trail_entity,
@@ -41,6 +44,14 @@ STRAIGHT: Final = 0.01
 WINDOW_S: Final = 10.0
 """s. How long trails and earlier predictions stay in view, and how far back the curves go."""
 
+DIAGRAMS: Final = (IMPULSE_SPACE, MODE_MAP, PLANAR_MODES)
+"""What has a tab beside the scene; the first that there is to see is open."""
+
+_NAMES: Final = {
+    IMPULSE_SPACE: "Impulse space (tangential, normal impulse)",
+    MODE_MAP: "Modes over applied wrenches",
+    PLANAR_MODES: "Contact modes",
+}
 _DISTANCE: Final = 1.0  # of the eye, relative to the diagonal of what it shows
 _ELEVATION: Final = 0.33  # of the eye above what it looks at, relative to its horizontal distance
 
@@ -72,8 +83,16 @@ def eye_on(points_W: FloatArray, *, up_W: FloatArray, margin: float) -> Eye:
     return Eye(position_W=target + distance * (side + _ELEVATION * up_W), target_W=target, up_W=up_W)
 
 
-def make_blueprint(body_names: Sequence[str], *, eye: Eye | None) -> rrb.Blueprint:
-    """Return the arrangement; without an eye the viewer looks at all that there is."""
+def make_blueprint(
+    body_names: Sequence[str], *, eye: Eye | None, diagram: str | None = None
+) -> rrb.Blueprint:
+    """Return the arrangement.
+
+    Args:
+        body_names: of the bodies whose trails and predictions stay in view.
+        eye: of the scene; None: the viewer looks at all that there is.
+        diagram: which of `DIAGRAMS` is open; None: the first.
+    """
     controls = None
     if eye is not None:
         controls = rrb.EyeControls3D(
@@ -86,16 +105,25 @@ def make_blueprint(body_names: Sequence[str], *, eye: Eye | None) -> rrb.Bluepri
         background=rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor),
         line_grid=False,
         eye_controls=controls,
-        overrides={path: _window() for name in body_names for path in _recent(name)},
+        overrides={
+            **{path: _window() for name in body_names for path in _recent(name)},
+            **{
+                f"{contacts_entity(name)}/{mode}": rrb.EntityBehavior(visible=False)
+                for name in body_names
+                for mode in contact_modes.mode_names()[1:]
+            },
+        },
     )
     return rrb.Blueprint(
         rrb.Horizontal(
             scene,
             rrb.Vertical(
-                rrb.Spatial2DView(
-                    origin=IMPULSE_SPACE,
-                    name="Impulse space (tangential, normal impulse)",
-                    background=palette.BACKGROUND,
+                rrb.Tabs(
+                    *(
+                        rrb.Spatial2DView(origin=origin, name=name, background=palette.BACKGROUND)
+                        for origin, name in _NAMES.items()
+                    ),
+                    active_tab=DIAGRAMS.index(diagram) if diagram else 0,
                 ),
                 _curves(HEIGHT, "Height of the centre of mass, m"),
                 _curves(SPEED, "Speed of the centre of mass, m/s"),

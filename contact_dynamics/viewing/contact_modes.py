@@ -1,4 +1,8 @@
-"""Contact modes: each contact coloured by its letter, with the forces of the first consistent mode."""
+"""Contact modes in the scene: letters and friction cones at the contacts, and each consistent mode.
+
+Each mode has an entity of its own, `mode_1`, `mode_2` and so on, with its contact forces, sliding directions
+and acceleration. The viewer shows the first; the others are switched on by the eye beside their names.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +14,7 @@ import rerun as rr
 
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import contacts_entity
+from contact_dynamics.viewing.impact import friction_cones
 
 if TYPE_CHECKING:
     from contact_dynamics.contact import ContactSet
@@ -19,50 +24,99 @@ if TYPE_CHECKING:
 FORCE_LENGTH: Final = 0.6
 """Length of the longest force arrow, relative to the body's size; labels say how much it stands for."""
 
-_POINT_SIZE: Final = 0.035  # relative to the size of the body
+MOST_MODES: Final = 6
+"""Modes that are drawn; more are told in words alone."""
+
+_ACCELERATION_LENGTH: Final = 0.6  # of the arrow at the centre of mass, relative to the size of the body
+_SLIDING_LENGTH: Final = 0.3  # of the arrows of sliding directions, likewise
+_CONE_HEIGHT: Final = 0.25  # likewise
+_POINT_SIZE: Final = 0.035  # likewise
 _ARROW_WIDTH: Final = 0.01  # likewise
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class DrawnMode:
+    """One consistent mode, in world axes."""
+
+    mode: str  # one letter a contact
+    forces_W: FloatArray  # (n, 3), N, on the body
+    sliding_W: FloatArray  # (n, 3), unit direction in which each contact slides; zero: it does not
+    acceleration_W: FloatArray  # (3,), m/s^2, of the centre of mass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ContactModesPicture:
     """What the picture of an answer about contact modes is made of."""
 
+    p_WB_W: FloatArray  # (3,), m, centre of mass, world
     contacts: ContactSet  # n contacts
-    modes: tuple[str, ...]  # every consistent mode, one letter a contact
-    forces_W: FloatArray  # (n, 3), N, on the body, of the first mode, world axes; zero where there is no mode
+    modes: tuple[DrawnMode, ...]  # every consistent mode
 
 
 def draw_contact_modes(
     recording: rr.RecordingStream, body_name: str, shape: Shape, picture: ContactModesPicture
 ) -> None:
     """Draw an answer about contact modes in the scene, at the recording's current time."""
-    path = contacts_entity(body_name)
-    letters = letters_of_contacts(picture.modes, len(picture.contacts))
+    path, size = contacts_entity(body_name), shape.size
+    contacts = picture.contacts
+    letters = letters_of_contacts(tuple(mode.mode for mode in picture.modes), len(contacts))
     colors = np.array([color_of_letters(text) for text in letters], dtype=np.uint8).reshape(-1, 4)
-    recording.log(
-        f"{path}/points",
-        rr.Points3D(
-            picture.contacts.p_WC_W,
-            colors=colors,
-            radii=_POINT_SIZE * shape.size,
-            labels=letters,
-            show_labels=True,
-        ),
+    points = rr.Points3D(
+        contacts.p_WC_W, colors=colors, radii=_POINT_SIZE * size, labels=letters, show_labels=True
     )
-    magnitudes = np.linalg.norm(picture.forces_W, axis=1)
+    recording.log(f"{path}/points", points)
+    cones = friction_cones(
+        contacts.p_WC_W, contacts.normals_W, contacts.frictions, height=_CONE_HEIGHT * size
+    )
+    recording.log(f"{path}/cones", rr.Clear(recursive=False) if cones is None else cones)
+    for i, name in enumerate(mode_names()):
+        mode_path = f"{path}/{name}"
+        if i < len(picture.modes):
+            _draw_mode(recording, mode_path, picture.modes[i], picture, size=size)
+        else:
+            recording.log(mode_path, rr.Clear(recursive=True))
+
+
+def mode_names() -> list[str]:
+    """Return the names of the entities that hold one mode each."""
+    return [f"mode_{i}" for i in range(1, MOST_MODES + 1)]
+
+
+def _draw_mode(
+    recording: rr.RecordingStream, path: str, mode: DrawnMode, picture: ContactModesPicture, *, size: float
+) -> None:
+    points = picture.contacts.p_WC_W
+    colors = np.array([color_of_letters(letter) for letter in mode.mode], dtype=np.uint8).reshape(-1, 4)
+    magnitudes = np.linalg.norm(mode.forces_W, axis=1)
     pressed = magnitudes > 0.0
-    scale = FORCE_LENGTH * shape.size / float(magnitudes.max(initial=0.0)) if pressed.any() else 0.0
-    recording.log(
-        f"{path}/forces",
-        rr.Arrows3D(
-            origins=picture.contacts.p_WC_W[pressed],
-            vectors=picture.forces_W[pressed] * scale,
-            colors=colors[pressed],
-            radii=_ARROW_WIDTH * shape.size,
-            labels=[f"{magnitude:.3g} N" for magnitude in magnitudes[pressed].tolist()],
-            show_labels=False,  # four of them hide the body; the viewer shows one where the mouse is
-        ),
+    scale = FORCE_LENGTH * size / float(magnitudes.max(initial=0.0)) if pressed.any() else 0.0
+    forces = rr.Arrows3D(
+        origins=points[pressed],
+        vectors=mode.forces_W[pressed] * scale,
+        colors=colors[pressed],
+        radii=_ARROW_WIDTH * size,
+        labels=[f"{magnitude:.3g} N" for magnitude in magnitudes[pressed].tolist()],
+        show_labels=False,  # four of them hide the body; the viewer shows one where the mouse is
     )
+    recording.log(f"{path}/forces", forces)
+    slides = mode.sliding_W.any(axis=1)
+    directions = rr.Arrows3D(
+        origins=points[slides],
+        vectors=mode.sliding_W[slides] * (_SLIDING_LENGTH * size),
+        colors=palette.SLIDE,
+        radii=0.5 * _ARROW_WIDTH * size,
+    )
+    recording.log(f"{path}/sliding", directions)
+    amount = float(np.linalg.norm(mode.acceleration_W))
+    vectors = [mode.acceleration_W / amount * (_ACCELERATION_LENGTH * size)] if amount > 0.0 else []
+    acceleration = rr.Arrows3D(
+        origins=[picture.p_WB_W] * len(vectors),
+        vectors=vectors,
+        colors=palette.PREDICTED,
+        radii=_ARROW_WIDTH * size,
+        labels=[f"{mode.mode}: {amount:.3g} m/s²"] * len(vectors),
+    )
+    recording.log(f"{path}/acceleration", acceleration)
 
 
 def letters_of_contacts(modes: tuple[str, ...], count: int) -> list[str]:

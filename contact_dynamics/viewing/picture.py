@@ -9,13 +9,21 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
-from contact_dynamics.viewing.blueprint import WINDOW_S, eye_on, make_blueprint
+from contact_dynamics.viewing.blueprint import DIAGRAMS, WINDOW_S, Eye, eye_on, make_blueprint
 from contact_dynamics.viewing.contact_modes import draw_contact_modes
-from contact_dynamics.viewing.entities import ANSWER_LOG, LEGEND, NEWEST_ANSWERS
+from contact_dynamics.viewing.entities import (
+    ANSWER_LOG,
+    IMPULSE_SPACE,
+    LEGEND,
+    MODE_MAP,
+    NEWEST_ANSWERS,
+    PLANAR_MODES,
+)
 from contact_dynamics.viewing.impact import draw_impact
 from contact_dynamics.viewing.impulse_space import draw_impulse_space
 from contact_dynamics.viewing.legend import LEGEND_TEXT
 from contact_dynamics.viewing.measured import draw_prediction_at, draw_states, set_time, style_series
+from contact_dynamics.viewing.planar_modes import draw_planar_modes, silhouette
 from contact_dynamics.viewing.scene import draw_axes, draw_body, draw_surface
 from contact_dynamics.viewing.shape import Shape, convex_shape
 from contact_dynamics.viewing.trajectory import draw_trajectory
@@ -28,7 +36,8 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.contact_modes import ContactModesPicture
     from contact_dynamics.viewing.impact import ImpactPicture
-    from contact_dynamics.world import World
+    from contact_dynamics.viewing.planar_modes import PlanarModesPicture
+    from contact_dynamics.world import Body, World
 
 _UNKNOWN: Final = np.zeros((0, 3))
 
@@ -52,6 +61,8 @@ class Picture:
         self._predictions: dict[str, _Prediction] = {}
         self._answers: dict[str, str] = {}
         self._framed = False
+        self._eye: Eye | None = None
+        self._diagram: str | None = None  # whose tab is open
         self._recent: deque[tuple[int, FloatArray]] = deque()  # stamps and positions of the last `WINDOW_S`
         gravity = float(np.linalg.norm(world.gravity_W))
         self._up_W = -world.gravity_W / gravity if gravity > 0.0 else np.array([0.0, 0.0, 1.0])
@@ -92,13 +103,26 @@ class Picture:
         set_time(self._recording, stamp_ns)
         draw_impact(self._recording, body_name, self._shape(body_name), impact)
         if len(impact.path_W) > 0:
-            masses = [body.mass_properties for body in self._world.bodies if body.name == body_name]
-            draw_impulse_space(self._recording, masses[0] if masses else None, impact)
+            body = self.body(body_name)
+            draw_impulse_space(self._recording, body.mass_properties if body else None, impact)
+            self._bring_up(IMPULSE_SPACE)
 
     def show_contact_modes(self, body_name: str, modes: ContactModesPicture, *, stamp_ns: int) -> None:
         """Draw an answer about contact modes."""
         set_time(self._recording, stamp_ns)
         draw_contact_modes(self._recording, body_name, self._shape(body_name), modes)
+
+    def show_planar_modes(
+        self, body_name: str, modes: PlanarModesPicture, *, axes_B: FloatArray, stamp_ns: int
+    ) -> None:
+        """Draw a planar answer about contact modes in 2D, seen along two axes, (2, 3), unit, body axes."""
+        set_time(self._recording, stamp_ns)
+        draw_planar_modes(self._recording, modes, outline=silhouette(self._shape(body_name), axes_B))
+        self._bring_up(MODE_MAP if modes.sets else PLANAR_MODES)
+
+    def body(self, body_name: str) -> Body | None:
+        """Return a body of the world; None: it is not known."""
+        return next((body for body in self._world.bodies if body.name == body_name), None)
 
     def tell(self, kind: str, text: str, *, stamp_ns: int, is_error: bool = False) -> None:
         """Write an answer in words: to the log of all, and as the newest one of its kind."""
@@ -127,7 +151,7 @@ class Picture:
             style_series(self._recording, name)
         legend = rr.TextDocument(LEGEND_TEXT, media_type=rr.MediaType.MARKDOWN)
         self._recording.log(LEGEND, legend, static=True)
-        self._recording.send_blueprint(make_blueprint(list(self._shapes), eye=None))
+        self._arrange()
 
     def _shape(self, body_name: str) -> Shape:
         if body_name not in self._shapes:
@@ -141,5 +165,15 @@ class Picture:
         for surface in self._world.surfaces:
             draw_surface(self._recording, surface, center_W=center, side=self._surface_side)
         margin = max((shape.size for shape in self._shapes.values()), default=0.0)
-        eye = eye_on(points_W, up_W=self._up_W, margin=margin)
-        self._recording.send_blueprint(make_blueprint(list(self._shapes), eye=eye))
+        self._eye = eye_on(points_W, up_W=self._up_W, margin=margin)
+        self._arrange()
+
+    def _bring_up(self, diagram: str) -> None:
+        """Open a diagram's tab when it is first drawn, unless one that matters more is open."""
+        if self._diagram is None or DIAGRAMS.index(diagram) < DIAGRAMS.index(self._diagram):
+            self._diagram = diagram
+            self._arrange()
+
+    def _arrange(self) -> None:
+        blueprint = make_blueprint(list(self._shapes), eye=self._eye, diagram=self._diagram)
+        self._recording.send_blueprint(blueprint)

@@ -29,6 +29,7 @@ ARROW_LENGTH: Final = 0.4
 
 _LABEL_OFFSET: Final = 0.07  # of a contact's label from the contact, out of the body, relative to its size
 _OUTLINE_WIDTH: Final = -1.8  # negative: points of the screen
+_WALL_WIDTH: Final = -3.6
 _CONE_WIDTH: Final = -1.2
 _ARROW_WIDTH: Final = -2.0
 _POINT_SIZE: Final = -4.0
@@ -41,6 +42,8 @@ def draw_planar_scene(
     *,
     walls: Sequence[FloatArray] = (),
     mode: ConsistentMode | None = None,
+    size: float | None = None,
+    shift: float = 0.0,
     entity: str = PLANAR_SCENE,
 ) -> None:
     """Draw a body and its contacts, at the recording's current time.
@@ -51,28 +54,41 @@ def draw_planar_scene(
         contacts: numbered from 1.
         walls: strips, (k, 2) each, m.
         mode: letters, contact forces and accelerations to draw; None: none.
+        size: m, that arrows and cones suit; None: of the outline.
+        shift: m, how far to the right the picture stands.
         entity: where the picture is put.
     """
-    size = float(np.linalg.norm(np.ptp(outline, axis=0)))
-    points = np.array([contact.r for contact in contacts]).reshape(-1, 2)
+    if size is None:
+        size = float(np.linalg.norm(np.ptp(outline, axis=0)))
+    aside = np.array([shift, 0.0])
+    points = np.array([contact.r for contact in contacts]).reshape(-1, 2) + aside
     normals = np.array([contact.normal for contact in contacts]).reshape(-1, 2)
     tangents = np.array([contact.tangent for contact in contacts]).reshape(-1, 2)
-    _strips(recording, f"{entity}/walls", walls, palette.NORMAL, 2.0 * _OUTLINE_WIDTH)
-    _strips(recording, f"{entity}/body", [outline], palette.MEASURED, _OUTLINE_WIDTH)
-    cones = [cone_edges(contact, length=CONE_LENGTH * size) for contact in contacts]
+    _strips(recording, f"{entity}/walls", [wall + aside for wall in walls], palette.NORMAL, _WALL_WIDTH)
+    _strips(recording, f"{entity}/body", [outline + aside], palette.MEASURED, _OUTLINE_WIDTH)
+    cones = [cone_edges(contact, length=CONE_LENGTH * size) + aside for contact in contacts]
     _strips(recording, f"{entity}/cones", cones, palette.translucent(palette.FRICTION_CONE, 1.0), _CONE_WIDTH)
     letters = mode.mode if mode else "?" * len(contacts)
     colors = np.array([palette.LETTER_COLORS.get(letter, palette.UNDECIDED) for letter in letters])
     places = points - _LABEL_OFFSET * size * normals
     labels = [f"{i} {letter}" if mode else str(i) for i, letter in enumerate(letters, start=1)]
     recording.log(f"{entity}/contacts", rr.Points2D(upright(points), colors=colors, radii=_POINT_SIZE))
-    names = rr.Points2D(upright(places), colors=colors, radii=0.0, labels=labels, show_labels=True)
+    together = _same_places(places, size)
+    names = rr.Points2D(
+        upright(places[[same[0] for same in together]]),
+        colors=colors[[same[0] for same in together]],
+        radii=0.0,
+        labels=[", ".join(labels[i] for i in same) for same in together],
+        show_labels=True,
+    )
     recording.log(f"{entity}/letters", names)
     centre = rr.Points2D(
-        [[0.0, 0.0]], colors=palette.MEASURED, radii=_POINT_SIZE, labels="centre of mass", show_labels=False
+        [aside], colors=palette.MEASURED, radii=_POINT_SIZE, labels="centre of mass", show_labels=False
     )
     recording.log(f"{entity}/centre_of_mass", centre)
     if mode is None:
+        for name in ("forces", "accelerations"):
+            recording.log(f"{entity}/{name}", rr.Clear(recursive=False))
         return
     for name, pairs, unit in (
         ("forces", mode.contact_forces, "N"),
@@ -107,6 +123,14 @@ def upright(points: FloatArray) -> FloatArray:
     """Return points with the second coordinate downwards, as rerun's 2D views have it."""
     flipped: FloatArray = np.reshape(points, (-1, 2)) * (1.0, -1.0)
     return flipped
+
+
+def _same_places(places: FloatArray, size: float) -> list[list[int]]:
+    """Return the indices of places, (k, 2), m, grouped by what is drawn as one."""
+    groups: dict[tuple[float, ...], list[int]] = {}
+    for i, place in enumerate(places / size if size > 0.0 else places):
+        groups.setdefault(tuple(np.round(place, 3)), []).append(i)
+    return list(groups.values())
 
 
 def _strips(

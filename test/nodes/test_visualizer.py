@@ -24,7 +24,15 @@ with warnings.catch_warnings():
     from viewing.drawn import STAMP_NS, Drawn, read_drawn
 
 from contact_dynamics.nodes.parameters import ConfigurationError
-from contact_dynamics_interfaces.msg import BodyState, ContactMode, ContactSet, Impact, Poinsot, Trajectory
+from contact_dynamics_interfaces.msg import (
+    BodyState,
+    ContactMode,
+    ContactSet,
+    Impact,
+    ModeWrenches,
+    Poinsot,
+    Trajectory,
+)
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.stamps import stamp_to_msg
 from running_server import DOMAIN_ID, ROOT, process, server_and_client
@@ -229,21 +237,55 @@ def test_an_impact_is_drawn_when_it_was_asked_for(bench: Bench) -> None:
     assert "0.75 J lost" in text
 
 
-def test_contact_modes_are_drawn_with_every_mode_in_words(bench: Bench) -> None:
-    response = PredictContactMode.Response(
+def contact_mode_answer(**fields: Any) -> PredictContactMode.Response:
+    modes = [
+        ContactMode(
+            mode=mode,
+            contact_forces=[0.0, 0.0, 2.0, 0.0, 0.0, 2.0],
+            contact_accelerations=[0.0] * 6,
+            margin=0.25,
+            margin_modes=["ff"],
+        )
+        for mode in ("fl", "ff")
+    ]
+    return PredictContactMode.Response(
         verdict=PredictContactMode.Response.INDETERMINATE,
-        modes=[
-            ContactMode(mode=mode, contact_forces=[0.0, 0.0, 2.0, 0.0, 0.0, 2.0]) for mode in ("fl", "ff")
-        ],
+        modes=modes,
         refused_modes=["ss"],
+        contact_velocities=[0.0] * 6,
         state=body_state(),
         contacts=two_contacts(),
+        **fields,
     )
-    bench.answer("predict_contact_mode", response)
+
+
+def test_contact_modes_are_drawn_with_every_mode_in_words(bench: Bench) -> None:
+    bench.answer("predict_contact_mode", contact_mode_answer(equilibrium=2, jammed=1, wedged=1))
     drawn = bench.drawn()
     assert drawn.last("/world/contacts/brick/points", "Points3D:labels") == ["f", "l|f"]
-    assert drawn.last("/world/contacts/brick/forces", "Arrows3D:labels") == ["2 N", "2 N"]
-    assert "does not choose: fl, ff; refused: ss" in drawn.last("/answers/newest", "TextDocument:text")[0]
+    assert drawn.last("/world/contacts/brick/mode_2/forces", "Arrows3D:labels") == ["2 N", "2 N"]
+    text = drawn.last("/answers/newest", "TextDocument:text")[0]
+    assert "does not choose: fl (0.25 N from ff), ff (0.25 N from ff); refused: ss" in text
+    assert "equilibrium possible, jammed no, wedged no" in text
+
+
+def test_a_planar_answer_is_drawn_in_its_plane_with_the_map(bench: Bench) -> None:
+    answer = contact_mode_answer(problem=PredictContactMode.Request.PLANAR, plane_normal=Vector3(y=-1.0))
+    rho = 0.05
+    for mode, sign in (("ff", 1.0), ("ss", -1.0)):  # all wrenches below, all above
+        a = [0.0, 0.0, 0.6 * sign, 0.0, -0.8 * sign / rho, 0.0, 0.0]
+        answer.wrench_sets.append(ModeWrenches(mode=mode, vertices=[0.0] * 6, half_spaces=a))
+    bench.answer("predict_contact_mode", answer)
+    drawn = bench.drawn()
+    assert drawn.last("/planar_modes/mode_1/title", "Points2D:labels") == ["fl (0.25 N from ff)"]
+    center = center_of_mass([0.5, 0.0, 1.0], TURNED)
+    first = drawn.array("/planar_modes/mode_1/contacts", "Points2D:positions")[0]
+    np.testing.assert_allclose(first, [0.1 - center[0], center[2]], atol=1e-6)  # the second axis down
+    outline = drawn.array("/planar_modes/mode_2/body", "LineStrips2D:strips")[0]
+    sides = np.linalg.norm(np.diff(outline, axis=0), axis=1)
+    np.testing.assert_allclose(np.sort(sides), [0.09, 0.09, 0.15, 0.15], atol=1e-6)  # as turned, along its z
+    assert set(drawn.last("/mode_map/names", "Points2D:labels")) == {"ff", "ss"}
+    assert ("/mode_map/applied", "Points2D:positions") in drawn.values
 
 
 def test_a_refusal_is_told(bench: Bench) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from rerun.chunk import RrdReader
 
-from contact_dynamics.viewing.blueprint import LOWEST_DISTANCE, Eye, eye_on, make_blueprint
+from contact_dynamics.viewing.blueprint import DIAGRAMS, LOWEST_DISTANCE, Eye, eye_on, make_blueprint
 from contact_dynamics.viewing.entities import entity, impact_entity, predicted_entity, trail_entity
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def test_the_arrangement_holds_every_view(tmp_path: Path, eye: Eye | None) -> No
         paths.append(str(chunk.entity_path))
         if "ViewBlueprint:display_name" in batch.schema.names:
             names += [name for row in batch.column("ViewBlueprint:display_name").to_pylist() for name in row]
-    assert len(names) == 7
+    assert len(names) == 6 + len(DIAGRAMS)
     assert sum("EyeControls3D" in path for path in paths) == (eye is not None)
     for name in ("brick", "arm/tool 1"):
         recent = [trail_entity(name), f"{predicted_entity(name)}/path", f"{impact_entity(name)}/impulse"]

@@ -59,4 +59,11 @@ def test_without_a_mode_contacts_are_numbered(
     draw_planar_scene(recording, OUTLINE, BLOCK)
     drawn = read()
     assert drawn.last("/planar_scene/letters", "Points2D:labels") == ["1", "2"]
-    assert "/planar_scene/forces" not in drawn.entities
+    assert ("/planar_scene/forces", "Arrows2D:vectors") not in drawn.values
+
+
+def test_contacts_at_one_place_share_a_label(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    draw_planar_scene(recording, OUTLINE, [*BLOCK, *BLOCK])
+    assert read().last("/planar_scene/letters", "Points2D:labels") == ["1, 3", "2, 4"]

@@ -1,0 +1,101 @@
+"""A planar answer about contact modes in 2D: its consistent modes side by side, and the map that they are in.
+
+Seen with the plane's normal towards the eye, each mode in a picture of its own. Where wrench sets were asked
+for, the map of modes over applied wrenches shows where the question stands and the least way out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import rerun as rr
+
+from contact_dynamics.viewing import palette
+from contact_dynamics.viewing.contact_modes import MOST_MODES
+from contact_dynamics.viewing.entities import PLANAR_MODES
+from contact_dynamics.viewing.mode_map import chart_for, draw_mode_map
+from contact_dynamics.viewing.planar_scene import draw_planar_scene, upright
+from contact_dynamics.viewing.shape import FLAT
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact_modes import ConsistentMode, ModeWrenchSet
+    from contact_dynamics.planar import PlanarContact, PlanarWrench
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.viewing.shape import Shape
+
+NO_SIZE: Final = 0.1
+"""m. Size that a body without shape, at its only contact, is drawn with."""
+
+_SPACING: Final = 1.7  # between the centres of two modes' pictures, relative to the body's size
+_TITLE: Final = 0.75  # of a title above the centre of mass, likewise
+_WALL: Final = 0.15  # half of the length of a contact's flat, likewise
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PlanarModesPicture:
+    """What the 2D pictures of a planar answer are made of; positions from the centre of mass."""
+
+    contacts: tuple[PlanarContact, ...]
+    modes: tuple[ConsistentMode, ...]  # every consistent mode
+    margins: tuple[str, ...]  # what to say of each mode's margin; empty: nothing
+    verdict: str  # what to say where there is no mode
+    sets: tuple[ModeWrenchSet, ...]  # of all modes; empty: not told
+    length: float  # m, the radius of gyration
+    applied: PlanarWrench | None  # the wrench in question, if known
+    change: PlanarWrench | None  # the least change that takes it out of the first mode, if told
+
+
+def draw_planar_modes(
+    recording: rr.RecordingStream, picture: PlanarModesPicture, *, outline: FloatArray
+) -> None:
+    """Draw the consistent modes side by side, and the map if it was told, at the current time.
+
+    ``outline`` is a closed strip, (k, 2), m from the centre of mass; without points the body has no shape.
+    """
+    reach = [contact.r for contact in picture.contacts]
+    everything = np.vstack([outline, np.reshape(reach, (-1, 2)), np.zeros((1, 2))])
+    size = float(np.linalg.norm(np.ptp(everything, axis=0))) or NO_SIZE
+    titles = [f"{mode.mode} {margin}" for mode, margin in zip(picture.modes, picture.margins, strict=True)]
+    for i in range(MOST_MODES):
+        path = f"{PLANAR_MODES}/mode_{i + 1}"
+        if i >= max(1, len(picture.modes)):
+            recording.log(path, rr.Clear(recursive=True))
+            continue
+        shift = i * _SPACING * size
+        draw_planar_scene(
+            recording,
+            outline,
+            picture.contacts,
+            size=size,
+            walls=[_flat_of(contact, size) for contact in picture.contacts],
+            mode=picture.modes[i] if picture.modes else None,
+            shift=shift,
+            entity=path,
+        )
+        title = titles[i] if picture.modes else picture.verdict
+        place = upright(np.array([[shift, _TITLE * size]]))
+        points = rr.Points2D(place, colors=palette.NORMAL, radii=0.0, labels=[title], show_labels=True)
+        recording.log(f"{path}/title", points)
+    if picture.sets:
+        chart = chart_for(picture.sets, length=picture.length, applied=picture.applied)
+        draw_mode_map(recording, picture.sets, chart, applied=picture.applied, change=picture.change)
+
+
+def silhouette(shape: Shape, axes_B: FloatArray) -> FloatArray:
+    """Return a convex shape's outline on two axes, (2, 3), unit, as a closed strip, (k, 2), m."""
+    from scipy.spatial import ConvexHull
+
+    corners = np.vstack([shape.triangles_B.reshape(-1, 3), shape.edges_B.reshape(-1, 3)]) @ axes_B.T
+    if len(corners) == 0 or np.linalg.matrix_rank(corners - corners[0], tol=FLAT * shape.size) < 2:
+        return corners[:2]  # a rod, or a disc seen from the side, is a line
+    hull = ConvexHull(corners).vertices
+    strip: FloatArray = corners[[*hull, hull[0]]]
+    return strip
+
+
+def _flat_of(contact: PlanarContact, size: float) -> FloatArray:
+    along = _WALL * size * np.array(contact.tangent)
+    flat: FloatArray = np.array(contact.r) + np.array([-along, along])
+    return flat

@@ -1,0 +1,89 @@
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from contact_dynamics.contact_modes import planar_contact_modes, planar_mode_map, planar_mode_margins
+from contact_dynamics.nodes.pictured_contact_modes import applied_wrench
+from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.viewing.planar_modes import PlanarModesPicture, draw_planar_modes, silhouette
+from contact_dynamics.viewing.shape import convex_shape
+from contact_dynamics.world import box_vertices
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import rerun as rr
+
+    from viewing.drawn import Drawn
+
+ROD = PlanarBody(mass=1.0, inertia=1.0)
+TIP = PlanarContact(
+    r=(-4.0 * math.cos(math.radians(75.0)), -4.0 * math.sin(math.radians(75.0))),
+    normal=(0.0, 1.0),
+    friction=math.tan(math.radians(30.0)),
+)
+AT_REST = PlanarVelocity(v=(0.0, 0.0), w=0.0)
+ALONG = PlanarWrench(f=(-1.0, 0.0))
+
+
+def picture_of(*, applied: PlanarWrench, velocity: PlanarVelocity) -> PlanarModesPicture:
+    answer = planar_contact_modes(ROD, velocity, [TIP], applied)
+    margins = planar_mode_margins(ROD, velocity, [TIP], applied)
+    return PlanarModesPicture(
+        contacts=(TIP,),
+        modes=answer.modes,
+        margins=tuple(f"({margin.margin:.2f} N)" for margin in margins),
+        verdict="no consistent mode",
+        sets=planar_mode_map(ROD, [TIP], velocity=velocity),
+        length=ROD.radius_of_gyration,
+        applied=applied,
+        change=margins[0].change if margins else None,
+    )
+
+
+def test_the_modes_of_the_indeterminate_rod_stand_side_by_side(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    picture = picture_of(applied=ALONG, velocity=AT_REST)
+    draw_planar_modes(recording, picture, outline=np.array([TIP.r, (-TIP.r[0], -TIP.r[1])]))
+    drawn = read()
+    titles = [drawn.last(f"/planar_modes/mode_{i}/title", "Points2D:labels")[0][0] for i in (1, 2)]
+    assert sorted(titles) == ["f", "l"]
+    places = [drawn.array(f"/planar_modes/mode_{i}/contacts", "Points2D:positions")[0] for i in (1, 2)]
+    assert places[1][0] - places[0][0] > 2.0 * abs(TIP.r[0])
+    assert places[1][1] == places[0][1]
+    assert drawn.last("/planar_modes/mode_3", "Clear:is_recursive") == [True]
+    assert "/mode_map/applied" in drawn.entities
+
+
+def test_the_inconsistent_rod_says_so(recording: rr.RecordingStream, read: Callable[[], Drawn]) -> None:
+    falling = PlanarWrench(f=(0.0, -9.81))
+    picture = picture_of(applied=falling, velocity=PlanarVelocity(v=(-1.0, 0.0), w=0.0))
+    draw_planar_modes(recording, picture, outline=np.zeros((0, 2)))
+    drawn = read()
+    assert drawn.last("/planar_modes/mode_1/title", "Points2D:labels") == ["no consistent mode"]
+    assert drawn.last("/planar_modes/mode_2", "Clear:is_recursive") == [True]
+    assert "black: none is" in drawn.last("/mode_map/captions", "Points2D:labels")[-1]
+
+
+@pytest.mark.parametrize("applied", [ALONG, PlanarWrench(f=(0.3, -2.0), moment=0.4)])
+def test_the_applied_wrench_follows_from_a_mode(applied: PlanarWrench) -> None:
+    for mode in planar_contact_modes(ROD, AT_REST, [TIP], applied).modes:
+        found = applied_wrench(mode, [TIP], mass=ROD.mass, inertia=ROD.inertia)
+        assert found.f == pytest.approx(applied.f, abs=1e-12)
+        assert found.moment == pytest.approx(applied.moment, abs=1e-12)
+
+
+def test_a_silhouette_is_the_hull_as_seen() -> None:
+    box = convex_shape(box_vertices((0.4, 0.2, 0.1)))
+    strip = silhouette(box, np.eye(3)[[0, 2]])
+    assert len(strip) == 5
+    np.testing.assert_allclose(strip[0], strip[-1])
+    np.testing.assert_allclose(np.ptp(strip, axis=0), [0.4, 0.1])
+    rod = convex_shape(np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
+    assert len(silhouette(rod, np.eye(3)[:2])) == 2
+    assert len(silhouette(convex_shape(np.zeros((0, 3))), np.eye(3)[:2])) == 0
