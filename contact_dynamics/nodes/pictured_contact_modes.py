@@ -61,7 +61,10 @@ def show_contact_modes(picture: Picture, response: Any, *, p_FB_F: FloatArray, n
     drawn = ContactModesPicture(
         p_WB_W=state.p_WB_W,
         contacts=contacts,
-        modes=tuple(_drawn_mode(mode, contacts, velocities) for mode in response.modes),
+        modes=tuple(
+            _drawn_mode(mode, contacts, velocities, response.acceleration_tolerance)
+            for mode in response.modes
+        ),
     )
     picture.show_contact_modes(name, drawn, stamp_ns=stamp_ns)
     if response.problem == PredictContactMode.Request.PLANAR:
@@ -84,7 +87,8 @@ def planar_picture(
             strict=True,
         )
     )
-    modes = tuple(_planar_mode(mode, planar, plane) for mode in response.modes)
+    tolerance = response.acceleration_tolerance
+    modes = tuple(_planar_mode(mode, planar, plane, tolerance) for mode in response.modes)
     first = response.modes[0] if modes else None
     applied = None
     if modes and body is not None:
@@ -153,7 +157,7 @@ def _words(response: Any) -> list[str]:
     return words
 
 
-def _drawn_mode(msg: Any, contacts: ContactSet, velocities_W: FloatArray) -> DrawnMode:
+def _drawn_mode(msg: Any, contacts: ContactSet, velocities_W: FloatArray, tolerance: float) -> DrawnMode:
     """Return a mode; where its contacts slide is told, or follows from their velocities and accelerations."""
     sliding = rows(msg.tangential_directions)
     if len(sliding) == 0:
@@ -170,15 +174,17 @@ def _drawn_mode(msg: Any, contacts: ContactSet, velocities_W: FloatArray) -> Dra
         mode=msg.mode,
         forces_W=rows(msg.contact_forces),
         sliding_W=sliding,
-        acceleration_W=np.array(msg.linear_acceleration),
+        acceleration_W=_beyond(np.array([msg.linear_acceleration]), tolerance)[0],
     )
 
 
-def _planar_mode(msg: Any, contacts: Sequence[PlanarContact], plane: PlaneOfMotion) -> ConsistentMode:
+def _planar_mode(
+    msg: Any, contacts: Sequence[PlanarContact], plane: PlaneOfMotion, tolerance: float
+) -> ConsistentMode:
     bases = np.array([(contact.tangent, contact.normal) for contact in contacts])
     in_contact_axes = [
-        tuple(_pair(pair) for pair in np.einsum("nij,nj->ni", bases, rows(vectors) @ plane.axes_W.T))
-        for vectors in (msg.contact_forces, msg.contact_accelerations)
+        tuple(_pair(pair) for pair in np.einsum("nij,nj->ni", bases, vectors_W @ plane.axes_W.T))
+        for vectors_W in (rows(msg.contact_forces), _beyond(rows(msg.contact_accelerations), tolerance))
     ]
     return ConsistentMode(
         mode=msg.mode,
@@ -189,6 +195,11 @@ def _planar_mode(msg: Any, contacts: Sequence[PlanarContact], plane: PlaneOfMoti
         forces_unique=msg.forces_unique,
         motion_unique=msg.motion_unique,
     )
+
+
+def _beyond(vectors: FloatArray, tolerance: float) -> FloatArray:
+    """Return vectors, (n, 3), with those that count as zero as zero."""
+    return np.where(np.linalg.norm(vectors, axis=1, keepdims=True) > tolerance, vectors, 0.0)
 
 
 def _wrench_set(msg: Any, plane: PlaneOfMotion) -> ModeWrenchSet:

@@ -44,14 +44,13 @@ STRAIGHT: Final = 0.01
 WINDOW_S: Final = 10.0
 """s. How long trails and earlier predictions stay in view, and how far back the curves go."""
 
-DIAGRAMS: Final = (IMPULSE_SPACE, MODE_MAP, PLANAR_MODES)
-"""What has a tab beside the scene; the first that there is to see is open."""
-
-_NAMES: Final = {
-    IMPULSE_SPACE: "Impulse space (tangential, normal impulse)",
-    MODE_MAP: "Modes over applied wrenches",
+DIAGRAMS: Final = {
+    IMPULSE_SPACE: "Impulse space",
+    MODE_MAP: "Mode map",
     PLANAR_MODES: "Contact modes",
 }
+"""What has a tab beside the scene once there is something to see; the first of them is open."""
+
 _DISTANCE: Final = 1.0  # of the eye, relative to the diagonal of what it shows
 _ELEVATION: Final = 0.33  # of the eye above what it looks at, relative to its horizontal distance
 
@@ -84,14 +83,14 @@ def eye_on(points_W: FloatArray, *, up_W: FloatArray, margin: float) -> Eye:
 
 
 def make_blueprint(
-    body_names: Sequence[str], *, eye: Eye | None, diagram: str | None = None
+    body_names: Sequence[str], *, eye: Eye | None, diagrams: Sequence[str] = ()
 ) -> rrb.Blueprint:
     """Return the arrangement.
 
     Args:
         body_names: of the bodies whose trails and predictions stay in view.
         eye: of the scene; None: the viewer looks at all that there is.
-        diagram: which of `DIAGRAMS` is open; None: the first.
+        diagrams: which of `DIAGRAMS` there are to see.
     """
     controls = None
     if eye is not None:
@@ -114,26 +113,27 @@ def make_blueprint(
             },
         },
     )
+    tabs = []
+    if diagrams:
+        views = [
+            rrb.Spatial2DView(origin=origin, name=name, background=palette.BACKGROUND)
+            for origin, name in DIAGRAMS.items()
+            if origin in diagrams
+        ]
+        tabs = [rrb.Tabs(*views, active_tab=0)]
+    curves = [
+        _curves(HEIGHT, "Height of the centre of mass, m"),
+        _curves(SPEED, "Speed of the centre of mass, m/s"),
+    ]
+    answers = rrb.Tabs(
+        rrb.TextDocumentView(origin=NEWEST_ANSWERS, name="Newest answers"),
+        rrb.TextLogView(origin=ANSWER_LOG, name="All answers"),
+        rrb.TextDocumentView(origin=LEGEND, name="Legend"),
+    )
     return rrb.Blueprint(
         rrb.Horizontal(
             scene,
-            rrb.Vertical(
-                rrb.Tabs(
-                    *(
-                        rrb.Spatial2DView(origin=origin, name=name, background=palette.BACKGROUND)
-                        for origin, name in _NAMES.items()
-                    ),
-                    active_tab=DIAGRAMS.index(diagram) if diagram else 0,
-                ),
-                _curves(HEIGHT, "Height of the centre of mass, m"),
-                _curves(SPEED, "Speed of the centre of mass, m/s"),
-                rrb.Tabs(
-                    rrb.TextDocumentView(origin=NEWEST_ANSWERS, name="Newest answers"),
-                    rrb.TextLogView(origin=ANSWER_LOG, name="All answers"),
-                    rrb.TextDocumentView(origin=LEGEND, name="Legend"),
-                ),
-                row_shares=[4, 2.5, 2.5, 3],
-            ),
+            rrb.Vertical(*tabs, *curves, answers, row_shares=[5] * len(tabs) + [2, 2, 3]),
             column_shares=[3, 2],
         ),
         rrb.BlueprintPanel(state=rrb.PanelState.Collapsed),

@@ -35,10 +35,10 @@ SEPARATE: Final[Color] = (90, 205, 235, 255)
 """Cyan: a contact that separates (`s`)."""
 
 SLIDE: Final[Color] = (235, 95, 200, 255)
-"""Pink: a contact that slides (`l`, `r`)."""
+"""Pink: a contact that slides (`l`, `r`, in space `c`)."""
 
 FIXED: Final[Color] = (95, 210, 105, 255)
-"""Green: a contact that stays fixed (`f`, or `c` without a sliding direction)."""
+"""Green: a contact that stays fixed (`f`)."""
 
 UNDECIDED: Final[Color] = (255, 255, 255, 255)
 """White: a contact whose letter differs between the consistent modes, or that has none."""
@@ -61,7 +61,7 @@ COMPRESSION_LINE: Final[Color] = (90, 205, 235, 255)
 BACKGROUND: Final[Color] = (24, 27, 32, 255)
 """Behind the 3D view and impulse space."""
 
-LETTER_COLORS: Final[dict[str, Color]] = {"s": SEPARATE, "l": SLIDE, "r": SLIDE, "f": FIXED, "c": FIXED}
+LETTER_COLORS: Final[dict[str, Color]] = {"s": SEPARATE, "l": SLIDE, "r": SLIDE, "c": SLIDE, "f": FIXED}
 """By the letter of a contact's mode."""
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
-from contact_dynamics.viewing.blueprint import DIAGRAMS, WINDOW_S, Eye, eye_on, make_blueprint
+from contact_dynamics.viewing.blueprint import WINDOW_S, Eye, eye_on, make_blueprint
 from contact_dynamics.viewing.contact_modes import draw_contact_modes
 from contact_dynamics.viewing.entities import (
     ANSWER_LOG,
@@ -62,7 +62,7 @@ class Picture:
         self._answers: dict[str, str] = {}
         self._framed = False
         self._eye: Eye | None = None
-        self._diagram: str | None = None  # whose tab is open
+        self._diagrams: set[str] = set()  # those that have been drawn
         self._recent: deque[tuple[int, FloatArray]] = deque()  # stamps and positions of the last `WINDOW_S`
         gravity = float(np.linalg.norm(world.gravity_W))
         self._up_W = -world.gravity_W / gravity if gravity > 0.0 else np.array([0.0, 0.0, 1.0])
@@ -118,7 +118,7 @@ class Picture:
         """Draw a planar answer about contact modes in 2D, seen along two axes, (2, 3), unit, body axes."""
         set_time(self._recording, stamp_ns)
         draw_planar_modes(self._recording, modes, outline=silhouette(self._shape(body_name), axes_B))
-        self._bring_up(MODE_MAP if modes.sets else PLANAR_MODES)
+        self._bring_up(PLANAR_MODES, *([MODE_MAP] if modes.sets else []))
 
     def body(self, body_name: str) -> Body | None:
         """Return a body of the world; None: it is not known."""
@@ -168,12 +168,12 @@ class Picture:
         self._eye = eye_on(points_W, up_W=self._up_W, margin=margin)
         self._arrange()
 
-    def _bring_up(self, diagram: str) -> None:
-        """Open a diagram's tab when it is first drawn, unless one that matters more is open."""
-        if self._diagram is None or DIAGRAMS.index(diagram) < DIAGRAMS.index(self._diagram):
-            self._diagram = diagram
+    def _bring_up(self, *diagrams: str) -> None:
+        """Give diagrams that are drawn for the first time a tab."""
+        if not self._diagrams.issuperset(diagrams):
+            self._diagrams.update(diagrams)
             self._arrange()
 
     def _arrange(self) -> None:
-        blueprint = make_blueprint(list(self._shapes), eye=self._eye, diagram=self._diagram)
+        blueprint = make_blueprint(list(self._shapes), eye=self._eye, diagrams=sorted(self._diagrams))
         self._recording.send_blueprint(blueprint)

@@ -7,7 +7,7 @@ import pytest
 from rerun.chunk import RrdReader
 
 from contact_dynamics.viewing.blueprint import DIAGRAMS, LOWEST_DISTANCE, Eye, eye_on, make_blueprint
-from contact_dynamics.viewing.entities import entity, impact_entity, predicted_entity, trail_entity
+from contact_dynamics.viewing.entities import MODE_MAP, entity, impact_entity, predicted_entity, trail_entity
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -47,9 +47,10 @@ def test_the_eye_is_where_the_path_bulges_to() -> None:
 @pytest.mark.parametrize(
     "eye", [None, Eye(position_W=np.array([1.0, 2.0, 3.0]), target_W=np.zeros(3), up_W=UP)]
 )
-def test_the_arrangement_holds_every_view(tmp_path: Path, eye: Eye | None) -> None:
+@pytest.mark.parametrize("diagrams", [[], [MODE_MAP], list(DIAGRAMS)])
+def test_the_arrangement_holds_every_view(tmp_path: Path, eye: Eye | None, diagrams: list[str]) -> None:
     path = tmp_path / "views.rbl"
-    make_blueprint(["brick", "arm/tool 1"], eye=eye).save("test", path)
+    make_blueprint(["brick", "arm/tool 1"], eye=eye, diagrams=diagrams).save("test", path)
     (entry,) = RrdReader(path).blueprints()
     names: list[str] = []
     paths: list[str] = []
@@ -58,7 +59,7 @@ def test_the_arrangement_holds_every_view(tmp_path: Path, eye: Eye | None) -> No
         paths.append(str(chunk.entity_path))
         if "ViewBlueprint:display_name" in batch.schema.names:
             names += [name for row in batch.column("ViewBlueprint:display_name").to_pylist() for name in row]
-    assert len(names) == 6 + len(DIAGRAMS)
+    assert len(names) == 6 + len(diagrams)
     assert sum("EyeControls3D" in path for path in paths) == (eye is not None)
     for name in ("brick", "arm/tool 1"):
         recent = [trail_entity(name), f"{predicted_entity(name)}/path", f"{impact_entity(name)}/impulse"]

@@ -44,8 +44,8 @@ def test_a_contact_carries_its_letter_in_every_mode(modes: tuple[str, ...], lett
 
 
 def test_every_letter_has_a_colour_and_a_doubtful_contact_its_own() -> None:
-    assert color_of_letters("l") == color_of_letters("r") == palette.SLIDE
-    assert color_of_letters("f") == color_of_letters("c") == palette.FIXED
+    assert color_of_letters("l") == color_of_letters("r") == color_of_letters("c") == palette.SLIDE
+    assert color_of_letters("f") == palette.FIXED
     assert color_of_letters("s") == palette.SEPARATE
     assert color_of_letters("l|f") == color_of_letters("?") == palette.UNDECIDED
 
