@@ -7,17 +7,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.impact import SeveralVerdict
+from contact_dynamics.impact import SequenceEnd, SeveralVerdict
 from contact_dynamics.rigid_body import kinetic_energy
 from contact_dynamics.tolerances import ENERGY_TOLERANCE
 from contact_dynamics_interfaces.msg import Impact as ImpactMsg
+from contact_dynamics_interfaces.srv import PredictImpact
 from msg_adapters.contacts import flat
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
+
+    from geometry_msgs.msg import Point, Quaternion
 
     from contact_dynamics.impact import (
+        BodiesImpact,
         ImpactDistribution,
+        ImpactSequence,
         OrderedOutcomes,
         PlanarImpact,
         SeveralImpact,
@@ -66,15 +71,29 @@ def spatial_impact_to_msg(impact: SpatialImpact, before: Before, other: Before |
 
 
 def several_impact_to_msg(impact: SeveralImpact, before: Before) -> ImpactMsg:
-    """Return an impact at several contacts in space."""
-    energy_before = kinetic_energy(before.body, before.state)
-    energy_after = kinetic_energy(before.body, impact.state)
+    """Return an impact at several contacts in space, of a body with the world."""
+    return _several_to_msg(impact, [before], [impact.state])
+
+
+def pair_impact_to_msg(impact: BodiesImpact, before: Before, other: Before) -> ImpactMsg:
+    """Return an impact of two bodies at several contacts in space."""
+    state, other_state = impact.states
+    msg = _several_to_msg(impact, [before, other], [state, other_state])
+    msg.other_state_after = [other.state_to_msg(other_state)]
+    return msg
+
+
+def _several_to_msg(
+    impact: SeveralImpact | BodiesImpact, before: Sequence[Before], after: Sequence[BodyState]
+) -> ImpactMsg:
+    energy_before = sum(kinetic_energy(one.body, one.state) for one in before)
+    energy_after = sum(kinetic_energy(one.body, state) for one, state in zip(before, after, strict=True))
     msg = ImpactMsg(
         restitution_law=int(impact.restitution_law),
         several_contacts_law=int(impact.law),
         outcome=ImpactMsg.NOT_TOLD,
         converged=impact.verdict == SeveralVerdict.RESOLVED,
-        state_after=before.state_to_msg(impact.state),
+        state_after=before[0].state_to_msg(after[0]),
         impulses=flat(impact.impulses_W),
         contact_velocities_before=flat(impact.velocities_before_W),
         contact_velocities_after=flat(impact.velocities_after_W),
@@ -83,8 +102,56 @@ def several_impact_to_msg(impact: SeveralImpact, before: Before) -> ImpactMsg:
         creates_energy=energy_after - energy_before > ENERGY_TOLERANCE * energy_before,
     )
     if impact.strikes:
-        _add_strikes(msg, impact)
+        _add_strikes(msg, impact.strikes, len(impact.impulses_W))
     return msg
+
+
+def sequence_to_msg(impact: ImpactSequence, before: Before) -> ImpactMsg:
+    """Return strikes in time; there is at least one, and ``before`` is the body just before the first."""
+    first = impact.strikes[0].seconds
+    impulses = np.zeros((len(impact.contacts), 3))
+    velocities_before, velocities_after = np.zeros_like(impulses), np.zeros_like(impulses)
+    for strike in reversed(impact.strikes):
+        velocities_before[strike.contact] = strike.impact.velocity_before_W
+    for strike in impact.strikes:
+        impulses[strike.contact] += strike.impact.impulse_W
+        velocities_after[strike.contact] = strike.impact.velocity_after_W
+    poses = [before.state_to_msg(strike.state_before).pose for strike in impact.strikes]
+    msg = ImpactMsg(
+        restitution_law=int(impact.restitution_law),
+        several_contacts_law=PredictImpact.Request.SEQUENTIAL_IN_TIME,
+        converged=impact.end != SequenceEnd.MOST_STRIKES,
+        state_after=before.state_to_msg(impact.state),
+        impulses=flat(impulses),
+        contact_velocities_before=flat(velocities_before),
+        contact_velocities_after=flat(velocities_after),
+        kinetic_energy_before=kinetic_energy(before.body, before.state),
+        kinetic_energy_after=kinetic_energy(before.body, impact.state),
+        creates_energy=impact.creates_energy,
+        strike_times=[strike.seconds - first for strike in impact.strikes],
+        strike_contacts=list(impact.order),
+        strike_outcomes=[int(strike.impact.outcome) for strike in impact.strikes],
+        strike_positions=flat(np.array([strike.p_WC_W for strike in impact.strikes])),
+        strike_impulses=flat(np.array([strike.impact.impulse_W for strike in impact.strikes])),
+        strike_body_positions=[x for pose in poses for x in _xyz(pose.position)],
+        strike_body_orientations=[x for pose in poses for x in (*_xyz(pose.orientation), pose.orientation.w)],
+        strike_velocities_before=flat(_twists([strike.state_before for strike in impact.strikes])),
+        strike_velocities_after=flat(_twists([strike.impact.state for strike in impact.strikes])),
+        sequence_end=int(impact.end),
+        staying_contacts=list(impact.staying),
+        limit_time=0.0 if impact.limit_seconds is None else impact.limit_seconds - first,
+    )
+    strikes = tuple((strike.contact, strike.impact) for strike in impact.strikes)
+    _add_strikes(msg, strikes, len(impact.contacts))
+    return msg
+
+
+def _xyz(point: Point | Quaternion) -> tuple[float, float, float]:
+    return point.x, point.y, point.z
+
+
+def _twists(states: Sequence[BodyState]) -> FloatArray:
+    return np.array([np.concatenate([state.v_WB_W, state.w_WB_W]) for state in states])
 
 
 def write_orders(msg: ImpactMsg, outcomes: OrderedOutcomes) -> None:
@@ -100,15 +167,15 @@ def write_distribution(msg: ImpactMsg, distribution: ImpactDistribution) -> None
     msg.miss_probability = distribution.missed
 
 
-def _add_strikes(msg: ImpactMsg, impact: SeveralImpact) -> None:
+def _add_strikes(msg: ImpactMsg, strikes: Sequence[tuple[int, SpatialImpact]], contact_count: int) -> None:
     """Write what only a sequence tells: the outcome, the split of each contact's impulse, and the paths."""
-    hardest = max(impact.strikes, key=lambda strike: float(strike[1].impulse_W @ strike[1].impulse_W))[1]
+    hardest = max(strikes, key=lambda strike: float(strike[1].impulse_W @ strike[1].impulse_W))[1]
     msg.outcome = int(hardest.outcome)
     msg.jams = hardest.jams
-    so_far = np.zeros_like(impact.impulses_W)
-    compression = np.zeros_like(impact.impulses_W)
+    so_far = np.zeros((contact_count, 3))
+    compression = np.zeros((contact_count, 3))
     path, events, contacts = [], [], []
-    for contact, strike in impact.strikes:
+    for contact, strike in strikes:
         path.append(so_far[contact] + strike.path_W)
         events += [int(event) for event in strike.path_events]
         contacts += [contact] * len(strike.path_events)
