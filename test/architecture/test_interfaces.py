@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from contact_dynamics.contact_modes.result import ModeVerdict, Refusal
-from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
+from contact_dynamics.impact import ImpactOutcome, PathEvent, RestitutionLaw, SequenceEnd
 from contact_dynamics_interfaces.msg import Impact, Poinsot
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 
@@ -60,6 +60,7 @@ def constants(message: type, names: list[str]) -> dict[str, int]:
     [
         (ImpactOutcome, Impact),
         (PathEvent, Impact),
+        (SequenceEnd, Impact),
         (RestitutionLaw, PredictImpact.Request),
         (ModeVerdict, PredictContactMode.Response),
         (Refusal, PredictContactMode.Response),
