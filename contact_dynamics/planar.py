@@ -128,6 +128,15 @@ class PlanarContact:
             return 0.0
         return planar_gap_acceleration(self.body_curvature, self.surface_curvature, v_t=v_t, w=w)
 
+    def reach(self, rho: float) -> float:
+        """Return how far, m, an angular velocity counts at the contact, of a body of radius of gyration rho.
+
+        Where sides are curved the body turns about another point than its own, and a corner slides along it.
+        """
+        if self.body_curvature == math.inf and self.surface_curvature == 0.0:
+            return math.hypot(*self.r)
+        return math.hypot(*self.r) + rho + 1.0 / (self.body_curvature + self.surface_curvature)
+
     @property
     def tangent(self) -> Vector2:
         """Return the unit tangent: the normal turned by -90 degrees."""

@@ -12,18 +12,22 @@ they do where body and contacts are symmetric about it.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Final
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.contact import ContactSet
 from contact_dynamics.errors import OutOfPlaneError
 from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, Vector2
-from contact_dynamics.rigid_body import BodyState, MassProperties, cross_matrix
+from contact_dynamics.rigid_body import BodyState, MassProperties
 from contact_dynamics.tolerances import OUT_OF_PLANE_RATIO, OUT_OF_PLANE_SPEED
 from contact_dynamics.validation import FloatArray, check_unit
+from contact_dynamics.vector3 import Vector3, cross, dot, norm, normalised, scaled, without
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
 
 _STEEP: Final = 0.8
 """Cosine to the world's up above which a normal counts as upright: it is then over 36 degrees off x."""
@@ -38,24 +42,17 @@ class PlaneOfMotion:
     """
 
     normal_W: FloatArray  # (3,), unit, world axes
+    # x and y, (2, 3), world axes: y is the world's up as seen in the plane; its x where up is the normal
+    axes_W: FloatArray = field(init=False)
 
     def __post_init__(self) -> None:
-        """Check the normal."""
+        """Check the normal, and complete the axes."""
         object.__setattr__(self, "normal_W", check_unit("plane_normal", self.normal_W, 3))
-
-    @property
-    def axes_W(self) -> FloatArray:
-        """Return x and y, (2, 3), world axes: y is the world's up as seen in the plane.
-
-        Where the world's up is the normal, y is the world's x.
-        """
-        n_x, n_y, n_z = self.normal_W.tolist()
-        along, up = (n_z, (0.0, 0.0, 1.0)) if abs(n_z) < _STEEP else (n_x, (1.0, 0.0, 0.0))
-        y_x, y_y, y_z = up[0] - along * n_x, up[1] - along * n_y, up[2] - along * n_z
-        length = math.sqrt(y_x * y_x + y_y * y_y + y_z * y_z)
-        y_x, y_y, y_z = y_x / length, y_y / length, y_z / length
-        x = (y_y * n_z - y_z * n_y, y_z * n_x - y_x * n_z, y_x * n_y - y_y * n_x)
-        return np.array([x, (y_x, y_y, y_z)])
+        normal = _three(self.normal_W)
+        y = normalised(without((0.0, 0.0, 1.0) if abs(normal[2]) < _STEEP else (1.0, 0.0, 0.0), normal))
+        axes = np.array((cross(y, normal), y))
+        axes.flags.writeable = False
+        object.__setattr__(self, "axes_W", axes)
 
     def lift(self, vector: Vector2) -> FloatArray:
         """Return a vector of the plane, (x, y), in world axes, (3,)."""
@@ -102,50 +99,51 @@ def project(
         OutOfPlaneError: velocity, a contact normal, the wrench or the inertia leaves the plane by more than
         its tolerance.
     """
-    normal = plane.normal_W
-    axes = plane.axes_W
-    r_W = contacts.p_WC_W - state.p_WB_W
+    normal = _three(plane.normal_W)
+    x, y = (_three(axis) for axis in plane.axes_W)
+    force, torque = _three(force_W), _three(torque_W)
+
+    def in_plane(vector: Vector3) -> Vector2:
+        return (dot(x, vector), dot(y, vector))
+
     out_of_plane = out_of_plane_speed(plane, state, contacts)
     if out_of_plane > speed_tolerance:
         raise OutOfPlaneError(
             "state",
-            f"{out_of_plane:.6g} m/s out of the plane with normal {normal.tolist()}",
+            f"{out_of_plane:.6g} m/s out of the plane with normal {plane.normal_W.tolist()}",
             f"at most {speed_tolerance:g} m/s",
         )
-    _check_ratio("contact normals", float(np.abs(contacts.normals_W @ normal).max(initial=0.0)), plane)
-    _check_ratio("inertia", _inertia_coupling(body, state, normal), plane)
-    _check_ratio("applied force", _ratio(float(abs(force_W @ normal)), math.sqrt(force_W @ force_W)), plane)
-    planar_body = PlanarBody(
-        mass=body.mass, inertia=float(normal @ body.inertia_in_world(state.R_WB) @ normal)
-    )
-    torque_in_plane = torque_W - (torque_W @ normal) * normal
-    torque_scale = math.sqrt(torque_W @ torque_W) + planar_body.radius_of_gyration * math.sqrt(
-        force_W @ force_W
-    )
-    _check_ratio("applied torque", _ratio(math.sqrt(torque_in_plane @ torque_in_plane), torque_scale), plane)
+    normals = _rows(contacts.normals_W)
+    _check_ratio("contact normals", max((abs(dot(n, normal)) for n in normals), default=0.0), plane)
+    inertia, coupling = _inertia_about(body, state.R_WB, normal)
+    _check_ratio("inertia", coupling, plane)
+    _check_ratio("applied force", _ratio(abs(dot(force, normal)), norm(force)), plane)
+    planar_body = PlanarBody(mass=body.mass, inertia=inertia)
+    torque_scale = norm(torque) + planar_body.radius_of_gyration * norm(force)
+    _check_ratio("applied torque", _ratio(norm(without(torque, normal)), torque_scale), plane)
     return PlanarProblem(
         plane=plane,
         body=planar_body,
-        velocity=PlanarVelocity(v=_pair(axes @ state.v_WB_W), w=float(state.w_WB_W @ normal)),
+        velocity=PlanarVelocity(v=in_plane(_three(state.v_WB_W)), w=dot(_three(state.w_WB_W), normal)),
         contacts=tuple(
             PlanarContact(
-                r=_pair(r),
-                normal=_unit_pair(n),
+                r=in_plane(r),
+                normal=_unit(in_plane(n)),
                 friction=mu,
                 restitution=e,
-                body_curvature=k,
-                surface_curvature=K,
+                body_curvature=k_B,
+                surface_curvature=k_S,
             )
-            for r, n, mu, e, (k, K) in zip(
-                r_W @ axes.T,
-                contacts.normals_W @ axes.T,
+            for r, n, mu, e, (k_B, k_S) in zip(
+                _rows(contacts.p_WC_W - state.p_WB_W),
+                normals,
                 contacts.frictions.tolist(),
                 contacts.restitutions.tolist(),
                 _curvatures_in(plane, contacts),
                 strict=True,
             )
         ),
-        wrench=PlanarWrench(f=_pair(axes @ force_W), moment=float(torque_W @ normal)),
+        wrench=PlanarWrench(f=in_plane(force), moment=dot(torque, normal)),
         out_of_plane=out_of_plane,
     )
 
@@ -156,7 +154,8 @@ def _curvatures_in(plane: PlaneOfMotion, contacts: ContactSet) -> list[tuple[flo
         return [(math.inf, 0.0)] * len(contacts)
     pairs = []
     for i, normal in enumerate(contacts.normals_W):
-        tangent = _normalised(cross_matrix(plane.normal_W) @ normal)
+        tangent = np.cross(plane.normal_W, normal)
+        tangent /= math.sqrt(tangent @ tangent)
         sides = []
         for name, curvatures, default in (
             ("body_curvatures", contacts.body_curvatures, math.inf),
@@ -174,12 +173,16 @@ def _curvatures_in(plane: PlaneOfMotion, contacts: ContactSet) -> list[tuple[flo
 
 def out_of_plane_speed(plane: PlaneOfMotion, state: BodyState, contacts: ContactSet) -> float:
     """Return the largest speed, m/s, at contacts and centre of mass that the plane leaves out."""
-    normal = plane.normal_W
-    v_out = (state.v_WB_W @ normal) * normal
-    w_out = state.w_WB_W - (state.w_WB_W @ normal) * normal
-    r_W = np.vstack([np.zeros(3), contacts.p_WC_W - state.p_WB_W])
-    left_out = v_out + r_W @ cross_matrix(w_out).T
-    return math.sqrt(float(np.einsum("ij,ij->i", left_out, left_out).max()))
+    normal = _three(plane.normal_W)
+    w = without(_three(state.w_WB_W), normal)
+    v = scaled(normal, dot(_three(state.v_WB_W), normal))
+    fastest = norm(v)
+    if w == (0.0, 0.0, 0.0):
+        return fastest
+    for r in _rows(contacts.p_WC_W - state.p_WB_W):
+        turning = cross(w, r)
+        fastest = max(fastest, norm((v[0] + turning[0], v[1] + turning[1], v[2] + turning[2])))
+    return fastest
 
 
 def best_plane(
@@ -194,30 +197,33 @@ def best_plane(
     """Return a plane in which a problem is planar, or the one in which it nearly is.
 
     Contact normals and the applied force must lie in it. Where they leave a choice (a body on a floor), the
-    candidates are normal to the rotation's axis, to the sliding motion, to the torque, to each of the body's
-    principal axes and to the world's, made to contain them. The first that leaves out no motion above
-    ``speed_tolerance`` (m/s) and couples no inertia beyond `OUT_OF_PLANE_RATIO` is taken; if none does, the
-    one that leaves out least.
+    candidates, made to contain them, are: normal to the rotation's axis; along the sliding motion; normal to
+    the torque; along the line through the contacts, where they are on one; normal to each of the body's
+    principal axes, and to the world's. The first that leaves out no motion above ``speed_tolerance`` (m/s)
+    and couples no inertia beyond `OUT_OF_PLANE_RATIO` is taken; if none does, the one that leaves out least.
 
     Raises:
         OutOfPlaneError: contact normals and force span space: no plane contains them.
     """
-    fixed = _orthonormal_span([*contacts.normals_W, _normalised(force_W)])
+    fixed = _orthonormal_span([*_rows(contacts.normals_W), _normalised(_three(force_W))])
     if len(fixed) > 2:
         raise OutOfPlaneError(
             "contact normals", "normals and an applied force that span space", "vectors in a common plane"
         )
     if len(fixed) == 2:
-        return PlaneOfMotion(normal_W=cross_matrix(fixed[0]) @ fixed[1])
+        return PlaneOfMotion(normal_W=np.array(cross(fixed[0], fixed[1])))
+    R_WB = state.R_WB
     best: tuple[float, PlaneOfMotion] | None = None
-    for seed in _axis_candidates(body, state, fixed, torque_W):
-        across = seed - sum(((seed @ direction) * direction for direction in fixed), np.zeros(3))
-        length = math.sqrt(across @ across)
-        if length <= OUT_OF_PLANE_RATIO * math.sqrt(seed @ seed):
+    for seed in _axis_candidates(body, state, contacts, fixed, _three(torque_W)):
+        across = seed
+        for direction in fixed:
+            across = without(across, direction)
+        length = norm(across)
+        if length <= OUT_OF_PLANE_RATIO * norm(seed):
             continue
-        plane = PlaneOfMotion(normal_W=across / length)
+        plane = PlaneOfMotion(normal_W=np.array(scaled(across, 1.0 / length)))
         speed = out_of_plane_speed(plane, state, contacts)
-        coupling = _inertia_coupling(body, state, plane.normal_W)
+        _, coupling = _inertia_about(body, R_WB, _three(plane.normal_W))
         if speed <= speed_tolerance and coupling <= OUT_OF_PLANE_RATIO:
             return plane
         if best is None or speed < best[0]:
@@ -228,21 +234,41 @@ def best_plane(
 
 
 def _axis_candidates(
-    body: MassProperties, state: BodyState, fixed: list[FloatArray], torque_W: FloatArray
-) -> Iterator[FloatArray]:
-    yield state.w_WB_W
+    body: MassProperties, state: BodyState, contacts: ContactSet, fixed: list[Vector3], torque: Vector3
+) -> Iterator[Vector3]:
+    """Yield normals of planes, not unit; zero vectors among them."""
+    yield _three(state.w_WB_W)
     for direction in fixed:
-        yield cross_matrix(direction) @ state.v_WB_W
-    yield torque_W
-    yield from (state.R_WB @ np.linalg.eigh(body.I_B)[1]).T
-    yield from np.eye(3)
+        yield cross(direction, _three(state.v_WB_W))
+    yield torque
+    line = _common_line(_rows(contacts.p_WC_W))
+    for direction in fixed:
+        yield cross(direction, line)
+    yield from _rows((state.R_WB @ _principal_axes(body)).T)
+    yield from ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
-def _inertia_coupling(body: MassProperties, state: BodyState, normal_W: FloatArray) -> float:
-    momentum = body.inertia_in_world(state.R_WB) @ normal_W
-    along = float(momentum @ normal_W)
-    across = momentum - along * normal_W
-    return math.sqrt(across @ across) / along
+def _common_line(points: list[Vector3]) -> Vector3:
+    """Return the offset from the first point to the farthest from it; zero where another is off that line."""
+    offsets = [(x - points[0][0], y - points[0][1], z - points[0][2]) for x, y, z in points]
+    farthest = max(offsets, key=norm)
+    reach = norm(farthest)
+    apart = max(norm(cross(farthest, offset)) for offset in offsets)
+    return farthest if apart <= OUT_OF_PLANE_RATIO * reach * reach else (0.0, 0.0, 0.0)
+
+
+@lru_cache(maxsize=64)
+def _principal_axes(body: MassProperties) -> FloatArray:
+    axes: FloatArray = np.linalg.eigh(body.I_B)[1]
+    return axes
+
+
+def _inertia_about(body: MassProperties, R_WB: FloatArray, normal_W: Vector3) -> tuple[float, float]:
+    """Return the inertia about an axis, and the part of the angular momentum across it, relative to that."""
+    axis_B = np.array(normal_W) @ R_WB
+    momentum, axis = _three(body.I_B @ axis_B), _three(axis_B)
+    along = dot(momentum, axis)
+    return along, norm(without(momentum, axis)) / along
 
 
 def _check_ratio(field: str, ratio: float, plane: PlaneOfMotion) -> None:
@@ -255,30 +281,34 @@ def _check_ratio(field: str, ratio: float, plane: PlaneOfMotion) -> None:
 
 
 def _ratio(part: float, whole: float) -> float:
-    return float(part) / whole if whole > 0.0 else 0.0
+    return part / whole if whole > 0.0 else 0.0
 
 
-def _normalised(vector: FloatArray) -> FloatArray:
-    length = math.sqrt(vector @ vector)
-    return vector / length if length > 0.0 else vector
+def _normalised(vector: Vector3) -> Vector3:
+    return normalised(vector) if vector != (0.0, 0.0, 0.0) else vector
 
 
-def _orthonormal_span(vectors: list[FloatArray]) -> list[FloatArray]:
-    span: list[FloatArray] = []
+def _orthonormal_span(vectors: Iterable[Vector3]) -> list[Vector3]:
+    span: list[Vector3] = []
     for vector in vectors:
-        rest = vector - sum(((vector @ direction) * direction for direction in span), np.zeros(3))
-        length = math.sqrt(rest @ rest)
-        if length > OUT_OF_PLANE_RATIO:
-            span.append(rest / length)
+        rest = vector
+        for direction in span:
+            rest = without(rest, direction)
+        if norm(rest) > OUT_OF_PLANE_RATIO:
+            span.append(normalised(rest))
     return span
 
 
-def _pair(vector: FloatArray) -> Vector2:
-    x, y = vector.tolist()
-    return (x, y)
+def _three(vector: FloatArray) -> Vector3:
+    x, y, z = vector.tolist()
+    return (x, y, z)
 
 
-def _unit_pair(vector: FloatArray) -> Vector2:
-    x, y = vector.tolist()
+def _rows(vectors: FloatArray) -> list[Vector3]:
+    return [(x, y, z) for x, y, z in vectors.tolist()]
+
+
+def _unit(vector: Vector2) -> Vector2:
+    x, y = vector
     length = math.hypot(x, y)
     return (x / length, y / length)

@@ -15,9 +15,11 @@ many rows, arrays tell those that change nothing.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
+
+from contact_dynamics.vector3 import Vector3, cross, dot, normalised, opposite
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,8 +27,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from contact_dynamics.validation import FloatArray
-
-Vector3: TypeAlias = tuple[float, float, float]
 
 _AXES: Final[tuple[Vector3, ...]] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _WIDE: Final = 0.1  # sine: planes that meet at more serve to start with, without a look at the others
@@ -258,27 +258,6 @@ class PolyhedralCone:
             return rough
         length = math.copysign(length, along)
         return (sharp[0] / length, sharp[1] / length, sharp[2] / length)
-
-
-def dot(a: Vector3, b: Vector3) -> float:
-    """Return the inner product."""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def cross(a: Vector3, b: Vector3) -> Vector3:
-    """Return the cross product."""
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-
-
-def opposite(a: Vector3) -> Vector3:
-    """Return the vector the other way."""
-    return (-a[0], -a[1], -a[2])
-
-
-def normalised(a: Vector3) -> Vector3:
-    """Return the unit vector along ``a``, which is not zero."""
-    length = math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
-    return (a[0] / length, a[1] / length, a[2] / length)
 
 
 def bits(mask: int) -> list[int]:

@@ -10,14 +10,13 @@ matters is whether the applied wrench lies in the cone of those that can bring t
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.contact_modes.cone import Vector3, dot
 from contact_dynamics.contact_modes.enumeration import FIXED, LEFT, Cell, Letters
 from contact_dynamics.contact_modes.result import ConsistentMode, Refusal, RefusedMode
 from contact_dynamics.contact_modes.wrench_cone import ModeWrenches
 from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.vector3 import Vector3, dot, norm
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -71,7 +70,7 @@ def _independent_forces(problem: PlanarProblem, letters: Letters) -> list[Vector
             lengths += (row.size_n, row.size_t)
         else:
             unknown = _edge(row, _slope(row, letter))
-            length = math.sqrt(dot(unknown, unknown))
+            length = norm(unknown)
             lengths.append(length)
             units.append((unknown[0] / length, unknown[1] / length, unknown[2] / length))
     if len(equations) > _MOST_EQUATIONS:
@@ -96,7 +95,7 @@ def _sliding_force(problem: PlanarProblem, position: int, letter: int) -> list[V
     slope = _slope(row, letter)
     unknown = _edge(row, slope)
     gain = dot(row.unit_n, unknown)
-    if abs(gain) <= ROW_TOLERANCE * math.sqrt(dot(unknown, unknown)):
+    if abs(gain) <= ROW_TOLERANCE * norm(unknown):
         return None
     f_n = -(dot(row.unit_n, problem.w) + problem.mass * row.b_n / row.size_n) / gain
     return [(slope * f_n, f_n)]

@@ -13,9 +13,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
-from contact_dynamics.contact_modes.cone import PolyhedralCone, Sector, Vector3, bits, dot, normalised
+from contact_dynamics.contact_modes.cone import PolyhedralCone, Sector, bits
 from contact_dynamics.contact_modes.problem import PlanarProblem, lifted
 from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.vector3 import Vector3, dot, normalised
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -13,8 +13,8 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.contact_modes.cone import Vector3
     from contact_dynamics.validation import FloatArray
+    from contact_dynamics.vector3 import Vector3
 
 _ROUNDING: Final = 1e-13  # relative to the wrench: less is not left over
 _INDEPENDENT: Final = 1e-12  # ratio of singular values below which directions count as the same

@@ -13,7 +13,6 @@ Does not cover: a flat of the body on a point of the world, moving surfaces, ela
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from contact_dynamics.contact_modes.dynamics import judge_all
@@ -74,14 +73,14 @@ def planar_contact_modes(
     if not approaching:
         touching = [i for i, (_, v_n) in enumerate(velocities) if v_n == 0.0]
         if not touching:
-            modes.append(_free_motion(body, contacts, wrench, _spin(velocity, contacts, v_tolerance)))
+            modes.append(_free_motion(body, contacts, wrench, _spin(body, velocity, contacts, v_tolerance)))
         elif len(contacts) == 1:
             modes, refused, a_tolerance = single_contact_modes(
                 body,
                 contacts[0],
                 wrench,
                 v_t=velocities[0][0],
-                w=_spin(velocity, contacts, v_tolerance),
+                w=_spin(body, velocity, contacts, v_tolerance),
                 accuracy=accuracy,
             )
         else:
@@ -102,8 +101,11 @@ def planar_contact_modes(
     )
 
 
-def _spin(velocity: PlanarVelocity, contacts: Sequence[PlanarContact], tolerance: float) -> float:
-    if all(abs(velocity.w) * math.hypot(*contact.r) <= tolerance for contact in contacts):
+def _spin(
+    body: PlanarBody, velocity: PlanarVelocity, contacts: Sequence[PlanarContact], tolerance: float
+) -> float:
+    rho = body.radius_of_gyration
+    if all(abs(velocity.w) * contact.reach(rho) <= tolerance for contact in contacts):
         return 0.0
     return velocity.w
 

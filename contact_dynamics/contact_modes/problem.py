@@ -18,12 +18,11 @@ one that stands for the centripetal terms.
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from contact_dynamics.contact_modes.cone import Vector3, cross, dot, normalised
 from contact_dynamics.errors import TooLargeError
-from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, ROW_TOLERANCE
+from contact_dynamics.vector3 import Vector3, cross, dot, norm, normalised, without
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -73,7 +72,7 @@ class PlanarProblem(NamedTuple):
     @property
     def load(self) -> float:
         """Return what forces are compared with, N: the applied wrench plus the centripetal terms."""
-        return _size(self.w) + (self.mass * self.lift.scale if self.lift else 0.0)
+        return norm(self.w) + (self.mass * self.lift.scale if self.lift else 0.0)
 
 
 def contact_velocities(
@@ -130,23 +129,27 @@ def planar_problem(
     if twist != (0.0, 0.0, 0.0):
         twist = _unhindered(twist, [normalised(row) for row in resting])
     omega = 0.0
-    if abs(twist[2]) > ROW_TOLERANCE * _size(twist):
-        reach = max(math.hypot(*contact.r) for contact in contacts)
+    if abs(twist[2]) > ROW_TOLERANCE * norm(twist):
+        reach = max(contact.reach(rho) for contact in contacts)
         if abs(twist[2]) * reach > velocity_tolerance * rho:
             omega = twist[2] / rho
     square = omega * omega
     rows = []
     largest = 0.0
     for index, v_t, N, T in touching:
+        contact = contacts[index]
         b_n = square * T[2] * rho  # T's moment arm is -r.n, N's is r.t
-        b_n += contact.gap_acceleration(dot(T, twist), omega)
+        rolling = contact.gap_acceleration(dot(T, twist), omega)
+        cancels = abs(b_n + rolling) <= ACCELERATION_TOLERANCE * abs(rolling)  # as where a disc rolls
+        b_n = 0.0 if cancels else b_n + rolling
         b_t = -square * N[2] * rho
         largest = max(largest, abs(b_n), abs(b_t))
-        size_n, size_t = _size(N), _size(T)
+        size_n, size_t = norm(N), norm(T)
         unit_n, unit_t = _divided(N, size_n), _divided(T, size_t)
         slides = float((v_t > 0.0) - (v_t < 0.0))
-        friction = contacts[index].friction
-        rows.append(ContactRow(index, N, T, unit_n, unit_t, size_n, size_t, b_n, b_t, slides, friction))
+        rows.append(
+            ContactRow(index, N, T, unit_n, unit_t, size_n, size_t, b_n, b_t, slides, contact.friction)
+        )
     return PlanarProblem(
         contacts=contacts,
         mass=body.mass,
@@ -165,8 +168,7 @@ def _unhindered(twist: Vector3, resting: list[Vector3]) -> Vector3:
     first = resting[0]
     apart = max((cross(first, row) for row in resting), key=lambda normal: dot(normal, normal))
     if dot(apart, apart) <= ROW_TOLERANCE * ROW_TOLERANCE:
-        along = dot(twist, first)
-        return (twist[0] - along * first[0], twist[1] - along * first[1], twist[2] - along * first[2])
+        return without(twist, first)
     line = normalised(apart)
     if any(abs(dot(line, row)) > ROW_TOLERANCE for row in resting):
         return (0.0, 0.0, 0.0)
@@ -179,10 +181,6 @@ def _lift(twist: Vector3, scale: float) -> Lift:
     least = min(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), key=lambda axis: abs(dot(axis, line)))
     one = normalised(cross(line, least))
     return Lift(line, (one, cross(line, one)), scale)
-
-
-def _size(a: Vector3) -> float:
-    return math.sqrt(dot(a, a))
 
 
 def _divided(a: Vector3, by: float) -> Vector3:

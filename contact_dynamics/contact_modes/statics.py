@@ -16,13 +16,14 @@ from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.contact_modes.cone import PolyhedralCone, Vector3, dot, normalised
+from contact_dynamics.contact_modes.cone import PolyhedralCone
 from contact_dynamics.contact_modes.planar import planar_contact_modes
 from contact_dynamics.contact_modes.result import ModeVerdict
 from contact_dynamics.friction import friction_cone
 from contact_dynamics.planar import PlanarVelocity
 from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, ROW_TOLERANCE
 from contact_dynamics.validation import check_not_negative, check_positive
+from contact_dynamics.vector3 import Vector3, dot, normalised
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -16,12 +16,13 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.cone import PolyhedralCone, Vector3, bits, dot, normalised, opposite
+from contact_dynamics.contact_modes.cone import PolyhedralCone, bits
 from contact_dynamics.contact_modes.enumeration import FIXED, RIGHT, Cell, Letters
 from contact_dynamics.contact_modes.least_force import least_force
 from contact_dynamics.contact_modes.problem import PlanarProblem, lifted
 from contact_dynamics.contact_modes.span import orthonormal
 from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.vector3 import Vector3, dot, norm, normalised, opposite
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -116,7 +117,7 @@ class ModeWrenches:
         found = []
         for z in facets:
             a, offset = self._unlifted(z)
-            size = math.sqrt(dot(a, a))
+            size = norm(a)
             if size > ROW_TOLERANCE:
                 found.append(HalfSpace((-a[0] / size, -a[1] / size, -a[2] / size), offset / size))
         return found
@@ -127,7 +128,7 @@ class ModeWrenches:
         The amount is the largest distance to one of the half-spaces; 0: the wrench lies on the boundary,
         where the mode's strict inequalities fail; infinite: no wrench brings the mode about.
         """
-        tolerance = accuracy * math.sqrt(dot(self._target, self._target))
+        tolerance = accuracy * norm(self._target)
         for line in self.dual.lineality:
             height = dot(line, self._target)
             if abs(height) > tolerance:
@@ -153,7 +154,7 @@ class ModeWrenches:
 
         Only after `shortfall` has returned None.
         """
-        tolerance = accuracy * math.sqrt(dot(self._target, self._target))
+        tolerance = accuracy * norm(self._target)
         target = self._target
         fixed: list[Vector3] = list(self.dual.lineality)
         largest = math.inf
@@ -165,7 +166,7 @@ class ModeWrenches:
             elif dot(z, inner) > ROW_TOLERANCE:
                 largest = min(largest, height / dot(z, inner))
         if math.isinf(largest):
-            largest = math.sqrt(dot(target, target))
+            largest = norm(target)
         # Half of the way that the mode's mean acceleration could go keeps every strict inequality.
         share = 0.5 * largest if self._rays else 0.0
         rest = (target[0] - share * inner[0], target[1] - share * inner[1], target[2] - share * inner[2])
@@ -215,7 +216,7 @@ class ModeWrenches:
 
     def _distance(self, z: Vector3, height: float) -> float:
         a, _ = self._unlifted(z)
-        size = math.sqrt(dot(a, a))
+        size = norm(a)
         return abs(height) / size if size > ROW_TOLERANCE else math.inf
 
     def _with_height(self, ray: Vector3) -> tuple[float, ...]:

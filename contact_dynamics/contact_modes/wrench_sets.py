@@ -18,9 +18,9 @@ from contact_dynamics.contact_modes.wrench_cone import ModeWrenches
 from contact_dynamics.planar import PlanarWrench
 
 if TYPE_CHECKING:
-    from contact_dynamics.contact_modes.cone import Vector3
     from contact_dynamics.contact_modes.enumeration import Cell
     from contact_dynamics.contact_modes.problem import PlanarProblem
+    from contact_dynamics.vector3 import Vector3
 
 
 class WrenchHalfSpace(NamedTuple):
