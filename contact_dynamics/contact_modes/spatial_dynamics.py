@@ -14,6 +14,7 @@ Does not cover: margins.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -85,7 +86,7 @@ def spatial_contact_modes(
         sliding = velocities - v_n[:, None] * contacts.normals_W
         sliding[np.linalg.norm(sliding, axis=1) <= tolerance] = 0.0
         w = state.w_WB_W
-        if len(r_W) > 0 and np.linalg.norm(w) * np.linalg.norm(r_W, axis=1).max() <= tolerance:
+        if len(r_W) > 0 and np.linalg.norm(w) * _reach(body, r_W, contacts) <= tolerance:
             w = np.zeros(3)
         motion = _Motion(
             body.mass,
@@ -110,6 +111,14 @@ def spatial_contact_modes(
         friction_facets=friction_facets,
         examined=examined,
     )
+
+
+def _reach(body: MassProperties, r_W: FloatArray, contacts: ContactSet) -> float:
+    """Return how far, m, an angular velocity counts: where sides are curved, the body's size too."""
+    far = float(np.linalg.norm(r_W, axis=1).max())
+    if contacts.body_curvatures is None and contacts.surface_curvatures is None:
+        return far
+    return far + math.sqrt(float(np.trace(body.I_B)) / body.mass)
 
 
 class _Motion:
