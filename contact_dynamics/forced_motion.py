@@ -33,9 +33,11 @@ from contact_dynamics.applied_wrench import NO_DRAG, NO_WRENCH, ConstantWrench, 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body import BodyState, MassProperties, angular_momentum
 from contact_dynamics.rotations import make_continuous
+from contact_dynamics.tolerances import LARGEST_NUMBER
 from contact_dynamics.tumbling import FreeMotion, Sample, Trajectory, free_motion
+from contact_dynamics.tumbling.motion import check_extent
 from contact_dynamics.tumbling.quaternions import Quaternion, conjugate, normalised, product, rotated
-from contact_dynamics.validation import FloatArray, check_array, check_finite
+from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_within
 from contact_dynamics.world import STANDARD_GRAVITY_W
 
 if TYPE_CHECKING:
@@ -124,7 +126,8 @@ class ForcedMotion:
         Raises:
             InvalidFieldError: the time is not finite, or beyond what `sample` reaches.
         """
-        return self.sample(check_finite("time", seconds)).as_state(self.state.stamp_ns, seconds)
+        check_within("time", seconds, -LARGEST_NUMBER, LARGEST_NUMBER)
+        return self.sample(seconds).as_state(self.state.stamp_ns, seconds)
 
     def at(self, seconds: ArrayLike) -> Trajectory:
         """Return the motion at times (n,), s after the state's stamp, of any sign and in any order.
@@ -133,7 +136,7 @@ class ForcedMotion:
             InvalidFieldError: the times are not a flat list of finite numbers, or beyond what `sample`
                 reaches.
         """
-        times = check_array("times", seconds, (None,))
+        times = check_magnitude("times", check_array("times", seconds, (None,)))
         values = np.empty((len(times), _SIZE))
         for side, belongs in ((self.ahead, times >= 0.0), (self.back, times < 0.0)):
             values[belongs] = side.at_many(times[belongs])
@@ -208,12 +211,13 @@ def forced_motion(
     further away than ``most_steps`` of the integrator are refused when they are asked for.
 
     Raises:
-        InvalidFieldError: gravity is not three finite numbers; or, then and whenever the motion is asked for,
-            the function returns anything but twice three finite numbers.
+        InvalidFieldError: gravity is not three finite numbers; a number is beyond `LARGEST_NUMBER`; or, then
+            and whenever the motion is asked for, the function returns anything but twice three finite
+            numbers.
     """
-    law = _Law(
-        body, state, check_array("gravity", gravity_W, (3,)), wrench=wrench, drag=drag, wrench_of=wrench_of
-    )
+    gravity = check_array("gravity", gravity_W, (3,))
+    check_extent(body, state, gravity)
+    law = _Law(body, state, gravity, wrench=wrench, drag=drag, wrench_of=wrench_of)
     law.rates(0.0, law.start)  # a function that returns nonsense is refused at once
     return ForcedMotion(
         body=body,

@@ -129,7 +129,8 @@ def _seen_from_the_body(motion: FreeMotion, times: FloatArray) -> FloatArray:
     if turns.any():
         whole, error = _in_pieces(motion, np.array([period]), rate)
         w_B = motion.state.R_WB.T @ motion.state.w_WB_W
-        across = np.cross(motion.body.I_B @ w_B, w_B)
+        L_B = motion.body.I_B @ w_B
+        across = np.cross(L_B / np.linalg.norm(L_B), w_B / np.linalg.norm(w_B))
         across /= math.sqrt(across @ across)
         drift = (whole[0] - np.eye(3)) @ across
         drift -= across * (across @ drift)

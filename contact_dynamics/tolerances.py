@@ -65,3 +65,8 @@ is still right within it."""
 GRAZING_DEPTH: Final = 1e-9
 """m. A vertex that dips into a plane by less, and rises again, may be overlooked by the search for the first
 contact; deeper ones never are. Far below what sensors resolve, and enough for the search not to creep."""
+
+LARGEST_NUMBER: Final = 1e60
+"""In SI units: s, rad/s, kg m^2, m, m/s, m/s^2. A motion is refused whose numbers are larger, or whose
+moments of inertia are below the inverse: fourth powers and products of such numbers leave the range of
+doubles. Rates below the inverse count as rest: in the age of the universe they turn nothing."""

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.tolerances import UNIT_LENGTH_TOLERANCE
+from contact_dynamics.tolerances import LARGEST_NUMBER, UNIT_LENGTH_TOLERANCE
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -85,6 +85,14 @@ def _fits(shape: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
 
 def _in_words(shape: tuple[int | None, ...]) -> str:
     return "(" + ", ".join("n" if length is None else str(length) for length in shape) + ")"
+
+
+def check_magnitude(field: str, value: FloatArray, most: float = LARGEST_NUMBER) -> FloatArray:
+    """Return ``value`` if no number in it is larger than ``most``, by size."""
+    largest = float(np.abs(value).max(initial=0.0))
+    if largest > most:
+        raise InvalidFieldError(field, f"{largest:g}", f"numbers of at most {most:g}, by size")
+    return value
 
 
 def check_unit(field: str, value: ArrayLike, length: int) -> FloatArray:

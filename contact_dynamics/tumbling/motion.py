@@ -20,11 +20,13 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body import BodyState, MassProperties
 from contact_dynamics.rotations import make_continuous
+from contact_dynamics.tolerances import LARGEST_NUMBER
 from contact_dynamics.tumbling.arithmetic import DECIMALS, DOUBLES, Arithmetic, Precision, Scalar, within
 from contact_dynamics.tumbling.attitude_form import AttitudeForm, attitude_form
-from contact_dynamics.tumbling.polhode import Rotation, Spin, Tumble, tumble_or_spin
+from contact_dynamics.tumbling.polhode import Rotation, Spin, Tumble, largest_rate, tumble_or_spin
 from contact_dynamics.tumbling.principal_frame import PrincipalFrame, in_doubles, principal_frame
 from contact_dynamics.tumbling.quaternions import (
     Quaternion,
@@ -38,7 +40,7 @@ from contact_dynamics.tumbling.quaternions import (
     rotated,
 )
 from contact_dynamics.tumbling.regime import Regime, regime_of
-from contact_dynamics.validation import FloatArray, check_array, check_finite
+from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_within
 from contact_dynamics.world import STANDARD_GRAVITY_W
 
 if TYPE_CHECKING:
@@ -51,9 +53,9 @@ NANOSECONDS: Final = 1_000_000_000
 CHUNK: Final = 8192
 """Samples at a time: their intermediate arrays stay in the processor's cache."""
 
-SMALL: Final = 1e-60
-LARGE: Final = 1e60
-"""rad/s and kg m^2, between which powers of rates and moments stay in the range of doubles."""
+MOST_TURNED: Final = 1e16
+"""rad. Later times are refused: they are doubles more than a turn apart, and the phases' double-doubles no
+longer hold the last bits of a turn."""
 
 FEW: Final = 16
 """Samples that cost less one by one than NumPy's calls do."""
@@ -107,6 +109,7 @@ class FreeMotion:
     q_PB: Quaternion
     w_along: float  # rad/s, component of the angular velocity along L, constant
     w_across: tuple[float, float]  # rad/s, L (1/I_1 - 1/I_2) and L (1/I_3 - 1/I_2)
+    farthest: float  # s, how far from now times may be, on either side
 
     @property
     def regime(self) -> Regime:
@@ -114,7 +117,7 @@ class FreeMotion:
         return regime_of(self.frame, self.rotation)
 
     def sample(self, seconds: float) -> Sample:
-        """Return the motion at one time, s after the state's stamp, in plain floats."""
+        """Return the motion at one time, s after the state's stamp, in plain floats, unchecked."""
         alpha, beta, l_1, l_3 = _cayley_klein(self.form, seconds)
         q_LP = (beta.imag, -beta.real, alpha.imag, alpha.real)
         across = self._across(alpha, beta, l_1, l_3)
@@ -143,17 +146,19 @@ class FreeMotion:
         """Return the body's state at one time, s after the state's stamp.
 
         Raises:
-            InvalidFieldError: the time is not finite.
+            InvalidFieldError: the time is not finite, or by then the body has turned more than `MOST_TURNED`.
         """
-        return self.sample(check_finite("time", seconds)).as_state(self.state.stamp_ns, seconds)
+        check_within("time", seconds, -self.farthest, self.farthest)
+        return self.sample(seconds).as_state(self.state.stamp_ns, seconds)
 
     def at(self, seconds: ArrayLike) -> Trajectory:
         """Return the motion at times (n,), s after the state's stamp, of any sign and in any order.
 
         Raises:
-            InvalidFieldError: the times are not a flat list of finite numbers.
+            InvalidFieldError: the times are not a flat list of finite numbers, or by the farthest of them the
+                body has turned more than `MOST_TURNED`.
         """
-        times = check_array("times", seconds, (None,))
+        times = check_magnitude("times", check_array("times", seconds, (None,)), self.farthest)
         q_WB, w_WB_W = self._one_by_one(times) if len(times) <= FEW else self._in_chunks(times)
         make_continuous(q_WB, self.state.q_WB)
         elapsed = times[:, None]
@@ -220,12 +225,14 @@ def free_motion(
     of the time, and its errors grow with the angle turned.
 
     Raises:
-        InvalidFieldError: gravity is not three finite numbers.
+        InvalidFieldError: gravity is not three finite numbers; a number is beyond what doubles can square
+            (`LARGEST_NUMBER`).
     """
     gravity = check_array("gravity", gravity_W, (3,))
+    check_extent(body, state, gravity)
     frame = principal_frame(body.I_B)
     rotation: Rotation
-    if precision is Precision.DOUBLE and _far_from_the_ends(body, state):
+    if precision is Precision.DOUBLE:
         rotation, form = _rotation(in_doubles(frame), state, DOUBLES)
     else:
         rotation, form = _rotation(frame, state, DECIMALS)
@@ -255,7 +262,26 @@ def free_motion(
         q_PB=q_PB,
         w_along=along,
         w_across=across,
+        farthest=min(MOST_TURNED / max(largest_rate(rotation), 1.0 / LARGEST_NUMBER), LARGEST_NUMBER),
     )
+
+
+def check_extent(body: MassProperties, state: BodyState, gravity_W: FloatArray) -> None:
+    """Refuse numbers whose powers leave the range of doubles, by name."""
+    numbers = {
+        "inertia": body.I_B,
+        "position": state.p_WB_W,
+        "linear_velocity": state.v_WB_W,
+        "angular_velocity": state.w_WB_W,
+        "gravity": gravity_W,
+    }
+    for field, values in numbers.items():
+        if max(map(abs, values.ravel().tolist())) > LARGEST_NUMBER:  # NumPy's calls would cost more
+            check_magnitude(field, values)
+    if body.I_B.diagonal().min() * LARGEST_NUMBER < 1.0:
+        raise InvalidFieldError(
+            "inertia", body.I_B.diagonal().tolist(), f"moments of at least {1.0 / LARGEST_NUMBER:g} kg m^2"
+        )
 
 
 _IDENTITY: Final = (0.0, 0.0, 0.0, 1.0)
@@ -270,17 +296,13 @@ def _cayley_klein(form: AttitudeForm, seconds: float) -> tuple[complex, complex,
     return factor * complex(A_re, A_im), factor * complex(B_re, B_im), C / norm2, D / norm2
 
 
-def _far_from_the_ends(body: MassProperties, state: BodyState) -> bool:
-    """Whether powers of moments and rates are in the range of doubles; if not, decimals serve instead."""
-    rate, moment = float(abs(state.w_WB_W).max()), float(abs(body.I_B).max())
-    return SMALL < rate < LARGE and SMALL < moment < LARGE
-
-
 def _rotation(
     frame: PrincipalFrame[Scalar], state: BodyState, numbers: Arithmetic[Scalar]
 ) -> tuple[Spin[Scalar] | Tumble[Scalar], AttitudeForm]:
     with within(numbers.sums):
-        rotation = tumble_or_spin(frame, _body_rate(state, numbers), numbers)
+        at_rest = float(np.abs(state.w_WB_W).max()) * LARGEST_NUMBER < 1.0
+        w_B = [numbers.number(0.0)] * 3 if at_rest else _body_rate(state, numbers)
+        rotation = tumble_or_spin(frame, w_B, numbers)
         return rotation, attitude_form(rotation, numbers)
 
 
