@@ -198,9 +198,9 @@ def best_plane(
 
     Contact normals and the applied force must lie in it. Where they leave a choice (a body on a floor), the
     candidates, made to contain them, are: normal to the rotation's axis; along the sliding motion; normal to
-    the torque; along the line through the contacts, where they are on one; normal to each of the body's
-    principal axes, and to the world's. The first that leaves out no motion above ``speed_tolerance`` (m/s)
-    and couples no inertia beyond `OUT_OF_PLANE_RATIO` is taken; if none does, the one that leaves out least.
+    the torque; through all contacts, where there is such a plane; normal to each of the body's principal
+    axes, and to the world's. The first that leaves out no motion above ``speed_tolerance`` (m/s) and couples
+    no inertia beyond `OUT_OF_PLANE_RATIO` is taken; if none does, the one that leaves out least.
 
     Raises:
         OutOfPlaneError: contact normals and force span space: no plane contains them.
@@ -241,20 +241,19 @@ def _axis_candidates(
     for direction in fixed:
         yield cross(direction, _three(state.v_WB_W))
     yield torque
-    line = _common_line(_rows(contacts.p_WC_W))
     for direction in fixed:
-        yield cross(direction, line)
+        yield _normal_through(direction, _rows(contacts.p_WC_W - state.p_WB_W))
     yield from _rows((state.R_WB @ _principal_axes(body)).T)
     yield from ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
-def _common_line(points: list[Vector3]) -> Vector3:
-    """Return the offset from the first point to the farthest from it; zero where another is off that line."""
-    offsets = [(x - points[0][0], y - points[0][1], z - points[0][2]) for x, y, z in points]
-    farthest = max(offsets, key=norm)
-    reach = norm(farthest)
-    apart = max(norm(cross(farthest, offset)) for offset in offsets)
-    return farthest if apart <= OUT_OF_PLANE_RATIO * reach * reach else (0.0, 0.0, 0.0)
+def _normal_through(direction: Vector3, points: list[Vector3]) -> Vector3:
+    """Return the normal, not unit, of the plane of a direction and points; zero where they name none."""
+    farthest = max((cross(direction, point) for point in points), key=norm)
+    size = norm(farthest)
+    off = max(abs(dot(farthest, point)) for point in points)
+    named = size > OUT_OF_PLANE_RATIO * max(map(norm, points)) and off <= OUT_OF_PLANE_RATIO * size * size
+    return farthest if named else (0.0, 0.0, 0.0)
 
 
 @lru_cache(maxsize=64)
