@@ -21,6 +21,7 @@ import numpy as np
 
 from contact_dynamics.contact_curvature import velocity_accelerations
 from contact_dynamics.contact_modes.result import ModeVerdict
+from contact_dynamics.contact_modes.spatial_forces import least_forces, misdirection
 from contact_dynamics.contact_modes.spatial_letters import STRICT
 from contact_dynamics.contact_modes.spatial_result import SpatialMode, SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial_search import Found, Search, Touching
@@ -208,8 +209,9 @@ def _evidence(case: _Case, search: Search, found: Found) -> SpatialMode:
     if not motion_unique and low is not None and high is not None:
         shares = 0.5 * (low + high)  # away from the borders of the mode
     forces_unique = _ends(found, mixture[0, 6:] @ search.edges)[0]
+    own = (search.edges @ shares * motion.scale).reshape(-1, 3)
     forces = np.zeros((len(contacts), 3))
-    forces[touching] = (search.edges @ shares * motion.scale).reshape(-1, 3)
+    forces[touching] = own if forces_unique else least_forces(search.of_forces, own, search.acting(found))
     body = motion.free + motion.of_forces @ forces.ravel()
     points = (motion.points @ body).reshape(-1, 3) + motion.turning
     across = points - np.sum(points * contacts.normals_W, axis=1)[:, None] * contacts.normals_W
@@ -230,6 +232,7 @@ def _evidence(case: _Case, search: Search, found: Found) -> SpatialMode:
         contact_forces_W=forces,
         contact_accelerations_W=points,
         tangential_directions_W=directions,
+        misdirection=misdirection(forces, directions, contacts.normals_W),
         forces_unique=forces_unique,
         motion_unique=motion_unique or forces_unique,
     )

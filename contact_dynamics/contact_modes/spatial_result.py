@@ -20,6 +20,7 @@ class SpatialMode:
     contact_forces_W: FloatArray  # (n, 3), N, on the body
     contact_accelerations_W: FloatArray  # (n, 3), m/s^2, of the body's points
     tangential_directions_W: FloatArray  # (n, 3), unit, which way a contact slides; zero: it does not
+    misdirection: float  # rad, largest angle of friction to the way against sliding; 0: Coulomb's, exactly
     forces_unique: bool  # whether the forces are the only ones with this mode
     motion_unique: bool  # whether the accelerations are the only ones with this mode
 

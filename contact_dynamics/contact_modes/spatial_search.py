@@ -89,6 +89,7 @@ class Search:
         for i, pyramid in enumerate(self.pyramids):
             last = pyramid.first + len(pyramid.edges)
             self.edges[3 * i : 3 * i + 3, pyramid.first : last] = pyramid.edges.T
+        self.of_forces = of_forces
         motion = of_forces @ self.edges
         sizes = np.linalg.norm(motion, axis=0)
         sizes[sizes == 0.0] = 1.0
@@ -121,6 +122,13 @@ class Search:
             if self._holds(program):
                 found.append(Found(letters, program))
         return found
+
+    def acting(self, found: Found) -> list[FloatArray]:
+        """Return the edges of each contact's pyramid that its letter allows to act."""
+        return [
+            np.array([e for j, e in enumerate(p.edges) if p.first + j not in letter.zeroed]).reshape(-1, 3)
+            for p, letter in zip(self.pyramids, found.letters, strict=True)
+        ]
 
     def _holds(self, program: Program) -> bool:
         self.examined += 1
