@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.rigid_body import BodyState, rotation_matrix
+from contact_dynamics.rigid_body import BodyState
 from contact_dynamics.uncertainty import check_covariance
 from contact_dynamics.validation import check_unit
 from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
-from msg_adapters.frames import check_frame, origin_of_published_frame
-from msg_adapters.geometry import pose_to_msg, quaternion_from_msg, vector_from_msg, vector_to_msg
+from msg_adapters.frames import check_frame, origin_of_published_frame, turned
+from msg_adapters.geometry import quaternion_from_msg, vector_from_msg
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def body_state_from_msg(msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArr
     check_frame("state.header.frame_id", msg.header.frame_id or world_frame, world_frame)
     q_WB = check_unit("state.pose.orientation", quaternion_from_msg(msg.pose.orientation), 4)
     return BodyState(
-        p_WB_W=vector_from_msg(msg.pose.position) + rotation_matrix(q_WB) @ p_FB_F,
+        p_WB_W=vector_from_msg(msg.pose.position) + turned(q_WB, p_FB_F),
         q_WB=q_WB,
         v_WB_W=vector_from_msg(msg.linear_velocity),
         w_WB_W=vector_from_msg(msg.angular_velocity),
@@ -47,12 +47,16 @@ def body_state_to_msg(
     state: BodyState, *, body_name: str, world_frame: str, p_FB_F: FloatArray
 ) -> BodyStateMsg:
     """Return the state as a message."""
-    msg = BodyStateMsg(body_name=body_name)
+    msg = BodyStateMsg()
     msg.header.stamp = stamp_to_msg(state.stamp_ns)
     msg.header.frame_id = world_frame
-    msg.pose = pose_to_msg(origin_of_published_frame(state, p_FB_F), state.q_WB)
-    msg.linear_velocity = vector_to_msg(state.v_WB_W)
-    msg.angular_velocity = vector_to_msg(state.w_WB_W)
+    msg.body_name = body_name
+    # Into what the message has already: messages cost more to build than to fill.
+    at, turn, v, w = msg.pose.position, msg.pose.orientation, msg.linear_velocity, msg.angular_velocity
+    at.x, at.y, at.z = origin_of_published_frame(state, p_FB_F).tolist()
+    turn.x, turn.y, turn.z, turn.w = state.q_WB.tolist()
+    v.x, v.y, v.z = state.v_WB_W.tolist()
+    w.x, w.y, w.z = state.w_WB_W.tolist()
     return msg
 
 

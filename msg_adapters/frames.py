@@ -7,7 +7,7 @@ The published point moves with F's origin, so that a velocity must be carried ov
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -18,12 +18,22 @@ from contact_dynamics.validation import check_unit
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
+_ORIGIN: Final = [0.0, 0.0, 0.0]
+
 
 def check_frame(field: str, found: str, expected: str) -> None:
     """Raise `FrameMismatchError` where a message's frame is not the one expected."""
     if found != expected:
         message = f"{field}: found {found!r}, allowed is {expected!r}"
         raise FrameMismatchError(message)
+
+
+def turned(q_WB: FloatArray, vector_B: FloatArray) -> FloatArray:
+    """Return a vector, (3,), given in body axes, in world axes; most centres of mass are at 0."""
+    if vector_B.tolist() == _ORIGIN:
+        return vector_B
+    vector_W: FloatArray = rotation_matrix(q_WB) @ vector_B
+    return vector_W
 
 
 def state_of_center_of_mass(
@@ -41,7 +51,7 @@ def state_of_center_of_mass(
         InvalidFieldError: a number is not finite, or the quaternion is not unit.
     """
     q_WB = check_unit("orientation", q_WF, 4)
-    p_FB_W = rotation_matrix(q_WB) @ p_FB_F
+    p_FB_W = turned(q_WB, p_FB_F)
     return BodyState(
         p_WB_W=p_WF_W + p_FB_W,
         q_WB=q_WB,
@@ -53,8 +63,7 @@ def state_of_center_of_mass(
 
 def origin_of_published_frame(state: BodyState, p_FB_F: FloatArray) -> FloatArray:
     """Return the position of F's origin, (3,), m, world."""
-    origin: FloatArray = state.p_WB_W - state.R_WB @ p_FB_F
-    return origin
+    return state.p_WB_W - turned(state.q_WB, p_FB_F)
 
 
 def origins_of_published_frame(p_WB_W: FloatArray, q_WB: FloatArray, p_FB_F: FloatArray) -> FloatArray:

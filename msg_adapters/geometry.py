@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from contact_dynamics.validation import FloatArray
+    from contact_dynamics.vector3 import Vector3 as Vector
 
 
 def vector_from_msg(msg: Vector3 | Point) -> FloatArray:
@@ -23,14 +25,16 @@ def vector_from_msg(msg: Vector3 | Point) -> FloatArray:
 
 def vector_to_msg(vector: Iterable[float]) -> Vector3:
     """Return three numbers as a message."""
-    x, y, z = map(float, vector)
-    return Vector3(x=x, y=y, z=z)
+    msg = Vector3()
+    msg.x, msg.y, msg.z = map(float, vector)
+    return msg
 
 
 def point_to_msg(vector: Iterable[float]) -> Point:
     """Return three coordinates as a message."""
-    x, y, z = map(float, vector)
-    return Point(x=x, y=y, z=z)
+    msg = Point()
+    msg.x, msg.y, msg.z = map(float, vector)
+    return msg
 
 
 def quaternion_from_msg(msg: Quaternion) -> FloatArray:
@@ -40,8 +44,11 @@ def quaternion_from_msg(msg: Quaternion) -> FloatArray:
 
 def pose_to_msg(position: Iterable[float], orientation: Iterable[float]) -> Pose:
     """Return a position and a quaternion x, y, z, w as a message."""
-    x, y, z, w = map(float, orientation)
-    return Pose(position=point_to_msg(position), orientation=Quaternion(x=x, y=y, z=z, w=w))
+    msg = Pose()
+    at, turned = msg.position, msg.orientation
+    at.x, at.y, at.z = map(float, position)
+    turned.x, turned.y, turned.z, turned.w = map(float, orientation)
+    return msg
 
 
 def mass_properties_from_msg(msg: Inertia) -> tuple[MassProperties, FloatArray]:
@@ -50,9 +57,19 @@ def mass_properties_from_msg(msg: Inertia) -> tuple[MassProperties, FloatArray]:
     Raises:
         InvalidFieldError: as `MassProperties`, or the centre of mass is not finite.
     """
-    inertia = ((msg.ixx, msg.ixy, msg.ixz), (msg.ixy, msg.iyy, msg.iyz), (msg.ixz, msg.iyz, msg.izz))
-    mass_properties = MassProperties(mass=msg.m, I_B=np.array(inertia))
-    return mass_properties, check_array("inertia.com", vector_from_msg(msg.com), (3,))
+    com = msg.com
+    return _mass_properties(
+        msg.m, (com.x, com.y, com.z), (msg.ixx, msg.iyy, msg.izz), (msg.ixy, msg.ixz, msg.iyz)
+    )
+
+
+@lru_cache(maxsize=64)  # whoever sends an inertia sends it with every question
+def _mass_properties(
+    mass: float, com: Vector, moments: Vector, products: Vector
+) -> tuple[MassProperties, FloatArray]:
+    (ixx, iyy, izz), (ixy, ixz, iyz) = moments, products
+    inertia = np.array(((ixx, ixy, ixz), (ixy, iyy, iyz), (ixz, iyz, izz)))
+    return MassProperties(mass=mass, I_B=inertia), check_array("inertia.com", com, (3,))
 
 
 def mass_properties_to_msg(mass_properties: MassProperties, p_FB_F: FloatArray) -> Inertia:

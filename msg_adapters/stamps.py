@@ -19,8 +19,9 @@ def stamp_ns_from_msg(msg: Time) -> int:
 
 def stamp_to_msg(stamp_ns: int) -> Time:
     """Return a stamp in ns as a message."""
-    sec, nanosec = divmod(int(stamp_ns), NS_PER_S)
-    return Time(sec=sec, nanosec=nanosec)
+    msg = Time()
+    msg.sec, msg.nanosec = divmod(int(stamp_ns), NS_PER_S)
+    return msg
 
 
 def seconds_between(earlier_ns: int, later_ns: int) -> float:
