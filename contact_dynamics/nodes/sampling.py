@@ -32,6 +32,10 @@ during which nobody else is answered."""
 MOST_INTEGRATED_STEPS: Final = 4000
 """Of the integrator, for the same reason: what a torque spins up takes more than its present rate says."""
 
+MOST_SEARCHED_TURNS: Final = 1000.0
+"""Longest search for a contact in one answer, in turns, for the same reason: a body that spins close to a
+surface without touching it takes a millisecond a turn."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Event:
@@ -56,18 +60,18 @@ def times_of(
         times = _ascending("times", np.array(request.times))
         if len(times) > 0 and times[0] < 0.0:
             raise InvalidFieldError("times[0]", times[0], "a number >= 0 (AT_STAMPS reaches into the past)")
-        _check_reach(motion, times)
+        _check_reach("times", motion, times)
         return times, None
     if request.sampling == request.AT_STAMPS:
         stamps_ns = request.stamps_ns
         _check_count("stamps_ns", len(stamps_ns))
         seconds = [seconds_between(subject.state.stamp_ns, stamp) for stamp in stamps_ns]
         times = _ascending("stamps_ns", np.array(seconds))
-        _check_reach(motion, times)
+        _check_reach("stamps_ns", motion, times)
         return times, None
     duration = or_configured("duration", request.duration, knowledge.parameters.horizon)
     rate = or_configured("rate", request.rate, knowledge.parameters.rate)
-    _check_reach(motion, np.array([duration]))
+    _check_reach("duration", motion, np.array([duration]), search=request.sampling != request.AT_RATE)
     if request.sampling == request.AT_RATE:
         event = None
     elif request.sampling == request.UNTIL_CONTACT:
@@ -126,18 +130,20 @@ def _plane_reached(
     )
 
 
-def _check_reach(motion: FreeMotion | ForcedMotion, times: FloatArray) -> None:
-    """Refuse what would be integrated for too long, before it is; the closed form reaches everywhere."""
-    if not isinstance(motion, ForcedMotion):
-        return
+def _check_reach(
+    field: str, motion: FreeMotion | ForcedMotion, times: FloatArray, *, search: bool = False
+) -> None:
+    """Refuse what would be integrated or searched for too long, before it is."""
+    if isinstance(motion, ForcedMotion):
+        most, when = MOST_INTEGRATED_TURNS, "under torque or drag"
+    elif search:
+        most, when = MOST_SEARCHED_TURNS, "to search for a contact"
+    else:
+        return  # the closed form reaches everywhere
     w_WB_W = motion.state.w_WB_W
     turns = float(np.abs(times).max(initial=0.0)) * math.sqrt(w_WB_W @ w_WB_W) / (2.0 * math.pi)
-    if turns > MOST_INTEGRATED_TURNS:
-        raise InvalidFieldError(
-            "times",
-            f"{turns:.6g} turns of the body ahead",
-            f"at most {MOST_INTEGRATED_TURNS:g} under torque or drag",
-        )
+    if turns > most:
+        raise InvalidFieldError(field, f"{turns:.6g} turns of the body ahead", f"at most {most:g} {when}")
 
 
 def _at_rate(rate: float, duration: float, end: float | None) -> FloatArray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -205,6 +206,36 @@ def test_what_a_torque_spins_up_beyond_reason_is_refused(client: Client) -> None
     assert (
         "times: found 60 s, allowed is no further than 4000 steps of the integrator reach" in answer.message
     )
+
+
+def test_an_endless_search_is_refused_rather_than_begun(client: Client) -> None:
+    """A body that spins for ever, never touching."""
+    request = spinning(w=(0.0, 0.0, 10.0), moments=(0.1, 0.1, 0.1))
+    request.gravity = request.GRAVITY_NONE
+    request.sampling, request.duration, request.plane_normal.z = request.UNTIL_PLANE, 1e9, 1.0
+    request.state.pose.position.z = 1.0
+    answer = client.ask(request)
+    assert answer.status == answer.INVALID_FIELD
+    assert "duration: found 1.59155e+09 turns" in answer.message
+
+
+@pytest.mark.parametrize(
+    ("field", "spoil"),
+    [
+        ("times", lambda r: r.times.append(1e18)),
+        ("angular_velocity", lambda r: setattr(r.state.angular_velocity, "x", 1e200)),
+        ("inertia", lambda r: setattr(r.inertia, "ixx", 1e-200)),
+        ("position", lambda r: setattr(r.state.pose.position, "x", -1e300)),
+        ("want_covariance|state.covariance", lambda r: setattr(r, "want_covariance", True)),
+    ],
+)
+def test_numbers_beyond_reason_are_refused_by_name(client: Client, field: str, spoil: object) -> None:
+    request = spinning(w=(0.1, 0.2, 3.0), moments=(0.1, 0.12, 0.15))
+    request.times = [1.0]
+    spoil(request)
+    answer = client.ask(request)
+    assert answer.status == answer.INVALID_FIELD
+    assert re.search(field, answer.message)
 
 
 def test_curves_of_poinsots_picture_on_request(client: Client) -> None:
