@@ -1,10 +1,12 @@
 """Impact (Mason, lecture 27): what a body's velocity is after it strikes.
 
 In reading order: the laws and outcomes (`law`); the plane, with Routh's construction (`routh`, `planar`,
-`result`, `batch`); space, where sliding swerves (`sliding`, `series`, `stopping`, `progress`, `swerve`,
-`spatial`, `spatial_result`); two moving bodies (`pair`); several contacts at once (`several`,
-`several_planar`, `bodies`, `simultaneous`, `several_result`); strikes in time with
-flight between (`sequence`, `meetings`, `sequence_result`); uncertain states (`uncertain`).
+`result`), two bodies in it (`pair`) and many cases at once (`batch`); space, where a contact responds in all
+directions (`response`) and sliding swerves (`sliding`, `series`, `stopping`, `progress`, `swerve`, `spatial`,
+`spatial_result`), and many cases at once (`spatial_batch`, in `lockstep`, `many_progress`; what both batches
+check is in `table`, the arithmetic that one case and many share in `elementwise`); several contacts at once
+(`several`, `several_planar`, `bodies`, `simultaneous`, `several_result`); strikes in time with flight between
+(`sequence`, `meetings`, `sequence_result`); uncertain states (`uncertain`).
 """
 
 from contact_dynamics.impact.batch import PlanarImpacts, planar_impacts
@@ -26,6 +28,7 @@ from contact_dynamics.impact.several_result import (
     SeveralVerdict,
 )
 from contact_dynamics.impact.spatial import spatial_impact, spatial_pair_impact
+from contact_dynamics.impact.spatial_batch import SpatialImpacts, StrikingBodies, spatial_impacts
 from contact_dynamics.impact.spatial_result import SpatialImpact
 from contact_dynamics.impact.uncertain import (
     ImpactDistribution,
@@ -50,6 +53,8 @@ __all__ = [
     "SeveralImpact",
     "SeveralVerdict",
     "SpatialImpact",
+    "SpatialImpacts",
+    "StrikingBodies",
     "TimedStrike",
     "bodies_impact",
     "impact_sequence",
@@ -63,5 +68,6 @@ __all__ = [
     "several_impact",
     "spatial_impact",
     "spatial_impact_distribution",
+    "spatial_impacts",
     "spatial_pair_impact",
 ]

@@ -1,4 +1,4 @@
-"""Impact of two moving bodies at one contact: one relative problem (Routh 1860; Stronge 2000, ch. 3 and 4).
+"""Impact of two moving planar bodies: one relative problem (Routh 1860; Stronge 2000, ch. 3 and 4).
 
 The impulses on the two bodies are opposite, so that the contact's relative velocity responds with the sum of
 the two inverse inertias, and the laws of one body and the fixed world apply as they are. The *first* body is
@@ -9,24 +9,14 @@ where they are the contact's. Linear and angular momentum of the two together st
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
-
-import numpy as np
 
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.planar import approach
 from contact_dynamics.impact.result import PlanarImpact
 from contact_dynamics.impact.routh import impulse_path, pair_inverse_inertia
-from contact_dynamics.impact.spatial import contact_inverse_inertia, contact_path, pushed
-from contact_dynamics.impact.spatial_result import SpatialImpact
 from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, Vector2, check_vector2
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_array, check_not_negative, check_unit, check_within
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.validation import check_not_negative
 
 
 def planar_pair_impact(
@@ -80,71 +70,6 @@ def planar_pair_impact(
         contact_path=path,
         impulse=(i_x, i_y),
         other_velocity=_planar_pushed(other, other_velocity, (s_x, s_y), (-i_x, -i_y)),
-    )
-
-
-def spatial_pair_impact(
-    body: MassProperties,
-    state: BodyState,
-    other: MassProperties,
-    other_state: BodyState,
-    *,
-    p_WC_W: ArrayLike,
-    n_W: ArrayLike,
-    friction: float,
-    restitution: float,
-    law: RestitutionLaw = RestitutionLaw.POISSON,
-    velocity_tolerance: float = VELOCITY_TOLERANCE,
-) -> SpatialImpact:
-    """Return what the impact of two bodies in space does; no moment passes the contact.
-
-    Args:
-        body: The first body, which the normal points into.
-        state: Of the first body just before.
-        other: The second body.
-        other_state: Of the second body just before.
-        p_WC_W: (3,), m, the contact, world.
-        n_W: (3,), unit normal into the first body, world axes.
-        friction: Coulomb's mu, >= 0.
-        restitution: e, in [0, 1].
-        law: What the coefficient of restitution means.
-        velocity_tolerance: m/s, >= 0. A normal or tangential relative velocity within it counts as zero.
-
-    Raises:
-        SeparatingContactError: the contact's relative normal velocity is above the tolerance.
-        InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, or e outside [0, 1].
-    """
-    normal = check_unit("contact normal", n_W, 3)
-    point = check_array("contact position", p_WC_W, (3,))
-    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
-    arm, other_arm = point - state.p_WB_W, point - other_state.p_WB_W
-    inverse = contact_inverse_inertia(body, state, arm) + contact_inverse_inertia(
-        other, other_state, other_arm
-    )
-    before = state.velocity_of_point(point) - other_state.velocity_of_point(point)
-    axes, path = contact_path(
-        inverse,
-        normal,
-        before,
-        friction=check_not_negative("friction", friction),
-        restitution=check_within("restitution", restitution, 0.0, 1.0),
-        law=law,
-        tolerance=tolerance,
-    )
-    impulse = axes @ path.impulse
-    return SpatialImpact(
-        law=law,
-        outcome=path.outcome,
-        jams=path.jams,
-        state=pushed(body, state, arm, impulse),
-        impulse_W=impulse,
-        compression_W=axes @ path.compression,
-        path_W=np.array([vertex for _, vertex in path.vertices]) @ axes.T,
-        path_events=tuple(event for event, _ in path.vertices),
-        velocity_before_W=before,
-        velocity_after_W=axes @ (path.u[0], path.u[1], path.v_n),
-        inverse_inertia_W=inverse,
-        other_state=pushed(other, other_state, other_arm, -impulse),
     )
 
 

@@ -5,6 +5,8 @@ compares (Poisson: normal impulse; energetic: work of the normal impulse) is col
 given back in restitution; Newton's law only looks at the normal velocity. In space the sliding direction
 swerves, so that a contact can approach once more before its restitution is over: what the second compression
 collects is added to what was left of the first.
+
+One path is followed here, with its vertices; `lockstep` repeats the same operations for many at once.
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ import math
 from typing import TYPE_CHECKING
 
 from contact_dynamics.impact.law import PathEvent, RestitutionLaw
+from contact_dynamics.impact.series import crossing, value
 
 if TYPE_CHECKING:
     from contact_dynamics.impact.series import SlidingSeries
@@ -31,9 +34,9 @@ class Progress:
         self.compressing = True
         self.over = False
         self.path: list[tuple[PathEvent, Impulse]] = [(PathEvent.START, self.impulse)]
-        self._final_velocity = restitution * -v_n  # m/s, Newton's
-        self._share = restitution * restitution if law == RestitutionLaw.ENERGETIC else restitution
-        self._due = 0.0  # N s or J
+        self.final_velocity = restitution * -v_n  # m/s, Newton's end
+        self.share = restitution * restitution if law == RestitutionLaw.ENERGETIC else restitution
+        self.due = 0.0  # N s or J, what restitution still owes
 
     def go_straight(self, length: float, rates: Impulse, lifting: float) -> float:
         """Advance by at most ``length`` of normal impulse at constant ``rates`` of the impulse and of v_n.
@@ -73,16 +76,16 @@ class Progress:
             The parameter reached; less than ``end`` where the impact was over before.
         """
         s = begin
-        value, v_n = series.value, series.normal_velocity
+        v_n = series.normal_velocity
         while not self.over:
             v_end = value(v_n, end)
             if self.compressing:
                 if v_end < 0.0:
                     return self._curved_step(series, s, end)
-                s = self._curved_step(series, s, series.crossing(v_n, 0.0, s, end))
+                s = self._curved_step(series, s, crossing(v_n, 0.0, s, end))
                 self._end_compression()
                 continue
-            turn = series.crossing(v_n, 0.0, s, end) if v_end < 0.0 else end
+            turn = crossing(v_n, 0.0, s, end) if v_end < 0.0 else end
             finish = self._curved_finish(series, s, turn)
             s = self._curved_step(series, s, turn if finish is None else finish)
             if finish is not None:
@@ -125,21 +128,21 @@ class Progress:
 
     def _distance_to_end(self, lifting: float) -> float:
         if self.law == RestitutionLaw.POISSON:
-            return self._due
+            return self.due
         if self.law == RestitutionLaw.NEWTON:
-            missing = self._final_velocity - self.v_n
+            missing = self.final_velocity - self.v_n
             if missing <= 0.0:
                 return 0.0
             return missing / lifting if lifting > 0.0 else math.inf
-        if self._due <= 0.0:
+        if self.due <= 0.0:
             return 0.0
-        square = self.v_n * self.v_n + 2.0 * lifting * self._due
-        return 2.0 * self._due / (self.v_n + math.sqrt(square)) if square > 0.0 else math.inf
+        square = self.v_n * self.v_n + 2.0 * lifting * self.due
+        return 2.0 * self.due / (self.v_n + math.sqrt(square)) if square > 0.0 else math.inf
 
     def _ends_within(self, p: float, v_n: float, work: float) -> bool:
         if self.law == RestitutionLaw.NEWTON:
-            return v_n >= self._final_velocity
-        return (p if self.law == RestitutionLaw.POISSON else work) >= self._due
+            return v_n >= self.final_velocity
+        return (p if self.law == RestitutionLaw.POISSON else work) >= self.due
 
     def _curved_step(self, series: SlidingSeries, begin: float, end: float) -> float:
         p = series.gain(series.normal_impulse, begin, end)
@@ -151,23 +154,23 @@ class Progress:
             i2 + series.gain(series.t2, begin, end),
             i_n + p,
         )
-        self.v_n = series.value(series.normal_velocity, end)
+        self.v_n = value(series.normal_velocity, end)
         return end
 
     def _curved_finish(self, series: SlidingSeries, begin: float, end: float) -> float | None:
         """Return the parameter in [begin, end] at which restitution is complete, if it is."""
         if self.law == RestitutionLaw.NEWTON:
-            meter, level = series.normal_velocity, self._final_velocity
+            meter, level = series.normal_velocity, self.final_velocity
         else:
             meter = series.normal_impulse if self.law == RestitutionLaw.POISSON else series.normal_work
-            level = series.value(meter, begin) + self._due
-        if series.value(meter, begin) >= level:
+            level = value(meter, begin) + self.due
+        if value(meter, begin) >= level:
             return begin
-        return series.crossing(meter, level, begin, end) if series.value(meter, end) >= level else None
+        return crossing(meter, level, begin, end) if value(meter, end) >= level else None
 
     def _account(self, p: float, work: float) -> None:
         amount = work if self.law == RestitutionLaw.ENERGETIC else p
-        self._due += self._share * abs(amount) if self.compressing else -amount
+        self.due += self.share * abs(amount) if self.compressing else -amount
 
     def _end_compression(self) -> None:
         self.v_n = 0.0

@@ -10,9 +10,10 @@ from __future__ import annotations
 import math
 from typing import Final, NamedTuple
 
+from contact_dynamics.impact.elementwise import Number
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.impact.progress import Impulse, Progress
-from contact_dynamics.impact.series import SlidingSeries
+from contact_dynamics.impact.series import SlidingSeries, crossing, value
 from contact_dynamics.impact.sliding import SlidingLaw
 from contact_dynamics.impact.stopping import Stop, stop_ahead
 
@@ -28,7 +29,7 @@ STOPPED: Final = 1e-13
 """Dimensionless, of the first sliding speed. The error in impulse from going the rest of the way straight is
 below this part of the impulse that stops the contact."""
 
-_MOST_STRETCHES: Final = 2000
+MOST_STRETCHES: Final = 2000
 
 
 class SpatialPath(NamedTuple):
@@ -51,14 +52,14 @@ def trace(
     An exact 0 means a contact that does not slide or does not approach; tolerances are the caller's.
     """
     u1, u2 = u
-    speed = math.hypot(u1, u2)
+    speed = math.sqrt(u1 * u1 + u2 * u2)
     jams = speed > 0.0 and sliding.lifting(u1 / speed, u2 / speed) < 0.0
     progress = Progress(law, restitution, v_n)
     if v_n == 0.0 and not jams:
         none = progress.impulse
         return SpatialPath(ImpactOutcome.NO_IMPULSE, jams, progress.path, none, none, u, 0.0)
     if speed > 0.0:
-        u = _slide(sliding, u, progress)
+        u = slide(sliding, u, progress, first_speed=speed, started=False)
         if progress.over:
             return _path(ImpactOutcome.SLIDES, progress, u, jams=jams)
         in_compression = progress.compressing
@@ -71,14 +72,12 @@ def trace(
         u = ((sliding.k1 + sliding.l1 * i1) * gone, (sliding.k2 + sliding.l2 * i2) * gone)
     if speed == 0.0:
         outcome = ImpactOutcome.STICKS_THROUGHOUT if speeding == 0.0 else ImpactOutcome.SLIDES
-    elif speeding == 0.0:
-        outcome = (
-            ImpactOutcome.STICKS_IN_COMPRESSION if in_compression else ImpactOutcome.STICKS_IN_RESTITUTION
-        )
+    elif in_compression:
+        held, reversed_ = ImpactOutcome.STICKS_IN_COMPRESSION, ImpactOutcome.REVERSES_IN_COMPRESSION
+        outcome = held if speeding == 0.0 else reversed_
     else:
-        outcome = (
-            ImpactOutcome.REVERSES_IN_COMPRESSION if in_compression else ImpactOutcome.REVERSES_IN_RESTITUTION
-        )
+        held, reversed_ = ImpactOutcome.STICKS_IN_RESTITUTION, ImpactOutcome.REVERSES_IN_RESTITUTION
+        outcome = held if speeding == 0.0 else reversed_
     return _path(outcome, progress, u, jams=jams)
 
 
@@ -86,29 +85,41 @@ def _path(outcome: ImpactOutcome, progress: Progress, u: tuple[float, float], *,
     return SpatialPath(outcome, jams, progress.path, progress.compression, progress.impulse, u, progress.v_n)
 
 
-def _slide(sliding: SlidingLaw, u: tuple[float, float], progress: Progress) -> tuple[float, float]:
-    """Follow sliding until it stops or the impact is over; return the sliding velocity there, m/s."""
-    slowest = STOPPED * math.hypot(*u)
+def slide(
+    sliding: SlidingLaw, u: tuple[float, float], progress: Progress, *, first_speed: float, started: bool
+) -> tuple[float, float]:
+    """Follow sliding until it stops or the impact is over; return the sliding velocity there, m/s.
+
+    Args:
+        sliding: Its law.
+        u: m/s, the present sliding velocity.
+        progress: How far the impact has come; it is advanced.
+        first_speed: m/s, that of the whole path, which errors are compared with.
+        started: Whether sliding has already swerved.
+    """
+    u1, u2 = u
+    slowest = STOPPED * first_speed
     still = max(STRAIGHT * sliding.scale, UNCOUPLED * (sliding.l1 + sliding.l2))
     with_work = progress.law == RestitutionLaw.ENERGETIC
-    for stretch in range(_MOST_STRETCHES):
-        speed = math.hypot(*u)
-        d1, d2 = u[0] / speed, u[1] / speed
+    for _ in range(MOST_STRETCHES):
+        speed = math.sqrt(u1 * u1 + u2 * u2)
+        d1, d2 = u1 / speed, u2 / speed
         speeding, lifting = sliding.speeding(d1, d2), sliding.lifting(d1, d2)
         straight = abs(sliding.turning(d1, d2)) <= still
-        if straight and (stretch == 0 or sliding.attraction(d1, d2) < 0.0):
+        if (straight and (not started or sliding.attraction(d1, d2) < 0.0)) or (
+            speeding < 0.0 and speed <= slowest
+        ):
             return _slide_straight(sliding, (d1, d2), speed, progress)
         if speeding < 0.0:
-            if speed <= slowest:
-                return _slide_straight(sliding, (d1, d2), speed, progress)
-            stop = stop_ahead(sliding, *u, with_work=with_work)
-            if stop is not None and _jump(sliding, u, stop, lifting, progress):
+            stop = stop_ahead(sliding, (u1, u2), first_speed, with_work=with_work)
+            if stop is not None and _jump(sliding, (u1, u2), stop, lifting, progress):
                 return (0.0, 0.0)
-        series = SlidingSeries(sliding, u, progress.v_n, with_work=with_work)
-        u = _slide_along(series, progress, lifting)
+        series = SlidingSeries(sliding, (u1, u2), progress.v_n, with_work=with_work)
+        u1, u2 = _slide_along(series, progress, lifting)
         if progress.over:
-            return u
+            return (u1, u2)
         progress.sample()
+        started = True
     raise AssertionError  # each stretch turns or slows the sliding by a fixed part
 
 
@@ -116,13 +127,21 @@ def _jump(
     sliding: SlidingLaw, u: tuple[float, float], stop: Stop, lifting: float, progress: Progress
 ) -> bool:
     """Go to the stop ahead at once, if neither compression nor the impact ends before it."""
-    if (lifting < 0.0) != (sliding.lifting(*stop.d) < 0.0):
+    if (lifting < 0.0) != (sliding.lifting(stop.d1, stop.d2) < 0.0):
         return False
+    impulse, v_n, work = at_stop(sliding, u, progress.v_n, stop)
+    return progress.jump(impulse, v_n, work)
+
+
+def at_stop(
+    sliding: SlidingLaw, u: tuple[Number, Number], v_n: Number, stop: Stop
+) -> tuple[tuple[Number, Number, Number], Number, Number]:
+    """Return the impulse from a state to its stop, the normal velocity there, and the normal work, J."""
     p = stop.p
     i1, i2 = -(u[0] + sliding.k1 * p) / sliding.l1, -(u[1] + sliding.k2 * p) / sliding.l2
-    v_n = progress.v_n + sliding.kn * p + sliding.k1 * i1 + sliding.k2 * i2
-    work = 0.5 * (i1 * u[0] + i2 * u[1] + p * (progress.v_n + v_n)) + stop.dissipated
-    return progress.jump((i1, i2, p), v_n, work)
+    v_stop = v_n + sliding.kn * p + sliding.k1 * i1 + sliding.k2 * i2
+    work = 0.5 * (i1 * u[0] + i2 * u[1] + p * (v_n + v_stop)) + stop.dissipated
+    return (i1, i2, p), v_stop, work
 
 
 def _slide_straight(
@@ -139,10 +158,9 @@ def _slide_straight(
 def _slide_along(series: SlidingSeries, progress: Progress, lifting: float) -> tuple[float, float]:
     """Advance along one stretch, split where v_n turns."""
     end = series.length
-    rate = [c * (n + 1) for n, c in enumerate(series.normal_velocity[1:])]
     s = 0.0
-    if (series.value(rate, end) < 0.0) != (lifting < 0.0):
-        s = progress.go_curved(series, 0.0, series.crossing(rate, 0.0, 0.0, end))
+    if (value(series.lifting, end) < 0.0) != (lifting < 0.0):
+        s = progress.go_curved(series, 0.0, crossing(series.lifting, 0.0, 0.0, end))
     if not progress.over:
         s = progress.go_curved(series, s, end)
-    return (series.value(series.u1, s), series.value(series.u2, s))
+    return (value(series.u1, s), value(series.u2, s))

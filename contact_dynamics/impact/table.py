@@ -1,0 +1,90 @@
+"""The gates of batches: a row a case, or one row that stands for all, checked as the scalar calls check.
+
+Each error names the field and the first row that is not allowed.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.tolerances import UNIT_LENGTH_TOLERANCE
+from contact_dynamics.validation import LENGTH_ROUNDING, FloatArray, check_array
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from numpy.typing import ArrayLike, NDArray
+
+
+def check_rows(
+    field: str,
+    value: ArrayLike,
+    shape: tuple[int, ...] = (),
+    allowed: str = "",
+    test: Callable[[FloatArray], NDArray[np.bool_]] | None = None,
+) -> FloatArray:
+    """Return ``value`` as finite numbers, (N, *shape); a single case becomes N = 1.
+
+    Args:
+        field: Its name in an error.
+        value: (N, *shape) or ``shape``.
+        shape: Of one case.
+        allowed: What an error says is allowed.
+        test: Returns which rows are.
+    """
+    try:
+        single = np.ndim(value) == len(shape)
+        array = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InvalidFieldError(field, value, f"numbers, (N, *{shape}) or {shape}") from None
+    rows = check_array(field, array[None] if single else array, (None, *shape))
+    if test is not None:
+        for i in np.flatnonzero(~test(rows))[:1]:
+            raise InvalidFieldError(f"{field}[{i}]", rows[i].tolist(), allowed)
+    return rows
+
+
+def check_positive_rows(field: str, value: ArrayLike) -> FloatArray:
+    """Return numbers > 0, (N,)."""
+    return check_rows(field, value, (), "a number > 0", lambda x: x > 0.0)
+
+
+def check_not_negative_rows(field: str, value: ArrayLike) -> FloatArray:
+    """Return numbers >= 0, (N,)."""
+    return check_rows(field, value, (), "a number >= 0", lambda x: x >= 0.0)
+
+
+def check_share_rows(field: str, value: ArrayLike) -> FloatArray:
+    """Return numbers in [0, 1], (N,)."""
+    return check_rows(field, value, (), "a number in [0, 1]", lambda x: (x >= 0.0) & (x <= 1.0))
+
+
+def check_unit_rows(field: str, value: ArrayLike, width: int) -> FloatArray:
+    """Return vectors scaled to norm 1, (N, width), as `check_unit` scales each."""
+    rows = check_rows(field, value, (width,))
+    total = np.zeros(len(rows))
+    for column in rows.T:
+        total += column * column
+    norms = np.sqrt(total)
+    off = abs(norms - 1.0)
+    for i in np.flatnonzero(off > UNIT_LENGTH_TOLERANCE)[:1]:
+        raise InvalidFieldError(f"{field}[{i}]", rows[i].tolist(), "a unit vector")
+    return rows / np.where(off > LENGTH_ROUNDING, norms, 1.0)[:, None]
+
+
+def check_law_rows(field: str, value: ArrayLike) -> FloatArray:
+    """Return values of `RestitutionLaw`, (N,)."""
+    known = [float(law) for law in RestitutionLaw]
+    return check_rows(field, value, (), "a value of RestitutionLaw", lambda x: np.isin(x, known))
+
+
+def common_length(fields: Mapping[str, FloatArray]) -> int:
+    """Return the number of cases; refuse fields of different lengths, but for single rows."""
+    lengths = {name: len(rows) for name, rows in fields.items() if len(rows) != 1}
+    if len(set(lengths.values())) > 1:
+        raise InvalidFieldError("batch", f"arrays of lengths {lengths}", "one length N, or single cases")
+    return next(iter(lengths.values()), 1)
