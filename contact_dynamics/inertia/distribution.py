@@ -17,7 +17,7 @@ import numpy as np
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body import MassProperties, rotation_matrix
 from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, TRIANGLE_TOLERANCE
-from contact_dynamics.validation import FloatArray, check_array, check_positive, check_unit
+from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_positive, check_unit
 from contact_dynamics.world import Body
 
 if TYPE_CHECKING:
@@ -32,8 +32,8 @@ class MassDistribution:
     """A rigid distribution of mass in a frame F.
 
     Raises:
-        InvalidFieldError: mass not > 0, a number not finite, or an inertia that no mass has: not symmetric,
-            or principal moments that break I1 + I2 >= I3.
+        InvalidFieldError: mass not > 0, a number not finite, a centre beyond `LARGEST_NUMBER`, or an inertia
+            that no mass has: not symmetric, or principal moments that break I1 + I2 >= I3.
     """
 
     mass: float  # kg, > 0
@@ -43,7 +43,8 @@ class MassDistribution:
     def __post_init__(self) -> None:
         """Check all fields."""
         object.__setattr__(self, "mass", check_positive("mass", self.mass))
-        object.__setattr__(self, "p_FB_F", check_array("center_of_mass", self.p_FB_F, (3,)))
+        center = check_array("center_of_mass", self.p_FB_F, (3,))
+        object.__setattr__(self, "p_FB_F", check_magnitude("center_of_mass", center))
         object.__setattr__(self, "I_B", _check_inertia("inertia", self.I_B))
 
     @classmethod

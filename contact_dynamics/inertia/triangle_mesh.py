@@ -16,7 +16,7 @@ from contact_dynamics.inertia.distribution import MassDistribution, inertia_of_s
 from contact_dynamics.inertia.parts import check_facing
 from contact_dynamics.inertia.polyhedron import polyhedron, signed_volumes
 from contact_dynamics.inertia.surface import closed_surface
-from contact_dynamics.validation import FloatArray, check_array
+from contact_dynamics.validation import FloatArray, check_array, check_magnitude
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -43,7 +43,7 @@ def mesh(
             inside out or flat, or has a part within a solid: the message names the edge, triangle or volume.
             Or a number is not finite, an index names no vertex, not exactly one of mass and density is given.
     """
-    vertices = check_array("vertices", p_FV_F, (None, 3))
+    vertices = check_magnitude("vertices", check_array("vertices", p_FV_F, (None, 3)))
     surface = closed_surface(vertices, triangles)
     check_facing(vertices, surface)
     return _solid(vertices, surface.triangles, mass, density)
@@ -62,7 +62,7 @@ def convex_hull(
     """
     from scipy.spatial import ConvexHull, QhullError
 
-    vertices = check_array("vertices", p_FV_F, (None, 3))
+    vertices = check_magnitude("vertices", check_array("vertices", p_FV_F, (None, 3)))
     flat = InvalidFieldError("vertices", f"{len(vertices)} points", "four or more, not in one plane")
     if len(vertices) < 4:
         raise flat

@@ -302,3 +302,17 @@ def test_a_hull_of_points_is_the_mesh_of_its_corners(seed: int, count: int) -> N
     first, second, third = np.linalg.eigvalsh(whole.I_B)
     assert first + second > third
     assert whole.body("hull", vertices_F=points).mass_properties.mass == whole.mass
+
+
+@pytest.mark.parametrize("shape", ["mesh", "hull"])
+def test_any_size_that_can_be_cubed(shape: str) -> None:
+    def cube(size: float) -> MassDistribution:
+        vertices = box_vertices((1.0, 1.0, 1.0)) * size
+        if shape == "hull":
+            return inertia.convex_hull(vertices, mass=1.0)
+        return inertia.mesh(vertices, BOX_TRIANGLES, mass=1.0)
+
+    for size in (1e-60, 1e-9, 1e20, 1e60):
+        assert cube(size).I_B[0, 0] == pytest.approx(size**2 / 6.0, rel=1e-14)
+    with pytest.raises(InvalidFieldError, match=r"vertices: found 1e\+61, allowed is"):
+        cube(2e61)
