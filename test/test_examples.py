@@ -15,6 +15,7 @@ EXAMPLES = {
     "tumbling_t_handle.py": "about_minor_axis",
     "sliding_rod.py": "sliding left under gravity: inconsistent",
     "next_landing.py": "impulse",
+    "poinsot.py": "about_major_axis",
     "tray.py": "brings about rsrs",
 }
 

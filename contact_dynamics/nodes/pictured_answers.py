@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -10,6 +11,7 @@ from contact_dynamics.impact.law import ImpactOutcome
 from contact_dynamics.rigid_body import rotation_matrix
 from contact_dynamics.tumbling import Trajectory
 from contact_dynamics.viewing.impact import ImpactPicture
+from contact_dynamics.viewing.poinsot import PoinsotPicture
 from contact_dynamics_interfaces.msg import Poinsot
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 from msg_adapters.body_state import body_state_from_msg
@@ -45,6 +47,13 @@ def show_tumbling(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns
     name = response.state.body_name
     trajectory = trajectory_from_msg(response.trajectory, p_FB_F=p_FB_F)
     picture.show_trajectory(name, trajectory, stamp_ns=stamp_ns)
+    if len(response.poinsot.polhode) > 0 and response.poinsot.regime not in (
+        Poinsot.UNKNOWN,
+        Poinsot.AT_REST,
+    ):
+        state = body_state_from_msg(response.state, world_frame=response.state.header.frame_id, p_FB_F=p_FB_F)
+        shown = poinsot_picture(response.poinsot)
+        picture.show_poinsot(shown, state=replace(state, stamp_ns=stamp_ns), body_name=name)
     if response.event == PredictTumbling.Response.NONE:
         event = f"has {len(trajectory)} samples"
         if len(trajectory) > 0:
@@ -55,6 +64,18 @@ def show_tumbling(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns
         where = response.event_surface or "the plane"
         event = f"reaches {where} in {response.event_time:.4g} s at ({point}) m with {speed:.3g} m/s"
     tell(picture, TUMBLING, [event, REGIMES[response.poinsot.regime]], response, stamp_ns=stamp_ns)
+
+
+def poinsot_picture(msg: Any) -> PoinsotPicture:
+    """Return Poinsot's picture of a rotation that is not rest."""
+    return PoinsotPicture(
+        semi_axes=np.sqrt(2.0 * msg.rotational_energy / np.array(msg.principal_moments)),
+        principal_axes_B=np.array(msg.principal_axes).reshape(3, 3),
+        L_W=np.array(msg.angular_momentum),
+        distance=msg.invariable_plane_distance,
+        polhode_B=rows(msg.polhode),
+        herpolhode_W=rows(msg.herpolhode),
+    )
 
 
 def show_impact(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns: int) -> None:

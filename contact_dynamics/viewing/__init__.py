@@ -2,9 +2,10 @@
 
 In reading order: the colours (`palette`) and what they mean in words (`legend`), names of what is drawn
 (`entities`), bodies and surfaces (`shape`, `scene`), what was measured (`measured`), the three kinds of
-answers (`trajectory`, `impact` with its `impulse_space`, `contact_modes`), lecture 26's pictures of wrenches
-and modes (`planar_scene`, `wrench_chart`, `mode_map`, `force_dual`), the arrangement of the views
-(`blueprint`), all of it together (`picture`), and where it goes (`sinks`).
+answers (`trajectory`, `impact` with its `impulse_space`, `contact_modes`), lecture 25's picture of rotations
+(`poinsot`), lecture 26's of modes and wrenches (`planar_scene`, `planar_modes`, `wrench_chart`, `mode_map`,
+`force_dual`), the arrangement of the views (`blueprint`), all of it together (`picture`), and where it goes
+(`sinks`).
 
 Everything is drawn on one timeline, `stamp`: the stamps of the states, to the nanosecond. An answer appears
 at the stamp of the state that it was computed from, never later, so that a live view that follows the newest

@@ -17,6 +17,7 @@ from contact_dynamics.viewing.entities import (
     MODE_MAP,
     NEWEST_ANSWERS,
     PLANAR_MODES,
+    POINSOT,
     SCENE,
     SPEED,
     TIMELINE,
@@ -48,6 +49,7 @@ DIAGRAMS: Final = {
     IMPULSE_SPACE: "Impulse space",
     MODE_MAP: "Mode map",
     PLANAR_MODES: "Contact modes",
+    POINSOT: "Poinsot",
 }
 """What has a tab beside the scene once there is something to see; the first of them is open."""
 
@@ -115,11 +117,7 @@ def make_blueprint(
     )
     tabs = []
     if diagrams:
-        views = [
-            rrb.Spatial2DView(origin=origin, name=name, background=palette.BACKGROUND)
-            for origin, name in DIAGRAMS.items()
-            if origin in diagrams
-        ]
+        views = [_diagram(origin) for origin in DIAGRAMS if origin in diagrams]
         tabs = [rrb.Tabs(*views, active_tab=0)]
     curves = [
         _curves(HEIGHT, "Height of the centre of mass, m"),
@@ -140,6 +138,28 @@ def make_blueprint(
         rrb.SelectionPanel(state=rrb.PanelState.Collapsed),
         rrb.TimePanel(state=rrb.PanelState.Collapsed, timeline=TIMELINE, play_state="Following"),
     )
+
+
+def poinsot_view() -> rrb.Spatial3DView:
+    """Return the view of Poinsot's picture, with the invariable plane below."""
+    return rrb.Spatial3DView(
+        origin=POINSOT,
+        name="Poinsot",
+        background=rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor),
+        line_grid=False,
+        eye_controls=rrb.EyeControls3D(
+            kind=rrb.Eye3DKind.Orbital,
+            position=(1.35, -1.65, 0.55),
+            look_target=(0.0, 0.0, -0.25),
+            eye_up=(0, 0, 1),
+        ),
+    )
+
+
+def _diagram(origin: str) -> rrb.Spatial2DView | rrb.Spatial3DView:
+    if origin == POINSOT:
+        return poinsot_view()
+    return rrb.Spatial2DView(origin=origin, name=DIAGRAMS[origin], background=palette.BACKGROUND)
 
 
 def _curves(origin: str, name: str) -> rrb.TimeSeriesView:

@@ -16,6 +16,7 @@ MODE_MAP: Final = "mode_map"
 FORCE_DUAL: Final = "force_dual"
 PLANAR_MODES: Final = "planar_modes"
 PLANAR_SCENE: Final = "planar_scene"
+POINSOT: Final = "poinsot"
 HEIGHT: Final = "height"
 SPEED: Final = "speed"
 ANSWERS: Final = "answers"
@@ -52,3 +53,8 @@ def impact_entity(body_name: str) -> str:
 def contacts_entity(body_name: str) -> str:
     """Return the path of a body's contact modes."""
     return entity("world/contacts", body_name or "unnamed")
+
+
+def poinsot_entity(body_name: str) -> str:
+    """Return the path of Poinsot's picture of a body's rotation."""
+    return entity(POINSOT, body_name or "unnamed")

@@ -31,4 +31,8 @@ The *mode map* shows which applied wrench brings about which mode. Each point of
 angle that of the force, its distance from the centre the share of force, the centre a pure torque. White:
 several modes are consistent; black: none is. Red: the wrench in question, and its least change into another
 mode. Of a moving body, the square shows forces at the applied torque.
+
+*Poinsot*: in the space of angular velocities the inertia ellipsoid turns with the body and rolls on the plane
+at right angles to the angular momentum (white). Yellow: the angular velocity, which ends where they touch.
+Orange: its way on the ellipsoid, the polhode; green: on the plane, the herpolhode.
 """

@@ -58,6 +58,12 @@ STICKING_LINE: Final[Color] = (95, 210, 105, 255)
 COMPRESSION_LINE: Final[Color] = (90, 205, 235, 255)
 """Cyan, in impulse space: impulses after which the contact does not approach."""
 
+POLHODE: Final[Color] = (255, 160, 40, 255)
+"""Orange: where the angular velocity goes on the inertia ellipsoid."""
+
+HERPOLHODE: Final[Color] = (95, 210, 105, 255)
+"""Green: where it goes on the invariable plane."""
+
 BACKGROUND: Final[Color] = (24, 27, 32, 255)
 """Behind the 3D view and impulse space."""
 

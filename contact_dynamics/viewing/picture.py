@@ -18,12 +18,14 @@ from contact_dynamics.viewing.entities import (
     MODE_MAP,
     NEWEST_ANSWERS,
     PLANAR_MODES,
+    POINSOT,
 )
 from contact_dynamics.viewing.impact import draw_impact
 from contact_dynamics.viewing.impulse_space import draw_impulse_space
 from contact_dynamics.viewing.legend import LEGEND_TEXT
 from contact_dynamics.viewing.measured import draw_prediction_at, draw_states, set_time, style_series
 from contact_dynamics.viewing.planar_modes import draw_planar_modes, silhouette
+from contact_dynamics.viewing.poinsot import draw_poinsot, draw_rolling
 from contact_dynamics.viewing.scene import draw_axes, draw_body, draw_surface
 from contact_dynamics.viewing.shape import Shape, convex_shape
 from contact_dynamics.viewing.trajectory import draw_trajectory
@@ -37,6 +39,7 @@ if TYPE_CHECKING:
     from contact_dynamics.viewing.contact_modes import ContactModesPicture
     from contact_dynamics.viewing.impact import ImpactPicture
     from contact_dynamics.viewing.planar_modes import PlanarModesPicture
+    from contact_dynamics.viewing.poinsot import PoinsotPicture
     from contact_dynamics.world import Body, World
 
 _UNKNOWN: Final = np.zeros((0, 3))
@@ -60,6 +63,7 @@ class Picture:
         self._newest: dict[str, BodyState] = {}
         self._predictions: dict[str, _Prediction] = {}
         self._answers: dict[str, str] = {}
+        self._rolling: set[str] = set()  # bodies that Poinsot's picture was drawn of
         self._framed = False
         self._eye: Eye | None = None
         self._diagrams: set[str] = set()  # those that have been drawn
@@ -84,6 +88,8 @@ class Picture:
                 begin_ns=prediction.begin_ns,
                 up_W=self._up_W,
             )
+        if body_name in self._rolling:
+            draw_rolling(self._recording, body_name, states)
         self._newest[body_name] = states[-1]
         self._recent.extend((state.stamp_ns, state.p_WB_W) for state in states)
         while self._recent[-1][0] - self._recent[0][0] > WINDOW_S * 1e9:
@@ -97,6 +103,14 @@ class Picture:
         if len(trajectory) > 0 and not self._framed:
             self._framed = True
             self._look_at(trajectory.p_WB_W)  # later ones leave the view to whoever looks
+
+    def show_poinsot(self, picture: PoinsotPicture, *, state: BodyState, body_name: str) -> None:
+        """Draw Poinsot's picture of the rotation that a state began; later states roll it on."""
+        set_time(self._recording, state.stamp_ns)
+        draw_poinsot(self._recording, body_name, picture)
+        draw_rolling(self._recording, body_name, [state])
+        self._rolling.add(body_name)
+        self._bring_up(POINSOT)
 
     def show_impact(self, body_name: str, impact: ImpactPicture, *, stamp_ns: int) -> None:
         """Draw a predicted impact in the scene and in impulse space."""

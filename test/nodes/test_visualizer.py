@@ -224,6 +224,23 @@ def test_a_trajectory_is_that_of_the_centre_of_mass(bench: Bench) -> None:
     assert "it tumbles about its major axis (1.2 ms)" in text
 
 
+def test_polhode_and_herpolhode_are_drawn_where_the_answer_carries_them(bench: Bench) -> None:
+    answer = tumbling_answer()
+    answer.poinsot.rotational_energy = 0.5
+    answer.poinsot.principal_moments = [0.01, 0.04, 0.0625]
+    answer.poinsot.principal_axes = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
+    answer.poinsot.angular_momentum = [0.0, 0.0, 0.2]
+    answer.poinsot.invariable_plane_distance = 5.0
+    answer.poinsot.polhode = answer.poinsot.herpolhode = [0.0, 0.0, 5.0, 1.0, 0.0, 5.0]
+    bench.answer("predict_tumbling", answer)
+    bench.states.publish(odometry(STAMP_NS + 7, 0.1))
+    bench.spin_until(lambda: bench.received == 2)
+    drawn = bench.drawn()
+    net = np.vstack(drawn.array("/poinsot/brick/body/ellipsoid", "LineStrips3D:strips"))
+    np.testing.assert_allclose(net.max(axis=0), [10.0, 5.0, 4.0], rtol=1e-3)
+    assert drawn.stamps("/poinsot/brick/body", "Transform3D:quaternion") == [STAMP_NS, STAMP_NS + 7]
+
+
 def test_an_impact_is_drawn_when_it_was_asked_for(bench: Bench) -> None:
     bench.answer("predict_impact", impact_answer(two_contacts()))
     drawn = bench.drawn()

@@ -7,7 +7,7 @@ import pytest
 from rerun.chunk import RrdReader
 
 from contact_dynamics.viewing.blueprint import DIAGRAMS, LOWEST_DISTANCE, Eye, eye_on, make_blueprint
-from contact_dynamics.viewing.entities import MODE_MAP, entity, impact_entity, predicted_entity, trail_entity
+from contact_dynamics.viewing.entities import MODE_MAP, POINSOT, entity, impact_entity, predicted_entity, trail_entity
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -60,7 +60,8 @@ def test_the_arrangement_holds_every_view(tmp_path: Path, eye: Eye | None, diagr
         if "ViewBlueprint:display_name" in batch.schema.names:
             names += [name for row in batch.column("ViewBlueprint:display_name").to_pylist() for name in row]
     assert len(names) == 6 + len(diagrams)
-    assert sum("EyeControls3D" in path for path in paths) == (eye is not None)
+    eyes = (eye is not None) + (POINSOT in diagrams)
+    assert sum("EyeControls3D" in path for path in paths) == eyes
     for name in ("brick", "arm/tool 1"):
         recent = [trail_entity(name), f"{predicted_entity(name)}/path", f"{impact_entity(name)}/impulse"]
         for kept in recent:

@@ -1,0 +1,124 @@
+"""Poinsot's picture: the inertia ellipsoid of a free body rolls on the invariable plane (lecture 25).
+
+In the space of angular velocities the ellipsoid w^T I w = 2 T turns with the body about its fixed centre, and
+touches the plane at w. Its trace on the ellipsoid is the polhode, its trace on the plane the herpolhode. The
+angular momentum points down here, so that the plane lies below, and the largest semi-axis has length 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import rerun as rr
+
+from contact_dynamics.viewing import palette
+from contact_dynamics.viewing.entities import poinsot_entity
+from contact_dynamics.viewing.measured import time_column
+from contact_dynamics.viewing.scene import tangents
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.validation import FloatArray
+
+_PLANE_MARGIN: Final = 1.25  # how far the plane goes beyond what lies on it
+_GRID: Final = 10  # lines across the plane, either way
+_BELOW: Final = 0.005  # how far the plane is drawn below its place, not to hide the herpolhode, relative
+_CURVE_WIDTH: Final = -1.2  # negative: points of the screen
+_GRID_WIDTH: Final = -0.6
+_NET_POINTS: Final = 73
+_MERIDIANS: Final = 8
+_PARALLELS: Final = 7
+_ARROW_WIDTH: Final = 0.02  # relative to the largest semi-axis
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PoinsotPicture:
+    """What Poinsot's picture is made of."""
+
+    semi_axes: FloatArray  # (3,), rad/s, > 0, of the ellipsoid, along the principal axes
+    principal_axes_B: FloatArray  # (3, 3), columns, body axes
+    L_W: FloatArray  # (3,), kg m^2/s, not zero, angular momentum, world axes
+    distance: float  # rad/s, of the invariable plane from the centre
+    polhode_B: FloatArray  # (n, 3), rad/s, body axes
+    herpolhode_W: FloatArray  # (n, 3), rad/s, world axes
+
+
+def draw_poinsot(recording: rr.RecordingStream, body_name: str, picture: PoinsotPicture) -> None:
+    """Draw ellipsoid, plane and curves, at the recording's current time; `draw_rolling` turns it."""
+    path = poinsot_entity(body_name)
+    unit = float(picture.semi_axes.max())
+    down_W = picture.L_W / np.linalg.norm(picture.L_W)
+    u_W, v_W = tangents(-down_W)
+    axes = np.array([u_W, v_W, -down_W])
+    recording.log(path, rr.Transform3D(mat3x3=axes / unit))
+    net = [strip @ picture.principal_axes_B.T for strip in ellipsoid_net(picture.semi_axes)]
+    ellipsoid = rr.LineStrips3D(net, colors=palette.translucent(palette.MEASURED, 0.45), radii=_GRID_WIDTH)
+    recording.log(f"{path}/body/ellipsoid", ellipsoid)
+    polhode = rr.LineStrips3D([picture.polhode_B], colors=palette.POLHODE, radii=_CURVE_WIDTH)
+    recording.log(f"{path}/body/polhode", polhode)
+    herpolhode = rr.LineStrips3D([picture.herpolhode_W], colors=palette.HERPOLHODE, radii=_CURVE_WIDTH)
+    recording.log(f"{path}/herpolhode", herpolhode)
+    foot_W = (1.0 + _BELOW) * picture.distance * down_W
+    reach = float(np.linalg.norm(picture.herpolhode_W - foot_W, axis=1).max(initial=0.0))
+    half = _PLANE_MARGIN * max(reach, 0.5 * unit)
+    places = np.linspace(-half, half, _GRID + 1).tolist()
+    lines = [
+        foot_W + np.array([s * a - half * b, s * a + half * b])
+        for a, b in ((u_W, v_W), (v_W, u_W))
+        for s in places
+    ]
+    recording.log(
+        f"{path}/plane/grid", rr.LineStrips3D(lines, colors=palette.SURFACE_GRID, radii=_GRID_WIDTH)
+    )
+    corners = foot_W + half * np.array([-u_W - v_W, u_W - v_W, u_W + v_W, v_W - u_W])
+    patch = rr.Mesh3D(
+        vertex_positions=corners, triangle_indices=[[0, 1, 2], [0, 2, 3]], albedo_factor=palette.SURFACE
+    )
+    recording.log(f"{path}/plane/patch", patch)
+    momentum = rr.Arrows3D(
+        origins=[[0.0, 0.0, 0.0]],
+        vectors=[foot_W],
+        colors=palette.NORMAL,
+        radii=_ARROW_WIDTH * unit,
+        labels=["angular momentum"],
+        show_labels=False,
+    )
+    recording.log(f"{path}/momentum", momentum)
+
+
+def draw_rolling(recording: rr.RecordingStream, body_name: str, states: Sequence[BodyState]) -> None:
+    """Turn the ellipsoid with the body, and draw its angular velocity, at the stamps of states."""
+    if not states:
+        return
+    path = poinsot_entity(body_name)
+    stamps = time_column([state.stamp_ns for state in states])
+    turns = rr.Transform3D.columns(quaternion=np.array([state.q_WB for state in states]))
+    recording.send_columns(f"{path}/body", indexes=[stamps], columns=turns)
+    rates = np.array([state.w_WB_W for state in states])
+    arrows = rr.Arrows3D.columns(vectors=rates, origins=np.zeros_like(rates))
+    recording.send_columns(f"{path}/angular_velocity", indexes=[stamps], columns=arrows)
+    style = rr.Arrows3D.from_fields(
+        colors=palette.AFTER_IMPACT,
+        radii=_ARROW_WIDTH * float(np.linalg.norm(rates, axis=1).max()),
+        labels=["angular velocity"],
+        show_labels=False,
+    )
+    recording.log(f"{path}/angular_velocity", style, static=True)
+
+
+def ellipsoid_net(semi_axes: FloatArray) -> list[FloatArray]:
+    """Return meridians and parallels, (k, 3) each, of an ellipsoid about the axes of coordinates."""
+    around = np.linspace(0.0, 2.0 * np.pi, _NET_POINTS)
+    strips = []
+    for longitude in np.linspace(0.0, np.pi, _MERIDIANS, endpoint=False).tolist():
+        ring = [np.cos(longitude) * np.sin(around), np.sin(longitude) * np.sin(around), np.cos(around)]
+        strips.append(np.column_stack(ring) * semi_axes)
+    for latitude in np.linspace(-0.5 * np.pi, 0.5 * np.pi, _PARALLELS + 2)[1:-1].tolist():
+        level = np.full(_NET_POINTS, np.sin(latitude))
+        ring = [np.cos(latitude) * np.cos(around), np.cos(latitude) * np.sin(around), level]
+        strips.append(np.column_stack(ring) * semi_axes)
+    return strips
