@@ -4,7 +4,9 @@ In reading order: verdicts and evidence (`result`); one contact in closed form (
 (`planar`), stated as a cone (`problem`, `cone`), its modes enumerated (`enumeration`) and judged (`dynamics`,
 `wrench_cone`, `least_force`); applied wrenches of each mode (`wrench_sets`), their map and margins
 (`margins`); equilibrium, jamming and wedging (`statics`). In space: contacting and separating modes
-(`spatial`); sticking and sliding, with mechanics (`spatial_dynamics`, `spatial_letters`, `spatial_result`).
+(`spatial`); sticking and sliding, with mechanics (`spatial_dynamics`, `spatial_result`): every combination of
+letters (`spatial_search`, `spatial_letters`, `spatial_regions`, `spatial_program`), shown with exact friction
+(`spatial_sharpening`) and shared forces (`spatial_forces`).
 """
 
 from contact_dynamics.contact_modes.margins import ModeMargin, planar_mode_map, planar_mode_margins

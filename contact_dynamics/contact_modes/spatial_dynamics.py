@@ -6,8 +6,9 @@ first of which opposes the tangential acceleration that the contact would have w
 the pyramid friction does the most it can against the sliding: a contact that slides within the sector
 opposite to an edge has its force on that edge, one that slides on a sector's border has it on the side
 between two edges. Letters are s (separates), f (sticks) and c (stays and slides); the sector or border
-belongs to the mode. All of them are found (`spatial_search`). A contact without friction is one letter,
-sliding or not.
+belongs to the mode. All of them are found (`spatial_search`); then friction is turned exactly against the
+sliding where that has a solution (`spatial_sharpening`). A contact without friction is one letter, sliding or
+not.
 
 Does not cover: margins.
 """
@@ -25,11 +26,14 @@ from contact_dynamics.contact_modes.spatial_forces import least_forces, misdirec
 from contact_dynamics.contact_modes.spatial_letters import STRICT
 from contact_dynamics.contact_modes.spatial_result import SpatialMode, SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial_search import Found, Search, Touching
+from contact_dynamics.contact_modes.spatial_sharpening import Sliding, sharpened
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_not_negative
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import ArrayLike, NDArray
 
     from contact_dynamics.contact import ContactSet
@@ -54,6 +58,7 @@ def spatial_contact_modes(
     force_W: ArrayLike,
     torque_W: ArrayLike = (0.0, 0.0, 0.0),
     friction_facets: int = FRICTION_FACETS,
+    sharpen: bool = True,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SpatialModeAnswer:
     """Return the verdict on a contact set in space and all consistent modes.
@@ -65,6 +70,8 @@ def spatial_contact_modes(
         force_W: (3,), N, applied to the body besides its contact forces, gravity included, world axes.
         torque_W: (3,), N m, applied about the centre of mass, world axes.
         friction_facets: Edges of the pyramid that stands for a friction cone at rest, >= 3.
+        sharpen: Whether friction is then turned exactly against the sliding, in modes of unique motion where
+            that has a solution (`spatial_sharpening`). Modes that become the same by it are one.
         velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero, and so
             does an angular velocity that moves no contact relative to the centre of mass by more than that.
 
@@ -99,7 +106,7 @@ def spatial_contact_modes(
         )
         case = _Case(motion, contacts, sliding, np.flatnonzero(v_n <= tolerance))
         search = _search(case, friction_facets)
-        modes = [_evidence(case, search, found) for found in search.run()]
+        modes = _distinct(_evidence(case, search, found, sharpen=sharpen) for found in search.run())
         examined = search.examined
     verdict = ModeVerdict.UNIQUE if len(modes) == 1 else ModeVerdict.INDETERMINATE
     if not modes:
@@ -199,7 +206,7 @@ def _search(case: _Case, facets: int) -> Search:
     )
 
 
-def _evidence(case: _Case, search: Search, found: Found) -> SpatialMode:
+def _evidence(case: _Case, search: Search, found: Found, *, sharpen: bool) -> SpatialMode:
     """Return a mode with accelerations and forces that realise it."""
     motion, contacts, sliding, touching = case
     count = search.edges.shape[1]
@@ -209,9 +216,13 @@ def _evidence(case: _Case, search: Search, found: Found) -> SpatialMode:
     if not motion_unique and low is not None and high is not None:
         shares = 0.5 * (low + high)  # away from the borders of the mode
     forces_unique = _ends(found, mixture[0, 6:] @ search.edges)[0]
-    own = (search.edges @ shares * motion.scale).reshape(-1, 3)
+    own, acting = (search.edges @ shares).reshape(-1, 3), search.acting(found)
+    if sharpen and motion_unique:
+        own, acting = _sharpened(search, found, own, acting)
+    if not forces_unique:
+        own = least_forces(search.of_forces, own, acting)
     forces = np.zeros((len(contacts), 3))
-    forces[touching] = own if forces_unique else least_forces(search.of_forces, own, search.acting(found))
+    forces[touching] = own * motion.scale
     body = motion.free + motion.of_forces @ forces.ravel()
     points = (motion.points @ body).reshape(-1, 3) + motion.turning
     across = points - np.sum(points * contacts.normals_W, axis=1)[:, None] * contacts.normals_W
@@ -236,6 +247,31 @@ def _evidence(case: _Case, search: Search, found: Found) -> SpatialMode:
         forces_unique=forces_unique,
         motion_unique=motion_unique or forces_unique,
     )
+
+
+def _sharpened(
+    search: Search, found: Found, forces: FloatArray, acting: list[FloatArray]
+) -> tuple[FloatArray, list[FloatArray]]:
+    """Return forces, and the edges that may act, with friction exactly against the sliding if that can be."""
+    letters = "".join(one.letter for one in found.letters)
+    if all(one.item < 0 for one in found.letters):
+        return forces, acting
+    mode = Sliding(search.touching, search.pyramids, letters, search.of_forces, search.motion[:, -1])
+    exact = sharpened(mode, forces)
+    return (forces, acting) if exact is None else (exact.forces, exact.edges)
+
+
+def _distinct(modes: Iterable[SpatialMode]) -> list[SpatialMode]:
+    """Return modes without those that have another's letters and its motion, if unique."""
+    found: list[SpatialMode] = []
+    for mode in modes:
+        own = np.concatenate([mode.acceleration_W, mode.angular_acceleration_W])
+        alike = [other for other in found if other.mode == mode.mode and other.motion_unique]
+        others = [np.concatenate([one.acceleration_W, one.angular_acceleration_W]) for one in alike]
+        near = _SAME * (1.0 + float(np.abs(own).max()))
+        if not mode.motion_unique or all(np.abs(own - other).max() > near for other in others):
+            found.append(mode)
+    return found
 
 
 def _ends(found: Found, weights: FloatArray) -> tuple[bool, FloatArray | None, FloatArray | None]:

@@ -71,6 +71,7 @@ class Search:
             power: (6,), of the motion, that the applied wrench has, if it must be >= 0.
             facets: Edges of a friction pyramid.
         """
+        self.touching = touching
         self.pyramids: list[Pyramid] = []
         first = 0
         for contact in touching:

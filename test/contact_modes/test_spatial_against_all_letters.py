@@ -34,7 +34,7 @@ def contact_set(points: list, normals: list, frictions: list) -> ContactSet:
 def check(now: BodyState, contacts: ContactSet, wrench: np.ndarray, facets: int) -> int:
     """Compare letters, and accelerations where they are unique; return the number of modes."""
     answer = spatial_contact_modes(
-        BODY, now, contacts, force_W=wrench[:3], torque_W=wrench[3:], friction_facets=facets
+        BODY, now, contacts, force_W=wrench[:3], torque_W=wrench[3:], friction_facets=facets, sharpen=False
     )
     r, w = contacts.p_WC_W, now.w_WB_W
     velocities = now.v_WB_W + np.cross(w, r)

@@ -206,6 +206,75 @@ def test_free_leaving_and_approaching_bodies() -> None:
     assert strikes.approaching == (0, 1, 2, 3)
 
 
+def drawn_feet(seed: int) -> tuple[ContactSet, np.ndarray]:
+    """Return two feet and a wall, whose contacts slide in ways that no pyramid has an edge against."""
+    chance = np.random.default_rng(seed)
+    normals = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+    points = np.array([[0.4, -0.5, -0.3], [0.3, 0.6, -0.3], [-0.9, 0.1, 0.0]]) + 0.1 * chance.normal(
+        size=(3, 3)
+    )
+    contacts = ContactSet(
+        p_WC_W=points, normals_W=normals, frictions=np.array([0.2, 0.3, 0.2]), restitutions=np.zeros(3)
+    )
+    return contacts, np.array([-15.0, 12.0, -WEIGHT, 0.0, 0.0, 0.0]) + chance.normal(size=6)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_sharpened_friction_is_coulombs_and_knows_no_facets(seed: int) -> None:
+    contacts, wrench = drawn_feet(seed)
+    answers = [
+        spatial_contact_modes(
+            BODY, state(), contacts, force_W=wrench[:3], torque_W=wrench[3:], friction_facets=facets
+        )
+        for facets in (6, 13)
+    ]
+    (few,), (many,) = (answer.modes for answer in answers)
+    assert few.mode == many.mode
+    assert "c" in few.mode
+    for answer in answers:
+        check_evidence(answer, BODY, state(), contacts, wrench)
+    np.testing.assert_allclose(few.acceleration_W, many.acceleration_W, atol=1e-8)
+    np.testing.assert_allclose(few.angular_acceleration_W, many.angular_acceleration_W, atol=1e-8)
+    for i, letter in enumerate(few.mode):
+        if letter == "c":
+            f_n = few.contact_forces_W[i] @ contacts.normals_W[i]
+            expected = f_n * (contacts.normals_W[i] - contacts.frictions[i] * few.tangential_directions_W[i])
+            np.testing.assert_allclose(few.contact_forces_W[i], expected, atol=1e-8)
+    assert few.misdirection <= 1e-8
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_pyramid_turns_friction_by_half_a_sector_at_most(seed: int) -> None:
+    contacts, wrench = drawn_feet(seed)
+    for facets in (6, 24):
+        answer = spatial_contact_modes(
+            BODY,
+            state(),
+            contacts,
+            force_W=wrench[:3],
+            torque_W=wrench[3:],
+            friction_facets=facets,
+            sharpen=False,
+        )
+        assert all(1e-6 < mode.misdirection <= math.pi / facets + 1e-9 for mode in answer.modes)
+
+
+def test_four_feet_share_a_load_and_one_foot_has_no_choice() -> None:
+    resting = spatial_contact_modes(BODY, state(), on_floor(FEET, 0.4), force_W=(2.0, 0.0, -WEIGHT))
+    (mode,) = resting.modes
+    assert (mode.motion_unique, mode.forces_unique) == (True, False)
+    # Least squares: the load's line of force meets the floor 0.02 m from the middle.
+    np.testing.assert_allclose(mode.contact_forces_W[:, :2], np.tile([-0.5, 0.0], (4, 1)), atol=1e-9)
+    np.testing.assert_allclose(
+        mode.contact_forces_W[:, 2], WEIGHT / 4.0 * np.array([0.98, 1.02, 1.02, 0.98]), atol=1e-9
+    )
+    balanced = spatial_contact_modes(
+        BODY, state(), on_floor([(0, 0, -0.2)], 0.4), force_W=(0.0, 0.0, -WEIGHT)
+    )
+    (mode,) = balanced.modes
+    assert (mode.mode, mode.motion_unique, mode.forces_unique) == ("f", True, True)
+
+
 def test_misuse_is_refused_by_name() -> None:
     with pytest.raises(InvalidFieldError, match="friction_facets"):
         spatial_contact_modes(BODY, state(), on_floor(FEET, 0.5), force_W=(0, 0, -1), friction_facets=2)
