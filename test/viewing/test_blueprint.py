@@ -7,7 +7,14 @@ import pytest
 from rerun.chunk import RrdReader
 
 from contact_dynamics.viewing.blueprint import DIAGRAMS, LOWEST_DISTANCE, Eye, eye_on, make_blueprint
-from contact_dynamics.viewing.entities import MODE_MAP, POINSOT, entity, impact_entity, predicted_entity, trail_entity
+from contact_dynamics.viewing.entities import (
+    MODE_MAP,
+    POINSOT,
+    entity,
+    impact_entity,
+    predicted_entity,
+    trail_entity,
+)
 
 if TYPE_CHECKING:
     from pathlib import Path
