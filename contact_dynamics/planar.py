@@ -17,7 +17,13 @@ from typing import TypeAlias
 from contact_dynamics.contact_curvature import planar_gap_acceleration
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.tolerances import UNIT_LENGTH_TOLERANCE
-from contact_dynamics.validation import check_finite, check_not_negative, check_positive, check_within
+from contact_dynamics.validation import (
+    LENGTH_ROUNDING,
+    check_finite,
+    check_not_negative,
+    check_positive,
+    check_within,
+)
 
 Vector2: TypeAlias = tuple[float, float]
 
@@ -101,10 +107,13 @@ class PlanarContact:
         """Check all fields and normalise the normal to rounding."""
         object.__setattr__(self, "r", check_vector2("contact position", self.r))
         n_x, n_y = check_vector2("contact normal", self.normal)
-        length = math.hypot(n_x, n_y)
-        if abs(length - 1.0) > UNIT_LENGTH_TOLERANCE:
+        # Not `hypot`, whose last bit NumPy's may not share: batches repeat this.
+        length = math.sqrt(n_x * n_x + n_y * n_y)
+        off = abs(length - 1.0)
+        if off > UNIT_LENGTH_TOLERANCE:
             raise InvalidFieldError("contact normal", self.normal, "a unit vector")
-        object.__setattr__(self, "normal", (n_x / length, n_y / length))
+        unit = (n_x / length, n_y / length) if off > LENGTH_ROUNDING else (n_x, n_y)
+        object.__setattr__(self, "normal", unit)
         object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
         object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
         if self.body_curvature != math.inf or self.surface_curvature != 0.0:
@@ -150,4 +159,7 @@ def check_vector2(field: str, value: Vector2) -> Vector2:
         x, y = value
     except (TypeError, ValueError):
         raise InvalidFieldError(field, value, "two finite numbers") from None
+    # The common case first: a sum is finite only if both are.
+    if type(x) is float and type(y) is float and math.isfinite(x + y):
+        return (x, y)
     return (check_finite(field, x), check_finite(field, y))

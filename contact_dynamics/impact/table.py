@@ -66,14 +66,18 @@ def check_share_rows(field: str, value: ArrayLike) -> FloatArray:
 def check_unit_rows(field: str, value: ArrayLike, width: int) -> FloatArray:
     """Return vectors scaled to norm 1, (N, width), as `check_unit` scales each."""
     rows = check_rows(field, value, (width,))
-    total = np.zeros(len(rows))
+    norms = np.zeros(len(rows))
     for column in rows.T:
-        total += column * column
-    norms = np.sqrt(total)
+        norms += column * column
+    norms = np.sqrt(norms)
     off = abs(norms - 1.0)
     for i in np.flatnonzero(off > UNIT_LENGTH_TOLERANCE)[:1]:
         raise InvalidFieldError(f"{field}[{i}]", rows[i].tolist(), "a unit vector")
-    return rows / np.where(off > LENGTH_ROUNDING, norms, 1.0)[:, None]
+    scaled = off > LENGTH_ROUNDING
+    if not scaled.any():
+        return rows
+    unit: FloatArray = rows / np.where(scaled, norms, 1.0)[:, None]
+    return unit
 
 
 def check_law_rows(field: str, value: ArrayLike) -> FloatArray:

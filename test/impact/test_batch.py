@@ -13,7 +13,10 @@ from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity
 
 
 def random_cases(count: int) -> dict[str, np.ndarray]:
-    """Draw approaching contacts, among them exact cases: at rest, level, rough, smooth, e = 0 and 1."""
+    """Draw approaching contacts, among them exact cases: at rest, level, rough, smooth, e = 0 and 1.
+
+    Some normals are unit only within the tolerance.
+    """
     rng = np.random.default_rng(7)
     angle = rng.uniform(-math.pi, math.pi, count)
     cases = {
@@ -32,6 +35,7 @@ def random_cases(count: int) -> dict[str, np.ndarray]:
     leaves = np.einsum("ij,ij->i", contact, cases["normals"]) > 0.0
     cases["v"][leaves] *= -1.0
     cases["w"][leaves] *= -1.0
+    cases["normals"][::5] *= 1.0 + 1e-4 * rng.uniform(-1.0, 1.0, (len(cases["normals"][::5]), 1))
     level = slice(0, count // 4)
     cases["normals"][level], cases["w"][level] = [0.0, 1.0], 0.0
     cases["v"][: count // 12] = [0.0, -1.0]
