@@ -99,6 +99,12 @@ class Curvatures:
         return across if cosine <= UNIT_LENGTH_TOLERANCE else None
 
 
+def alike(n: int, curvature: float) -> Curvatures:
+    """Return one curvature, 1/m, in all directions at n contacts: infinity for points, 0 for flats."""
+    same = np.full(n, curvature)
+    return Curvatures(along=same, across=same, directions_W=np.zeros((n, 3)))
+
+
 def checked_curvatures(field: str, curvatures: Curvatures | None, normals_W: FloatArray) -> Curvatures | None:
     """Return curvatures with directions made unit and tangent to rounding, or raise `InvalidFieldError`."""
     if curvatures is None:

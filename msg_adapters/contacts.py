@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from array import array
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from contact_dynamics.contact import MOST_CONTACTS, ContactSet
+from contact_dynamics.contact_curvature import Curvatures, alike
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLargeError
 from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from contact_dynamics.validation import FloatArray
 
 
@@ -19,39 +23,61 @@ def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
     """Return the contacts.
 
     Raises:
-        InvalidFieldError: arrays of unequal length, or as `ContactSet`. TooLargeError: more than
-        `MOST_CONTACTS` contacts. NotSupportedError: moving surfaces, or other contact kinds than a point of
-        the body on a flat of the world.
+        InvalidFieldError: arrays of unequal length, curvatures without the kind CURVED, or as `ContactSet`.
+        TooLargeError: more than `MOST_CONTACTS` contacts. NotSupportedError: moving surfaces.
     """
     n = len(msg.frictions)
     if max(n, len(msg.positions) // 3, len(msg.normals) // 3) > MOST_CONTACTS:
         raise TooLargeError(
             "contacts", f"{max(n, len(msg.positions) // 3)} contacts", f"at most {MOST_CONTACTS}"
         )
-    for field in ("surface_velocities", "surface_accelerations", "body_curvatures", "surface_curvatures"):
+    for field in ("surface_velocities", "surface_accelerations"):
         if np.any(np.asarray(getattr(msg, field))):
             raise NotSupportedError(f"contacts.{field}: found numbers, allowed is none in this version")
-    if any(kind != ContactSetMsg.POINT_ON_FLAT for kind in msg.kinds):
-        message = "contacts.kinds: found others, allowed is POINT_ON_FLAT (0) in this version"
-        raise NotSupportedError(message)
+    kinds = np.array(msg.kinds, dtype=np.uint8)
+    if len(kinds) not in {0, n}:
+        raise InvalidFieldError("contacts.kinds", f"{len(kinds)} kinds", f"{n}, or none")
+    for i in np.flatnonzero(kinds > ContactSetMsg.CURVED)[:1]:
+        raise InvalidFieldError(
+            f"contacts.kinds[{i}]", kinds[i], "POINT_ON_FLAT (0), FLAT_ON_POINT (1) or CURVED (2)"
+        )
     return ContactSet(
         p_WC_W=_rows("contacts.positions", msg.positions, n),
         normals_W=_rows("contacts.normals", msg.normals, n),
         frictions=np.array(msg.frictions),
         restitutions=np.array(msg.restitutions),
         surfaces=tuple(msg.surface_names),
+        body_curvatures=_curvatures(msg, "body", kinds, point=ContactSetMsg.POINT_ON_FLAT),
+        surface_curvatures=_curvatures(msg, "surface", kinds, point=ContactSetMsg.FLAT_ON_POINT),
     )
 
 
 def contacts_to_msg(contacts: ContactSet) -> ContactSetMsg:
     """Return the contacts as a message."""
-    return ContactSetMsg(
+    msg = ContactSetMsg(
         positions=flat(contacts.p_WC_W),
         normals=flat(contacts.normals_W),
         frictions=flat(contacts.frictions),
         restitutions=flat(contacts.restitutions),
         surface_names=list(contacts.surfaces),
     )
+    if contacts.body_curvatures is None and contacts.surface_curvatures is None:
+        return msg
+    n = len(contacts)
+    body, surface = (
+        alike(n, default) if side is None else side
+        for side, default in ((contacts.body_curvatures, math.inf), (contacts.surface_curvatures, 0.0))
+    )
+    sides = np.column_stack([body.along, body.across, surface.along, surface.across])
+    kinds = np.full(n, ContactSetMsg.CURVED, dtype=np.uint8)
+    kinds[(sides == (math.inf, math.inf, 0.0, 0.0)).all(axis=1)] = ContactSetMsg.POINT_ON_FLAT
+    kinds[(sides == (0.0, 0.0, math.inf, math.inf)).all(axis=1)] = ContactSetMsg.FLAT_ON_POINT
+    msg.kinds = kinds.tolist()
+    for name, side in (("body", body), ("surface", surface)):
+        setattr(msg, f"{name}_curvatures", flat(side.along))
+        setattr(msg, f"{name}_curvature_directions", flat(side.directions_W))
+        setattr(msg, f"{name}_curvatures_across", flat(side.across))
+    return msg
 
 
 def flat(values: FloatArray) -> array[float]:
@@ -59,6 +85,36 @@ def flat(values: FloatArray) -> array[float]:
     numbers = array("d")
     numbers.frombytes(np.ascontiguousarray(values, dtype=np.float64).tobytes())
     return numbers
+
+
+def _curvatures(msg: ContactSetMsg, side: str, kinds: NDArray[np.uint8], *, point: int) -> Curvatures | None:
+    """Return the curvatures of a side, which is a point where the kind is ``point``."""
+    n = len(msg.frictions)
+    fields = (f"{side}_curvatures", f"{side}_curvatures_across", f"{side}_curvature_directions")
+    along, across, directions = (np.array(getattr(msg, field), dtype=np.float64) for field in fields)
+    curved = kinds == ContactSetMsg.CURVED
+    if not curved.any():
+        if len(kinds) == 0 and np.any(along):
+            raise InvalidFieldError("contacts.kinds", "none, with curvatures", "CURVED (2) where they hold")
+        if not kinds.any():
+            return None
+    elif len(along) != n:
+        raise InvalidFieldError(
+            f"contacts.{fields[0]}", f"{len(along)} numbers", f"{n}, one for each contact"
+        )
+    if (len(across), len(directions)) not in {(0, 0), (n, 3 * n)}:
+        raise InvalidFieldError(
+            f"contacts.{fields[1]}",
+            f"{len(across)} numbers and {len(directions)} of directions",
+            f"{n} and {3 * n}, or none of either",
+        )
+    named = np.where(kinds == point, math.inf, 0.0)
+    along = np.where(curved, along, named) if curved.any() else named
+    return Curvatures(
+        along=along,
+        across=np.where(curved, across, named) if len(across) > 0 else along,
+        directions_W=directions.reshape(-1, 3) if len(across) > 0 else np.zeros((n, 3)),
+    )
 
 
 def _rows(field: str, values: array[float], n: int) -> FloatArray:

@@ -6,7 +6,6 @@ The commented file `config/server.yaml` is what a user edits; a test holds the t
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -14,17 +13,16 @@ from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from rclpy.parameter import Parameter
 
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
+from contact_dynamics.nodes.body_shapes import DESCRIPTIONS, ShapeParameters
 from contact_dynamics.rigid_body import MassProperties
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, OUT_OF_PLANE_SPEED, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_positive
-from contact_dynamics.world import STANDARD_GRAVITY_W, Body, Surface, World, box_vertices
+from contact_dynamics.world import STANDARD_GRAVITY_W, Body, Surface, World
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rclpy.node import Node
-
-    from contact_dynamics.validation import FloatArray
 
 T = TypeVar("T")
 
@@ -132,28 +130,13 @@ def _read_body(reader: _Reader, name: str) -> tuple[Body, StateTopics]:
         f"{key}.inertia",
         Parameter.Type.DOUBLE_ARRAY,
         "Angular inertia about the centre of mass, kg m^2, in the axes of the body's frame: "
-        "ixx, iyy, izz, ixy, ixz, iyz.",
+        "ixx, iyy, izz, ixy, ixz, iyz. [0.0]: of a mass that fills the shape evenly.",
     )
-    if len(inertia) != 6:
-        message = f"{key}.inertia: found {len(inertia)} numbers, allowed are 6: ixx, iyy, izz, ixy, ixz, iyz"
-        raise ConfigurationError(message)
-    ixx, iyy, izz, ixy, ixz, iyz = inertia
     offset = reader.read(
         f"{key}.center_of_mass", [0.0, 0.0, 0.0], "Centre of mass in the body's frame, m: x, y, z."
     )
-    center_of_mass = reader.build(key, lambda: check_array("center_of_mass", offset, (3,)))
-    vertices_F = _read_shape(reader, key)
-    body = reader.build(
-        key,
-        lambda: Body(
-            name=name,
-            mass_properties=MassProperties(
-                mass=mass, I_B=np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
-            ),
-            p_FB_F=center_of_mass,
-            vertices_B=vertices_F - center_of_mass,
-        ),
-    )
+    shape = _read_shape(reader, key)
+    body = reader.build(key, lambda: _body(name, mass, inertia, offset, shape))
     topics = StateTopics(
         body_name=name,
         odometry=reader.topic(
@@ -173,28 +156,45 @@ def _read_body(reader: _Reader, name: str) -> tuple[Body, StateTopics]:
     return body, topics
 
 
-def _read_shape(reader: _Reader, key: str) -> FloatArray:
-    """Return the corners of a body, (k, 3), m, in its frame; none where it has no shape."""
-    box = reader.read(
-        f"{key}.box", [0.0], "Full side lengths of a box centred on the body's frame, m: x, y, z."
+def _body(name: str, mass: float, inertia: list[float], offset: list[float], shape: ShapeParameters) -> Body:
+    center_of_mass = check_array("center_of_mass", offset, (3,))
+    shape_F = shape.shape_F()
+    if inertia == [0.0]:
+        uniform = shape.uniform(check_positive("mass", mass))
+        if center_of_mass.any():
+            raise InvalidFieldError("center_of_mass", offset, "the origin, where the inertia is the shape's")
+        center_of_mass, mass_properties = uniform.p_FB_F, uniform.mass_properties
+    elif len(inertia) == 6:
+        ixx, iyy, izz, ixy, ixz, iyz = inertia
+        mass_properties = MassProperties(
+            mass=mass, I_B=np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
+        )
+    else:
+        allowed = "6 (ixx, iyy, izz, ixy, ixz, iyz), or [0.0]: of the shape"
+        raise InvalidFieldError("inertia", f"{len(inertia)} numbers", allowed)
+    return Body(
+        name=name,
+        mass_properties=mass_properties,
+        p_FB_F=center_of_mass,
+        shape=shape_F.moved(-center_of_mass),
     )
-    corners = reader.read(
-        f"{key}.vertices",
-        [0.0],
-        "Corners of a convex shape in the body's frame, m: x, y, z of one after the other.",
+
+
+def _read_shape(reader: _Reader, key: str) -> ShapeParameters:
+    return ShapeParameters(
+        numbers={name: reader.read(f"{key}.{name}", [0.0], text) for name, text in DESCRIPTIONS.items()},
+        rounding=reader.read(
+            f"{key}.rounding", 0.0, "Radius of a ball that rolls over the shape, m.", (0.0, 1e3)
+        ),
+        position=reader.read(
+            f"{key}.shape_position", [0.0, 0.0, 0.0], "Where the shape is in the body's frame, m: x, y, z."
+        ),
+        orientation=reader.read(
+            f"{key}.shape_orientation",
+            [0.0, 0.0, 0.0, 1.0],
+            "How the shape is turned in the body's frame: unit quaternion x, y, z, w.",
+        ),
     )
-    if len(box) == 3:
-        x, y, z = (reader.build(key, partial(check_positive, f"box[{i}]", box[i])) for i in range(3))
-        return box_vertices((x, y, z))
-    if len(box) > 1:
-        message = f"{key}.box: found {len(box)} numbers, allowed are 3 (or [0.0]: no box)"
-        raise ConfigurationError(message)
-    if len(corners) > 1 and len(corners) % 3 > 0:
-        message = f"{key}.vertices: found {len(corners)} numbers, allowed are 3 for each (or [0.0]: none)"
-        raise ConfigurationError(message)
-    rows = np.array(corners if len(corners) > 1 else []).reshape(-1, 3)
-    vertices: FloatArray = reader.build(key, lambda: check_array("vertices", rows, (None, 3)))
-    return vertices
 
 
 def _read_surface(reader: _Reader, name: str) -> Surface:

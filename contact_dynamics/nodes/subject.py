@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from contact_dynamics.contact_geometry import find_contacts
+from contact_dynamics.convex_shape import NO_SHAPE
 from contact_dynamics.errors import InvalidFieldError, NoContactError, TooLargeError
 from contact_dynamics.motion_fit import FitResult, fit_free_motion
 from contact_dynamics.plane_of_motion import PlanarProblem, PlaneOfMotion, best_plane, project
@@ -169,14 +170,14 @@ def contacts_of(request: Any, subject: Subject, knowledge: Knowledge) -> Contact
         subject.body, subject.state, knowledge.parameters.world.surfaces, distance_tolerance=tolerance
     )
     if len(contacts) == 0:
-        message = f"contacts: no vertex of {subject.body.name!r} is within {tolerance:g} m of a surface"
+        message = f"contacts: no point of {subject.body.name!r} is within {tolerance:g} m of a surface"
         raise NoContactError(message)
     return contacts
 
 
 def check_has_shape(body: Body) -> None:
-    """Raise `NoContactError` where a body has no vertices that could touch anything."""
-    if len(body.vertices_B) == 0:
+    """Raise `NoContactError` where a body has no shape that could touch anything."""
+    if body.shape.is_empty:
         message = (
             f"contacts: body {body.name!r} has no shape to find them from, allowed are explicit contacts"
         )
@@ -248,8 +249,8 @@ def _body_of(name: str, inertia: Inertia, knowledge: Knowledge) -> Body:
     if configured is not None and inertia.m == 0.0:
         return configured
     mass_properties, p_FB_F = mass_properties_from_msg(inertia)
-    vertices_F = configured.vertices_B + configured.p_FB_F if configured is not None else np.zeros((0, 3))
-    return Body(name=name, mass_properties=mass_properties, p_FB_F=p_FB_F, vertices_B=vertices_F - p_FB_F)
+    shape = NO_SHAPE if configured is None else configured.shape.moved(configured.p_FB_F - p_FB_F)
+    return Body(name=name, mass_properties=mass_properties, p_FB_F=p_FB_F, shape=shape)
 
 
 def _published_state(name: str, stamp: Time, knowledge: Knowledge) -> BodyState:

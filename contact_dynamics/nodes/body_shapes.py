@@ -1,0 +1,117 @@
+"""The parameters of a body's shape: one of several primitives, where it is in the body's frame, its mass."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+
+import numpy as np
+
+from contact_dynamics import convex_shape, inertia
+from contact_dynamics.convex_shape import NO_SHAPE, ConvexShape
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.validation import check_array, check_not_negative, check_positive, check_unit
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from contact_dynamics.inertia import MassDistribution
+    from contact_dynamics.validation import FloatArray
+
+    ShapeMaker: TypeAlias = Callable[[Any], ConvexShape]
+    MassMaker: TypeAlias = Callable[[Any, float], MassDistribution]
+
+DESCRIPTIONS: Final = {
+    "box": "Full side lengths of a box, m: x, y, z.",
+    "sphere": "Radius of a ball, m.",
+    "capsule": "Radius and length between the centres of the round ends of a capsule about z, m.",
+    "cylinder": "Radius and length of a cylinder about z, m; of length 0 a disc.",
+    "cone": "Radius of the base, at z = 0, and height of a cone about z, m.",
+    "vertices": "Corners of a convex shape, m: x, y, z of one after the other.",
+}
+"""The shapes and what their numbers are. One number 0.0 is none."""
+
+_COUNTS: Final = {"box": 3, "sphere": 1, "capsule": 2, "cylinder": 2, "cone": 2}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ShapeParameters:
+    """A body's shape as it is configured; lengths in m."""
+
+    numbers: dict[str, list[float]]  # of each of `DESCRIPTIONS`
+    rounding: float  # radius of the ball that rolls over it
+    position: list[float]  # of the shape in the body's frame
+    orientation: list[float]  # x, y, z, w
+
+    def shape_F(self) -> ConvexShape:
+        """Return the shape in the body's frame; an empty one where none is configured.
+
+        Raises:
+            InvalidFieldError: more than one shape, or numbers that are none of it.
+        """
+        name = self._name()
+        if not name:
+            return NO_SHAPE
+        shape = convex_shape.rounded(_SHAPES[name](self._values(name)), radius=self.rounding)
+        return shape.moved(*self._pose())
+
+    def uniform(self, mass: float) -> MassDistribution:
+        """Return a mass, kg, that fills the shape evenly, in the body's frame.
+
+        Raises:
+            InvalidFieldError: no shape, one without volume, or a rounded one.
+        """
+        name = self._name()
+        if not name or self.rounding > 0.0:
+            found = "a rounded shape" if name else "no shape"
+            raise InvalidFieldError("inertia", f"[0.0], with {found}", "the six numbers, or a shape without")
+        position, orientation = self._pose()
+        return _MASSES[name](self._values(name), mass).placed(p_GF_G=position, q_GF=orientation)
+
+    def _pose(self) -> tuple[FloatArray, FloatArray]:
+        position = check_array("shape_position", self.position, (3,))
+        return position, check_unit("shape_orientation", self.orientation, 4)
+
+    def _name(self) -> str:
+        given = [name for name, values in self.numbers.items() if values != [0.0]]
+        if len(given) > 1:
+            raise InvalidFieldError(given[1], f"a second shape beside {given[0]}", "one (or [0.0]: none)")
+        return given[0] if given else ""
+
+    def _values(self, name: str) -> FloatArray:
+        values = self.numbers[name]
+        if name == "vertices":
+            if len(values) % 3 > 0:
+                raise InvalidFieldError(name, f"{len(values)} numbers", "3 for each (or [0.0]: none)")
+            return check_array(name, np.array(values).reshape(-1, 3), (None, 3))
+        if len(values) != _COUNTS[name]:
+            allowed = f"{_COUNTS[name]} (or [0.0]: none)"
+            raise InvalidFieldError(name, f"{len(values)} numbers", allowed)
+        may_be_zero = name in {"capsule", "cylinder"}
+        checks = [check_positive, check_not_negative if may_be_zero else check_positive, check_positive]
+        return np.array([checks[i](f"{name}[{i}]", value) for i, value in enumerate(values)])
+
+
+def _of_cylinder(radius: float, length: float, mass: float) -> MassDistribution:
+    if length == 0.0:
+        return inertia.disc(radius=radius, mass=mass)
+    return inertia.cylinder(radius=radius, length=length, mass=mass)
+
+
+_SHAPES: Final[dict[str, ShapeMaker]] = {
+    "box": lambda sides: convex_shape.box(size=sides),
+    "sphere": lambda sizes: convex_shape.sphere(radius=sizes[0]),
+    "capsule": lambda sizes: convex_shape.capsule(radius=sizes[0], length=sizes[1]),
+    "cylinder": lambda sizes: convex_shape.cylinder(radius=sizes[0], length=sizes[1]),
+    "cone": lambda sizes: convex_shape.cone(radius=sizes[0], height=sizes[1]),
+    "vertices": convex_shape.polyhedron,
+}
+
+_MASSES: Final[dict[str, MassMaker]] = {
+    "box": lambda sides, mass: inertia.box(size=sides, mass=mass),
+    "sphere": lambda sizes, mass: inertia.sphere(radius=sizes[0], mass=mass),
+    "capsule": lambda sizes, mass: inertia.capsule(radius=sizes[0], length=sizes[1], mass=mass),
+    "cylinder": lambda sizes, mass: _of_cylinder(sizes[0], sizes[1], mass),
+    "cone": lambda sizes, mass: inertia.cone(radius=sizes[0], height=sizes[1], mass=mass),
+    "vertices": lambda corners, mass: inertia.convex_hull(corners, mass=mass),
+}

@@ -1,0 +1,124 @@
+"""Contact sets through their message: kinds, curvatures, and what is refused."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact_dynamics.contact import ContactSet
+from contact_dynamics.contact_curvature import Curvatures, alike
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError
+from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
+from msg_adapters.contacts import contacts_from_msg, contacts_to_msg
+
+INF = math.inf
+
+
+def contacts(n: int = 3, **sides: Curvatures) -> ContactSet:
+    return ContactSet(
+        p_WC_W=np.arange(3.0 * n).reshape(n, 3),
+        normals_W=np.tile([0.0, 0.0, 1.0], (n, 1)),
+        frictions=np.linspace(0.0, 1.0, n),
+        restitutions=np.linspace(0.0, 1.0, n),
+        surfaces=tuple("abcdef"[:n]),
+        **sides,
+    )
+
+
+def same(one: Curvatures | None, other: Curvatures | None) -> None:
+    assert one is not None
+    assert other is not None
+    np.testing.assert_array_equal(one.along, other.along)
+    np.testing.assert_array_equal(one.across, other.across)
+    np.testing.assert_array_equal(one.directions_W, other.directions_W)
+
+
+def test_points_on_flats_travel_without_kinds() -> None:
+    msg = contacts_to_msg(contacts())
+    assert len(msg.kinds) == len(msg.body_curvatures) == len(msg.surface_curvatures) == 0
+    back = contacts_from_msg(msg)
+    np.testing.assert_array_equal(back.p_WC_W, contacts().p_WC_W)
+    assert back.surfaces == ("a", "b", "c")
+    assert back.body_curvatures is None
+    assert back.surface_curvatures is None
+    msg.kinds = [ContactSetMsg.POINT_ON_FLAT] * 3
+    assert contacts_from_msg(msg).body_curvatures is None
+
+
+def test_every_kind_comes_back_as_it_went() -> None:
+    body = Curvatures(
+        along=np.array([INF, 0.0, 2.0, 0.0]),
+        across=np.array([INF, 0.0, INF, INF]),
+        directions_W=np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.6, 0.8, 0.0]]),
+    )
+    surface = Curvatures(
+        along=np.array([0.0, INF, 0.0, 0.0]),
+        across=np.array([0.0, INF, 0.0, INF]),
+        directions_W=np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.8, 0.6, 0.0]]),
+    )
+    there = contacts(4, body_curvatures=body, surface_curvatures=surface)
+    msg = contacts_to_msg(there)
+    assert list(msg.kinds) == [
+        ContactSetMsg.POINT_ON_FLAT,
+        ContactSetMsg.FLAT_ON_POINT,
+        ContactSetMsg.CURVED,
+        ContactSetMsg.CURVED,
+    ]
+    back = contacts_from_msg(msg)
+    same(back.body_curvatures, there.body_curvatures)
+    same(back.surface_curvatures, there.surface_curvatures)
+
+
+def test_kinds_alone_and_one_curvature_in_all_directions() -> None:
+    msg = contacts_to_msg(contacts(2))
+    msg.kinds = [ContactSetMsg.FLAT_ON_POINT] * 2
+    back = contacts_from_msg(msg)
+    same(back.body_curvatures, alike(2, 0.0))
+    same(back.surface_curvatures, alike(2, INF))
+    msg.kinds = [ContactSetMsg.CURVED] * 2
+    msg.body_curvatures, msg.surface_curvatures = [4.0, 5.0], [0.0, 1.0]
+    back = contacts_from_msg(msg)
+    assert back.body_curvatures is not None
+    assert back.body_curvatures.along.tolist() == back.body_curvatures.across.tolist() == [4.0, 5.0]
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"kinds": [0, 1]}, r"contacts\.kinds: found 2 kinds"),
+        ({"kinds": [0, 1, 3]}, r"contacts\.kinds\[2\]"),
+        ({"kinds": [2, 0, 0]}, r"contacts\.body_curvatures: found 0 numbers"),
+        ({"kinds": [2, 0, 0], "body_curvatures": [1.0, 0.0, 0.0]}, r"contacts\.surface_curvatures"),
+        ({"body_curvatures": [1.0, 0.0, 0.0]}, r"contacts\.kinds: found none, with curvatures"),
+        (
+            {
+                "kinds": [2] * 3,
+                "body_curvatures": [1.0] * 3,
+                "surface_curvatures": [0.0] * 3,
+                "body_curvatures_across": [1.0] * 3,
+            },
+            r"contacts\.body_curvatures_across",
+        ),
+        (
+            {"kinds": [2] * 3, "body_curvatures": [-1.0] * 3, "surface_curvatures": [0.0] * 3},
+            r"contacts\.curvatures\[0\]",
+        ),
+    ],
+)
+def test_what_is_incomplete_or_impossible_is_refused_by_name(changes: dict[str, Any], words: str) -> None:
+    msg = contacts_to_msg(contacts())
+    for field, value in changes.items():
+        setattr(msg, field, value)
+    with pytest.raises(InvalidFieldError, match=words):
+        contacts_from_msg(msg)
+
+
+@pytest.mark.parametrize("field", ["surface_velocities", "surface_accelerations"])
+def test_moving_surfaces_are_refused_by_name(field: str) -> None:
+    msg = contacts_to_msg(contacts())
+    setattr(msg, field, [0.0] * 8 + [0.1])
+    with pytest.raises(NotSupportedError, match=field):
+        contacts_from_msg(msg)
