@@ -93,19 +93,19 @@ def cone_faces(rows: FloatArray) -> set[int]:
         rows: Unit rows, (m, d).
     """
     everything = (1 << len(rows)) - 1
-    inner, strict = _inner_point(rows)
+    inner, strict = inner_point(rows)
     implied = everything & ~_mask(strict)
     if not strict.any():
         return {everything}
     # Within the space where the implied equations hold, and across the lines that the cone contains.
-    space = _null_space(rows[~strict])
+    space = null_space(rows[~strict])
     reduced = rows[strict] @ space
     reduced /= np.linalg.norm(reduced, axis=1)[:, None]
     spread, basis = np.linalg.svd(reduced)[1:]
     across = basis[: int((spread > ROW_TOLERANCE * spread[0]).sum())]
     reduced = reduced @ across.T
     point = across @ (space.T @ inner)
-    rays = _extreme_rays(reduced, point)
+    rays = extreme_rays(reduced, point)
     positions = [1 << int(i) for i in np.flatnonzero(strict)]
     faces = {everything}
     for vanishing in np.unique(np.abs(reduced @ rays.T).T <= 10.0 * ROW_TOLERANCE, axis=0):
@@ -120,7 +120,7 @@ def _contact_rows(r_W: FloatArray, normals_W: FloatArray) -> FloatArray:
     return np.hstack([normals_W, np.cross(r_W, normals_W) / (reach if reach > 0.0 else 1.0)])
 
 
-def _inner_point(rows: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
+def inner_point(rows: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
     """Return a point over which as many rows as can be are strictly positive, and which those are."""
     point = rows.mean(axis=0)
     for step in range(_TRIALS):  # towards the rows' average of least norm (von Neumann's algorithm)
@@ -145,7 +145,7 @@ def _inner_point(rows: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
     if not strict.any():
         return found.x[:d], strict
     # The one deepest inside, in the space of the rows that cannot be positive.
-    space = _null_space(rows[~strict])
+    space = null_space(rows[~strict])
     inside = rows[strict] @ space
     inside /= np.linalg.norm(inside, axis=1)[:, None]
     k = space.shape[1]
@@ -159,7 +159,7 @@ def _inner_point(rows: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
     return space @ deepest.x[:k], strict
 
 
-def _extreme_rays(rows: FloatArray, inner: FloatArray) -> FloatArray:
+def extreme_rays(rows: FloatArray, inner: FloatArray) -> FloatArray:
     """Return the unit extreme rays, (k, d), of a pointed cone; all rows are positive at ``inner``."""
     d = rows.shape[1]
     if d == 1:
@@ -179,7 +179,7 @@ def _extreme_rays(rows: FloatArray, inner: FloatArray) -> FloatArray:
     return rays
 
 
-def _null_space(rows: FloatArray) -> FloatArray:
+def null_space(rows: FloatArray) -> FloatArray:
     """Return an orthonormal basis, (d, k), of what the rows, (m, d), do not see."""
     d = rows.shape[1]
     if len(rows) == 0:
