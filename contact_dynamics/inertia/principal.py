@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -30,6 +31,9 @@ from contact_dynamics.validation import FloatArray, check_array, check_positive,
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+REMEMBERED: Final = 128
+"""Bodies whose axes are kept."""
 
 TIE: Final = 1e-9
 """Dimensionless, between components of a unit axis: far above the rounding of, say, (1, 1, 0) / sqrt(2)."""
@@ -73,7 +77,12 @@ def principal_axes(I_B: ArrayLike) -> PrincipalAxes:
     matrix = check_array("inertia", I_B, (3, 3))
     if float(np.abs(matrix - matrix.T).max()) > SYMMETRY_TOLERANCE * float(np.abs(matrix).max()):
         raise InvalidFieldError("inertia", matrix.tolist(), "a symmetric matrix")
-    frame = principal_frame(matrix)
+    return _of_bytes(matrix.tobytes())
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _of_bytes(data: bytes) -> PrincipalAxes:
+    frame = principal_frame(np.frombuffer(data, dtype=np.float64))
     low, middle, high = frame.moments
     first, second, third = (np.array([float(x) for x in axis]) for axis in frame.axes_B)
     equal = EQUAL_MOMENTS_TOLERANCE * max(abs(low), abs(high))
@@ -90,7 +99,9 @@ def principal_axes(I_B: ArrayLike) -> PrincipalAxes:
     else:
         first, second = _signed(first), _signed(second)
         R_BP = np.column_stack([first, second, np.cross(first, second)])
-    return PrincipalAxes(moments=np.array([float(low), float(middle), float(high)]), R_BP=R_BP)
+    moments = np.array([float(low), float(middle), float(high)])
+    moments.flags.writeable = R_BP.flags.writeable = False  # they are shared
+    return PrincipalAxes(moments=moments, R_BP=R_BP)
 
 
 def inertia_ellipsoid(I_B: ArrayLike, *, level: float = 1.0) -> InertiaEllipsoid:

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -44,6 +45,7 @@ from contact_dynamics.validation import FloatArray, check_array, check_magnitude
 from contact_dynamics.world import STANDARD_GRAVITY_W
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from decimal import Decimal
 
     from numpy.typing import ArrayLike
@@ -56,6 +58,9 @@ CHUNK: Final = 8192
 MOST_TURNED: Final = 1e16
 """rad. Later times are refused: they are doubles more than a turn apart, and the phases' double-doubles no
 longer hold the last bits of a turn."""
+
+REMEMBERED: Final = 128
+"""Rotations whose constants are kept, 3 kB each: a state is often asked about more than once."""
 
 FEW: Final = 16
 """Samples that cost less one by one than NumPy's calls do."""
@@ -222,7 +227,8 @@ def free_motion(
     """Return the motion of a body without torque, in uniform gravity, from its state at one time.
 
     Gravity is (3,), m/s^2, world axes. The precision is that of the motion's constants: double costs a third
-    of the time, and its errors grow with the angle turned.
+    of the time, and its errors grow with the angle turned. The constants of the last `REMEMBERED` rotations
+    are kept.
 
     Raises:
         InvalidFieldError: gravity is not three finite numbers; a number is beyond what doubles can square
@@ -230,12 +236,9 @@ def free_motion(
     """
     gravity = check_array("gravity", gravity_W, (3,))
     check_extent(body, state, gravity)
-    frame = principal_frame(body.I_B)
-    rotation: Rotation
-    if precision is Precision.DOUBLE:
-        rotation, form = _rotation(in_doubles(frame), state, DOUBLES)
-    else:
-        rotation, form = _rotation(frame, state, DECIMALS)
+    frame, rotation, form = constants_of(
+        body.I_B.tobytes(), state.q_WB.tobytes(), state.w_WB_W.tobytes(), precision
+    )
     q_WB = normalised(state.q_WB.tolist())
     if isinstance(rotation, Spin):
         rate = float(rotation.rate)
@@ -296,20 +299,35 @@ def _cayley_klein(form: AttitudeForm, seconds: float) -> tuple[complex, complex,
     return factor * complex(A_re, A_im), factor * complex(B_re, B_im), C / norm2, D / norm2
 
 
+@lru_cache(maxsize=REMEMBERED)
+def constants_of(
+    inertia: bytes, attitude: bytes, rate: bytes, precision: Precision
+) -> tuple[PrincipalFrame[Decimal], Rotation, AttitudeForm]:
+    """Return the constants of a rotation, for the doubles of I_B, q_WB and w_WB_W."""
+    I_B, q_WB, w_WB_W = (np.frombuffer(data, dtype=np.float64) for data in (inertia, attitude, rate))
+    frame = principal_frame(I_B)
+    if precision is Precision.DOUBLE:
+        return frame, *_rotation(in_doubles(frame), q_WB.tolist(), w_WB_W.tolist(), DOUBLES)
+    return frame, *_rotation(frame, q_WB.tolist(), w_WB_W.tolist(), DECIMALS)
+
+
 def _rotation(
-    frame: PrincipalFrame[Scalar], state: BodyState, numbers: Arithmetic[Scalar]
+    frame: PrincipalFrame[Scalar],
+    q_WB: Sequence[float],
+    w_WB_W: Sequence[float],
+    numbers: Arithmetic[Scalar],
 ) -> tuple[Spin[Scalar] | Tumble[Scalar], AttitudeForm]:
     with within(numbers.sums):
-        at_rest = float(np.abs(state.w_WB_W).max()) * LARGEST_NUMBER < 1.0
-        w_B = [numbers.number(0.0)] * 3 if at_rest else _body_rate(state, numbers)
+        at_rest = max(map(abs, w_WB_W)) * LARGEST_NUMBER < 1.0
+        w_B = [numbers.number(0.0)] * 3 if at_rest else _body_rate(q_WB, w_WB_W, numbers)
         rotation = tumble_or_spin(frame, w_B, numbers)
         return rotation, attitude_form(rotation, numbers)
 
 
-def _body_rate(state: BodyState, numbers: Arithmetic[Scalar]) -> list[Scalar]:
+def _body_rate(q_WB: Sequence[float], w_WB_W: Sequence[float], numbers: Arithmetic[Scalar]) -> list[Scalar]:
     """Return the angular velocity in body axes, rad/s: R^T w, for a quaternion that is unit to rounding."""
-    x, y, z, s = (numbers.number(i) for i in state.q_WB.tolist())
-    a, b, c = (numbers.number(i) for i in state.w_WB_W.tolist())
+    x, y, z, s = (numbers.number(i) for i in q_WB)
+    a, b, c = (numbers.number(i) for i in w_WB_W)
     imaginary2 = x * x + y * y + z * z
     norm2 = imaginary2 + s * s
     scale, along, across = s * s - imaginary2, 2 * (x * a + y * b + z * c), 2 * s

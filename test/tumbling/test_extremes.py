@@ -106,7 +106,7 @@ def test_times_beyond_the_last_turn_that_doubles_tell_apart_are_refused() -> Non
     motion = motion_of(np.diag([1.0, 1.4, 1.9]), np.array([0.0, 0.0, 10.0]))
     motion.at([9e14])
     for ask in (motion.state_at, lambda t: motion.at([0.0, t])):
-        with pytest.raises(InvalidFieldError, match="times?: found"):
+        with pytest.raises(InvalidFieldError, match=r"times?: found"):
             ask(-1.1e15)
     resting = motion_of(np.diag([1.0, 1.4, 1.9]), np.zeros(3))
     resting.state_at(1e60)

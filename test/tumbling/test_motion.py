@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.rigid_body import BodyState, angular_momentum, kinetic_energy
-from contact_dynamics.tumbling import FreeMotion, free_motion
+from contact_dynamics.rigid_body import BodyState, MassProperties, angular_momentum, kinetic_energy
+from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
 from oracles.tumbling_stepped import stepped
 from tumbling.known_motions import MOTIONS, motion_of
 
@@ -110,3 +112,18 @@ def test_gravity_that_is_no_vector_is_refused() -> None:
     motion = motion_of("sphere")
     with pytest.raises(InvalidFieldError, match="gravity"):
         free_motion(motion.body, motion.state, gravity_W=(0.0, 0.0))
+
+
+def test_a_state_seen_before_is_answered_alike_and_no_other_is_taken_for_it() -> None:
+    body = MassProperties(mass=1.0, I_B=np.diag([1.0, 1.4, 1.9]))
+
+    def asked(w: float, **options: object) -> tuple[float, ...]:
+        state = BodyState(p_WB_W=np.zeros(3), q_WB=(0, 0, 0, 1), v_WB_W=np.zeros(3), w_WB_W=(0.3, 0.5, w))
+        return free_motion(body, state, **options).sample(7.0)
+
+    first = asked(1.2)
+    assert asked(1.2) == first
+    assert asked(math.nextafter(1.2, 2.0)).q_WB != first.q_WB
+    assert asked(1.2, gravity_W=(0.0, 0.0, 0.0)).p_WB_W != first.p_WB_W
+    assert asked(1.2, precision=Precision.DOUBLE).q_WB == pytest.approx(first.q_WB, abs=1e-14)
+    assert asked(1.2) == first
