@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.convex_shape import NO_SHAPE
 from contact_dynamics.viewing.blueprint import WINDOW_S, Eye, eye_on, make_blueprint
 from contact_dynamics.viewing.contact_modes import draw_contact_modes
 from contact_dynamics.viewing.entities import (
@@ -27,7 +28,7 @@ from contact_dynamics.viewing.measured import draw_prediction_at, draw_states, s
 from contact_dynamics.viewing.planar_modes import draw_planar_modes, silhouette
 from contact_dynamics.viewing.poinsot import draw_poinsot, draw_rolling
 from contact_dynamics.viewing.scene import draw_axes, draw_body, draw_surface
-from contact_dynamics.viewing.shape import Shape, convex_shape
+from contact_dynamics.viewing.shape import Shape, drawn_shape
 from contact_dynamics.viewing.trajectory import draw_trajectory
 
 if TYPE_CHECKING:
@@ -42,7 +43,6 @@ if TYPE_CHECKING:
     from contact_dynamics.viewing.poinsot import PoinsotPicture
     from contact_dynamics.world import Body, World
 
-_UNKNOWN: Final = np.zeros((0, 3))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -59,7 +59,7 @@ class Picture:
         self._recording = recording
         self._world = world
         self._surface_side = surface_side
-        self._shapes: dict[str, Shape] = {body.name: convex_shape(body.vertices_B) for body in world.bodies}
+        self._shapes: dict[str, Shape] = {body.name: drawn_shape(body.shape) for body in world.bodies}
         self._newest: dict[str, BodyState] = {}
         self._predictions: dict[str, _Prediction] = {}
         self._answers: dict[str, str] = {}
@@ -169,7 +169,7 @@ class Picture:
 
     def _shape(self, body_name: str) -> Shape:
         if body_name not in self._shapes:
-            self._shapes[body_name] = convex_shape(_UNKNOWN)
+            self._shapes[body_name] = drawn_shape(NO_SHAPE)
             draw_body(self._recording, body_name, self._shapes[body_name])
         return self._shapes[body_name]
 

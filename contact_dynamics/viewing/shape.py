@@ -1,18 +1,31 @@
-"""The drawable shape of a convex body: flat faces and the edges between them, from its corners alone."""
+"""The drawable shape of a convex body: faces and the edges between them; round sides in flat facets."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.rim_descent import radii_of
+
 if TYPE_CHECKING:
+    from contact_dynamics.convex_shape import ConvexShape
+    from contact_dynamics.rim_descent import Radii
     from contact_dynamics.validation import FloatArray
 
 FLAT: Final = 1e-6
 """Relative to a body's size: thinner than this it is drawn as a polygon, a line or a point. Also 1 - cos of
 the angle below which two triangles are one face: 0.08 degrees."""
+
+ROUND_FACETS: Final = 48
+"""Facets around a rim or a ball: a chord is then 0.2 % of the radius from its arc."""
+
+MOST_BALLS: Final = 100
+"""Corners that are rounded with all their facets; of more, each has fewer."""
+
+SHARP: Final = 0.06
+"""1 - cos of the angle, 20 degrees, below which facets of a round body are one side of it."""
 
 NO_SIZE: Final = 0.05
 """m. Size that a body without shape is drawn with."""
@@ -28,8 +41,22 @@ class Shape:
     size: float  # m, > 0, distance between the two ends of the body's bounding box
 
 
-def convex_shape(vertices_B: FloatArray) -> Shape:
-    """Return the shape of the hull of corners, (k, 3), m, which may lie in a plane, on a line, or be none."""
+def drawn_shape(shape: ConvexShape) -> Shape:
+    """Return a body's shape. Round ones have circles and radii among their edges, so that turns are seen."""
+    if shape.is_polyhedron:
+        return convex_shape(shape.vertices)
+    hull = convex_shape(_surface_points(shape), smooth=SHARP)
+    lines = [_circle(vertex, axes, shape.rounding) for vertex in shape.vertices for axes in _PLANES]
+    lines += [np.array([radii.center, np.add(radii.center, radii.first)]) for radii in _radii(shape)]
+    marks = [np.stack([line[:-1], line[1:]], axis=1) for line in lines if np.ptp(line, axis=0).any()]
+    return replace(hull, edges_B=np.concatenate([hull.edges_B, *marks]))
+
+
+def convex_shape(vertices_B: FloatArray, *, smooth: float = FLAT) -> Shape:
+    """Return the shape of the hull of corners, (k, 3), m, which may lie in a plane, on a line, or be none.
+
+    There is an edge where 1 - cos of the angle between two facets exceeds ``smooth``.
+    """
     if len(vertices_B) == 0:
         return _skeleton(np.zeros((0, 2, 3)), NO_SIZE)
     center = vertices_B.mean(axis=0)
@@ -43,7 +70,7 @@ def convex_shape(vertices_B: FloatArray) -> Shape:
         return _skeleton(vertices_B[[[int(along.argmin()), int(along.argmax())]]], size)
     if rank == 2:
         return _polygon(vertices_B, (vertices_B - center) @ axes[:2].T, size)
-    return _polyhedron(vertices_B, center, size)
+    return _polyhedron(vertices_B, center, size, smooth)
 
 
 def _skeleton(edges_B: FloatArray, size: float) -> Shape:
@@ -61,7 +88,7 @@ def _polygon(vertices_B: FloatArray, in_plane: FloatArray, size: float) -> Shape
     return Shape(triangles_B=triangles, normals_B=_normals(triangles), edges_B=edges, size=size)
 
 
-def _polyhedron(vertices_B: FloatArray, center: FloatArray, size: float) -> Shape:
+def _polyhedron(vertices_B: FloatArray, center: FloatArray, size: float, smooth: float) -> Shape:
     from scipy.spatial import ConvexHull
 
     hull = ConvexHull(vertices_B)
@@ -73,9 +100,40 @@ def _polyhedron(vertices_B: FloatArray, center: FloatArray, size: float) -> Shap
         np.delete(simplex, corner)
         for i, simplex in enumerate(hull.simplices)
         for corner, j in enumerate(hull.neighbors[i])
-        if i < j and 1.0 - normals[i] @ normals[j] > FLAT
+        if i < j and 1.0 - normals[i] @ normals[j] > smooth
     ]
-    return Shape(triangles_B=triangles, normals_B=normals, edges_B=vertices_B[np.array(edges)], size=size)
+    ends = vertices_B[np.array(edges, dtype=int).reshape(-1, 2)]
+    return Shape(triangles_B=triangles, normals_B=normals, edges_B=ends, size=size)
+
+
+_TURNS: Final = np.linspace(0.0, 2.0 * np.pi, ROUND_FACETS + 1)
+_PLANES: Final = np.eye(3)[[[0, 1], [1, 2], [2, 0]]]
+"""Two axes of each of three planes."""
+
+
+def _radii(shape: ConvexShape) -> list[Radii]:
+    return [radii_of(rim) for rim in shape.rims]
+
+
+def _surface_points(shape: ConvexShape) -> FloatArray:
+    """Return points all over the corners and rims, each a ball of the rounding's radius."""
+    on_rims = [_circle(np.array(r.center), np.array([r.first, r.second]), 1.0)[:-1] for r in _radii(shape)]
+    points = np.concatenate([shape.vertices, *on_rims])
+    if shape.rounding == 0.0:
+        return points
+    around = _circle(np.zeros(3), _PLANES[0], 1.0)[:-1]
+    # A rim's balls need only be seen in outline; single ones are round on all sides.
+    tilts = np.linspace(0.0, np.pi, ROUND_FACETS // (4 if shape.rims else 2) + 1)
+    ball = np.concatenate([around * np.sin(tilt) + [0.0, 0.0, np.cos(tilt)] for tilt in tilts])
+    if len(points) > MOST_BALLS:
+        ball = ball[:: len(points) // MOST_BALLS + 1]
+    return (points[:, None] + shape.rounding * ball).reshape(-1, 3)
+
+
+def _circle(center: FloatArray, axes: FloatArray, radius: float) -> FloatArray:
+    """Return a closed circle, (ROUND_FACETS + 1, 3), m, in the plane of two axes, (2, 3)."""
+    circle: FloatArray = center + radius * (np.column_stack([np.cos(_TURNS), np.sin(_TURNS)]) @ axes)
+    return circle
 
 
 def _normals(triangles: FloatArray) -> FloatArray:

@@ -1,13 +1,16 @@
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
+from contact_dynamics.convex_shape import NO_SHAPE, box, capsule, cone, cylinder, rounded, sphere
 from contact_dynamics.validation import FloatArray
-from contact_dynamics.viewing.shape import NO_SIZE, Shape, convex_shape
+from contact_dynamics.viewing.shape import NO_SIZE, Shape, convex_shape, drawn_shape
 from contact_dynamics.world import box_vertices
 
 SIZES = st.floats(1e-3, 10.0)
@@ -63,3 +66,48 @@ def test_a_body_without_extent_has_a_size_to_be_drawn_with(vertices: FloatArray)
     shape = convex_shape(vertices)
     assert len(shape.edges_B) == len(shape.triangles_B) == 0
     assert shape.size == NO_SIZE
+
+
+ROUND = {
+    "sphere": (sphere(radius=0.5), math.pi / 6.0),
+    "capsule": (capsule(radius=0.5, length=1.0), math.pi / 6.0 + math.pi / 4.0),
+    "cylinder": (cylinder(radius=0.5, length=2.0), math.pi / 2.0),
+    "cone": (cone(radius=0.5, height=3.0), math.pi / 4.0),
+    "rounded disc": (
+        rounded(cylinder(radius=0.5, length=0.0), radius=0.25),
+        math.pi * (2.0 * 0.25 * 0.5**2 + math.pi * 0.5 * 0.25**2 + 4.0 / 3.0 * 0.25**3),  # Steiner
+    ),
+    "rounded box": (
+        rounded(box(size=(1.0, 2.0, 3.0)), radius=0.25),
+        6.0 + 22.0 * 0.25 + math.pi * 6.0 * 0.25**2 + 4.0 / 3.0 * math.pi * 0.25**3,  # Steiner
+    ),
+}
+
+
+@pytest.mark.parametrize("name", list(ROUND))
+def test_round_shapes_fill_their_volume_but_for_the_facets(name: str) -> None:
+    body, volume = ROUND[name]
+    shape = drawn_shape(body)
+    areas = area_vectors(shape)
+    np.testing.assert_allclose(areas.sum(axis=0), np.zeros(3), atol=1e-12)
+    filled = np.einsum("ij,ij->", areas, shape.triangles_B.mean(axis=1)) / 3.0
+    assert 0.98 * volume < filled < volume
+    assert (np.einsum("ij,ij->i", areas, shape.normals_B) > 0.0).all()
+
+
+@pytest.mark.parametrize("name", list(ROUND))
+def test_round_shapes_have_lines_on_them_that_show_turns_and_no_facets(name: str) -> None:
+    body, _ = ROUND[name]
+    edges = drawn_shape(body).edges_B
+    assert 0 < len(edges) < 100 + 3 * 48 * max(1, len(body.vertices))
+    turned = Rotation.from_euler("z", 1.0).apply(edges.reshape(-1, 3))
+    gaps = np.linalg.norm(turned[:, None] - edges.reshape(-1, 3), axis=2).min(axis=1)
+    assert gaps.max() > 0.01  # about its axis it does not look the same
+
+
+def test_a_disc_is_drawn_from_both_sides_and_nothing_as_nothing() -> None:
+    disc = drawn_shape(cylinder(radius=1.0, length=0.0))
+    np.testing.assert_allclose(area_vectors(disc).sum(axis=0), np.zeros(3), atol=1e-12)
+    assert len(drawn_shape(NO_SHAPE).triangles_B) == 0
+    cube = drawn_shape(box(size=(1.0, 1.0, 1.0)))
+    assert len(cube.edges_B) == 12
