@@ -40,8 +40,8 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
 
-MOST_DYNAMIC_CONTACTS: Final = 12
-"""Longest list of touching contacts accepted: a generic set of them has many modes to refuse."""
+MOST_DYNAMIC_CONTACTS: Final = 32
+"""Longest list of touching contacts accepted: a tenth of a second, more where many modes are consistent."""
 
 FRICTION_FACETS: Final = 8
 """Edges of a friction pyramid where nothing else is asked for: it holds at least 92 % of the round cone's."""

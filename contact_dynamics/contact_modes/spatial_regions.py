@@ -87,13 +87,13 @@ def image_of(normals: FloatArray, frames: FloatArray) -> Image:
 
 
 def whole(dimensions: int) -> Iterator[Region]:
-    """Yield regions that together cover every direction."""
-    for signs in itertools.product((1.0, -1.0), repeat=dimensions):
+    """Yield regions that together cover every direction; none where there is no dimension."""
+    for signs in itertools.product((1.0, -1.0), repeat=dimensions) if dimensions else ():
         yield Region(np.diag(signs), np.array(signs) / math.sqrt(dimensions))
 
 
 def _row_space(rows: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return orthonormal bases of what the rows see and of what they do not."""
     sizes, basis = np.linalg.svd(rows)[1:]
-    seen = int((sizes > ROW_TOLERANCE * max(1.0, sizes[0])).sum())
+    seen = int((sizes > ROW_TOLERANCE * max(1.0, sizes.max(initial=0.0))).sum())
     return basis[:seen], basis[seen:]

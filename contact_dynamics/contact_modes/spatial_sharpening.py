@@ -34,6 +34,9 @@ _TRIAL: Final = 1e-6
 _LONGEST_STEP: Final = 0.3
 """rad. Half a sector of the usual pyramid is 0.39."""
 
+_FAST: Final = 0.1
+"""Share of its error that a step may leave where sliding is followed without asking how it would turn."""
+
 _SETTLED: Final = 1e-11
 """rad. Directions that are as close as that are those of the rounded forces."""
 
@@ -63,8 +66,28 @@ def sharpened(mode: Sliding, forces: FloatArray) -> Sharpened | None:
         forces: (n, 3), those of the mode.
     """
     turning = [i for i, one in enumerate(mode.pyramids) if mode.letters[i] == "c" and one.frame is not None]
-    angles: FloatArray = np.array([_against(mode.pyramids[i], forces[i]) for i in turning])
-    step = np.zeros(len(turning))
+    angles: FloatArray = np.asarray([_against(mode.pyramids[i], forces[i]) for i in turning])
+    return _followed(mode, turning, angles) or _by_newton(mode, turning, angles)
+
+
+def _followed(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpened | None:
+    """Turn friction against the sliding while that settles fast, as where all contacts slide one way."""
+    last = math.inf
+    while True:
+        found = _solved(mode, turning, angles)
+        if found is None:
+            return None
+        errors = _errors(mode, turning, angles, found)
+        error = float(np.abs(errors).max())
+        if error <= _SETTLED:
+            return found
+        if not error <= _FAST * last:
+            return None
+        angles, last = angles + errors, error
+
+
+def _by_newton(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpened | None:
+    step: FloatArray = np.zeros(len(turning))
     for _ in range(_MOST_STEPS):
         found = _solved(mode, turning, angles + step)
         if found is None:
@@ -72,21 +95,25 @@ def sharpened(mode: Sliding, forces: FloatArray) -> Sharpened | None:
             continue
         angles = angles + step
         errors = _errors(mode, turning, angles, found)
-        if np.isnan(errors).any():
-            return None
         if np.abs(errors).max() <= _SETTLED:
             return found
-        slopes = np.zeros((len(turning), len(turning)))
-        for k, trial in enumerate(_TRIAL * np.eye(len(turning))):
-            beside = _solved(mode, turning, angles + trial)
-            if beside is None:
-                return None
-            slopes[:, k] = (_errors(mode, turning, angles + trial, beside) - errors) / _TRIAL
-        if np.isnan(slopes).any():
+        slopes = _slopes(mode, turning, angles, errors)
+        if slopes is None:
             return None
-        step = np.linalg.lstsq(slopes, -errors, rcond=None)[0]
-        step *= min(1.0, _LONGEST_STEP / float(np.abs(step).max()))
+        step = np.asarray(np.linalg.lstsq(slopes, -errors, rcond=None)[0], dtype=float)
+        step *= min(1.0, _LONGEST_STEP / max(float(np.abs(step).max()), _SETTLED))
     return None
+
+
+def _slopes(mode: Sliding, turning: list[int], angles: FloatArray, errors: FloatArray) -> FloatArray | None:
+    """Return how the errors change with the directions, (k, k); None: the mode ends there."""
+    found = np.zeros((len(turning), len(turning)))
+    for k, trial in enumerate(_TRIAL * np.eye(len(turning))):
+        beside = _solved(mode, turning, angles + trial)
+        if beside is None:
+            return None
+        found[:, k] = (_errors(mode, turning, angles + trial, beside) - errors) / _TRIAL
+    return None if np.isnan(found).any() else found
 
 
 def _against(pyramid: Pyramid, force: FloatArray) -> float:

@@ -120,6 +120,35 @@ def test_a_block_tips_about_an_edge() -> None:
     assert [one.mode for one in still.modes] == ["ffff"]
 
 
+@pytest.mark.parametrize("contacts", [6, 9, 30])
+def test_more_contacts_than_the_motion_has_dimensions(contacts: int) -> None:
+    # A cup of contacts around the lower half: the weight rests in it, whatever pushes a little.
+    angles = 2.0 * math.pi * np.arange(contacts) / contacts
+    lean = 0.4 + 0.5 * (np.arange(contacts) % 3)
+    normals = np.column_stack([np.sin(lean) * np.cos(angles), np.sin(lean) * np.sin(angles), np.cos(lean)])
+    chance = np.random.default_rng(contacts)
+    cup = ContactSet(
+        p_WC_W=-normals + 0.1 * chance.normal(size=(contacts, 3)),
+        normals_W=normals,
+        frictions=np.full(contacts, 0.8),
+        restitutions=np.zeros(contacts),
+    )
+    wrench = np.array([0.3, 0.2, -WEIGHT, 0.1, 0.0, 0.2])
+    answer = spatial_contact_modes(BODY, state(), cup, force_W=wrench[:3], torque_W=wrench[3:])
+    assert "f" * contacts in [mode.mode for mode in answer.modes]
+    check_evidence(answer, BODY, state(), cup, wrench)
+
+
+@pytest.mark.parametrize("corners", [5, 24])
+def test_a_block_on_many_feet_slides_as_on_four(corners: int) -> None:
+    angles = 2.0 * math.pi * np.arange(corners) / corners
+    feet = [(math.cos(angle), math.sin(angle), -0.2) for angle in angles]
+    answer = spatial_contact_modes(BODY, state(), on_floor(feet, 0.4), force_W=(10.0, 0.0, -WEIGHT))
+    (mode,) = answer.modes
+    assert mode.mode == "c" * corners
+    np.testing.assert_allclose(mode.acceleration_W, [5.0 - 4.0, 0.0, 0.0], atol=1e-9)
+
+
 def test_a_frictionless_block_slides_freely() -> None:
     contacts = on_floor(FEET, 0.0)
     pushed = spatial_contact_modes(BODY, state(), contacts, force_W=(1.0, 0.0, -WEIGHT))
@@ -281,4 +310,4 @@ def test_misuse_is_refused_by_name() -> None:
     with pytest.raises(InvalidFieldError, match="force"):
         spatial_contact_modes(BODY, state(), on_floor(FEET, 0.5), force_W=(0, 0, math.nan))
     with pytest.raises(TooLargeError, match="contacts"):
-        spatial_contact_modes(BODY, state(), on_floor(FEET * 4, 0.5), force_W=(0, 0, -1))
+        spatial_contact_modes(BODY, state(), on_floor(FEET * 9, 0.5), force_W=(0, 0, -1))
