@@ -19,7 +19,7 @@ if TYPE_CHECKING:
         ContactModeAnswer,
         ModeMargin,
         ModeWrenchSet,
-        PlanarStatics,
+        BodyStatics,
         SpatialMode,
         SpatialModeAnswer,
     )
@@ -103,7 +103,7 @@ def write_planar_margins(response: Any, margins: Sequence[ModeMargin], plane: Pl
         msg.margin_modes = list(margin.modes_beyond)
 
 
-def write_planar_statics(response: Any, statics: PlanarStatics) -> None:
+def write_planar_statics(response: Any, statics: BodyStatics) -> None:
     """Write the answers to the static questions into a response."""
     response.equilibrium = int(statics.equilibrium)
     response.jammed = int(statics.jammed)

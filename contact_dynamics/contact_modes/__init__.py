@@ -6,9 +6,11 @@ In reading order: verdicts and evidence (`result`); one contact in closed form (
 (`margins`); equilibrium, jamming and wedging (`statics`). In space: contacting and separating modes
 (`spatial`); sticking and sliding, with mechanics (`spatial_dynamics`, `spatial_result`): every combination of
 letters (`spatial_search`, `spatial_letters`, `spatial_regions`, `spatial_program`), shown with exact friction
-(`spatial_sharpening`) and shared forces (`spatial_forces`).
+(`spatial_sharpening`) and shared forces (`spatial_forces`); statics (`spatial_statics`). What follows where
+no mode is consistent though no contact approaches: `jamming`, by `complementarity`.
 """
 
+from contact_dynamics.contact_modes.jamming import jamming_impact
 from contact_dynamics.contact_modes.margins import ModeMargin, planar_mode_map, planar_mode_margins
 from contact_dynamics.contact_modes.planar import planar_contact_modes
 from contact_dynamics.contact_modes.result import (
@@ -21,26 +23,29 @@ from contact_dynamics.contact_modes.result import (
 from contact_dynamics.contact_modes.spatial import spatial_kinematic_modes
 from contact_dynamics.contact_modes.spatial_dynamics import spatial_contact_modes
 from contact_dynamics.contact_modes.spatial_result import SpatialMode, SpatialModeAnswer
-from contact_dynamics.contact_modes.statics import Certainty, PlanarStatics, planar_statics
+from contact_dynamics.contact_modes.spatial_statics import spatial_statics
+from contact_dynamics.contact_modes.statics import BodyStatics, Certainty, planar_statics
 from contact_dynamics.contact_modes.wrench_sets import ModeWrenchSet, WrenchHalfSpace
 
 __all__ = [
+    "BodyStatics",
     "Certainty",
     "ConsistentMode",
     "ContactModeAnswer",
     "ModeMargin",
     "ModeVerdict",
     "ModeWrenchSet",
-    "PlanarStatics",
     "Refusal",
     "RefusedMode",
     "SpatialMode",
     "SpatialModeAnswer",
     "WrenchHalfSpace",
+    "jamming_impact",
     "planar_contact_modes",
     "planar_mode_map",
     "planar_mode_margins",
     "planar_statics",
     "spatial_contact_modes",
     "spatial_kinematic_modes",
+    "spatial_statics",
 ]

@@ -7,8 +7,8 @@ time h, contact impulses p_i keep the body out of the world at its end, and h go
 
 with Coulomb's law for impulses against the sliding at the end (Stewart, Rigid-body dynamics with friction and
 impact, SIAM Review 42, 2000: this limit exists, and settles Painleve's paradox). The centripetal terms b_n
-are those of arms that have turned by h. A second problem of the same kind gives back Poisson's restitution
-(Anitescu and Potra, Nonlinear Dynamics 14, 1997).
+are those of arms that have turned by h, and of the shapes that meet there (`contact_curvature`). A second
+problem of the same kind gives back Poisson's restitution (Anitescu and Potra, Nonlinear Dynamics 14, 1997).
 
 Does not cover: the way there. Friction acts against the sliding at the end of compression, and of
 restitution, so that a contact which stops before that and slides back is not seen; Routh's path (`impact`)
@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.contact_curvature import velocity_accelerations
 from contact_dynamics.contact_modes.complementarity import solve_complementarity
 from contact_dynamics.contact_modes.touching import spatial_contact_velocities
 from contact_dynamics.errors import InvalidFieldError
@@ -108,7 +109,8 @@ def jamming_impact(
     free = inverse @ np.concatenate([force, torque - np.cross(w, inertia @ w)])
     twist = np.concatenate([state.v_WB_W, w])
     before = _rows(arms) @ twist
-    hurry = _fastest(_rows(arms) @ free + np.cross(w, np.cross(w, arms)), free[:3])
+    rolling = velocity_accelerations(contacts, before, w)
+    hurry = _fastest(_rows(arms) @ free + np.cross(w, np.cross(w, arms)) + rolling, free[:3])
     speed = max(_fastest(before, twist[:3]), tolerance)
     cleaned = spatial_contact_velocities(state, contacts, velocity_tolerance=tolerance)
     directions = _directions(contacts, before, plane_normal_W, friction_facets)
@@ -125,7 +127,7 @@ def jamming_impact(
             speed=speed,
             zero=_ZERO * share * speed,
         )
-        start = cleaned + seen.rows @ (twist + short * free) - before
+        start = cleaned + seen.rows @ (twist + short * free) + short * rolling - before
         found = _two_phases(seen, start, contacts.restitutions)
         if found is None:
             continue

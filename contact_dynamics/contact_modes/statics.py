@@ -43,7 +43,7 @@ class Certainty(IntEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PlanarStatics:
+class BodyStatics:
     """What holds a body at rest, and how well."""
 
     equilibrium: Certainty  # whether it stays at rest
@@ -65,7 +65,7 @@ def planar_statics(
     *,
     margin_length: float | None = None,
     acceleration_tolerance: float = ACCELERATION_TOLERANCE,
-) -> PlanarStatics:
+) -> BodyStatics:
     """Return whether and how well a body at rest stays at rest.
 
     Args:
@@ -96,7 +96,7 @@ def planar_statics(
         alone = answer.verdict == ModeVerdict.UNIQUE and answer.modes[0].motion_unique
         equilibrium = Certainty.CERTAIN if alone else Certainty.POSSIBLE
     held_without = _room(smooth, target, accuracy) >= 0.0
-    return PlanarStatics(
+    return BodyStatics(
         equilibrium=equilibrium,
         jammed=Certainty.NO if held_without else equilibrium,
         wedged=_press_on_each_other(balance),

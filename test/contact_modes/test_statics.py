@@ -9,7 +9,7 @@ import pytest
 from contact_dynamics.contact_modes import (
     Certainty,
     ModeVerdict,
-    PlanarStatics,
+    BodyStatics,
     planar_contact_modes,
     planar_statics,
 )
@@ -72,7 +72,7 @@ def test_the_slope_that_is_exactly_the_angle_of_friction_holds() -> None:
     assert statics.stable_disturbance == pytest.approx(0.0, abs=1e-12)
 
 
-def ladder(angle: float, floor: float, wall: float) -> PlanarStatics:
+def ladder(angle: float, floor: float, wall: float) -> BodyStatics:
     """Return the statics of a uniform ladder of length 4 under its weight; the wall is at its right."""
     x, y = 2.0 * math.cos(angle), 2.0 * math.sin(angle)
     contacts = [
@@ -112,7 +112,7 @@ def test_two_fingers_hold_when_the_line_between_them_is_in_both_cones(friction: 
 
 def peg(
     f_x: float, f_z: float, moment: float, *, depth: float, radius: float, friction: float
-) -> PlanarStatics:
+) -> BodyStatics:
     """Return the statics of a peg in a hole in two-point contact, with the wrench given at its tip.
 
     The peg points down; its tip's left corner touches the left wall, the hole's right rim touches its right

@@ -18,7 +18,7 @@ from scipy.optimize import nnls
 from contact_dynamics.contact_modes import (
     Certainty,
     ModeVerdict,
-    PlanarStatics,
+    BodyStatics,
     planar_contact_modes,
     planar_mode_map,
     planar_statics,
@@ -119,7 +119,7 @@ def test_a_sliding_block_trips_where_friction_times_height_exceeds_its_half_base
 # --------------------------------------------------------------------------------------------- ladder
 
 
-def ladder(angle: float, share: float, floor: float, wall: float) -> PlanarStatics:
+def ladder(angle: float, share: float, floor: float, wall: float) -> BodyStatics:
     """A light ladder of length 4 with a climber at a share of it; both the floor and the wall are rough."""
     x, y = math.cos(angle), math.sin(angle)
     below, above = 4.0 * share, 4.0 * (1.0 - share)
