@@ -54,7 +54,7 @@ def test_asking_the_server() -> None:
     assert "orientation x y z w" in result.stdout
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/contact-modes.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/contact-modes.md", "docs/tumbling.md"])
 def test_the_code_in_the_documents(page: str, tmp_path: Path) -> None:
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), re.DOTALL)
     assert blocks
