@@ -1,0 +1,215 @@
+"""Contact modes in space against the number of contacts, beside a linear program for each string of letters.
+
+Sets: `drawn`, contacts all over a ball whose normals point upwards, more or less, and `flush`, a face of as
+many corners on a table. The linear programs are SciPy's HiGHS: for contacting and separating modes one for
+each of 2^n strings, for modes with mechanics one for each string of letters and sectors, (2 + 2 k)^n with k
+facets. They must find as many modes.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import time
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from scipy.optimize import linprog
+
+from contact_dynamics.contact import ContactSet
+from contact_dynamics.contact_modes import spatial_contact_modes, spatial_kinematic_modes
+from contact_dynamics.friction import linearised_cone
+from contact_dynamics.rigid_body import BodyState, MassProperties
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+BODY: Final = MassProperties(mass=1.0, I_B=np.diag([0.1, 0.12, 0.15]))
+WEIGHT: Final = 10.0
+COUNTS: Final = (1, 2, 4, 8, 16, 32)
+FEW_AND_MANY: Final = (4, 8)  # facets
+MOST_BY_FACETS: Final = 4  # contacts for which both are shown
+MOST_STRINGS: Final = 2**8  # more take minutes
+REPEATS: Final = 5
+PUSHES: Final = {"rests": 0.0, "is pushed": 0.3, "slides off": 0.6}  # of the weight; friction holds 0.5
+SLACK: Final = 1e-7
+
+
+def state(speed: float = 0.0) -> BodyState:
+    """Return a body at the origin that translates along x."""
+    return BodyState(
+        p_WB_W=np.zeros(3),
+        q_WB=np.array([0.0, 0.0, 0.0, 1.0]),
+        v_WB_W=np.array([speed, 0.0, 0.0]),
+        w_WB_W=np.zeros(3),
+    )
+
+
+def contact_set(points: np.ndarray, normals: np.ndarray) -> ContactSet:
+    """Return contacts of friction 0.5."""
+    n = len(points)
+    return ContactSet(
+        p_WC_W=points,
+        normals_W=normals / np.linalg.norm(normals, axis=1)[:, None],
+        frictions=np.full(n, 0.5),
+        restitutions=np.zeros(n),
+    )
+
+
+def drawn(n: int) -> ContactSet:
+    """Return contacts all over a ball whose normals point upwards, more or less."""
+    chance = np.random.default_rng(n)
+    points = chance.normal(size=(n, 3))
+    normals = np.array([0.0, 0.0, 1.0]) + 0.6 * chance.normal(size=(n, 3))
+    return contact_set(points / np.linalg.norm(points, axis=1)[:, None], normals)
+
+
+def flush(n: int) -> ContactSet:
+    """Return the corners of a regular face on a table."""
+    angles = 2.0 * math.pi * (np.arange(n) + 0.5) / n
+    points = np.column_stack([np.cos(angles), np.sin(angles), np.full(n, -0.3)])
+    return contact_set(points, np.tile([0.0, 0.0, 1.0], (n, 1)))
+
+
+def best_of(task: Callable[[], object]) -> float:
+    """Return the shortest of some runs, s."""
+    best = math.inf
+    for _ in range(REPEATS):
+        start = time.perf_counter()
+        task()
+        best = min(best, time.perf_counter() - start)
+    return best
+
+
+def every_string(contacts: ContactSet) -> int:
+    """Return how many contacting and separating strings are possible, by a linear program for each."""
+    rows = np.hstack([contacts.normals_W, np.cross(contacts.p_WC_W, contacts.normals_W)])
+    found = 0
+    for stays in itertools.product([True, False], repeat=len(rows)):
+        equal, above = rows[list(stays)], rows[[not one for one in stays]]
+        outcome = linprog(
+            [0.0] * 6 + [-1.0],
+            A_eq=np.column_stack([equal, np.zeros(len(equal))]) if len(equal) else None,
+            b_eq=np.zeros(len(equal)) if len(equal) else None,
+            A_ub=np.column_stack([-above, np.ones(len(above))]) if len(above) else None,
+            b_ub=np.zeros(len(above)) if len(above) else None,
+            bounds=[(-1.0, 1.0)] * 6 + [(0.0, 1.0)],
+        )
+        found += outcome.status == 0 and -outcome.fun > SLACK
+    return found
+
+
+def every_letter(contacts: ContactSet, force: np.ndarray, facets: int) -> int:
+    """Return how many strings of letters and sectors forces bring about, by a linear program for each."""
+    r, n = contacts.p_WC_W, len(contacts)
+    inverse = np.linalg.inv(BODY.I_B)
+    free = force / BODY.mass
+    edges = [
+        linearised_cone(normal, 0.5, facets, towards=-free) for normal in contacts.normals_W
+    ]  # (K, 3) each
+    points = np.zeros((n, 3, facets * n + 1))
+    points[:, :, -1] = free
+    for i in range(n):
+        for j, edge in enumerate(edges[i]):
+            turning = inverse @ np.cross(r[i], edge)
+            points[:, :, facets * i + j] = edge / BODY.mass + np.cross(turning, r)
+
+    def letters(i: int) -> list[tuple[set[int], list[np.ndarray], list[np.ndarray]]]:
+        normal, along = contacts.normals_W[i] @ points[i], edges[i] @ points[i]
+        found: list[tuple[set[int], list[np.ndarray], list[np.ndarray]]] = [
+            (set(), [], [normal]),
+            (set(range(facets)), list(points[i]), []),
+        ]
+        for j in range(facets):
+            before, after, second = along[j - 1], along[(j + 1) % facets], along[(j + 2) % facets]
+            found.append(({j}, [normal], [before - along[j], after - along[j]]))
+            acting = {j, (j + 1) % facets}
+            found.append((acting, [normal, along[j] - after], [before - along[j], second - after]))
+        return found
+
+    count = 0
+    for chosen in itertools.product(*(letters(i) for i in range(n))):
+        zero = np.array([row for _, rows, _ in chosen for row in rows]).reshape(-1, facets * n + 1)
+        above = np.array([row for _, _, rows in chosen for row in rows]).reshape(-1, facets * n + 1)
+        outcome = linprog(
+            np.append(np.zeros(facets * n), -1.0),
+            A_eq=np.column_stack([zero[:, :-1], np.zeros(len(zero))]) if len(zero) else None,
+            b_eq=-zero[:, -1] if len(zero) else None,
+            A_ub=np.column_stack([-above[:, :-1], np.ones(len(above))]) if len(above) else None,
+            b_ub=above[:, -1] if len(above) else None,
+            bounds=[(0.0, None if j in acting else 0.0) for acting, _, _ in chosen for j in range(facets)]
+            + [(0.0, 1.0)],
+        )
+        count += outcome.status == 0 and -outcome.fun > SLACK
+    return count
+
+
+def run_kinematic() -> None:
+    """Print times of contacting and separating modes."""
+    print(f"{'contacting':>12} {'n':>4} {'modes':>6} {'all modes':>12} {'2^n programs':>14} {'ratio':>7}")
+    for make in (drawn, flush):
+        for n in COUNTS:
+            contacts = make(n)
+            modes = len(spatial_kinematic_modes(state(), contacts))
+            seconds = best_of(lambda contacts=contacts: spatial_kinematic_modes(state(), contacts))
+            peer = ""
+            if 2**n <= MOST_STRINGS:
+                start = time.perf_counter()
+                assert every_string(contacts) == modes
+                brute = time.perf_counter() - start
+                peer = f"{1e3 * brute:11.0f} ms {brute / seconds:6.0f}x"
+            print(f"{make.__name__:>12} {n:4d} {modes:6d} {1e3 * seconds:9.2f} ms {peer:>14}")
+
+
+def run_mechanics() -> None:
+    """Print times of modes with mechanics: sticking and sliding, accelerations and forces."""
+    print(
+        f"\n{'mechanics':>12} {'n':>4} {'facets':>6} {'what':>11} {'modes':>6} {'tried':>6} {'answer':>12}"
+        f" {'(2+2k)^n programs':>18} {'ratio':>7}"
+    )
+    for make, n, facets, (what, share) in itertools.product(
+        (flush, drawn), COUNTS, FEW_AND_MANY, PUSHES.items()
+    ):
+        if n > MOST_BY_FACETS and facets < FEW_AND_MANY[-1]:
+            continue
+        contacts = make(n)
+        force = WEIGHT * np.array([share, 0.05 * (share > 0.0), -1.0])
+
+        def ask(contacts: ContactSet = contacts, force: np.ndarray = force, facets: int = facets) -> object:
+            return spatial_contact_modes(
+                BODY, state(), contacts, force_W=force, friction_facets=facets, sharpen=False
+            )
+
+        answer = spatial_contact_modes(
+            BODY, state(), contacts, force_W=force, friction_facets=facets, sharpen=False
+        )
+        seconds = best_of(ask)
+        peer = ""
+        if (2 + 2 * facets) ** n <= MOST_STRINGS:
+            start = time.perf_counter()
+            assert every_letter(contacts, force, facets) == len(answer.modes)
+            brute = time.perf_counter() - start
+            peer = f"{1e3 * brute:15.0f} ms {brute / seconds:6.0f}x"
+        print(
+            f"{make.__name__:>12} {n:4d} {facets:6d} {what:>11} {len(answer.modes):6d} {answer.examined:6d}"
+            f" {1e3 * seconds:9.2f} ms {peer:>18}"
+        )
+    contacts = flush(4)
+    print("\na box that slides on a table already, friction exact: ", end="")
+    seconds = best_of(lambda: spatial_contact_modes(BODY, state(1.0), contacts, force_W=(0.0, 0.0, -WEIGHT)))
+    print(f"{1e3 * seconds:.2f} ms")
+    leaning = drawn(4)
+    for sharpen in (False, True):
+        seconds = best_of(
+            lambda sharpen=sharpen: spatial_contact_modes(
+                BODY, state(), leaning, force_W=(6.0, 0.5, -WEIGHT), sharpen=sharpen
+            )
+        )
+        how = "turned exactly" if sharpen else "on facets"
+        print(f"four drawn contacts, friction {how}: {1e3 * seconds:.2f} ms")
+
+
+def run() -> None:
+    """Print times and counts."""
+    run_kinematic()
+    run_mechanics()
