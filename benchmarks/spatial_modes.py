@@ -11,6 +11,7 @@ from __future__ import annotations
 import itertools
 import math
 import time
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -151,7 +152,7 @@ def run_kinematic() -> None:
         for n in COUNTS:
             contacts = make(n)
             modes = len(spatial_kinematic_modes(state(), contacts))
-            seconds = best_of(lambda contacts=contacts: spatial_kinematic_modes(state(), contacts))
+            seconds = best_of(partial(spatial_kinematic_modes, state(), contacts))
             peer = ""
             if 2**n <= MOST_STRINGS:
                 start = time.perf_counter()
@@ -175,14 +176,16 @@ def run_mechanics() -> None:
         contacts = make(n)
         force = WEIGHT * np.array([share, 0.05 * (share > 0.0), -1.0])
 
-        def ask(contacts: ContactSet = contacts, force: np.ndarray = force, facets: int = facets) -> object:
-            return spatial_contact_modes(
-                BODY, state(), contacts, force_W=force, friction_facets=facets, sharpen=False
-            )
-
-        answer = spatial_contact_modes(
-            BODY, state(), contacts, force_W=force, friction_facets=facets, sharpen=False
+        ask = partial(
+            spatial_contact_modes,
+            BODY,
+            state(),
+            contacts,
+            force_W=force,
+            friction_facets=facets,
+            sharpen=False,
         )
+        answer = ask()
         seconds = best_of(ask)
         peer = ""
         if (2 + 2 * facets) ** n <= MOST_STRINGS:
@@ -196,14 +199,13 @@ def run_mechanics() -> None:
         )
     contacts = flush(4)
     print("\na box that slides on a table already, friction exact: ", end="")
-    seconds = best_of(lambda: spatial_contact_modes(BODY, state(1.0), contacts, force_W=(0.0, 0.0, -WEIGHT)))
+    down = (0.0, 0.0, -WEIGHT)
+    seconds = best_of(partial(spatial_contact_modes, BODY, state(1.0), contacts, force_W=down))
     print(f"{1e3 * seconds:.2f} ms")
-    leaning = drawn(4)
+    leaning, force = drawn(4), np.array([6.0, 0.5, -WEIGHT])
     for sharpen in (False, True):
         seconds = best_of(
-            lambda sharpen=sharpen: spatial_contact_modes(
-                BODY, state(), leaning, force_W=(6.0, 0.5, -WEIGHT), sharpen=sharpen
-            )
+            partial(spatial_contact_modes, BODY, state(), leaning, force_W=force, sharpen=sharpen)
         )
         how = "turned exactly" if sharpen else "on facets"
         print(f"four drawn contacts, friction {how}: {1e3 * seconds:.2f} ms")
