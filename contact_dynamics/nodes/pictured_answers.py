@@ -10,9 +10,9 @@ import numpy as np
 from contact_dynamics.impact.law import ImpactOutcome
 from contact_dynamics.rigid_body import rotation_matrix
 from contact_dynamics.tumbling import Trajectory
-from contact_dynamics.viewing.impact import ImpactPicture
+from contact_dynamics.viewing.impact import DrawnStrike, ImpactPicture, OtherBody
 from contact_dynamics.viewing.poinsot import PoinsotPicture
-from contact_dynamics_interfaces.msg import Poinsot
+from contact_dynamics_interfaces.msg import Impact, Poinsot
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 from msg_adapters.body_state import body_state_from_msg
 from msg_adapters.contacts import contacts_from_msg
@@ -39,6 +39,15 @@ REGIMES: Final = {
     Poinsot.SEPARATRIX: "it turns over once, on the separatrix",
 }
 """In words, by the constant of `Poinsot.msg`."""
+
+
+SEQUENCE_ENDS: Final = {
+    Impact.NOTHING_STRIKES: "it flies",
+    Impact.STAYS: "a contact stays",
+    Impact.CHATTERS: "it chatters to rest at a contact",
+    Impact.MOST_STRIKES: "the bound on their number was reached",
+}
+"""What follows the last strike of a sequence, in words."""
 
 
 def show_tumbling(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns: int) -> None:
@@ -96,6 +105,8 @@ def show_impact(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns: 
         path_events=tuple(impact.path_events),
         path_contacts=tuple(impact.path_contacts),
         plane_normal_W=vector_from_msg(response.plane_normal) if is_planar else None,
+        other=_other_of(picture, response),
+        strikes=strikes_from_msg(impact, p_FB_F=p_FB_F),
     )
     picture.show_impact(name, shown, stamp_ns=stamp_ns)
     outcome = ImpactOutcome(impact.outcome).name.replace("_", " ").lower()
@@ -105,9 +116,52 @@ def show_impact(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns: 
         f"impulse {np.linalg.norm(impulses.sum(axis=0)):.3g} N s",
         f"{impact.kinetic_energy_before - impact.kinetic_energy_after:.3g} J lost",
     ]
+    for other, other_after in zip(response.other_state_before, impact.other_state_after, strict=True):
+        velocity = numbers(vector_from_msg(other_after.linear_velocity))
+        words.append(f"that of {other.body_name or 'the other body'} becomes ({velocity}) m/s")
+    if shown.strikes:
+        count, last = len(shown.strikes), 1e3 * shown.strikes[-1].seconds
+        words.append(f"{count} strikes within {last:.3g} ms; then {SEQUENCE_ENDS[impact.sequence_end]}")
     if impact.creates_energy:
         words.append("the law creates energy: do not trust this answer")
     tell(picture, IMPACT, words, response, stamp_ns=stamp_ns)
+
+
+def strikes_from_msg(msg: Any, *, p_FB_F: FloatArray) -> tuple[DrawnStrike, ...]:
+    """Return the strikes of a sequence in time, with the centre of mass where the message has the frame."""
+    orientations = np.reshape(msg.strike_body_orientations, (-1, 4))
+    return tuple(
+        DrawnStrike(
+            seconds=seconds,
+            contact=contact,
+            p_WC_W=p_WC_W,
+            impulse_W=impulse_W,
+            p_WB_W=p_WF_W + rotation_matrix(q) @ p_FB_F,
+            q_WB=q,
+        )
+        for seconds, contact, p_WC_W, impulse_W, p_WF_W, q in zip(
+            msg.strike_times,
+            msg.strike_contacts,
+            rows(msg.strike_positions),
+            rows(msg.strike_impulses),
+            rows(msg.strike_body_positions),
+            orientations,
+            strict=True,
+        )
+    )
+
+
+def _other_of(picture: Picture, response: Any) -> OtherBody | None:
+    if not response.other_state_before:
+        return None
+    (msg,), (after,) = response.other_state_before, response.impact.other_state_after
+    body = picture.body(msg.body_name)
+    p_FB_F = body.p_FB_F if body else np.zeros(3)
+    return OtherBody(
+        name=msg.body_name,
+        state=body_state_from_msg(msg, world_frame=msg.header.frame_id, p_FB_F=p_FB_F),
+        v_after_W=vector_from_msg(after.linear_velocity),
+    )
 
 
 def show_error(picture: Picture, kind: str, response: Any, *, now_ns: int) -> None:

@@ -1,4 +1,9 @@
-"""A predicted impact in the scene: contact, normal, friction cone, impulse, velocities before and after."""
+"""A predicted impact in the scene: contact, normal, friction cone, impulse, velocities before and after.
+
+From each contact rises the path of the impulse as it accumulates, to the scale of the impulse's arrow. A
+second moving body is drawn where it is struck, with its velocities. Strikes in sequence are numbered, each
+with the body as it is then.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +20,8 @@ from contact_dynamics.viewing.scene import tangents
 from contact_dynamics.viewing.trajectory import outline
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from contact_dynamics.contact import ContactSet
@@ -38,6 +45,27 @@ _OUTLINE_WIDTH: Final = -1.2  # negative: points of the screen
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class DrawnStrike:
+    """One strike of a sequence in time."""
+
+    seconds: float  # s after the first
+    contact: int  # index into the contacts
+    p_WC_W: FloatArray  # (3,), m, where the contact is then, world
+    impulse_W: FloatArray  # (3,), N s, on the body, world axes
+    p_WB_W: FloatArray  # (3,), m, centre of mass then, world
+    q_WB: FloatArray  # (4,), unit quaternion x, y, z, w
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class OtherBody:
+    """A second moving body that is struck."""
+
+    name: str
+    state: BodyState  # just before
+    v_after_W: FloatArray  # (3,), m/s, of its centre of mass just after, world axes
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ImpactPicture:
     """What an impact's picture is made of; impulses act on the body."""
 
@@ -49,6 +77,8 @@ class ImpactPicture:
     path_events: tuple[int, ...]  # (k,), what each vertex is, as `contact_dynamics.impact.PathEvent`
     path_contacts: tuple[int, ...]  # (k,), contact that each vertex belongs to
     plane_normal_W: FloatArray | None  # (3,), unit, plane of motion, world axes; none in space
+    other: OtherBody | None = None  # the body that is struck; none: the world
+    strikes: tuple[DrawnStrike, ...] = ()  # in the order of time; empty: all at once
 
     @property
     def main_contact(self) -> int:
@@ -74,59 +104,99 @@ class _Arrows:
             radii=_ARROW_WIDTH * size,
         )
 
-    def labels(self, places: FloatArray) -> rr.Points3D:
-        """Return how much each stands for, at places, (n, 3), m, world."""
-        lengths = np.linalg.norm(self.vectors, axis=1)
+    def labels(self, places: FloatArray, *, before: Sequence[str] = ()) -> rr.Points3D:
+        """Return how much each stands for, at places, (n, 3), m, world; after the words ``before``."""
+        lengths = np.linalg.norm(self.vectors, axis=1).tolist()
+        words = [f"{length:.3g} {self.unit}" for length in lengths]
+        if before:
+            words = [f"{one} {word}" for one, word in zip(before, words, strict=True)]
         return rr.Points3D(
             places,
             colors=self._colors(),
             radii=0.0,
-            labels=[f"{length:.3g} {self.unit}" for length in lengths.tolist()],
+            labels=words,
             show_labels=True,
         )
 
     def tips(self, size: float) -> FloatArray:
         """Return where the arrows end, (n, 3), m, world, for a body of that size, m."""
+        return self.origins + self.vectors * self.scale(size)
+
+    def scale(self, size: float) -> float:
+        """Return how long one unit is drawn, m, for a body of that size, m."""
         longest = float(np.linalg.norm(self.vectors, axis=1).max(initial=0.0))
-        scale = ARROW_LENGTH * size / longest if longest > 0.0 else 0.0
-        return self.origins + self.vectors * scale
+        return ARROW_LENGTH * size / longest if longest > 0.0 else 0.0
 
     def _colors(self) -> NDArray[np.uint8]:
         return np.array(self.colors, dtype=np.uint8).reshape(-1, 4)
 
 
-def draw_impact(recording: rr.RecordingStream, body_name: str, shape: Shape, picture: ImpactPicture) -> None:
+def draw_impact(
+    recording: rr.RecordingStream,
+    body_name: str,
+    shape: Shape,
+    picture: ImpactPicture,
+    *,
+    other_shape: Shape | None = None,
+) -> None:
     """Draw an impact in the scene, at the recording's current time."""
     path, size = impact_entity(body_name), shape.size
-    struck = np.linalg.norm(picture.impulses_W, axis=1) > 0.0
-    points, normals = picture.contacts.p_WC_W[struck], picture.contacts.normals_W[struck]
-    impulses = _Arrows(
-        origins=points,
-        vectors=picture.impulses_W[struck],
-        unit="N s",
-        colors=(palette.IMPACT,) * len(points),
-    )
+    struck, points, impulses_W, before = _struck(picture)
+    normals, frictions = picture.contacts.normals_W[struck], picture.contacts.frictions[struck]
+    impulses = _Arrows(origins=points, vectors=impulses_W, unit="N s", colors=(palette.IMPACT,) * len(points))
+    moving = [(picture.state.p_WB_W, picture.state.v_WB_W, picture.v_after_W)]
+    if picture.other is not None:
+        moving.append((picture.other.state.p_WB_W, picture.other.state.v_WB_W, picture.other.v_after_W))
     velocities = _Arrows(
-        origins=np.tile(picture.state.p_WB_W, (2, 1)),
-        vectors=np.array([picture.state.v_WB_W, picture.v_after_W]),
+        origins=np.array([p_W for p_W, _, _ in moving for _ in range(2)]),
+        vectors=np.array([v_W for _, *both in moving for v_W in both]),
         unit="m/s",
-        colors=(palette.BEFORE_IMPACT, palette.AFTER_IMPACT),
+        colors=(palette.BEFORE_IMPACT, palette.AFTER_IMPACT) * len(moving),
     )
     recording.log(f"{path}/impulse", impulses.drawn(size))
-    recording.log(f"{path}/impulse_label", impulses.labels(impulses.origins))
+    recording.log(f"{path}/impulse_label", impulses.labels(impulses.origins, before=before))
     recording.log(f"{path}/velocity", velocities.drawn(size))
     recording.log(f"{path}/velocity_label", velocities.labels(velocities.tips(size)))
+    paths = _paths(picture, scale=impulses.scale(size)) if not picture.strikes else []
+    strips = rr.LineStrips3D(paths, colors=palette.IMPACT, radii=2.0 * _OUTLINE_WIDTH)
+    recording.log(f"{path}/impulse_path", strips)
     height = CONE_HEIGHT * size
     width = 0.5 * _ARROW_WIDTH * size
     arrows = rr.Arrows3D(origins=points, vectors=normals * height, colors=palette.NORMAL, radii=width)
     recording.log(f"{path}/normal", arrows)
     spheres = rr.Points3D(points, radii=_POINT_SIZE * size, colors=palette.IMPACT)
     recording.log(f"{path}/point", spheres)
-    cones = friction_cones(points, normals, picture.contacts.frictions[struck], height=height)
+    cones = friction_cones(points, normals, frictions, height=height)
     recording.log(f"{path}/cone", rr.Clear(recursive=False) if cones is None else cones)
-    edges = list(outline(shape, picture.state.p_WB_W, picture.state.q_WB))
+    poses = [(shape, picture.state.p_WB_W, picture.state.q_WB)]
+    poses += [(shape, strike.p_WB_W, strike.q_WB) for strike in picture.strikes]
+    if picture.other is not None and other_shape is not None:
+        poses.append((other_shape, picture.other.state.p_WB_W, picture.other.state.q_WB))
+    edges = [edge for drawn, p_WB_W, q_WB in poses for edge in outline(drawn, p_WB_W, q_WB)]
     body = rr.LineStrips3D(edges, colors=palette.translucent(palette.IMPACT, 0.7), radii=_OUTLINE_WIDTH)
     recording.log(f"{path}/body", body)
+
+
+def _struck(picture: ImpactPicture) -> tuple[list[int], FloatArray, FloatArray, list[str]]:
+    """Return what is struck: contacts, points (n, 3) and impulses (n, 3), in world axes, and their names."""
+    if picture.strikes:
+        return (
+            [strike.contact for strike in picture.strikes],
+            np.array([strike.p_WC_W for strike in picture.strikes]),
+            np.array([strike.impulse_W for strike in picture.strikes]),
+            [f"{i}. at {1e3 * strike.seconds:.1f} ms:" for i, strike in enumerate(picture.strikes, start=1)],
+        )
+    struck = np.flatnonzero(np.linalg.norm(picture.impulses_W, axis=1) > 0.0).tolist()
+    return struck, picture.contacts.p_WC_W[struck], picture.impulses_W[struck], []
+
+
+def _paths(picture: ImpactPicture, *, scale: float) -> list[FloatArray]:
+    """Return the path of the accumulated impulse of each contact, (k, 3), m, world."""
+    owners = np.array(picture.path_contacts, dtype=np.int64)
+    return [
+        picture.contacts.p_WC_W[contact] + scale * picture.path_W[owners == contact]
+        for contact in np.unique(owners).tolist()
+    ]
 
 
 def friction_cones(

@@ -59,11 +59,16 @@ class Line(NamedTuple):
 
 
 def draw_impulse_space(
-    recording: rr.RecordingStream, mass_properties: MassProperties | None, picture: ImpactPicture
+    recording: rr.RecordingStream,
+    mass_properties: MassProperties | None,
+    picture: ImpactPicture,
+    *,
+    other: MassProperties | None = None,
 ) -> None:
     """Draw the impulse path of the contact with the largest impulse, at the recording's current time.
 
-    Without mass properties the sticking and compression lines are left out.
+    Without the mass properties of all that moves the sticking and compression lines are left out; ``other``
+    are those of the body that is struck.
     """
     contact = picture.main_contact
     axes_W = contact_axes(picture, contact)
@@ -74,7 +79,9 @@ def draw_impulse_space(
     # Labels of the path stand on its side of the normal, the names of the lines on the other.
     side = -1.0 if len(path) > 0 and path[-1, 0] < 0.0 else 1.0
     _draw_names(recording, -side * _NAMES * extent, extent)
-    lines = None if mass_properties is None else _lines(mass_properties, picture, contact, axes_W)
+    lines = None
+    if mass_properties is not None and (picture.other is None or other is not None):
+        lines = _lines(mass_properties, picture, contact, axes_W, other=other)
     for i, (name, color) in enumerate(_NAMED[:2]):
         part = np.zeros((0, 2, 2)) if lines is None else line_in_box(lines[i], extent)
         _strips(recording, name, part, color)
@@ -135,12 +142,22 @@ def line_in_box(line: Line, extent: float) -> FloatArray:
 
 
 def _lines(
-    mass_properties: MassProperties, picture: ImpactPicture, contact: int, axes_W: FloatArray
+    mass_properties: MassProperties,
+    picture: ImpactPicture,
+    contact: int,
+    axes_W: FloatArray,
+    *,
+    other: MassProperties | None,
 ) -> tuple[Line, Line]:
     """Return the sticking and the compression line (lecture 27, eq. 9 and 10)."""
     p_WC_W = picture.contacts.p_WC_W[contact]
-    velocity = axes_W @ picture.state.velocity_of_point(p_WC_W)
+    velocity_W = picture.state.velocity_of_point(p_WC_W)
     response_W = contact_inverse_inertia(mass_properties, picture.state, p_WC_W - picture.state.p_WB_W)
+    if picture.other is not None and other is not None:
+        struck = picture.other.state
+        velocity_W = velocity_W - struck.velocity_of_point(p_WC_W)
+        response_W = response_W + contact_inverse_inertia(other, struck, p_WC_W - struck.p_WB_W)
+    velocity = axes_W @ velocity_W
     response = axes_W @ response_W @ axes_W.T
     return Line(response[0], float(velocity[0])), Line(response[1], float(velocity[1]))
 

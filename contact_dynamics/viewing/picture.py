@@ -34,7 +34,7 @@ from contact_dynamics.viewing.trajectory import draw_trajectory
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.rigid_body import BodyState, MassProperties
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.contact_modes import ContactModesPicture
@@ -42,7 +42,6 @@ if TYPE_CHECKING:
     from contact_dynamics.viewing.planar_modes import PlanarModesPicture
     from contact_dynamics.viewing.poinsot import PoinsotPicture
     from contact_dynamics.world import Body, World
-
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -115,10 +114,15 @@ class Picture:
     def show_impact(self, body_name: str, impact: ImpactPicture, *, stamp_ns: int) -> None:
         """Draw a predicted impact in the scene and in impulse space."""
         set_time(self._recording, stamp_ns)
-        draw_impact(self._recording, body_name, self._shape(body_name), impact)
+        other = self._shape(impact.other.name) if impact.other is not None and impact.other.name else None
+        draw_impact(self._recording, body_name, self._shape(body_name), impact, other_shape=other)
         if len(impact.path_W) > 0:
-            body = self.body(body_name)
-            draw_impulse_space(self._recording, body.mass_properties if body else None, impact)
+            draw_impulse_space(
+                self._recording,
+                self._mass_properties(body_name),
+                impact,
+                other=self._mass_properties(impact.other.name) if impact.other else None,
+            )
             self._bring_up(IMPULSE_SPACE)
 
     def show_contact_modes(self, body_name: str, modes: ContactModesPicture, *, stamp_ns: int) -> None:
@@ -166,6 +170,10 @@ class Picture:
         legend = rr.TextDocument(LEGEND_TEXT, media_type=rr.MediaType.MARKDOWN)
         self._recording.log(LEGEND, legend, static=True)
         self._arrange()
+
+    def _mass_properties(self, body_name: str) -> MassProperties | None:
+        body = self.body(body_name)
+        return None if body is None else body.mass_properties
 
     def _shape(self, body_name: str) -> Shape:
         if body_name not in self._shapes:

@@ -195,6 +195,27 @@ def impact_answer(contacts: ContactSet) -> PredictImpact.Response:
     )
 
 
+def test_a_struck_body_and_strikes_in_sequence_are_told(bench: Bench) -> None:
+    answer = impact_answer(two_contacts())
+    bat = body_state(body_name="bat")
+    answer.other_state_before = [bat]
+    answer.impact.other_state_after = [bat]
+    answer.impact.strike_times, answer.impact.strike_contacts = [0.0, 0.004], [0, 1]
+    answer.impact.strike_outcomes = [Impact.SLIDES, Impact.SLIDES]
+    answer.impact.strike_positions = [0.1, 0.0, 0.0, -0.1, 0.0, 0.0]
+    answer.impact.strike_impulses = [0.0, 0.0, 0.4, 0.0, 0.0, 0.2]
+    answer.impact.strike_body_positions = [0.5, 0.0, 1.0] * 2
+    answer.impact.strike_body_orientations = TURNED * 2
+    answer.impact.sequence_end = Impact.STAYS
+    bench.answer("predict_impact", answer)
+    drawn = bench.drawn()
+    labels = drawn.last("/world/impact/brick/impulse_label", "Points3D:labels")
+    assert labels == ["1. at 0.0 ms: 0.4 N s", "2. at 4.0 ms: 0.2 N s"]
+    text = drawn.last("/answers/newest", "TextDocument:text")[0]
+    assert "that of bat becomes (1, 0, -2) m/s" in text
+    assert "2 strikes within 4 ms; then a contact stays" in text
+
+
 def center_of_mass(position: list[float], orientation: list[float]) -> np.ndarray:
     return np.array(position) + Rotation.from_quat(orientation).apply(CENTER)
 

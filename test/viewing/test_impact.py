@@ -1,12 +1,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
-from contact_dynamics.viewing.impact import ImpactPicture, draw_impact, friction_cones
+from contact_dynamics.viewing.impact import DrawnStrike, ImpactPicture, OtherBody, draw_impact, friction_cones
 from contact_dynamics.viewing.shape import convex_shape
 
 if TYPE_CHECKING:
@@ -72,6 +73,78 @@ def test_an_impact_without_impulse_is_drawn(
     drawn = read()
     assert drawn.last(f"{IMPACT}/impulse", "Arrows3D:vectors") == []
     assert drawn.last(f"{IMPACT}/cone", "Clear:is_recursive") == [False]
+
+
+def test_the_path_of_the_impulse_rises_from_its_contact_to_the_arrows_tip(
+    recording: rr.RecordingStream,
+    read: Callable[[], Drawn],
+    body: Body,
+    state: BodyState,
+    two_contacts: ContactSet,
+) -> None:
+    impulses = np.array([[0.0, 0.0, 0.0], [0.3, 0.0, 0.4]])
+    draw_impact(recording, "brick", convex_shape(body.vertices_B), picture_of(state, two_contacts, impulses))
+    drawn = read()
+    (path,) = drawn.array(f"{IMPACT}/impulse_path", "LineStrips3D:strips")
+    np.testing.assert_allclose(path[0], [-0.1, 0.0, 0.0], atol=1e-7)
+    arrow = drawn.array(f"{IMPACT}/impulse", "Arrows3D:vectors")[0]
+    np.testing.assert_allclose(path[-1] - path[0], arrow, atol=1e-6)
+
+
+def test_a_body_that_is_struck_is_drawn_with_its_velocities(
+    recording: rr.RecordingStream,
+    read: Callable[[], Drawn],
+    body: Body,
+    state: BodyState,
+    two_contacts: ContactSet,
+) -> None:
+    struck = replace(state, p_WB_W=np.array([2.0, 0.0, 0.0]), v_WB_W=np.array([0.0, 0.0, 1.0]))
+    other = OtherBody(name="bat", state=struck, v_after_W=np.array([0.0, 0.0, 0.5]))
+    impulses = np.array([[0.0, 0.0, 0.0], [0.3, 0.0, 0.4]])
+    picture = replace(picture_of(state, two_contacts, impulses), other=other)
+    shape = convex_shape(body.vertices_B)
+    draw_impact(recording, "brick", shape, picture, other_shape=shape)
+    drawn = read()
+    assert drawn.last(f"{IMPACT}/velocity_label", "Points3D:labels")[2:] == ["1 m/s", "0.5 m/s"]
+    np.testing.assert_allclose(
+        drawn.array(f"{IMPACT}/velocity", "Arrows3D:origins")[2:], np.tile([2.0, 0.0, 0.0], (2, 1))
+    )
+    edges = drawn.array(f"{IMPACT}/body", "LineStrips3D:strips")
+    assert len(edges) == 2 * len(shape.edges_B)
+    assert edges[len(shape.edges_B) :, :, 0].min() > 1.5
+
+
+def test_strikes_in_sequence_are_numbered(
+    recording: rr.RecordingStream,
+    read: Callable[[], Drawn],
+    body: Body,
+    state: BodyState,
+    two_contacts: ContactSet,
+) -> None:
+    strikes = tuple(
+        DrawnStrike(
+            seconds=0.004 * i,
+            contact=contact,
+            p_WC_W=two_contacts.p_WC_W[contact],
+            impulse_W=np.array([0.0, 0.0, 0.2 - 0.05 * i]),
+            p_WB_W=state.p_WB_W + np.array([0.0, 0.0, 0.01 * i]),
+            q_WB=state.q_WB,
+        )
+        for i, contact in enumerate((1, 0, 1))
+    )
+    picture = replace(picture_of(state, two_contacts, np.tile([0.0, 0.0, 0.2], (2, 1))), strikes=strikes)
+    shape = convex_shape(body.vertices_B)
+    draw_impact(recording, "brick", shape, picture)
+    drawn = read()
+    assert drawn.last(f"{IMPACT}/impulse_label", "Points3D:labels") == [
+        "1. at 0.0 ms: 0.2 N s",
+        "2. at 4.0 ms: 0.15 N s",
+        "3. at 8.0 ms: 0.1 N s",
+    ]
+    np.testing.assert_allclose(
+        drawn.array(f"{IMPACT}/impulse", "Arrows3D:origins")[:, 0], [-0.1, 0.1, -0.1], rtol=1e-6
+    )
+    assert len(drawn.array(f"{IMPACT}/body", "LineStrips3D:strips")) == 4 * len(shape.edges_B)
 
 
 @pytest.mark.parametrize("friction", [1e-3, 0.3, 1.0, 50.0])

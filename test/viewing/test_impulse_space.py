@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,8 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contact_dynamics.contact import ContactSet
+from contact_dynamics.impact.law import ImpactOutcome
+from contact_dynamics.impact.spatial import spatial_pair_impact
 from contact_dynamics.rigid_body import BodyState, MassProperties
-from contact_dynamics.viewing.impact import ImpactPicture
+from contact_dynamics.viewing.impact import ImpactPicture, OtherBody
 from contact_dynamics.viewing.impulse_space import Line, contact_axes, draw_impulse_space, line_in_box
 
 if TYPE_CHECKING:
@@ -96,6 +99,59 @@ def test_without_mass_properties_the_lines_are_left_out(
     drawn = read()
     assert drawn.last(r"/impulse_space/sticking\ line", "LineStrips2D:strips") == []
     assert len(drawn.last("/impulse_space/path", "LineStrips2D:strips")) == 1
+
+
+def test_between_two_bodies_the_lines_are_those_of_their_relative_motion(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    """Where the bodies stick while they are pressed, the path's corners lie on the lines, as for one body."""
+    rod = sliding_rod()
+    bat = MassProperties(mass=3.0, I_B=2.0 * np.eye(3))
+    bat_state = BodyState(
+        p_WB_W=np.array([0.5, 0.0, -2.0]),
+        q_WB=np.array([0.0, 0.0, 0.0, 1.0]),
+        v_WB_W=np.array([0.2, 0.0, 1.0]),
+        w_WB_W=np.array([0.0, 0.1, 0.0]),
+    )
+    impact = spatial_pair_impact(
+        ROD,
+        rod.state,
+        bat,
+        bat_state,
+        p_WC_W=np.zeros(3),
+        n_W=np.array([0.0, 0.0, 1.0]),
+        friction=2.0,
+        restitution=0.5,
+    )
+    assert impact.outcome is ImpactOutcome.STICKS_IN_COMPRESSION
+    picture = replace(
+        rod,
+        contacts=replace(rod.contacts, frictions=np.array([2.0])),
+        impulses_W=impact.impulse_W[None],
+        path_W=impact.path_W,
+        path_events=tuple(int(event) for event in impact.path_events),
+        path_contacts=(0,) * len(impact.path_W),
+        other=OtherBody(name="bat", state=bat_state, v_after_W=np.zeros(3)),
+    )
+    draw_impulse_space(recording, ROD, picture, other=bat)
+    drawn = read()
+    (sticking,) = on_paper(drawn.last(r"/impulse_space/sticking\ line", "LineStrips2D:strips"))
+    (compression,) = on_paper(drawn.last(r"/impulse_space/compression\ line", "LineStrips2D:strips"))
+    compressed, ends = ((x, z) for x, _, z in (impact.compression_W.tolist(), impact.impulse_W.tolist()))
+    assert distance(compressed, sticking) < DIGITS
+    assert distance(compressed, compression) < DIGITS
+    assert distance(ends, sticking) < DIGITS
+    assert distance(ends, compression) > 0.1
+
+
+def test_without_the_struck_bodys_mass_the_lines_are_left_out(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    rod = sliding_rod()
+    draw_impulse_space(
+        recording, ROD, replace(rod, other=OtherBody(name="", state=rod.state, v_after_W=np.zeros(3)))
+    )
+    assert read().last(r"/impulse_space/sticking\ line", "LineStrips2D:strips") == []
 
 
 def test_right_is_right_seen_against_the_planes_normal() -> None:
