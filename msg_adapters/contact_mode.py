@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.contact_modes import (
+        BodyStatics,
         ConsistentMode,
         ContactModeAnswer,
         ModeMargin,
         ModeWrenchSet,
-        BodyStatics,
         SpatialMode,
         SpatialModeAnswer,
     )
@@ -80,6 +80,7 @@ def spatial_modes_to_msgs(modes: Sequence[SpatialMode]) -> list[ContactMode]:
             motion_unique=mode.motion_unique,
             contact_accelerations=flat(mode.contact_accelerations_W),
             tangential_directions=flat(mode.tangential_directions_W),
+            misdirection=mode.misdirection,
             margin=float("nan"),
         )
         for mode in modes
@@ -103,7 +104,7 @@ def write_planar_margins(response: Any, margins: Sequence[ModeMargin], plane: Pl
         msg.margin_modes = list(margin.modes_beyond)
 
 
-def write_planar_statics(response: Any, statics: BodyStatics) -> None:
+def write_statics(response: Any, statics: BodyStatics) -> None:
     """Write the answers to the static questions into a response."""
     response.equilibrium = int(statics.equilibrium)
     response.jammed = int(statics.jammed)

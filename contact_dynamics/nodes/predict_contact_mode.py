@@ -12,6 +12,7 @@ from contact_dynamics.contact_modes import (
     planar_statics,
     spatial_contact_modes,
     spatial_kinematic_modes,
+    spatial_statics,
 )
 from contact_dynamics.contact_modes.spatial_dynamics import FRICTION_FACETS
 from contact_dynamics.contact_modes.touching import spatial_contact_velocities
@@ -31,8 +32,8 @@ from msg_adapters.contact_mode import (
     wrench_set_to_msg,
     write_planar_answer,
     write_planar_margins,
-    write_planar_statics,
     write_spatial_answer,
+    write_statics,
 )
 from msg_adapters.contacts import contacts_to_msg
 from msg_adapters.geometry import vector_from_msg, vector_to_msg
@@ -142,7 +143,7 @@ def _answer_in_plane(request: Any, response: Any, question: Question, problem: P
         statics = planar_statics(
             problem.body, problem.contacts, problem.wrench, margin_length=_margin_length(request)
         )
-        write_planar_statics(response, statics)
+        write_statics(response, statics)
     if request.want_impact:
         settle_in_plane(response, question, problem, answer.verdict, partners)
     response.plane_normal = vector_to_msg(problem.plane.normal_W)
@@ -150,7 +151,7 @@ def _answer_in_plane(request: Any, response: Any, question: Question, problem: P
 
 
 def _answer_in_space(request: Any, response: Any, question: Question) -> None:
-    for field in ("want_margins", "want_wrenches", "want_statics"):
+    for field in ("want_margins", "want_wrenches"):
         if getattr(request, field):
             why = f" ({response.out_of_plane_reason})" if response.out_of_plane_reason else ""
             raise NotSupportedError(f"{field}: found true in space, allowed in a plane of motion only{why}")
@@ -174,6 +175,17 @@ def _answer_in_space(request: Any, response: Any, question: Question) -> None:
             subject.state, contacts, velocity_tolerance=question.velocity_tolerance
         ),
     )
+    if request.want_statics:
+        statics = spatial_statics(
+            subject.body.mass_properties,
+            subject.state,
+            contacts,
+            force_W=question.force_W,
+            torque_W=question.torque_W,
+            friction_facets=question.friction_facets,
+            margin_length=_margin_length(request),
+        )
+        write_statics(response, statics)
     if request.want_impact:
         settle_in_space(response, question, answer.verdict)
     response.out_of_plane = math.nan

@@ -167,7 +167,7 @@ CASES = [
     (PredictContactMode, put("friction_facets", 33), "INVALID_FIELD", "friction_facets: found 33"),
     *[
         (PredictContactMode, in_space(field), "NOT_SUPPORTED", f"{field}: found true in space")
-        for field in ("want_margins", "want_wrenches", "want_statics")
+        for field in ("want_margins", "want_wrenches")
     ],
     (PredictContactMode, margin_length, "INVALID_FIELD", "margin_length: found -1.0"),
     (PredictContactMode, put("gravity", 5), "INVALID_FIELD", "gravity: found 5"),

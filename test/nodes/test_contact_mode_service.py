@@ -120,7 +120,7 @@ def test_a_body_in_flight_has_no_contact_and_says_so(client: Client) -> None:
     request.state.pose.position.z = 1.0
     answer = client.ask(request)
     assert answer.status == answer.NO_CONTACT
-    assert "no vertex of 'brick' is within 1e-06 m of a surface" in answer.message
+    assert "no point of 'brick' is within 1e-06 m of a surface" in answer.message
 
 
 def test_contacts_from_geometry_of_a_brick_on_the_floor(client: Client) -> None:

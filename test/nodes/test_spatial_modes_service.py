@@ -234,3 +234,24 @@ def test_facets_are_those_that_were_asked_for(client: Client, facets: int) -> No
     answer = client.ask(request)
     assert answer.friction_facets == facets
     assert [mode.mode for mode in answer.modes] == ["f"]
+
+
+def test_statics_of_a_brick_that_is_pushed_askew(client: Client) -> None:
+    """In space: held by friction alone up to mu m g; the disturbance that it takes is one of the way left."""
+    way = np.array([math.cos(0.5), math.sin(0.5), 0.0])
+    for share, holds in ((0.9, True), (1.001, False)):
+        request = brick_on_floor()
+        request.want_statics, request.margin_length = True, 1e-3
+        force = request.applied_wrench.force
+        force.x, force.y, force.z = (share * MU * MASS * G * way).tolist()
+        answer = client.ask(request)
+        assert (answer.status, answer.message) == (answer.OK, "")
+        assert answer.problem == request.SPATIAL
+        held = answer.CERTAIN if holds else answer.NO
+        assert (answer.equilibrium, answer.jammed, answer.wedged) == (held, held, answer.NO)
+        if holds:
+            # Torques cost all at so short a length: at most the way to the round cone.
+            assert answer.stable_disturbance <= (1.0 - share) * MU * MASS * G / math.hypot(1.0, MU) + 1e-9
+            assert answer.stable_disturbance > 0.0
+        else:
+            assert math.isnan(answer.stable_disturbance)
