@@ -14,10 +14,14 @@ Does not cover: several contacts (`planar`), moving surfaces.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
+from typing import Final, NamedTuple
 
 from contact_dynamics.contact_modes.result import ConsistentMode, Refusal, RefusedMode
 from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarWrench, Vector2
+from contact_dynamics.tolerances import ROW_TOLERANCE
+
+_ROUNDING: Final = 1e-14  # relative to the terms of a sum: some ten times what they are rounded by
 
 
 class _Solution(NamedTuple):
@@ -36,15 +40,34 @@ class _Failure(NamedTuple):
 class _ContactAxes(NamedTuple):
     """The problem in contact axes."""
 
-    a: float  # 1/kg, tangential acceleration per tangential force, > 0
-    b: float  # 1/kg, either per the other
-    c: float  # 1/kg, normal acceleration per normal force, > 0
-    det: float  # 1/kg^2, a c - b^2 > 0
+    r_t: float  # m, of the contact from the centre of mass
+    r_n: float  # m
+    per_mass: float  # 1/kg
+    per_inertia: float  # 1/(kg m^2)
+    det: float  # 1/kg^2, of the accelerations per force, > 0
     w_t: float  # m/s^2, without contact force
     w_n: float  # m/s^2, without contact force
+    terms: float  # m/s^2, the sizes w_t and w_n are sums of
     friction: float
+    load: float  # N/kg^(1/2), size of (f, moment / rho), and of what centripetal terms need, per root mass
     accuracy: float  # dimensionless, the relative tolerance
-    tolerance: float  # m/s^2
+
+    def along(self, t: float, n: float) -> float:
+        """Return the square of the row of t a_t + n a_n, 1/kg: how a change of the wrench shows in it."""
+        arm = n * self.r_t - t * self.r_n
+        return (t * t + n * n) * self.per_mass + arm * arm * self.per_inertia
+
+    def tolerance(self, square: float, terms: float = 0.0) -> float:
+        """Return what counts as zero for a linear function of the wrench.
+
+        A change of the wrench by ``accuracy`` of its size turns the sign of such a value, or rounding does,
+        where it is a sum of ``terms``.
+
+        Args:
+            square: Of the function's row, as `along` has it for accelerations.
+            terms: The sizes that the value is a sum of, in its unit.
+        """
+        return self.accuracy * math.sqrt(square) * self.load + _ROUNDING * terms
 
 
 def single_contact_modes(
@@ -83,7 +106,7 @@ def single_contact_modes(
             )
         else:
             consistent.append(_mode(letter, outcome, body, contact, wrench))
-    return consistent, refused, axes.tolerance
+    return consistent, refused, axes.tolerance(axes.per_mass)
 
 
 def _contact_axes(
@@ -100,19 +123,24 @@ def _contact_axes(
     w_t = (f_x * n_y - f_y * n_x) * per_mass - r_n * alpha - w * w * r_t
     rolling = contact.gap_acceleration(v_t, w)
     w_n = (f_x * n_x + f_y * n_y) * per_mass + r_t * alpha - w * w * r_n + rolling
-    scale = (abs(f_x) + abs(f_y)) * per_mass + (abs(r_t) + abs(r_n)) * (abs(alpha) + w * w) + abs(rolling)
-    tolerance = accuracy * scale
-    return _ContactAxes(
-        a=per_mass + r_n * r_n * per_inertia,
-        b=-r_t * r_n * per_inertia,
-        c=per_mass + r_t * r_t * per_inertia,
+    force = (f_x * f_x + f_y * f_y) * per_mass + wrench.moment * alpha
+    centripetal = w * w * (abs(r_t) + abs(r_n)) + abs(rolling)
+    axes = _ContactAxes(
+        r_t=r_t,
+        r_n=r_n,
+        per_mass=per_mass,
+        per_inertia=per_inertia,
         det=per_mass * (per_mass + (r_t * r_t + r_n * r_n) * per_inertia),
-        w_t=0.0 if abs(w_t) <= tolerance else w_t,
-        w_n=0.0 if abs(w_n) <= tolerance else w_n,
+        w_t=w_t,
+        w_n=w_n,
+        terms=(abs(f_x) + abs(f_y)) * per_mass + (abs(r_t) + abs(r_n)) * abs(alpha) + centripetal,
         friction=contact.friction,
+        load=math.sqrt(force) + centripetal / math.sqrt(per_mass),
         accuracy=accuracy,
-        tolerance=tolerance,
     )
+    if abs(w_n) <= axes.tolerance(axes.along(0.0, 1.0), axes.terms):
+        axes = axes._replace(w_n=0.0)
+    return axes
 
 
 def _separating(axes: _ContactAxes) -> _Solution | _Failure:
@@ -124,33 +152,40 @@ def _separating(axes: _ContactAxes) -> _Solution | _Failure:
 def _sliding(axes: _ContactAxes, *, direction: float, at_rest: bool) -> _Solution | _Failure:
     """Try to slide in ``direction`` (left -1, right +1): a_n = 0 and f_t = -direction mu f_n."""
     slope = -direction * axes.friction
-    factor = axes.c + slope * axes.b  # lecture 26, eq. 2
-    unique = abs(factor) > axes.accuracy * (axes.c + abs(slope * axes.b))
+    arm = axes.r_t - slope * axes.r_n
+    factor = axes.per_mass + axes.r_t * arm * axes.per_inertia  # c + slope b, lecture 26, eq. 2
+    gain = slope * axes.per_mass - axes.r_n * arm * axes.per_inertia  # b + slope a
+    unique = abs(factor) > ROW_TOLERANCE * math.sqrt(axes.along(0.0, 1.0) * axes.along(slope, 1.0))
     if axes.w_n == 0.0:
         # Where the factor is zero too, any f_n keeps a_n at 0; friction then pushes against the sliding, so
         # that the contact slides with some force only if it does with none.
-        f_n = 0.0
+        f_n = part = 0.0
     elif not unique or (factor < 0.0 and axes.w_n < 0.0):
         return _Failure(Refusal.NO_SOLUTION, factor)
     else:
         f_n = -axes.w_n / factor
+        part = -gain / factor
         if f_n < 0.0:
             return _Failure(Refusal.PULLS, f_n)
-    gain = axes.b + slope * axes.a
     a_t = axes.w_t + gain * f_n
-    if at_rest and direction * a_t <= axes.tolerance + axes.accuracy * abs(gain * f_n):
-        return _Failure(Refusal.WRONG_MOTION, a_t)
+    if at_rest:
+        terms = axes.terms * (1.0 + abs(part))
+        if direction * a_t <= axes.tolerance(axes.along(1.0, part), terms):
+            return _Failure(Refusal.WRONG_MOTION, a_t)
     return _Solution(slope * f_n, f_n, a_t, 0.0, unique)
 
 
 def _fixed(axes: _ContactAxes) -> _Solution | _Failure:
-    f_n = (axes.b * axes.w_t - axes.a * axes.w_n) / axes.det
-    f_t = (axes.b * axes.w_n - axes.c * axes.w_t) / axes.det
-    tolerance = axes.tolerance * (axes.a + axes.c) / axes.det
-    if f_n < -tolerance:
+    a, c = axes.along(1.0, 0.0), axes.along(0.0, 1.0)
+    b = -axes.r_t * axes.r_n * axes.per_inertia
+    f_n = (b * axes.w_t - a * axes.w_n) / axes.det
+    f_t = (b * axes.w_n - c * axes.w_t) / axes.det
+    terms_n, terms_t = (abs(b) + a) * axes.terms / axes.det, (abs(b) + c) * axes.terms / axes.det
+    if f_n < -axes.tolerance(a / axes.det, terms_n):
         return _Failure(Refusal.PULLS, f_n)
     excess = abs(f_t) - axes.friction * f_n
-    if excess > tolerance * (1.0 + axes.friction):
+    square = axes.along(math.copysign(axes.friction, f_t), 1.0) / axes.det
+    if excess > axes.tolerance(square, terms_t + axes.friction * terms_n):
         return _Failure(Refusal.OUTSIDE_CONE, excess)
     f_n = max(f_n, 0.0)
     edge = axes.friction * f_n  # rounding at the cone's apex and edges is taken out

@@ -1,0 +1,62 @@
+"""Lever arms much longer and much shorter than the radius of gyration, beside exact trials of all strings."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from contact_dynamics.contact_modes import planar_contact_modes
+from oracles.contact_mode_cases import contact, draw, resting, rounded
+from oracles.contact_modes import ExactCase, consistent_modes, kinematic_modes
+
+# Fine enough for the angles between contact rows at these arms, and still far above rounding.
+ACCURACY = 1e-13
+
+
+def stretched(case: ExactCase, factor: Fraction) -> ExactCase:
+    """Return the case with all contacts moved away from the centre of mass, or towards it; mass as it was.
+
+    Velocities go with them, so that nothing approaches.
+    """
+    contacts = [replace(one, r=(one.r[0] * factor, one.r[1] * factor)) for one in case.contacts]
+    return replace(case, contacts=tuple(contacts), v=(case.v[0] * factor, case.v[1] * factor))
+
+
+def compare(seed: int, power: int, most_contacts: int) -> None:
+    factor = Fraction(10) ** power
+    exact = stretched(draw(seed, most_contacts), factor)
+    if seed % 2:  # a wrench whose moment counts as much as its force does
+        exact = replace(exact, moment=exact.moment * factor)
+    kinematic = kinematic_modes(exact)
+    answer = planar_contact_modes(*rounded(exact), acceleration_tolerance=ACCURACY)
+    assert set(answer.kinematic_modes) == kinematic
+    assert {mode.mode for mode in answer.modes} == consistent_modes(exact, kinematic)
+
+
+@pytest.mark.parametrize("power", [-5, -3, -1, 1, 3, 5])
+@pytest.mark.parametrize("seed", range(25))
+def test_long_and_short_arms(seed: int, power: int) -> None:
+    compare(seed, power, most_contacts=4)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("power", [-5, -4, -3, -2, 2, 3, 4, 5])
+@pytest.mark.parametrize("seed", range(5000, 5300))
+def test_many_long_and_short_arms(seed: int, power: int) -> None:
+    compare(seed, power, most_contacts=5)
+
+
+@pytest.mark.parametrize("reach", [Fraction(1, 1000), Fraction(1), Fraction(1000), Fraction(10**6)])
+@pytest.mark.parametrize(("share", "rests"), [(Fraction(9, 10), True), (Fraction(11, 10), False)])
+def test_a_body_on_two_feet_tips_where_its_weight_passes_a_foot(
+    reach: Fraction, share: Fraction, *, rests: bool
+) -> None:
+    feet = [
+        replace(foot, r=(foot.r[0] * reach, foot.r[1] * reach)) for foot in (contact(-1, -1), contact(1, -1))
+    ]
+    case = replace(resting(*feet), moment=-share * reach)
+    answer = planar_contact_modes(*rounded(case))  # with the default tolerance
+    assert ("ff" in {mode.mode for mode in answer.modes}) == rests
+    assert {mode.mode for mode in answer.modes} == consistent_modes(case, kinematic_modes(case))
