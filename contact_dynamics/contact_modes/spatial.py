@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.contact_modes.spatial_cone import cone_of
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import ROW_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_not_negative
@@ -31,14 +32,6 @@ if TYPE_CHECKING:
 
 MOST_SPATIAL_CONTACTS: Final = 64
 """Longest list of contacts accepted: a cone in R^6 can have n^2 rays and more faces than that."""
-
-_WELL_INSIDE: Final = 0.02
-"""Height of a unit point over all unit rows at which it serves as inner point; less is left to a linear
-program."""
-
-_TRIALS: Final = 60
-"""Steps, of a few microseconds each, before a linear program, of milliseconds, has to find the inner
-point."""
 
 
 def spatial_kinematic_modes(
@@ -93,22 +86,14 @@ def cone_faces(rows: FloatArray) -> set[int]:
         rows: Unit rows, (m, d).
     """
     everything = (1 << len(rows)) - 1
-    inner, strict = inner_point(rows)
-    implied = everything & ~_mask(strict)
-    if not strict.any():
+    cone = cone_of(rows)
+    implied = everything & ~_mask(cone.strict)
+    if not cone.strict.any():
         return {everything}
-    # Within the space where the implied equations hold, and across the lines that the cone contains.
-    space = null_space(rows[~strict])
-    reduced = rows[strict] @ space
-    reduced /= np.linalg.norm(reduced, axis=1)[:, None]
-    spread, basis = np.linalg.svd(reduced)[1:]
-    across = basis[: int((spread > ROW_TOLERANCE * spread[0]).sum())]
-    reduced = reduced @ across.T
-    point = across @ (space.T @ inner)
-    rays = extreme_rays(reduced, point)
-    positions = [1 << int(i) for i in np.flatnonzero(strict)]
+    heights = np.abs(cone.rays @ cone.rows.T)
+    positions = [1 << int(i) for i in np.flatnonzero(cone.strict)]
     faces = {everything}
-    for vanishing in np.unique(np.abs(reduced @ rays.T).T <= 10.0 * ROW_TOLERANCE, axis=0):
+    for vanishing in np.unique(heights <= 10.0 * ROW_TOLERANCE, axis=0):
         ray = implied | sum(bit for bit, zero in zip(positions, vanishing, strict=True) if zero)
         faces |= {face & ray for face in faces}
     return faces
@@ -118,75 +103,6 @@ def _contact_rows(r_W: FloatArray, normals_W: FloatArray) -> FloatArray:
     """Return (n, r x n / reach) for each contact, (m, 6)."""
     reach = float(np.linalg.norm(r_W, axis=1).max())
     return np.hstack([normals_W, np.cross(r_W, normals_W) / (reach if reach > 0.0 else 1.0)])
-
-
-def inner_point(rows: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
-    """Return a point over which as many rows as can be are strictly positive, and which those are."""
-    point = rows.mean(axis=0)
-    for step in range(_TRIALS):  # towards the rows' average of least norm (von Neumann's algorithm)
-        heights = rows @ point
-        worst = int(heights.argmin())
-        size = float(np.linalg.norm(point))
-        if heights[worst] > _WELL_INSIDE * size:
-            return point / size, np.ones(len(rows), dtype=bool)
-        point += (rows[worst] - point) * (2.0 / (step + 4.0))
-    from scipy.optimize import linprog
-
-    m, d = rows.shape
-    # Any row that can be positive can be 1, because the cone scales: the sum counts the rows that can.
-    found = linprog(
-        np.concatenate([np.zeros(d), -np.ones(m)]),
-        A_ub=np.hstack([-rows, np.eye(m)]),
-        b_ub=np.zeros(m),
-        bounds=[(None, None)] * d + [(0.0, 1.0)] * m,
-        method="highs",
-    )
-    strict = found.x[d:] > 0.5
-    if not strict.any():
-        return found.x[:d], strict
-    # The one deepest inside, in the space of the rows that cannot be positive.
-    space = null_space(rows[~strict])
-    inside = rows[strict] @ space
-    inside /= np.linalg.norm(inside, axis=1)[:, None]
-    k = space.shape[1]
-    deepest = linprog(
-        np.concatenate([np.zeros(k), [-1.0]]),
-        A_ub=np.hstack([-inside, np.ones((len(inside), 1))]),
-        b_ub=np.zeros(len(inside)),
-        bounds=[(-1.0, 1.0)] * k + [(None, 1.0)],
-        method="highs",
-    )
-    return space @ deepest.x[:k], strict
-
-
-def extreme_rays(rows: FloatArray, inner: FloatArray) -> FloatArray:
-    """Return the unit extreme rays, (k, d), of a pointed cone; all rows are positive at ``inner``."""
-    d = rows.shape[1]
-    if d == 1:
-        return np.sign(inner)[None, :]
-    inner = inner / np.linalg.norm(inner)
-    across = np.linalg.svd(inner[None, :])[2][1:]
-    points = (rows @ across.T) / (rows @ inner)[:, None]
-    if d == 2:
-        sides = np.array([[1.0, -points.max()], [-1.0, points.min()]])
-    else:
-        from scipy.spatial import ConvexHull
-
-        sides = ConvexHull(points).equations
-    # A side says that outward . x + offset <= 0; the ray is where that height is 0 for the points on it.
-    rays: FloatArray = -sides[:, -1:] * inner - sides[:, :-1] @ across
-    rays /= np.linalg.norm(rays, axis=1)[:, None]
-    return rays
-
-
-def null_space(rows: FloatArray) -> FloatArray:
-    """Return an orthonormal basis, (d, k), of what the rows, (m, d), do not see."""
-    d = rows.shape[1]
-    if len(rows) == 0:
-        return np.eye(d)
-    spread, basis = np.linalg.svd(rows)[1:]
-    seen = int((spread > ROW_TOLERANCE * spread[0]).sum())
-    return np.ascontiguousarray(basis[seen:].T)
 
 
 def _mask(chosen: NDArray[np.bool_]) -> int:

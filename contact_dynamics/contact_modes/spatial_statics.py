@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact_modes.result import ModeVerdict
-from contact_dynamics.contact_modes.spatial import extreme_rays, inner_point, null_space
+from contact_dynamics.contact_modes.spatial_cone import cone_of
 from contact_dynamics.contact_modes.spatial_dynamics import FRICTION_FACETS, spatial_contact_modes
 from contact_dynamics.contact_modes.statics import BodyStatics, Certainty
 from contact_dynamics.errors import TooLargeError
@@ -117,17 +117,8 @@ def _room(rows: FloatArray, target: FloatArray, accuracy: float) -> tuple[float,
     tolerance = max(accuracy, ROW_TOLERANCE) * float(np.linalg.norm(target))
     if len(rows) == 0:
         return (0.0 if float(np.linalg.norm(target)) <= tolerance else -1.0), False
-    inner, strict = inner_point(rows)
-    space = null_space(rows[~strict])  # what is orthogonal to combinations that cancel
-    lines, facets = space, np.zeros((0, 6))
-    if strict.any():
-        seen = rows[strict] @ space
-        seen /= np.linalg.norm(seen, axis=1)[:, None]
-        spread, basis = np.linalg.svd(seen)[1:]
-        rank = int((spread > ROW_TOLERANCE * spread[0]).sum())
-        across, lines = basis[:rank], space @ basis[rank:].T
-        facets = extreme_rays(seen @ across.T, across @ (space.T @ inner)) @ across @ space.T
-    wedged = not bool(strict.all())
+    cone = cone_of(rows)
+    lines, facets, wedged = cone.lines.T, cone.rays, not bool(cone.strict.all())
     if np.any(np.abs(target @ lines) > tolerance):
         return -1.0, wedged
     heights = facets @ target

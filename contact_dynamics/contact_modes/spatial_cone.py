@@ -1,0 +1,120 @@
+"""Polyhedral cones in a space of any dimension: their inner points, lines and extreme rays.
+
+A cone is given by its rows, {x : rows x >= 0}. Its rays are the facets of the convex hull of the rows, seen
+from an inner point (Huang, Cheng and Mason, Efficient Contact Mode Enumeration in 3D, 2020).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.tolerances import ROW_TOLERANCE
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from contact_dynamics.validation import FloatArray
+
+_WELL_INSIDE: Final = 0.02
+"""Height of a unit point over all unit rows at which it serves as inner point; less is left to a linear
+program."""
+
+_TRIALS: Final = 60
+"""Steps, of a few microseconds each, before a linear program, of milliseconds, has to find the inner
+point."""
+
+
+class Cone(NamedTuple):
+    """The parts of {x : rows x >= 0}: positive sums of rays, plus sums of lines."""
+
+    strict: NDArray[np.bool_]  # (m,), which rows can be positive; the others vanish all over the cone
+    rows: FloatArray  # (k, d), the strict ones, unit, within the space where the others vanish
+    rays: FloatArray  # (r, d), unit, orthogonal to the lines; a ray may appear several times
+    lines: FloatArray  # (l, d), orthonormal
+
+
+def cone_of(rows: FloatArray) -> Cone:
+    """Return the parts of a cone, given by unit rows, (m, d)."""
+    inner, strict = inner_point(rows)
+    # Within the space where the implied equations hold, and across the lines that the cone contains.
+    space = null_space(rows[~strict])
+    if not strict.any():
+        return Cone(strict, rows[strict], np.zeros((0, rows.shape[1])), space.T)
+    reduced = rows[strict] @ space
+    reduced /= np.linalg.norm(reduced, axis=1)[:, None]
+    spread, basis = np.linalg.svd(reduced)[1:]
+    rank = int((spread > ROW_TOLERANCE * spread[0]).sum())
+    across = basis[:rank]
+    rays = extreme_rays(reduced @ across.T, across @ (space.T @ inner))
+    return Cone(strict, reduced @ space.T, rays @ across @ space.T, basis[rank:] @ space.T)
+
+
+def inner_point(rows: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """Return a point over which as many rows as can be are strictly positive, and which those are."""
+    point = rows.mean(axis=0)
+    for step in range(_TRIALS):  # towards the rows' average of least norm (von Neumann's algorithm)
+        heights = rows @ point
+        worst = int(heights.argmin())
+        size = float(np.linalg.norm(point))
+        if heights[worst] > _WELL_INSIDE * size:
+            return point / size, np.ones(len(rows), dtype=bool)
+        point += (rows[worst] - point) * (2.0 / (step + 4.0))
+    from scipy.optimize import linprog
+
+    m, d = rows.shape
+    # Any row that can be positive can be 1, because the cone scales: the sum counts the rows that can.
+    found = linprog(
+        np.concatenate([np.zeros(d), -np.ones(m)]),
+        A_ub=np.hstack([-rows, np.eye(m)]),
+        b_ub=np.zeros(m),
+        bounds=[(None, None)] * d + [(0.0, 1.0)] * m,
+        method="highs",
+    )
+    strict = found.x[d:] > 0.5
+    if not strict.any():
+        return found.x[:d], strict
+    # The one deepest inside, in the space of the rows that cannot be positive.
+    space = null_space(rows[~strict])
+    inside = rows[strict] @ space
+    inside /= np.linalg.norm(inside, axis=1)[:, None]
+    k = space.shape[1]
+    deepest = linprog(
+        np.concatenate([np.zeros(k), [-1.0]]),
+        A_ub=np.hstack([-inside, np.ones((len(inside), 1))]),
+        b_ub=np.zeros(len(inside)),
+        bounds=[(-1.0, 1.0)] * k + [(None, 1.0)],
+        method="highs",
+    )
+    return space @ deepest.x[:k], strict
+
+
+def extreme_rays(rows: FloatArray, inner: FloatArray) -> FloatArray:
+    """Return the unit extreme rays, (k, d), of a pointed cone; all rows are positive at ``inner``."""
+    d = rows.shape[1]
+    if d == 1:
+        return np.sign(inner)[None, :]
+    inner = inner / np.linalg.norm(inner)
+    across = np.linalg.svd(inner[None, :])[2][1:]
+    points = (rows @ across.T) / (rows @ inner)[:, None]
+    if d == 2:
+        sides = np.array([[1.0, -points.max()], [-1.0, points.min()]])
+    else:
+        from scipy.spatial import ConvexHull
+
+        sides = ConvexHull(points).equations
+    # A side says that outward . x + offset <= 0; the ray is where that height is 0 for the points on it.
+    rays: FloatArray = -sides[:, -1:] * inner - sides[:, :-1] @ across
+    rays /= np.linalg.norm(rays, axis=1)[:, None]
+    return rays
+
+
+def null_space(rows: FloatArray) -> FloatArray:
+    """Return an orthonormal basis, (d, k), of what the rows, (m, d), do not see."""
+    d = rows.shape[1]
+    if len(rows) == 0:
+        return np.eye(d)
+    spread, basis = np.linalg.svd(rows)[1:]
+    seen = int((spread > ROW_TOLERANCE * spread[0]).sum())
+    return np.ascontiguousarray(basis[seen:].T)
