@@ -1,14 +1,14 @@
 """A predicted impact in the scene: contact, normal, friction cone, impulse, velocities before and after.
 
 From each contact rises the path of the impulse as it accumulates, to the scale of the impulse's arrow. A
-second moving body is drawn where it is struck, with its velocities. Strikes in sequence are numbered, each
-with the body as it is then.
+second moving body is drawn where it is struck, with its velocities. Of strikes in sequence all impulses are
+drawn, the largest with their number, their time, and the body as it is then.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -37,6 +37,9 @@ RECENT: Final = ("body", "impulse")
 
 CONE_HEIGHT: Final = 0.35
 """Relative to the size of the body."""
+
+MOST_STRIKES: Final = 5
+"""Strikes of a sequence, those with the largest impulses, that are labelled and have the body drawn."""
 
 _CONE_FACETS: Final = 32
 _ARROW_WIDTH: Final = 0.016  # relative to the size of the body
@@ -82,7 +85,9 @@ class ImpactPicture:
 
     @property
     def main_contact(self) -> int:
-        """Return the contact with the largest impulse."""
+        """Return the contact with the largest impulse; of a sequence in time the one that strikes first."""
+        if self.strikes:
+            return self.strikes[0].contact
         return int(np.linalg.norm(self.impulses_W, axis=1).argmax())
 
 
@@ -141,8 +146,7 @@ def draw_impact(
 ) -> None:
     """Draw an impact in the scene, at the recording's current time."""
     path, size = impact_entity(body_name), shape.size
-    struck, points, impulses_W, before = _struck(picture)
-    normals, frictions = picture.contacts.normals_W[struck], picture.contacts.frictions[struck]
+    struck, points, impulses_W = _struck(picture)
     impulses = _Arrows(origins=points, vectors=impulses_W, unit="N s", colors=(palette.IMPACT,) * len(points))
     moving = [(picture.state.p_WB_W, picture.state.v_WB_W, picture.v_after_W)]
     if picture.other is not None:
@@ -154,7 +158,8 @@ def draw_impact(
         colors=(palette.BEFORE_IMPACT, palette.AFTER_IMPACT) * len(moving),
     )
     recording.log(f"{path}/impulse", impulses.drawn(size))
-    recording.log(f"{path}/impulse_label", impulses.labels(impulses.origins, before=before))
+    main = main_strikes(picture.strikes)
+    recording.log(f"{path}/impulse_label", _impulse_labels(picture, impulses, main, size=size))
     recording.log(f"{path}/velocity", velocities.drawn(size))
     recording.log(f"{path}/velocity_label", velocities.labels(velocities.tips(size)))
     paths = _paths(picture, scale=impulses.scale(size)) if not picture.strikes else []
@@ -162,6 +167,10 @@ def draw_impact(
     recording.log(f"{path}/impulse_path", strips)
     height = CONE_HEIGHT * size
     width = 0.5 * _ARROW_WIDTH * size
+    once = [struck.index(contact) for contact in dict.fromkeys(struck)]
+    points = points[once]
+    normals = picture.contacts.normals_W[struck][once]
+    frictions = picture.contacts.frictions[struck][once]
     arrows = rr.Arrows3D(origins=points, vectors=normals * height, colors=palette.NORMAL, radii=width)
     recording.log(f"{path}/normal", arrows)
     spheres = rr.Points3D(points, radii=_POINT_SIZE * size, colors=palette.IMPACT)
@@ -169,7 +178,7 @@ def draw_impact(
     cones = friction_cones(points, normals, frictions, height=height)
     recording.log(f"{path}/cone", rr.Clear(recursive=False) if cones is None else cones)
     poses = [(shape, picture.state.p_WB_W, picture.state.q_WB)]
-    poses += [(shape, strike.p_WB_W, strike.q_WB) for strike in picture.strikes]
+    poses += [(shape, picture.strikes[i].p_WB_W, picture.strikes[i].q_WB) for i in main]
     if picture.other is not None and other_shape is not None:
         poses.append((other_shape, picture.other.state.p_WB_W, picture.other.state.q_WB))
     edges = [edge for drawn, p_WB_W, q_WB in poses for edge in outline(drawn, p_WB_W, q_WB)]
@@ -177,17 +186,37 @@ def draw_impact(
     recording.log(f"{path}/body", body)
 
 
-def _struck(picture: ImpactPicture) -> tuple[list[int], FloatArray, FloatArray, list[str]]:
-    """Return what is struck: contacts, points (n, 3) and impulses (n, 3), in world axes, and their names."""
+def main_strikes(strikes: Sequence[DrawnStrike]) -> list[int]:
+    """Return the indices of the strikes with the largest impulses, in the order of time."""
+    sizes = [float(np.linalg.norm(strike.impulse_W)) for strike in strikes]
+    return sorted(sorted(range(len(strikes)), key=lambda i: -sizes[i])[:MOST_STRIKES])
+
+
+def _struck(picture: ImpactPicture) -> tuple[list[int], FloatArray, FloatArray]:
+    """Return what is struck: contacts, points and impulses, (n, 3) each, in world axes."""
     if picture.strikes:
         return (
             [strike.contact for strike in picture.strikes],
             np.array([strike.p_WC_W for strike in picture.strikes]),
             np.array([strike.impulse_W for strike in picture.strikes]),
-            [f"{i}. at {1e3 * strike.seconds:.1f} ms:" for i, strike in enumerate(picture.strikes, start=1)],
         )
     struck = np.flatnonzero(np.linalg.norm(picture.impulses_W, axis=1) > 0.0).tolist()
-    return struck, picture.contacts.p_WC_W[struck], picture.impulses_W[struck], []
+    return struck, picture.contacts.p_WC_W[struck], picture.impulses_W[struck]
+
+
+def _impulse_labels(
+    picture: ImpactPicture, impulses: _Arrows, main: list[int], *, size: float
+) -> rr.Points3D:
+    if not picture.strikes:
+        return impulses.labels(impulses.origins)
+    labelled = replace(
+        impulses,
+        origins=impulses.origins[main],
+        vectors=impulses.vectors[main],
+        colors=(palette.IMPACT,) * len(main),
+    )
+    numbers = [f"{i + 1}. at {1e3 * picture.strikes[i].seconds:.1f} ms:" for i in main]
+    return labelled.labels(impulses.tips(size)[main], before=numbers)
 
 
 def _paths(picture: ImpactPicture, *, scale: float) -> list[FloatArray]:

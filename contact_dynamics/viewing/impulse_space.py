@@ -4,6 +4,8 @@ The path of the accumulated impulse leaves the origin, inside the friction cone.
 contact does not slide, on the compression line it does not approach: the path bends where it meets the first,
 and compression ends where it meets the second. In space the picture's plane is that of the normal and of the
 total impulse, the lines are those for impulses in it, and a path that swerves is seen as its projection.
+
+Of a contact that strikes more than once the whole path is drawn, the lines and labels of its first strike.
 """
 
 from __future__ import annotations
@@ -65,7 +67,7 @@ def draw_impulse_space(
     *,
     other: MassProperties | None = None,
 ) -> None:
-    """Draw the impulse path of the contact with the largest impulse, at the recording's current time.
+    """Draw the impulse path of the picture's main contact, at the recording's current time.
 
     Without the mass properties of all that moves the sticking and compression lines are left out; ``other``
     are those of the body that is struck.
@@ -87,6 +89,8 @@ def draw_impulse_space(
         _strips(recording, name, part, color)
     _strips(recording, "path", [path], palette.IMPACT, width=_PATH_WIDTH)
     events = [(i, picture.path_events[i]) for i in chosen if picture.path_events[i] in _EVENTS]
+    ends = [k for k, (_, event) in enumerate(events) if event == PathEvent.RESTITUTION_ENDS]
+    events = events[: ends[0] + 1] if ends else events  # the lines are those of the first strike
     points = picture.path_W[[i for i, _ in events]] @ axes_W.T
     texts = [
         f"{_EVENTS[PathEvent(event)]}: {t:.3g}, {n:.3g} N s"

@@ -27,9 +27,10 @@ from contact_dynamics.viewing.legend import LEGEND_TEXT
 from contact_dynamics.viewing.measured import draw_prediction_at, draw_states, set_time, style_series
 from contact_dynamics.viewing.planar_modes import draw_planar_modes, silhouette
 from contact_dynamics.viewing.poinsot import draw_poinsot, draw_rolling
-from contact_dynamics.viewing.scene import draw_axes, draw_body, draw_surface
+from contact_dynamics.viewing.scene import draw_axes, draw_body, draw_obstacle, draw_surface
 from contact_dynamics.viewing.shape import Shape, drawn_shape
 from contact_dynamics.viewing.trajectory import draw_trajectory
+from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -163,7 +164,10 @@ class Picture:
     def _draw_scene(self) -> None:
         draw_axes(self._recording, self._up_W)
         for surface in self._world.surfaces:
-            draw_surface(self._recording, surface, center_W=surface.p_WS_W, side=self._surface_side)
+            if isinstance(surface, Surface):
+                draw_surface(self._recording, surface, center_W=surface.p_WS_W, side=self._surface_side)
+            else:
+                draw_obstacle(self._recording, surface)
         for name, shape in self._shapes.items():
             draw_body(self._recording, name, shape)
             style_series(self._recording, name)
@@ -185,7 +189,8 @@ class Picture:
         """Look at a path, and put the ground below it."""
         center = 0.5 * (points_W.min(axis=0) + points_W.max(axis=0))
         for surface in self._world.surfaces:
-            draw_surface(self._recording, surface, center_W=center, side=self._surface_side)
+            if isinstance(surface, Surface):
+                draw_surface(self._recording, surface, center_W=center, side=self._surface_side)
         margin = max((shape.size for shape in self._shapes.values()), default=0.0)
         self._eye = eye_on(points_W, up_W=self._up_W, margin=margin)
         self._arrange()

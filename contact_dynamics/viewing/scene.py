@@ -9,8 +9,10 @@ import rerun as rr
 
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import SCENE, SURFACES, body_entity, entity, trail_entity
+from contact_dynamics.viewing.shape import convex_shape
 
 if TYPE_CHECKING:
+    from contact_dynamics.obstacle import Obstacle
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.shape import Shape
     from contact_dynamics.world import Surface
@@ -56,6 +58,15 @@ def draw_surface(
     recording.log(f"{path}/patch", patch, static=True)
     grid = rr.LineStrips3D(lines, colors=palette.SURFACE_GRID, radii=_GRID_WIDTH)
     recording.log(f"{path}/grid", grid, static=True)
+
+
+def draw_obstacle(recording: rr.RecordingStream, obstacle: Obstacle) -> None:
+    """Draw a convex piece of the world."""
+    shape = convex_shape(obstacle.vertices_W)
+    path = entity(SURFACES, obstacle.name)
+    recording.log(f"{path}/patch", solid(shape, palette.SURFACE), static=True)
+    edges = rr.LineStrips3D(list(shape.edges_B), colors=palette.SURFACE_GRID, radii=_EDGE_WIDTH)
+    recording.log(f"{path}/grid", edges, static=True)
 
 
 def draw_body(recording: rr.RecordingStream, body_name: str, shape: Shape) -> None:

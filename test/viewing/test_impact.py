@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from contact_dynamics.viewing.impact import DrawnStrike, ImpactPicture, OtherBody, draw_impact, friction_cones
+from contact_dynamics.viewing.impact import (
+    DrawnStrike,
+    ImpactPicture,
+    OtherBody,
+    draw_impact,
+    friction_cones,
+    main_strikes,
+)
 from contact_dynamics.viewing.shape import convex_shape
 
 if TYPE_CHECKING:
@@ -114,37 +121,41 @@ def test_a_body_that_is_struck_is_drawn_with_its_velocities(
     assert edges[len(shape.edges_B) :, :, 0].min() > 1.5
 
 
-def test_strikes_in_sequence_are_numbered(
+def test_of_strikes_in_sequence_the_largest_are_numbered(
     recording: rr.RecordingStream,
     read: Callable[[], Drawn],
     body: Body,
     state: BodyState,
     two_contacts: ContactSet,
 ) -> None:
+    sizes = [0.2, 0.01, 0.15, 0.1, 0.3, 0.02, 0.05]
     strikes = tuple(
         DrawnStrike(
             seconds=0.004 * i,
-            contact=contact,
-            p_WC_W=two_contacts.p_WC_W[contact],
-            impulse_W=np.array([0.0, 0.0, 0.2 - 0.05 * i]),
+            contact=(i + 1) % 2,
+            p_WC_W=two_contacts.p_WC_W[(i + 1) % 2],
+            impulse_W=np.array([0.0, 0.0, size]),
             p_WB_W=state.p_WB_W + np.array([0.0, 0.0, 0.01 * i]),
             q_WB=state.q_WB,
         )
-        for i, contact in enumerate((1, 0, 1))
+        for i, size in enumerate(sizes)
     )
+    assert main_strikes(strikes) == [0, 2, 3, 4, 6]
     picture = replace(picture_of(state, two_contacts, np.tile([0.0, 0.0, 0.2], (2, 1))), strikes=strikes)
+    assert picture.main_contact == 1
     shape = convex_shape(body.vertices_B)
     draw_impact(recording, "brick", shape, picture)
     drawn = read()
     assert drawn.last(f"{IMPACT}/impulse_label", "Points3D:labels") == [
         "1. at 0.0 ms: 0.2 N s",
-        "2. at 4.0 ms: 0.15 N s",
-        "3. at 8.0 ms: 0.1 N s",
+        "3. at 8.0 ms: 0.15 N s",
+        "4. at 12.0 ms: 0.1 N s",
+        "5. at 16.0 ms: 0.3 N s",
+        "7. at 24.0 ms: 0.05 N s",
     ]
-    np.testing.assert_allclose(
-        drawn.array(f"{IMPACT}/impulse", "Arrows3D:origins")[:, 0], [-0.1, 0.1, -0.1], rtol=1e-6
-    )
-    assert len(drawn.array(f"{IMPACT}/body", "LineStrips3D:strips")) == 4 * len(shape.edges_B)
+    assert len(drawn.array(f"{IMPACT}/impulse", "Arrows3D:vectors")) == len(sizes)
+    assert len(drawn.array(f"{IMPACT}/normal", "Arrows3D:origins")) == 2
+    assert len(drawn.array(f"{IMPACT}/body", "LineStrips3D:strips")) == 6 * len(shape.edges_B)
 
 
 @pytest.mark.parametrize("friction", [1e-3, 0.3, 1.0, 50.0])
