@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
-from contact_dynamics.applied_wrench import ConstantWrench, Drag, WrenchAxes
-from contact_dynamics.errors import TooLargeError
+from contact_dynamics.applied_wrench import NO_DRAG, ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.errors import NotSupportedError, TooLargeError
 from contact_dynamics.flips import next_flips
 from contact_dynamics.forced_motion import ForcedMotion, motion_of
 from contact_dynamics.nodes.sampling import MOST_INTEGRATED_STEPS, times_of
@@ -40,18 +40,17 @@ MOST_CURVE_POINTS: Final = 10_000
 
 def predict_tumbling(request: Any, response: Any, knowledge: Knowledge) -> None:
     """Answer one request, or raise a `ContactDynamicsError` that says what is wrong with it."""
+    wrench, drag = _wrench_of(request), _drag_of(request)
+    if request.fit_window > 0.0 and (wrench.force.any() or wrench.torque.any() or drag != NO_DRAG):
+        found = f"found {request.fit_window:g} with a wrench or drag"
+        raise NotSupportedError(f"fit_window: {found}, allowed is 0: fits are of free flights")
     subject = subject_of(request, knowledge)
     motion, method = motion_of(
         subject.body.mass_properties,
         subject.state,
         gravity_W=gravity_of(request, knowledge),
-        wrench=_wrench_of(request),
-        drag=Drag(
-            linear=request.linear_drag,
-            quadratic=request.quadratic_drag,
-            linear_angular=request.linear_angular_drag,
-            quadratic_angular=request.quadratic_angular_drag,
-        ),
+        wrench=wrench,
+        drag=drag,
         most_steps=MOST_INTEGRATED_STEPS,
     )
     times, event = times_of(request, response, subject, motion, knowledge)
@@ -102,4 +101,13 @@ def _wrench_of(request: Any) -> ConstantWrench:
         force=check_array("applied_wrench.force", vector_from_msg(wrench.force), (3,)),
         torque=check_array("applied_wrench.torque", vector_from_msg(wrench.torque), (3,)),
         axes=WrenchAxes.BODY if request.wrench_in_body_axes else WrenchAxes.WORLD,
+    )
+
+
+def _drag_of(request: Any) -> Drag:
+    return Drag(
+        linear=request.linear_drag,
+        quadratic=request.quadratic_drag,
+        linear_angular=request.linear_angular_drag,
+        quadratic_angular=request.quadratic_angular_drag,
     )

@@ -87,6 +87,7 @@ def subject_of(request: Any, knowledge: Knowledge) -> Subject:
         explicit=explicit,
         stamp=request.stamp,
         window=window,
+        gravity_W=gravity_of(request, knowledge) if hasattr(request, "gravity") else None,
     )
 
 
@@ -123,6 +124,7 @@ def _subject(
     explicit: BodyStateMsg | None,
     stamp: Time,
     window: float = 0.0,
+    gravity_W: FloatArray | None = None,
 ) -> Subject:
     parameters = knowledge.parameters
     body = _body_of(name, inertia, knowledge)
@@ -142,7 +144,8 @@ def _subject(
         states = [_carried_over(state, configured, body) for state in states]
     if window == 0.0:
         return Subject(body=body, state=states[-1], world_frame=parameters.world_frame)
-    fit = fit_free_motion(body.mass_properties, states, gravity_W=parameters.world.gravity_W)
+    falls = parameters.world.gravity_W if gravity_W is None else gravity_W
+    fit = fit_free_motion(body.mass_properties, states, gravity_W=falls)
     return Subject(
         body=body, state=fit.state, world_frame=parameters.world_frame, covariance=fit.covariance, fit=fit
     )

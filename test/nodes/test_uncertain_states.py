@@ -125,6 +125,35 @@ def test_a_fit_to_the_last_states_does_not_care_for_a_bad_velocity(client: Clien
     assert raw.fit_count == 0
 
 
+def test_fits_are_of_flights_in_the_gravity_asked_for_and_of_free_ones(client: Client) -> None:
+    """Poses of a body that floats: with gravity the fit finds it falling."""
+    publisher = client.publisher(Odometry, "/brick/odometry")
+    begin_ns = client.node.get_clock().now().nanoseconds + 300_000_000  # after what was published before
+    for i in range(12):
+        msg = Odometry()
+        msg.header.stamp.sec, msg.header.stamp.nanosec = divmod(begin_ns + i * 10_000_000, 1_000_000_000)
+        msg.header.frame_id = "world"
+        msg.pose.pose.position.z = 1.0 + 0.02 * i
+        publisher.publish(msg)
+    request = PredictTumbling.Request(body_name="brick", fit_window=0.115, times=[0.0])
+    request.stamp, request.gravity = msg.header.stamp, PredictTumbling.Request.GRAVITY_NONE
+    answers = []
+
+    def all_arrived() -> bool:
+        answers.append(client.ask(request))
+        return answers[-1].fit_count == 12
+
+    client.spin_until(all_arrived)
+    assert answers[-1].fit_position_residual < 1e-8
+    assert answers[-1].state.linear_velocity.z == pytest.approx(2.0, abs=1e-6)
+    request.gravity = request.GRAVITY_AS_CONFIGURED
+    assert client.ask(request).fit_position_residual > 1e-3
+    request.linear_drag = 0.1
+    answer = client.ask(request)
+    assert answer.status == answer.NOT_SUPPORTED
+    assert "fit_window: found 0.115 with a wrench or drag, allowed is 0" in answer.message
+
+
 def test_a_window_that_holds_too_little_is_refused(client: Client) -> None:
     request = PredictTumbling.Request(body_name="brick", fit_window=1e-6, times=[0.0])
     answer = client.ask(request)
