@@ -103,6 +103,8 @@ def planar_mode_margins(
     cells = kinematic_cells(problem)
     consistent, _ = judge_all(problem, cells, accuracy)
     present = tuple(mode.mode for mode in consistent)
+    if len(contacts) == 1:
+        present = tuple(sorted(present, key="slrf".index))  # the order in which `single` tries them
     found = []
     for mode in present:
         margin, side = _nearest(mode_wrench_set(problem, mode, cells[mode]), wrench, length)

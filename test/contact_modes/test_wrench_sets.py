@@ -138,6 +138,24 @@ def test_a_wrench_in_a_tray_has_modes_like_rsrs() -> None:
     assert len(sets) <= 18
 
 
+@pytest.mark.parametrize("seed", range(200, 260))
+def test_margins_are_in_the_order_of_the_answer(seed: int) -> None:
+    body, velocity, contacts, wrench = rounded(draw(seed, most_contacts=2))
+    answer = planar_contact_modes(body, velocity, contacts, wrench)
+    margins = planar_mode_margins(body, velocity, contacts, wrench)
+    if margins:
+        assert [margin.mode for margin in margins] == [mode.mode for mode in answer.modes]
+
+
+def test_margins_of_an_indeterminate_rod_are_in_the_order_of_the_answer() -> None:
+    rod = PlanarBody(mass=1.0, inertia=1.0)
+    tip = PlanarContact(r=(-1.0353, -3.8637), normal=(0.0, 1.0), friction=0.57735)
+    wrench = PlanarWrench(f=(-1.0, 0.0))
+    margins = planar_mode_margins(rod, AT_REST, [tip], wrench)
+    assert [one.mode for one in margins] == ["l", "f"]
+    assert [one.mode for one in planar_contact_modes(rod, AT_REST, [tip], wrench).modes] == ["l", "f"]
+
+
 def test_no_map_without_touching_contacts() -> None:
     up = PlanarVelocity(v=(0.0, 1.0), w=0.0)
     down = PlanarVelocity(v=(0.0, -1.0), w=0.0)
