@@ -6,10 +6,9 @@ other side: then contact forces can balance about the axes in the plane, and lik
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from contact_dynamics.errors import OutOfPlaneError
 from contact_dynamics.planar import PlanarVelocity
@@ -30,36 +29,39 @@ def mirror_partners(
     -1: there is none. Positions may be off by `OUT_OF_PLANE_RATIO` of the farthest contact's distance, or by
     ``distance_tolerance``, m, where that is more; normals by that ratio; frictions are equal.
     """
-    arms = contacts.p_WC_W - state.p_WB_W
-    reach = float(np.linalg.norm(arms, axis=1).max(initial=0.0))
-    near = max(distance_tolerance, OUT_OF_PLANE_RATIO * reach)
-    depths = arms @ plane.normal_W
-    partners = np.where(np.abs(depths) <= near, np.arange(len(contacts)), -1)
-    mirrored = arms - 2.0 * depths[:, None] * plane.normal_W
-    for i in range(len(contacts)):
-        if partners[i] >= 0:
-            continue
-        off = np.linalg.norm(arms - mirrored[i], axis=1)
-        alike = (partners < 0) & (contacts.frictions == contacts.frictions[i])
-        alike &= (
-            np.linalg.norm(contacts.normals_W - contacts.normals_W[i], axis=1) <= 2.0 * OUT_OF_PLANE_RATIO
-        )
-        off[~alike] = np.inf
-        nearest = int(off.argmin())
-        if off[nearest] <= 2.0 * near:
+    n_x, n_y, n_z = plane.normal_W.tolist()
+    points, normals = (contacts.p_WC_W - state.p_WB_W).tolist(), contacts.normals_W.tolist()
+    frictions = contacts.frictions.tolist()
+    near = max(distance_tolerance, OUT_OF_PLANE_RATIO * max((math.hypot(*p) for p in points), default=0.0))
+    depths = [x * n_x + y * n_y + z * n_z for x, y, z in points]
+    partners = [i if abs(depth) <= near else -1 for i, depth in enumerate(depths)]
+    alone = [i for i, partner in enumerate(partners) if partner < 0]
+    while alone:
+        i = alone.pop()
+        (x, y, z), twice = points[i], 2.0 * depths[i]
+        image = (x - twice * n_x, y - twice * n_y, z - twice * n_z)
+        best, nearest = 2.0 * near, -1
+        for j in alone:
+            if abs(depths[i] + depths[j]) <= best and frictions[i] == frictions[j]:
+                off = math.dist(image, points[j])
+                if off <= best and math.dist(normals[i], normals[j]) <= 2.0 * OUT_OF_PLANE_RATIO:
+                    best, nearest = off, j
+        if nearest >= 0:
+            alone.remove(nearest)
             partners[i], partners[nearest] = nearest, i
-    return tuple(partners.tolist())
+    return tuple(partners)
 
 
 def check_mirrored(
-    plane: PlaneOfMotion, state: BodyState, contacts: ContactSet, *, distance_tolerance: float
+    plane: PlaneOfMotion, state: BodyState, contacts: ContactSet, partners: tuple[int, ...]
 ) -> None:
     """Refuse contacts that lie beside the plane of motion without a like one on its other side.
+
+    ``partners`` are the `mirror_partners` of the contacts.
 
     Raises:
         OutOfPlaneError: with the first such contact and how far from the plane it is.
     """
-    partners = mirror_partners(plane, state, contacts, distance_tolerance=distance_tolerance)
     if -1 in partners:
         alone = partners.index(-1)
         depth = abs(float((contacts.p_WC_W[alone] - state.p_WB_W) @ plane.normal_W))

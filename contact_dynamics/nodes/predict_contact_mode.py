@@ -51,13 +51,13 @@ def predict_contact_mode(request: Any, response: Any, knowledge: Knowledge) -> N
     if request.problem not in {request.AUTOMATIC, request.PLANAR, request.SPATIAL}:
         raise InvalidFieldError("problem", request.problem, "AUTOMATIC (0), PLANAR (1) or SPATIAL (2)")
     question = _question(request, knowledge)
-    problem, reason = _in_plane(request, question, knowledge)
-    if problem is None:
+    view, reason = _in_plane(request, question, knowledge)
+    if view is None:
         response.problem, response.out_of_plane_reason = request.SPATIAL, reason
         _answer_in_space(request, response, question)
     else:
         response.problem = request.PLANAR
-        _answer_in_plane(request, response, question, problem)
+        _answer_in_plane(request, response, question, *view)
     response.state = question.subject.state_to_msg(question.subject.state)
     response.contacts = contacts_to_msg(question.contacts)
     response.distance_tolerance = question.distance_tolerance
@@ -80,8 +80,11 @@ def _question(request: Any, knowledge: Knowledge) -> Question:
 
 def _in_plane(
     request: Any, question: Question, knowledge: Knowledge
-) -> tuple[PlanarProblem, str] | tuple[None, str]:
-    """Return the problem in its plane of motion; or None, and what AUTOMATIC found to be out of the plane."""
+) -> tuple[tuple[PlanarProblem, tuple[int, ...]] | None, str]:
+    """Return the problem in its plane of motion, with the mirror image of each contact in that plane.
+
+    Or None, and what AUTOMATIC found to be out of the plane.
+    """
     if request.problem == request.SPATIAL:
         return None, ""
     subject, contacts = question.subject, question.contacts
@@ -95,30 +98,27 @@ def _in_plane(
             force_W=question.force_W,
             torque_W=question.torque_W,
         )
+        partners = mirror_partners(
+            problem.plane, subject.state, contacts, distance_tolerance=question.distance_tolerance
+        )
         if request.problem == request.AUTOMATIC:
-            check_mirrored(
-                problem.plane, subject.state, contacts, distance_tolerance=question.distance_tolerance
-            )
+            check_mirrored(problem.plane, subject.state, contacts, partners)
     except OutOfPlaneError as error:
         if request.problem == request.PLANAR:
             raise
         return None, str(error)
-    return problem, ""
+    return (problem, partners), ""
 
 
-def _answer_in_plane(request: Any, response: Any, question: Question, problem: PlanarProblem) -> None:
+def _answer_in_plane(
+    request: Any, response: Any, question: Question, problem: PlanarProblem, partners: tuple[int, ...]
+) -> None:
     answer = planar_contact_modes(
         problem.body,
         problem.velocity,
         problem.contacts,
         problem.wrench,
         velocity_tolerance=question.velocity_tolerance,
-    )
-    partners = mirror_partners(
-        problem.plane,
-        question.subject.state,
-        question.contacts,
-        distance_tolerance=question.distance_tolerance,
     )
     write_planar_answer(response, answer, problem, partners)
     if request.want_margins:
