@@ -1,4 +1,4 @@
-"""Contacts found from geometry: the points of a convex body that touch the world's flats at a pose.
+"""Contacts found from geometry: the points of a convex body that touch the world's surfaces at a pose.
 
 A face or an edge that lies flush gives its extreme points, which carry every force that the whole face or
 edge can: the corners of a face, the two ends of a cylinder's or a capsule's line. A ball touches in one
@@ -9,7 +9,7 @@ inscribed in that of the whole rim, with at least 92 % of its tipping moments (t
 Where a body is round its curvature comes with the contact (`contact_curvature`): that of the ball that rolls
 over the shape, and along a rim of radius R whose plane is tilted by theta, sin(theta) / R.
 
-Not covered: edges that cross edges, and surfaces with edges.
+Flats are treated here; obstacles, which have edges and corners, in `obstacle_contact`.
 """
 
 from __future__ import annotations
@@ -21,71 +21,81 @@ import numpy as np
 
 from contact_dynamics.contact import ContactSet
 from contact_dynamics.contact_curvature import Curvatures
+from contact_dynamics.obstacle_contact import Touch, touches_of
 from contact_dynamics.rim_descent import radii_of
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
+from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from contact_dynamics.obstacle import Obstacle
+    from contact_dynamics.obstacle_contact import Side
     from contact_dynamics.rigid_body import BodyState
     from contact_dynamics.rim_descent import Radii
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import Body, Surface
+    from contact_dynamics.world import Body
 
 RIM_POINTS: Final = 8
 """Contacts of a rim that lies flush."""
 
 
-class _Touch(NamedTuple):
-    """One point of the body on a surface."""
-
-    surface: Surface
-    p_WC_W: FloatArray  # (3,), m
-    direction_W: FloatArray  # (3,), unit, tangent: the body's first principal direction there
-    along: float  # 1/m, the body's curvature along it
-    across: float  # 1/m
-
-
 def find_contacts(
     body: Body,
     state: BodyState,
-    surfaces: Sequence[Surface],
+    surfaces: Sequence[Surface | Obstacle],
     *,
     distance_tolerance: float = DISTANCE_TOLERANCE,
 ) -> ContactSet:
-    """Return the contacts of a body with the surfaces, in the order of surfaces, then corners, then rims.
+    """Return the contacts of a body with the surfaces, in their order; of a flat, corners first, then rims.
 
     A point touches where its height above the surface is at most ``distance_tolerance`` (m); one below the
     surface touches, since measured poses penetrate by their noise. A rim lies flush where all of it touches.
     The set may be empty.
+
+    Raises:
+        NotSupportedError: an obstacle, and a body with rims or rounded corners (`obstacle_contact`).
     """
     shape, R_WB = body.shape, state.R_WB
     points = state.p_WB_W + shape.vertices @ R_WB.T
-    if shape.is_polyhedron:
-        return _corners(points, surfaces, distance_tolerance)
+    flats = [surface for surface in surfaces if isinstance(surface, Surface)]
+    if shape.is_polyhedron and len(flats) == len(surfaces):
+        return _corners(points, flats, distance_tolerance)
     rims = [_turned(radii_of(rim), state.p_WB_W, R_WB) for rim in shape.rims]
-    rounding = shape.rounding
-    touches: list[_Touch] = []
+    touches: list[Touch] = []
+    owners: list[Surface | Obstacle] = []
     for surface in surfaces:
-        n_W = surface.normal_W
-        corner = 1.0 / rounding if rounding > 0.0 else math.inf
-        for i in np.flatnonzero(surface.gaps(points) - rounding <= distance_tolerance):
-            p_WC_W = points[i] - rounding * n_W
-            touches.append(_Touch(surface, p_WC_W, _any_tangent(n_W), corner, corner))
-        for rim in rims:
-            touches += _of_rim(rim, surface, rounding, distance_tolerance)
+        if isinstance(surface, Surface):
+            touches += _of_corners(points, surface, shape.rounding, distance_tolerance)
+            for rim in rims:
+                touches += _of_rim(rim, surface, shape.rounding, distance_tolerance)
+        elif not shape.is_empty:
+            touches += touches_of(shape, state.p_WB_W, R_WB, surface, distance_tolerance)
+        owners += [surface] * (len(touches) - len(owners))
     return ContactSet(
         p_WC_W=np.array([touch.p_WC_W for touch in touches]).reshape(-1, 3),
-        normals_W=np.array([touch.surface.normal_W for touch in touches]).reshape(-1, 3),
-        frictions=np.array([touch.surface.friction for touch in touches]),
-        restitutions=np.array([touch.surface.restitution for touch in touches]),
-        surfaces=tuple(touch.surface.name for touch in touches),
-        body_curvatures=Curvatures(
-            along=np.array([touch.along for touch in touches]),
-            across=np.array([touch.across for touch in touches]),
-            directions_W=np.array([touch.direction_W for touch in touches]).reshape(-1, 3),
-        ),
+        normals_W=np.array([touch.normal_W for touch in touches]).reshape(-1, 3),
+        frictions=np.array([owner.friction for owner in owners]),
+        restitutions=np.array([owner.restitution for owner in owners]),
+        surfaces=tuple(owner.name for owner in owners),
+        body_curvatures=_sides([touch.body for touch in touches]),
+        surface_curvatures=_sides([touch.surface for touch in touches]),
     )
+
+
+def _sides(sides: list[Side]) -> Curvatures:
+    return Curvatures(
+        along=np.array([along for along, _, _ in sides]),
+        across=np.array([across for _, across, _ in sides]),
+        directions_W=np.array([direction for _, _, direction in sides]).reshape(-1, 3),
+    )
+
+
+def _of_corners(points: FloatArray, surface: Surface, rounding: float, tolerance: float) -> Iterator[Touch]:
+    n_W, tangent = surface.normal_W, _any_tangent(surface.normal_W)
+    corner = 1.0 / rounding if rounding > 0.0 else math.inf
+    for i in np.flatnonzero(surface.gaps(points) - rounding <= tolerance):
+        yield Touch(points[i] - rounding * n_W, n_W, (corner, corner, tangent), (0.0, 0.0, tangent))
 
 
 def _corners(points: FloatArray, surfaces: Sequence[Surface], distance_tolerance: float) -> ContactSet:
@@ -114,7 +124,7 @@ def _turned(radii: Radii, p_WB_W: FloatArray, R_WB: FloatArray) -> _RimW:
     return _RimW(p_WB_W + R_WB @ radii.center, first, second, math.sqrt(first @ first))
 
 
-def _of_rim(rim: _RimW, surface: Surface, rounding: float, tolerance: float) -> Iterator[_Touch]:
+def _of_rim(rim: _RimW, surface: Surface, rounding: float, tolerance: float) -> Iterator[Touch]:
     n_W = surface.normal_W
     height = float(surface.gaps(rim.center)) - rounding
     a_1, a_2 = float(n_W @ rim.first), float(n_W @ rim.second)
@@ -123,6 +133,8 @@ def _of_rim(rim: _RimW, surface: Surface, rounding: float, tolerance: float) -> 
         return
     flush = height + size <= tolerance
     corner = 1.0 / rounding if rounding > 0.0 else math.inf
+    tangent = _any_tangent(n_W)
+    flat = (0.0, 0.0, tangent)
     if flush:
         turns = [2.0 * math.pi * i / RIM_POINTS for i in range(RIM_POINTS)]
         directions = [(math.cos(turn), math.sin(turn)) for turn in turns]
@@ -131,11 +143,11 @@ def _of_rim(rim: _RimW, surface: Surface, rounding: float, tolerance: float) -> 
     for cosine, sine in directions:
         p_WC_W = rim.center + cosine * rim.first + sine * rim.second - rounding * n_W
         if flush:
-            yield _Touch(surface, p_WC_W, _any_tangent(n_W), corner, corner)
+            yield Touch(p_WC_W, n_W, (corner, corner, tangent), flat)
         else:
             around = (cosine * rim.second - sine * rim.first) / rim.radius  # level: along the rim
             radius = rim.radius * rim.radius / size + rounding
-            yield _Touch(surface, p_WC_W, around, 1.0 / radius, corner)
+            yield Touch(p_WC_W, n_W, (1.0 / radius, corner, around), flat)
 
 
 def _any_tangent(n_W: FloatArray) -> FloatArray:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.convex_shape import ConvexShape
-from contact_dynamics.motion_bounds import Bound, bounds_of
+from contact_dynamics.motion_bounds import Bound, bounds_of, free_for
 from contact_dynamics.rim_descent import RimAbove, radii_of
 from contact_dynamics.tolerances import GRAZING_DEPTH
 from contact_dynamics.tumbling.quaternions import conjugate, rotated
@@ -128,12 +128,12 @@ class _Search:
         """Return for how long, s, no part can arrive while a bound holds."""
         corners = len(self.arms)
         pulls = bound.fall + self.arms * bound.turning
-        step = float(_free_for(at.heights[:corners], at.rates[:corners], pulls).min(initial=math.inf))
+        step = float(free_for(at.heights[:corners], at.rates[:corners], pulls).min(initial=math.inf))
         for radii, rim in zip(self.rims, at.rims, strict=True):
             step = min(step, rim.free_for(bound.fall + radii.reach * bound.turning))
         if at.centre > self.reach:
             alone = np.array([[at.centre - self.reach], [at.centre_rate], [bound.fall]])
-            step = max(step, float(_free_for(*alone)[0]))
+            step = max(step, float(free_for(*alone)[0]))
         return step
 
     def at(self, seconds: float) -> _At:
@@ -212,20 +212,6 @@ class _Search:
             p_WC_W=np.add(sample.p_WB_W, arm_W),
             v_WC_W=np.add(sample.v_WB_W, np.cross(sample.w_WB_W, arm_W)),
         )
-
-
-def _free_for(heights: FloatArray, rates: FloatArray, pulls: FloatArray) -> FloatArray:
-    """Return for how long, (k,), s, corners pulled down at most so hard cannot arrive, but for a graze."""
-    with np.errstate(divide="ignore", invalid="ignore"):  # where nothing pulls, or nothing falls
-        allowed = heights + GRAZING_DEPTH
-        stop = rates * rates + 2.0 * pulls * allowed
-        root = np.sqrt(np.maximum(stop, 0.0))
-        falling = np.where(stop >= 0.0, 2.0 * allowed / (root - rates), np.inf)
-        rising = np.where(pulls > 0.0, (rates + root) / pulls, np.inf)
-        # Below the plane and rising: as long as it rises, and not less than a graze takes.
-        below = np.where(pulls > 0.0, np.maximum(rates, np.sqrt(2.0 * GRAZING_DEPTH * pulls)) / pulls, np.inf)
-    free: FloatArray = np.where(heights > 0.0, np.where(rates < 0.0, falling, rising), below)
-    return free
 
 
 def _dot(a: Vector, b: Vector) -> float:

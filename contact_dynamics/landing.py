@@ -9,6 +9,8 @@ import numpy as np
 
 from contact_dynamics.contact_geometry import find_contacts
 from contact_dynamics.first_contact import first_contact
+from contact_dynamics.obstacle import Obstacle
+from contact_dynamics.obstacle_arrival import first_touch
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.tumbling import free_motion
 
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
     from contact_dynamics.motion_bounds import Motion
     from contact_dynamics.rigid_body import BodyState
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import Body, World
+    from contact_dynamics.world import Body, Surface, World
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -43,7 +45,7 @@ def next_landing(
 ) -> Landing | None:
     """Return where a body's flight ends within ``horizon`` (s), or None.
 
-    A vertex within ``distance_tolerance`` (m) of a surface touches it. A body that touches flies only if each
+    A point within ``distance_tolerance`` (m) of a surface touches it. A body that touches flies only if each
     of its contacts leaves faster than ``velocity_tolerance`` (m/s); what counts then is where it comes down.
     ``motion`` is the flight, in closed form or under forces; None: that of the state in the world's gravity.
     """
@@ -53,9 +55,9 @@ def next_landing(
     if motion is None:
         motion = free_motion(body.mass_properties, state, gravity_W=world.gravity_W)
     arrivals = [
-        found.seconds
+        seconds
         for surface in world.surfaces
-        if (found := first_contact(motion, body.shape, surface.p_WS_W, surface.normal_W, horizon=horizon))
+        if (seconds := _arrival(motion, body, surface, horizon)) is not None
     ]
     if not arrivals:
         return None
@@ -63,6 +65,13 @@ def next_landing(
     then = motion.state_at(seconds)
     touching = _touching(body, then, world, max(distance_tolerance, DISTANCE_TOLERANCE))
     return None if touching is None else touching.landing(seconds, then, velocity_tolerance)
+
+
+def _arrival(motion: Motion, body: Body, surface: Surface | Obstacle, horizon: float) -> float | None:
+    if isinstance(surface, Obstacle):
+        return first_touch(motion, body.shape, surface, horizon=horizon)
+    found = first_contact(motion, body.shape, surface.p_WS_W, surface.normal_W, horizon=horizon)
+    return None if found is None else found.seconds
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

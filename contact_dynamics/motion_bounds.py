@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 import numpy as np
 
 from contact_dynamics.forced_motion import ForcedMotion
+from contact_dynamics.tolerances import GRAZING_DEPTH
 from contact_dynamics.tumbling import FreeMotion
 from contact_dynamics.tumbling.polhode import Spin, largest_rate
 
@@ -53,6 +54,23 @@ def bounds_of(motion: Motion, normal_W: FloatArray) -> Callable[[float], Bound]:
         forever = Bound(math.inf, -float(normal_W @ motion.gravity_W), turning)
         return lambda _: forever
     return _Along(motion, normal_W)
+
+
+def free_for(heights: FloatArray, rates: FloatArray, pulls: FloatArray) -> FloatArray:
+    """Return for how long, (k,), s, points above a plane, pulled to it at most so hard, cannot arrive.
+
+    Arrays are (k,), m, m/s, m/s^2. A dip of less than `GRAZING_DEPTH` is no arrival.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):  # where nothing pulls, or nothing falls
+        allowed = heights + GRAZING_DEPTH
+        stop = rates * rates + 2.0 * pulls * allowed
+        root = np.sqrt(np.maximum(stop, 0.0))
+        falling = np.where(stop >= 0.0, 2.0 * allowed / (root - rates), np.inf)
+        rising = np.where(pulls > 0.0, (rates + root) / pulls, np.inf)
+        # Below the plane and rising: as long as it rises, and not less than a graze takes.
+        below = np.where(pulls > 0.0, np.maximum(rates, np.sqrt(2.0 * GRAZING_DEPTH * pulls)) / pulls, np.inf)
+    free: FloatArray = np.where(heights > 0.0, np.where(rates < 0.0, falling, rising), below)
+    return free
 
 
 class _Along:

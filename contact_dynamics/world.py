@@ -1,4 +1,7 @@
-"""The world that questions are asked about: bodies with shapes, the surfaces they meet, and gravity."""
+"""The world that questions are asked about: bodies with shapes, the surfaces they meet, and gravity.
+
+Surfaces are flats without end (`Surface`) and convex solids and plates (`Obstacle`); they stand still.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ import numpy as np
 
 from contact_dynamics.convex_shape import MOST_VERTICES, NO_SHAPE, ConvexShape, box_vertices
 from contact_dynamics.errors import InvalidFieldError, UnknownBodyError
+from contact_dynamics.obstacle import Obstacle
 from contact_dynamics.rigid_body import MassProperties
 from contact_dynamics.validation import FloatArray, check_array, check_not_negative, check_unit, check_within
 
@@ -84,7 +88,7 @@ class World:
     """
 
     bodies: tuple[Body, ...] = ()
-    surfaces: tuple[Surface, ...] = ()
+    surfaces: tuple[Surface | Obstacle, ...] = ()
     gravity_W: FloatArray = field(
         default_factory=lambda: np.array(STANDARD_GRAVITY_W)
     )  # (3,), m/s^2, world axes
