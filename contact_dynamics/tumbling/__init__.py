@@ -3,11 +3,11 @@
 In reading order: principal axes (`principal_frame`), the constants of a rotation (`polhode`) with the
 elliptic integrals they need (`elliptic`, in the numbers of `arithmetic`), attitude as quotients of theta
 functions (`theta`, set up by `attitude_form`), phases over many turns (`double_double`), the motion of one
-body (`motion`), what to call it (`regime`), and many rotations at once (`many`).
+body (`motion`), what to call it (`regime`), and many bodies at once (`many`).
 """
 
 from contact_dynamics.tumbling.arithmetic import Precision
-from contact_dynamics.tumbling.many import rotations_of_many
+from contact_dynamics.tumbling.many import rotations_of_many, states_of_many
 from contact_dynamics.tumbling.motion import FreeMotion, Sample, Trajectory, free_motion
 from contact_dynamics.tumbling.regime import Regime
 
@@ -19,4 +19,5 @@ __all__ = [
     "Trajectory",
     "free_motion",
     "rotations_of_many",
+    "states_of_many",
 ]

@@ -1,4 +1,4 @@
-"""Many free rotations at once, each at its own time: samples of an uncertain state, or a cloud of bodies.
+"""Many free motions at once, each at its own time: samples of an uncertain state, or a cloud of bodies.
 
 The formulas for one, over arrays and in doubles. Errors of attitude grow by some 1e-16 of the angle turned,
 times the motion's sensitivity. What lies on the separatrix to the last bit is taken as lying 1e-300 off it.
@@ -12,11 +12,15 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.rotations import matrices_of
+from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, UNIT_LENGTH_TOLERANCE
 from contact_dynamics.tumbling.arithmetic import ARRAYS, FloatArray
 from contact_dynamics.tumbling.attitude_form import SWITCH, bumps, harmonics, zeros
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
+from contact_dynamics.tumbling.motion import Trajectory
 from contact_dynamics.tumbling.polhode import MOTIONLESS
 from contact_dynamics.validation import check_array
+from contact_dynamics.world import STANDARD_GRAVITY_W
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -28,6 +32,82 @@ CHUNK: Final = 4096
 
 SMALLEST: Final = 1e-300
 """Stands for zero where a quotient or a logarithm of it is wanted."""
+
+
+def states_of_many(
+    I_B: ArrayLike,
+    *,
+    p_WB_W: ArrayLike,
+    q_WB: ArrayLike,
+    v_WB_W: ArrayLike,
+    w_WB_W: ArrayLike,
+    seconds: ArrayLike,
+    gravity_W: ArrayLike = STANDARD_GRAVITY_W,
+) -> Trajectory:
+    """Return where n bodies are, each from its own state at its own time: row i is body i.
+
+    Args:
+        I_B: (3, 3) for all bodies, or (n, 3, 3), kg m^2, about the centre of mass, body axes.
+        p_WB_W: (n, 3), m, centres of mass in the world.
+        q_WB: (n, 4), unit quaternions x, y, z, w, body to world.
+        v_WB_W: (n, 3), m/s, of the centres of mass, world axes.
+        w_WB_W: (n, 3), rad/s, world axes.
+        seconds: (n,), or one number for all, s, of either sign.
+        gravity_W: (3,), m/s^2, world axes.
+
+    Raises:
+        InvalidFieldError: an array of another shape, a number that is not finite, a quaternion that is not
+            unit, an inertia that is not symmetric and positive definite.
+    """
+    w = check_array("angular_velocities", w_WB_W, (None, 3))
+    n = len(w)
+    p, v = check_array("positions", p_WB_W, (n, 3)), check_array("linear_velocities", v_WB_W, (n, 3))
+    q = _unit(check_array("orientations", q_WB, (n, 4)))
+    given = check_array("inertia", I_B, (3, 3) if np.ndim(I_B) == 2 else (n, 3, 3))
+    moments, R_BP = _principal(given)
+    times = np.broadcast_to(check_array("times", seconds, () if np.ndim(seconds) == 0 else (n,)), (n,))
+    R_WP = matrices_of(q) @ R_BP
+    turn, w_P = rotations_of_many(moments, np.einsum("nij,ni->nj", R_WP, w), times)
+    # The turn is in principal axes at time 0; as a rotation of the world it is R_WP turn R_WP^T.
+    onto_W = np.einsum("nij,nj->ni", R_WP, turn[:, :3])
+    x, s = onto_W, turn[:, 3:]
+    u, c = q[:, :3], q[:, 3:]
+    then = np.hstack([s * u + c * x + np.cross(x, u), s * c - np.einsum("ni,ni->n", x, u)[:, None]])
+    w_then = np.einsum("nij,nj->ni", matrices_of(then) @ R_BP, w_P)
+    gravity = check_array("gravity", gravity_W, (3,))
+    elapsed = times[:, None]
+    return Trajectory(
+        seconds=times.copy(),
+        p_WB_W=p + elapsed * (v + (0.5 * elapsed) * gravity),
+        q_WB=then,
+        v_WB_W=v + elapsed * gravity,
+        w_WB_W=w_then,
+    )
+
+
+def _unit(q: FloatArray) -> FloatArray:
+    """Return quaternions (n, 4) scaled to norm 1; refuse those that are not so within tolerance."""
+    norms = np.sqrt(np.einsum("ni,ni->n", q, q))
+    off = np.flatnonzero(np.abs(norms - 1.0) > UNIT_LENGTH_TOLERANCE)
+    if len(off):
+        raise InvalidFieldError(
+            f"orientations[{off[0]}]", f"norm {norms[off[0]]:g}", f"1 within {UNIT_LENGTH_TOLERANCE:g}"
+        )
+    unit: FloatArray = q / norms[:, None]
+    return unit
+
+
+def _principal(I_B: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return moments, (3,) or (n, 3), ascending, and right-handed axes, columns of (3, 3) or (n, 3, 3)."""
+    apart = np.abs(I_B - np.swapaxes(I_B, -1, -2)).max(axis=(-1, -2))
+    bent = np.flatnonzero(apart > SYMMETRY_TOLERANCE * np.abs(I_B).max(axis=(-1, -2)))
+    if len(bent):
+        raise InvalidFieldError("inertia", I_B.reshape(-1, 3, 3)[bent[0]].tolist(), "a symmetric matrix")
+    moments, axes = np.linalg.eigh(I_B)
+    if moments.size and not float(moments.min()) > 0.0:
+        raise InvalidFieldError("inertia", f"a principal moment of {moments.min():g}", "numbers > 0")
+    axes[..., 2] *= np.linalg.det(axes)[..., None]
+    return moments, axes
 
 
 def rotations_of_many(

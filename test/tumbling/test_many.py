@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.poinsot import sensitivity
 from contact_dynamics.rigid_body import BodyState, MassProperties
-from contact_dynamics.tumbling import FreeMotion, free_motion, rotations_of_many
+from contact_dynamics.tumbling import FreeMotion, free_motion, rotations_of_many, states_of_many
 from oracles.tumbling_draws import draw
 
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)
@@ -70,6 +70,73 @@ def test_drawn_bodies_each_at_its_time() -> None:
         w,
         rng.uniform(-20.0, 20.0, len(mild)) / np.linalg.norm(w, axis=1),
     )
+
+
+def many(count: int, seed: int) -> dict[str, np.ndarray]:
+    """States and bodies of all shapes and attitudes, none near the separatrix."""
+    rng = np.random.default_rng(seed)
+    spreads = rng.uniform(0.1, 1.0, (count, 3))
+    spreads[::4] = spreads[::4, :1]  # spheres to rounding
+    spreads[1::4, 1] = spreads[1::4, 0]  # symmetric to rounding
+    R = Rotation.random(count, random_state=seed).as_matrix()
+    moments = spreads.sum(axis=1, keepdims=True) - spreads
+    I_B = np.einsum("nij,nj,nkj->nik", R, moments, R)
+    return {
+        "I_B": 0.5 * (I_B + I_B.transpose(0, 2, 1)),
+        "p_WB_W": rng.normal(size=(count, 3)),
+        "q_WB": Rotation.random(count, random_state=seed + 1).as_quat(),
+        "v_WB_W": rng.normal(size=(count, 3)),
+        "w_WB_W": rng.normal(size=(count, 3)) * 10.0 ** rng.uniform(-3.0, 3.0, (count, 1)),
+    }
+
+
+def test_states_of_many_bodies_are_those_of_each() -> None:
+    bodies = many(80, 5)
+    rates = np.linalg.norm(bodies["w_WB_W"], axis=1)
+    seconds = np.random.default_rng(6).uniform(-20.0, 20.0, 80) / rates
+    found = states_of_many(**bodies, seconds=seconds)
+    np.testing.assert_array_equal(found.seconds, seconds)
+    np.testing.assert_allclose(np.linalg.norm(found.q_WB, axis=1), 1.0, rtol=0.0, atol=1e-15)
+    for i, t in enumerate(seconds.tolist()):
+        state = {name: values[i] for name, values in bodies.items() if name != "I_B"}
+        motion = free_motion(MassProperties(mass=1.0, I_B=bodies["I_B"][i]), BodyState(**state))
+        single = motion.state_at(t)
+        limit = 5e-15 * (1.0 + rates[i] * abs(t)) * min(1.0 + sensitivity(motion), 1e5)
+        turn = Rotation.from_quat(single.q_WB).inv() * Rotation.from_quat(found.q_WB[i])
+        assert turn.magnitude() <= limit
+        assert found.w_WB_W[i] == pytest.approx(single.w_WB_W, abs=limit * rates[i])
+        np.testing.assert_array_equal(found.p_WB_W[i], single.p_WB_W)
+        np.testing.assert_array_equal(found.v_WB_W[i], single.v_WB_W)
+
+
+def test_one_body_in_many_states() -> None:
+    bodies = many(20, 7)
+    one = {**bodies, "I_B": bodies["I_B"][2]}
+    each = {**bodies, "I_B": np.tile(bodies["I_B"][2], (20, 1, 1))}
+    none = {"gravity_W": (0.0, 0.0, 0.0)}
+    found, expected = states_of_many(**one, seconds=0.3, **none), states_of_many(**each, seconds=0.3, **none)
+    np.testing.assert_array_equal(found.q_WB, expected.q_WB)
+    np.testing.assert_array_equal(found.v_WB_W, one["v_WB_W"])
+    nobody = {name: values[:0] for name, values in bodies.items()}
+    empty = states_of_many(**nobody, seconds=1.0)
+    assert empty.q_WB.shape == (0, 4)
+
+
+@pytest.mark.parametrize(
+    ("field", "spoil"),
+    [
+        ("inertia", {"I_B": np.diag([1.0, 1.0, -1.0])}),
+        ("inertia", {"I_B": np.eye(3) + np.eye(3, k=1)}),
+        ("inertia", {"I_B": np.ones((2, 3, 3))}),
+        (r"orientations\[1\]: found norm 2", {"q_WB": [[0, 0, 0, 1], [0, 0, 0, 2], [0, 0, 0, 1]]}),
+        ("positions", {"p_WB_W": np.zeros((2, 3))}),
+        ("linear_velocities", {"v_WB_W": np.full((3, 3), np.nan)}),
+        ("times", {"seconds": np.zeros(2)}),
+    ],
+)
+def test_states_that_are_none_are_refused_by_name(field: str, spoil: dict[str, object]) -> None:
+    with pytest.raises(InvalidFieldError, match=field):
+        states_of_many(**{**many(3, 8), "seconds": 1.0, **spoil})
 
 
 def test_more_than_a_chunk() -> None:
