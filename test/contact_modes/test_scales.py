@@ -1,4 +1,8 @@
-"""Lever arms much longer and much shorter than the radius of gyration, beside exact trials of all strings."""
+"""Lever arms much longer and much shorter than the radius of gyration, beside exact trials of all strings.
+
+Long ones end at a thousand radii for sets of any shape: what accelerates at ten thousand can be a difference
+of terms 1e14 times its size, so that doubles do not say whether it is zero.
+"""
 
 from __future__ import annotations
 
@@ -35,14 +39,14 @@ def compare(seed: int, power: int, most_contacts: int) -> None:
     assert {mode.mode for mode in answer.modes} == consistent_modes(exact, kinematic)
 
 
-@pytest.mark.parametrize("power", [-5, -3, -1, 1, 3, 5])
+@pytest.mark.parametrize("power", [-5, -3, -1, 1, 3])
 @pytest.mark.parametrize("seed", range(25))
 def test_long_and_short_arms(seed: int, power: int) -> None:
     compare(seed, power, most_contacts=4)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("power", [-5, -4, -3, -2, 2, 3, 4, 5])
+@pytest.mark.parametrize("power", [-5, -4, -3, -2, 2, 3])
 @pytest.mark.parametrize("seed", range(5000, 5300))
 def test_many_long_and_short_arms(seed: int, power: int) -> None:
     compare(seed, power, most_contacts=5)
