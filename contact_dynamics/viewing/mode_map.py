@@ -38,6 +38,9 @@ OUTSIDE: Final = 0
 NO_MODE: Final = 1
 """Classes of the picture's points; the others count up from here."""
 
+LIVE_RESOLUTION: Final = 300
+"""Points on a side: as many as the view of the visualizer shows. Such a map takes about 0.1 s to draw."""
+
 _NAMED_FROM: Final = 0.045
 """Relative to a part's side: a region that holds no circle of this radius has no room for its name."""
 
@@ -133,7 +136,11 @@ def draw_mode_map(
 
 
 def chart_for(
-    sets: Sequence[ModeWrenchSet], *, length: float, applied: PlanarWrench | None, resolution: int = 400
+    sets: Sequence[ModeWrenchSet],
+    *,
+    length: float,
+    applied: PlanarWrench | None,
+    resolution: int = LIVE_RESOLUTION,
 ) -> WrenchChart:
     """Return the chart that suits: all directions of a body at rest, else forces at the applied torque.
 
@@ -231,7 +238,7 @@ def draw_frame(recording: rr.RecordingStream, chart: WrenchChart, entity: str, *
         texts = [f"forces up to {chart.half_side:.3g} N, torque {chart.moment:.3g} N m"]
     places = [(centre[0], height - 0.75 * gap(chart.resolution)) for centre in centres]
     if note:
-        places.append((0.5 * width, 0.25 * gap(chart.resolution)))
+        places.append((0.5 * width, -0.3 * gap(chart.resolution)))
         texts.append(note)
     captions = rr.Points2D(places, colors=palette.NORMAL, radii=0.0, labels=texts, show_labels=True)
     recording.log(f"{entity}/captions", captions)

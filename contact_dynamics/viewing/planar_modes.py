@@ -28,8 +28,7 @@ if TYPE_CHECKING:
 NO_SIZE: Final = 0.1
 """m. Size that a body without shape, at its only contact, is drawn with."""
 
-_SPACING: Final = 1.7  # between the centres of two modes' pictures, relative to the body's size
-_TITLE: Final = 0.75  # of a title above the centre of mass, likewise
+_AROUND: Final = 0.45  # room around body and contacts in each picture, relative to the body's size
 _WALL: Final = 0.15  # half of the length of a contact's flat, likewise
 
 
@@ -56,14 +55,16 @@ def draw_planar_modes(
     """
     reach = [contact.r for contact in picture.contacts]
     everything = np.vstack([outline, np.reshape(reach, (-1, 2)), np.zeros((1, 2))])
-    size = float(np.linalg.norm(np.ptp(everything, axis=0))) or NO_SIZE
+    low, high = everything.min(axis=0), everything.max(axis=0)
+    size = float(np.linalg.norm(high - low)) or NO_SIZE
+    low, high = low - _AROUND * size, high + _AROUND * size
     titles = [f"{mode.mode} {margin}" for mode, margin in zip(picture.modes, picture.margins, strict=True)]
     for i in range(MOST_MODES):
         path = f"{PLANAR_MODES}/mode_{i + 1}"
         if i >= max(1, len(picture.modes)):
             recording.log(path, rr.Clear(recursive=True))
             continue
-        shift = i * _SPACING * size
+        aside = np.array([i * float(high[0] - low[0]), 0.0])
         draw_planar_scene(
             recording,
             outline,
@@ -71,13 +72,15 @@ def draw_planar_modes(
             size=size,
             walls=[_flat_of(contact, size) for contact in picture.contacts],
             mode=picture.modes[i] if picture.modes else None,
-            shift=shift,
+            shift=float(aside[0]),
             entity=path,
         )
         title = titles[i] if picture.modes else picture.verdict
-        place = upright(np.array([[shift, _TITLE * size]]))
+        place = upright(np.array([0.5 * (low[0] + high[0]), high[1]]) + aside)
         points = rr.Points2D(place, colors=palette.NORMAL, radii=0.0, labels=[title], show_labels=True)
         recording.log(f"{path}/title", points)
+        room = rr.Points2D(upright(np.array([low, high]) + aside), colors=palette.BACKGROUND, radii=0.0)
+        recording.log(f"{path}/room", room)  # what the viewer fits into the view
     if picture.sets:
         chart = chart_for(picture.sets, length=picture.length, applied=picture.applied)
         draw_mode_map(recording, picture.sets, chart, applied=picture.applied, change=picture.change)

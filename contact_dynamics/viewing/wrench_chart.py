@@ -81,9 +81,9 @@ def part_centre(chart: WrenchChart, part: int) -> Vector2:
 
 
 def bounds(chart: WrenchChart) -> rrb.VisualBounds2D:
-    """Return what a view shows so that it shows a whole chart."""
+    """Return what a view shows so that it shows a whole chart, and a note above."""
     width, height = picture_size(chart)
-    return rrb.VisualBounds2D(x_range=(0.0, width), y_range=(0.0, height))
+    return rrb.VisualBounds2D(x_range=(0.0, width), y_range=(-0.3 * gap(chart.resolution), height))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
