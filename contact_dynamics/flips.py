@@ -16,7 +16,7 @@ from contact_dynamics.tumbling.many import flips_of_many
 from contact_dynamics.tumbling.polhode import Spin, Tumble
 from contact_dynamics.tumbling.principal_frame import in_doubles
 from contact_dynamics.tumbling.regime import Regime
-from contact_dynamics.validation import FloatArray, check_array
+from contact_dynamics.uncertainty import check_covariance
 
 if TYPE_CHECKING:
     from decimal import Decimal
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from contact_dynamics.tumbling import FreeMotion
+    from contact_dynamics.validation import FloatArray
 
 NEAR_MIDDLE_AXIS: Final = 0.75
 """cos^2 of 30 degrees: between flips the middle axis comes at least this near to the angular momentum, or
@@ -57,7 +58,7 @@ def next_flips(motion: FreeMotion, count: int, *, covariance: ArrayLike | None =
     the same pairs, around the given one.
 
     Raises:
-        InvalidFieldError: the covariance is not (12, 12) finite numbers.
+        InvalidFieldError: the covariance is none (`uncertainty.check_covariance`).
     """
     regime, rotation = motion.regime, motion.rotation
     flips = regime in (Regime.ABOUT_MAJOR_AXIS, Regime.ABOUT_MINOR_AXIS, Regime.SEPARATRIX)
@@ -71,7 +72,7 @@ def next_flips(motion: FreeMotion, count: int, *, covariance: ArrayLike | None =
     times = _flip_times(rotation, count, from_seconds=0.0)
     if covariance is None or len(times) == 0:
         return Flips(seconds=times, deviations=np.full(len(times), math.nan))
-    spread = _covariance_in_body(motion, check_array("covariance", covariance, (12, 12)))
+    spread = _covariance_in_body(motion, check_covariance("covariance", covariance))
     return Flips(seconds=times, deviations=_deviations(motion, spread, times))
 
 
