@@ -1,4 +1,4 @@
-"""The parameters of a body's shape: one of several primitives, where it is in the body's frame, its mass."""
+"""The parameters of a shape: one of several primitives, where it is in its frame, the mass that fills it."""
 
 from __future__ import annotations
 
@@ -36,15 +36,16 @@ _COUNTS: Final = {"box": 3, "sphere": 1, "capsule": 2, "cylinder": 2, "cone": 2}
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ShapeParameters:
-    """A body's shape as it is configured; lengths in m."""
+    """A shape as it is configured, of a body or of an obstacle; lengths in m."""
 
     numbers: dict[str, list[float]]  # of each of `DESCRIPTIONS`
     rounding: float  # radius of the ball that rolls over it
-    position: list[float]  # of the shape in the body's frame
+    position: list[float]  # of the shape in the body's frame, or in the world
     orientation: list[float]  # x, y, z, w
+    pose_names: tuple[str, str] = ("shape_position", "shape_orientation")  # parameters of the two above
 
     def shape_F(self) -> ConvexShape:
-        """Return the shape in the body's frame; an empty one where none is configured.
+        """Return the shape in its frame; an empty one where none is configured.
 
         Raises:
             InvalidFieldError: more than one shape, or numbers that are none of it.
@@ -69,8 +70,8 @@ class ShapeParameters:
         return _MASSES[name](self._values(name), mass).placed(p_GF_G=position, q_GF=orientation)
 
     def _pose(self) -> tuple[FloatArray, FloatArray]:
-        position = check_array("shape_position", self.position, (3,))
-        return position, check_unit("shape_orientation", self.orientation, 4)
+        position, orientation = self.pose_names
+        return check_array(position, self.position, (3,)), check_unit(orientation, self.orientation, 4)
 
     def _name(self) -> str:
         given = [name for name, values in self.numbers.items() if values != [0.0]]

@@ -14,6 +14,7 @@ from rclpy.parameter import Parameter
 
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.nodes.body_shapes import DESCRIPTIONS, ShapeParameters
+from contact_dynamics.obstacle import Obstacle
 from contact_dynamics.rigid_body import MassProperties
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, OUT_OF_PLANE_SPEED, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_positive
@@ -69,7 +70,7 @@ def read_server_parameters(node: Node) -> ServerParameters:
     """
     reader = _Reader(node)
     body_names = reader.names("bodies", "Names of the bodies that questions can name.")
-    surface_names = reader.names("surfaces", "Names of the flats of the world.")
+    surface_names = reader.names("surfaces", "Names of the flats and obstacles of the world.")
     bodies = [_read_body(reader, name) for name in body_names]
     gravity = reader.read(
         "gravity", list(STANDARD_GRAVITY_W), "Acceleration of gravity, m/s^2, world axes: x, y, z."
@@ -105,7 +106,7 @@ def read_server_parameters(node: Node) -> ServerParameters:
         distance_tolerance=reader.read(
             "distance_tolerance",
             DISTANCE_TOLERANCE,
-            "Gap below which a vertex counts as touching, m.",
+            "Gap below which a body counts as touching, m.",
             (0.0, 1e3),
         ),
         out_of_plane_tolerance=reader.read(
@@ -197,11 +198,29 @@ def _read_shape(reader: _Reader, key: str) -> ShapeParameters:
     )
 
 
-def _read_surface(reader: _Reader, name: str) -> Surface:
+def _read_surface(reader: _Reader, name: str) -> Surface | Obstacle:
     key = f"surface.{name}"
-    point = reader.read(f"{key}.point", [0.0, 0.0, 0.0], "A point of the surface, m, world: x, y, z.")
+    point = reader.read(
+        f"{key}.point", [0.0, 0.0, 0.0], "A point of the flat, or the centre of the box, m, world: x, y, z."
+    )
     normal = reader.read(
         f"{key}.normal", [0.0, 0.0, 1.0], "Unit normal into the free side, world axes: x, y, z."
+    )
+    shape = ShapeParameters(
+        numbers={
+            "box": reader.read(f"{key}.box", [0.0], "Full side lengths of a box, m: x, y, z."),
+            "vertices": reader.read(
+                f"{key}.vertices", [0.0], "Corners of a convex solid or plate, from the point, m: x, y, z."
+            ),
+        },
+        rounding=0.0,
+        position=point,
+        orientation=reader.read(
+            f"{key}.orientation",
+            [0.0, 0.0, 0.0, 1.0],
+            "How box or corners are turned: unit quaternion x, y, z, w.",
+        ),
+        pose_names=("point", "orientation"),
     )
     friction = reader.read(
         f"{key}.friction", Parameter.Type.DOUBLE, "Coulomb's friction coefficient with any body, >= 0."
@@ -209,16 +228,20 @@ def _read_surface(reader: _Reader, name: str) -> Surface:
     restitution = reader.read(
         f"{key}.restitution", Parameter.Type.DOUBLE, "Coefficient of restitution with any body, 0 to 1."
     )
-    return reader.build(
-        key,
-        lambda: Surface(
+
+    def build() -> Surface | Obstacle:
+        solid = shape.shape_F()
+        if not solid.is_empty:
+            return Obstacle(name=name, vertices_W=solid.vertices, friction=friction, restitution=restitution)
+        return Surface(
             name=name,
             p_WS_W=np.array(point),
             normal_W=np.array(normal),
             friction=friction,
             restitution=restitution,
-        ),
-    )
+        )
+
+    return reader.build(key, build)
 
 
 class _Reader:

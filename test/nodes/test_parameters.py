@@ -207,6 +207,12 @@ WRONG = [
     (put(surface__floor__restitution=1.5), "surface.floor.restitution: found 1.5, allowed is"),
     (put(surface__floor__normal=[0.0, 0.0, 2.0]), "surface.floor.normal: found [0.0, 0.0, 2.0] of norm 2"),
     (put(surface__floor__point=[0.0, 0.0]), "surface.floor.point: found shape (2,)"),
+    (put(surface__floor__box=[1.0, 1.0]), "surface.floor.box: found 2 numbers"),
+    (put(surface__floor__vertices=[0.0] * 9), "surface.floor.vertices: found 3 corners, allowed is three or"),
+    (
+        put(surface__floor__box=[1.0] * 3, surface__floor__orientation=[0.0, 0.0, 0.0, 2.0]),
+        "surface.floor.orientation: found",
+    ),
     (put(surfaces=["floor", "floor"]), "surfaces: found ['floor', 'floor'], allowed are names that differ"),
     (put(gravity=[0.0, 0.0, NAN]), "gravity: found"),
     (put(gravity=[0.0, -9.81]), "gravity: found shape (2,)"),
