@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.gauss_newton import gauss_newton
 from contact_dynamics.linearised_motion import rotation_derivatives
 from contact_dynamics.rigid_body import BodyState, MassProperties
 from contact_dynamics.rotations import matrices_of, rotation_vectors, turned
@@ -38,18 +39,8 @@ FEWEST_STATES: Final = 3
 MOST_STATES: Final = 2000
 """A window of seconds; longer ones are no short windows, and cost."""
 
-MOST_ROUNDS: Final = 20
-"""Of Gauss and Newton. Three are the rule; a start a radian off takes some more."""
-
-MOST_HALVINGS: Final = 10
-"""Of a step that does not make the residuals smaller."""
-
 SMALL_STEP: Final = 1e-9
-"""rad of attitude anywhere in the window: a round that changes less is the last."""
-
-SMALL_SHARE: Final = 1e-10
-"""Of the squares of the residuals: so is one that explains less of them. The state is then changed by some
-1e-5 of its standard deviation, and by far less in a round to come."""
+"""rad of attitude, m of position, anywhere in the window: a round that changes less is the last."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -186,54 +177,38 @@ def _fit_rotation(
 ) -> _Rotation:
     measured = np.array([state.q_WB for state in states])
     rates = np.array([state.w_WB_W for state in states])
-    span = -float(seconds[0])
     by_q = 1.0 if noise is None else 1.0 / noise.orientation
     by_w = 0.0 if noise is None or noise.angular_velocity is None else 1.0 / noise.angular_velocity
 
-    def misses(motion: FreeMotion) -> tuple[FloatArray, FloatArray]:
-        """Return rotation vectors from the motion to the measured, (n, 3), and weighted residuals, (m,)."""
+    def misses(motion: FreeMotion) -> FloatArray:
         then = motion.at(seconds)
-        theta = rotation_vectors(measured, then.q_WB)
-        weighted = (by_q * theta).ravel()
-        if by_w:
-            weighted = np.concatenate([weighted, (by_w * (rates - then.w_WB_W)).ravel()])
-        return theta, weighted
+        weighted = (by_q * rotation_vectors(measured, then.q_WB)).ravel()
+        return np.concatenate([weighted, (by_w * (rates - then.w_WB_W)).ravel()]) if by_w else weighted
 
-    motion = _motion_from(body, measured[-1], _averaged_rate(body, measured, seconds))
-    theta, weighted = misses(motion)
-    rounds, converged = 0, False
-    while rounds < MOST_ROUNDS and not converged:
-        rounds += 1
-        derivatives = rotation_derivatives(motion, seconds)
-        if not np.isfinite(derivatives).all():
+    def derivatives(motion: FreeMotion) -> FloatArray:
+        each = rotation_derivatives(motion, seconds)
+        if not np.isfinite(each).all():
             raise InvalidFieldError(
-                "fit window", f"{span:g} s", "a window over which the motion is predictable"
+                "fit window", f"{-seconds[0]:g} s", "a window over which the motion is predictable"
             )
-        design = by_q * derivatives[:, :3].reshape(-1, 6)
-        if by_w:
-            design = np.vstack([design, by_w * derivatives[:, 3:].reshape(-1, 6)])
-        design[:, 3:] /= span  # so that all columns are of angles
-        orthogonal, triangle = np.linalg.qr(design)
-        explained = orthogonal.T @ weighted
-        step = np.linalg.solve(triangle, explained)
-        step[3:] /= span
-        start, cost = motion.state, float(weighted @ weighted)
-        small = bool(np.abs(derivatives[:, :3] @ step).max() < SMALL_STEP)
-        converged = small or float(explained @ explained) < SMALL_SHARE * cost
-        for _ in range(MOST_HALVINGS):
-            q_WB = turned(start.q_WB[None], step[None, :3])[0]
-            motion = _motion_from(body, q_WB, start.w_WB_W + step[3:])
-            theta, weighted = misses(motion)
-            if converged or float(weighted @ weighted) <= cost:
-                break
-            step *= 0.5
-    inverse = np.linalg.inv(triangle)
-    inverse[3:] /= span
-    total = float(np.square(theta).sum())
-    variance = total / (3 * len(seconds) - 6) if noise is None else 1.0
-    return _Rotation(
-        motion, variance * inverse @ inverse.T, math.sqrt(total / len(seconds)), rounds, converged
+        design = by_q * each[:, :3].reshape(-1, 6)
+        return np.vstack([design, by_w * each[:, 3:].reshape(-1, 6)]) if by_w else design
+
+    def moved(motion: FreeMotion, step: FloatArray) -> FreeMotion:
+        q_WB = turned(motion.state.q_WB[None], step[None, :3])[0]
+        return _motion_from(body, q_WB, motion.state.w_WB_W + step[3:])
+
+    start = _motion_from(body, measured[-1], _averaged_rate(body, measured, seconds))
+    attitudes = 3 * len(seconds)
+    negligible = np.full(2 * attitudes if by_w else attitudes, math.inf)
+    negligible[:attitudes] = by_q * SMALL_STEP
+    fit = gauss_newton(
+        start, misses_of=misses, derivatives_of=derivatives, moved=moved, negligible=negligible
     )
+    total = float(np.square(fit.misses[:attitudes]).sum()) / by_q**2
+    variance = total / (attitudes - 6) if noise is None else 1.0
+    covariance = variance * fit.inverse @ fit.inverse.T
+    return _Rotation(fit.model, covariance, math.sqrt(total / len(seconds)), fit.rounds, fit.converged)
 
 
 def _motion_from(body: MassProperties, q_WB: FloatArray, w_WB_W: FloatArray) -> FreeMotion:

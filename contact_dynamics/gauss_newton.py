@@ -1,0 +1,79 @@
+"""Nonlinear least squares by Gauss's and Newton's method, with steps that are halved until they help.
+
+Not covered: bounds, outliers, starts so far off that linearisation says nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, Generic, TypeVar
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from contact_dynamics.validation import FloatArray
+
+Model = TypeVar("Model")
+
+MOST_ROUNDS: Final = 20
+"""Three are the rule; a start a radian off takes some more."""
+
+MOST_HALVINGS: Final = 10
+"""Of a step that does not make the residuals smaller."""
+
+SMALL_SHARE: Final = 1e-10
+"""Of the squares of the residuals: a round that explains less of them is the last. The parameters are then
+changed by some 1e-5 of their standard deviations, and by far less in a round to come."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Fit(Generic[Model]):
+    """The model that fits best."""
+
+    model: Model
+    misses: FloatArray  # (m,), weighted: measured less the model's
+    inverse: FloatArray  # (k, k): inverse @ inverse^T is the parameters' covariance for unit variances
+    rounds: int
+    converged: bool  # whether the last round changed next to nothing
+
+
+def gauss_newton(
+    model: Model,
+    *,
+    misses_of: Callable[[Model], FloatArray],
+    derivatives_of: Callable[[Model], FloatArray],
+    moved: Callable[[Model, FloatArray], Model],
+    negligible: FloatArray,
+) -> Fit[Model]:
+    """Return the model whose weighted residuals have the least sum of squares, from a start nearby.
+
+    Args:
+        model: the start.
+        misses_of: a model's weighted residuals, (m,), measured less computed.
+        derivatives_of: how what is computed changes with k parameters, (m, k), weighted alike; m >= k.
+        moved: a model changed by steps of the parameters, (k,).
+        negligible: (m,), changes of what is computed, weighted, that count as none.
+    """
+    misses = misses_of(model)
+    rounds, converged = 0, False
+    while rounds < MOST_ROUNDS and not converged:
+        rounds += 1
+        design = derivatives_of(model)
+        sizes = np.sqrt(np.einsum("mk,mk->k", design, design))
+        orthogonal, triangle = np.linalg.qr(design / sizes)
+        explained = orthogonal.T @ misses
+        step = np.linalg.solve(triangle, explained) / sizes
+        cost = float(misses @ misses)
+        small = bool((np.abs(design @ step) < negligible).all())
+        converged = small or float(explained @ explained) < SMALL_SHARE * cost
+        start = model
+        for _ in range(MOST_HALVINGS):
+            model = moved(start, step)
+            misses = misses_of(model)
+            if converged or float(misses @ misses) <= cost:
+                break
+            step *= 0.5
+    inverse = np.linalg.inv(triangle) / sizes[:, None]
+    return Fit(model, misses, inverse, rounds, converged)
