@@ -27,6 +27,7 @@ from contact_dynamics.contact_modes import (
     planar_contact_modes,
     planar_mode_margins,
     spatial_contact_modes,
+    spatial_mode_margins,
 )
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.first_contact import FirstContact, first_contact
@@ -98,4 +99,5 @@ __all__ = [
     "several_impact",
     "spatial_contact_modes",
     "spatial_impact",
+    "spatial_mode_margins",
 ]

@@ -22,6 +22,7 @@ from contact_dynamics.contact_modes.result import (
 )
 from contact_dynamics.contact_modes.spatial import spatial_kinematic_modes
 from contact_dynamics.contact_modes.spatial_dynamics import spatial_contact_modes
+from contact_dynamics.contact_modes.spatial_margins import SpatialModeMargin, spatial_mode_margins
 from contact_dynamics.contact_modes.spatial_result import SpatialMode, SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial_statics import spatial_statics
 from contact_dynamics.contact_modes.statics import BodyStatics, Certainty, planar_statics
@@ -39,6 +40,7 @@ __all__ = [
     "RefusedMode",
     "SpatialMode",
     "SpatialModeAnswer",
+    "SpatialModeMargin",
     "WrenchHalfSpace",
     "jamming_impact",
     "planar_contact_modes",
@@ -47,5 +49,6 @@ __all__ = [
     "planar_statics",
     "spatial_contact_modes",
     "spatial_kinematic_modes",
+    "spatial_mode_margins",
     "spatial_statics",
 ]

@@ -1,0 +1,200 @@
+"""How far an applied wrench in space is from leaving its contact modes, and into which ones it would.
+
+The applied wrenches of a mode are what its motions need less what its contact forces give: sums of generators
+in R^6, a polyhedron whose facets are the extreme rays of the dual cone. Centripetal terms add a seventh
+coordinate, at height one. The margin is the distance to the nearest facet in a stated metric, as for planes.
+
+Where contacts stick, pyramids inside the round cones make a margin at most the true one, short by the part
+1 - cos(pi / facets) of friction or less. Where those that stay slide already, it is exact.
+
+Does not cover: modes in which a contact at rest begins to slide. Which way depends on the wrench, so that
+their wrenches are no polyhedron: the margin is NaN.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.contact_modes.spatial_case import SpatialCase, search_of, spatial_case
+from contact_dynamics.contact_modes.spatial_cone import cone_of, null_space
+from contact_dynamics.contact_modes.spatial_dynamics import evidenced, spatial_contact_modes
+from contact_dynamics.contact_modes.spatial_statics import MOST_EDGES
+from contact_dynamics.errors import TooLargeError
+from contact_dynamics.tolerances import ROW_TOLERANCE, VELOCITY_TOLERANCE
+from contact_dynamics.validation import check_array, check_not_negative, check_positive
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.contact import ContactSet
+    from contact_dynamics.contact_modes.result import ModeVerdict
+    from contact_dynamics.contact_modes.spatial_result import SpatialModeAnswer
+    from contact_dynamics.contact_modes.spatial_search import Found, Search
+    from contact_dynamics.rigid_body import BodyState, MassProperties
+    from contact_dynamics.validation import FloatArray
+
+MARGIN_FACETS: Final = 16
+"""Edges of a friction pyramid in margins where nothing else is asked for: 2 % of friction are left out."""
+
+_BEYOND: Final = 1e-5
+"""Part of a margin (or of the wrench, where the margin is less) by which the boundary is passed to see what
+lies behind: far more than the tolerances that make the boundary, far less than the way to the next one."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SpatialModeMargin:
+    """How far an applied wrench in space is from leaving one of its modes, and where it would go."""
+
+    mode: str  # one letter a contact
+    margin: float  # N, length of the least change in |f|^2 + |torque / length|^2; infinite: none does; NaN
+    length: float  # m, of that metric
+    change_W: FloatArray  # (6,), N and N m, the least change itself, world axes; zero where there is none
+    verdict_beyond: ModeVerdict  # just behind the boundary; the present one where there is none
+    modes_beyond: tuple[str, ...]  # the letters of the consistent modes there, each once
+
+
+def spatial_mode_margins(
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    *,
+    force_W: ArrayLike,
+    torque_W: ArrayLike = (0.0, 0.0, 0.0),
+    friction_facets: int = MARGIN_FACETS,
+    margin_length: float | None = None,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+) -> tuple[SpatialModeMargin, ...]:
+    """Return the margin of a wrench in each of its consistent modes, in the order of their answer.
+
+    Empty where a contact approaches.
+
+    Args:
+        body: As for `spatial_contact_modes`.
+        state: As for `spatial_contact_modes`.
+        contacts: As for `spatial_contact_modes`.
+        force_W: As for `spatial_contact_modes`.
+        torque_W: As for `spatial_contact_modes`.
+        friction_facets: Edges of a friction pyramid, >= 3. The more, the nearer is a margin of sticking.
+        margin_length: m, > 0, makes a torque comparable with a force; None: the radius of gyration, root mean
+            square over the axes.
+        velocity_tolerance: As for `spatial_contact_modes`.
+
+    Raises:
+        InvalidFieldError: as for `spatial_contact_modes`, or the length is not > 0.
+        TooLargeError: as for `spatial_contact_modes`, or more than `MOST_EDGES` edges of all pyramids.
+    """
+    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
+    wrench = np.concatenate([check_array("force", force_W, (3,)), check_array("torque", torque_W, (3,))])
+    gyration = math.sqrt(float(np.trace(body.I_B)) / (3.0 * body.mass))
+    length = gyration if margin_length is None else check_positive("margin_length", margin_length)
+    case = spatial_case(body, state, contacts, wrench, tolerance)
+    if not isinstance(case, SpatialCase):
+        return ()
+
+    def ask(changed: FloatArray) -> SpatialModeAnswer:
+        return spatial_contact_modes(
+            body,
+            state,
+            contacts,
+            force_W=changed[:3],
+            torque_W=changed[3:],
+            friction_facets=friction_facets,
+            velocity_tolerance=tolerance,
+        )
+
+    search = search_of(case, friction_facets)
+    edges = sum(len(pyramid.edges) for pyramid in search.pyramids)
+    if edges > MOST_EDGES:
+        raise TooLargeError("contacts", f"{edges} edges of friction pyramids", f"at most {MOST_EDGES}")
+    metric = np.array([1.0, 1.0, 1.0, length, length, length])
+    present = ask(wrench)
+    margins = []
+    for mode, found in evidenced(case, search, sharpen=True):
+        margin, way = _nearest(case, search, found, metric)
+        there = present
+        if math.isfinite(margin):
+            size = float(np.linalg.norm(wrench / metric))
+            # A pyramid that turns as the wrench changes may hold a little longer: the round cone's part.
+            rest = (1.0 / math.cos(math.pi / friction_facets) - 1.0) * size
+            for further in (0.0, rest):
+                step = margin + further + _BEYOND * max(margin, size)
+                there = ask(wrench + step * way * metric)
+                if mode.mode not in [one.mode for one in there.modes]:
+                    break
+        margins.append(
+            SpatialModeMargin(
+                mode=mode.mode,
+                margin=margin,
+                length=length,
+                change_W=margin * way * metric if math.isfinite(margin) else np.zeros(6),
+                verdict_beyond=there.verdict,
+                modes_beyond=tuple(dict.fromkeys(one.mode for one in there.modes)),
+            )
+        )
+    return tuple(margins)
+
+
+def _nearest(
+    case: SpatialCase, search: Search, found: Found, metric: FloatArray
+) -> tuple[float, FloatArray]:
+    """Return the distance, N, from the mode's nearest boundary and the way there, (6,), in the metric."""
+    if any(letters.item >= 0 for letters in found.letters):
+        return math.nan, np.zeros(6)
+    motion = case.motion
+    unit = motion.mass * motion.scale  # N; wrenches are divided by it, and torques by the length
+    generators = _generators(case, search, found, metric)
+    target = np.append(motion.wrench / metric / unit, 1.0)
+    if not np.any(generators[:, :6]):
+        generators = generators[:0]
+    sizes = np.linalg.norm(generators, axis=1)
+    rows = generators[sizes > ROW_TOLERANCE] / sizes[sizes > ROW_TOLERANCE, None]
+    if len(rows) == 0:
+        return 0.0, np.eye(6)[0]
+    dual = cone_of(rows)  # its rays and lines say what all wrenches of the mode satisfy
+    for line in dual.lines:
+        across = float(np.linalg.norm(line[:6]))
+        if across > ROW_TOLERANCE:
+            return 0.0, line[:6] / across
+    margin, way = math.inf, np.zeros(6)
+    for ray in dual.rays:
+        across = float(np.linalg.norm(ray[:6]))
+        if across > ROW_TOLERANCE:
+            depth = max(0.0, float(ray @ target)) / across
+            if depth < margin:
+                margin, way = depth, -ray[:6] / across
+    return margin * unit, way
+
+
+def _generators(case: SpatialCase, search: Search, found: Found, metric: FloatArray) -> FloatArray:
+    """Return what the mode's wrenches are positive sums of, (k, 7); the last is the height, one in all."""
+    motion = case.motion
+    zero, positive = [np.zeros((0, 7))], [np.zeros((0, 7))]
+    for contact, letters in zip(search.touching, found.letters, strict=True):
+        rows = contact.point if letters.letter == "f" else (contact.normal @ contact.point)[None, :]
+        (positive if letters.letter == "s" else zero).append(rows)
+    height = np.eye(1, 7, 6)
+    free = null_space(_unit(np.vstack(zero)))  # (7, k)
+    within = _unit(np.vstack([*positive, height]) @ free)
+    inside = cone_of(within)
+    motions = np.vstack([inside.rays, inside.lines, -inside.lines]) @ free.T
+    inertia = np.zeros((6, 6))
+    inertia[:3, :3] = np.eye(3) * motion.mass
+    inertia[3:, 3:] = motion.inertia
+    needs = motions[:, :6] / motion.lengths @ inertia / metric / motion.mass
+    given = [np.zeros((0, 6))]
+    for i, edges in zip(case.touching.tolist(), search.acting(found), strict=True):
+        given.append(-(edges @ motion.points[3 * i : 3 * i + 3]) / metric)
+    forces = np.vstack(given)
+    return np.vstack(
+        [np.column_stack([needs, motions[:, 6]]), np.column_stack([forces, np.zeros(len(forces))])]
+    )
+
+
+def _unit(rows: FloatArray) -> FloatArray:
+    sizes = np.linalg.norm(rows, axis=1)
+    found: FloatArray = rows[sizes > ROW_TOLERANCE] / sizes[sizes > ROW_TOLERANCE, None]
+    return found
