@@ -67,7 +67,9 @@ def test_mass_and_wrench_together_only_scale_forces(case: FloatCase, factor: flo
         if one.motion_unique:
             assert other.acceleration == pytest.approx(one.acceleration, rel=1e-6, abs=1e-6)
         if one.forces_unique:
+            # Forces that are zero are what rounding leaves of the wrench.
             size = max(max(abs(f_t), f_n) for f_t, f_n in one.contact_forces)
+            size = max(size, *map(abs, wrench.f), abs(wrench.moment) / body.radius_of_gyration)
             for (f_t, f_n), (g_t, g_n) in zip(one.contact_forces, other.contact_forces, strict=True):
                 assert g_t == pytest.approx(factor * f_t, rel=1e-6, abs=1e-6 * factor * size)
                 assert g_n == pytest.approx(factor * f_n, rel=1e-6, abs=1e-6 * factor * size)
@@ -97,6 +99,22 @@ def test_a_contact_that_leaves_adds_an_s(case: FloatCase) -> None:
     answer, wider = ask(case), ask((body, moving, [*contacts, leaving], wrench))
     for found, expected in zip(strings(wider), strings(answer), strict=True):
         assert found == {mode + "s" for mode in expected}
+
+
+@given(cases, st.floats(1.0, 1e3), st.floats(-0.9, 0.9))
+@settings(max_examples=60, deadline=None)
+def test_a_far_contact_that_others_make_redundant_adds_only_its_letter(
+    case: FloatCase, reach: float, place: float
+) -> None:
+    """Between two feet of one face the ground holds nothing that the two do not."""
+    body, _, contacts, wrench = case
+    resting = PlanarVelocity(v=(0.0, 0.0), w=0.0)
+    feet = [PlanarContact(r=(x * reach, -3.0), normal=(0.0, 1.0), friction=0.5) for x in (-1.0, 1.0, place)]
+    answer = ask((body, resting, [*contacts, *feet[:2]], wrench))
+    wider = ask((body, resting, [*contacts, *feet], wrench))
+    for found, expected in zip(strings(wider), strings(answer), strict=True):
+        assert {mode[:-1] for mode in found} == expected
+        assert len(found) == len(expected)
 
 
 @given(cases)

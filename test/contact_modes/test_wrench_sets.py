@@ -8,6 +8,7 @@ import random
 import pytest
 
 from contact_dynamics.contact_modes import (
+    ModeMargin,
     ModeVerdict,
     ModeWrenchSet,
     planar_contact_modes,
@@ -116,6 +117,26 @@ def test_the_margin_is_the_least_change_that_leaves_the_mode(seed: int) -> None:
             )
             if margin.margin > CLEAR:
                 assert margin.mode in consistent(body, velocity, contacts, pushed)
+
+
+@pytest.mark.parametrize("seed", range(300, 380))
+def test_just_inside_the_margin_the_mode_holds_and_just_outside_are_those_told(seed: int) -> None:
+    body, velocity, contacts, wrench = rounded(draw(seed, most_contacts=4))
+    length = body.radius_of_gyration * random.Random(seed).choice([0.1, 1.0, 10.0])
+    size = math.hypot(*wrench.f, wrench.moment / length)
+
+    def asked_again(margin: ModeMargin, step: float) -> tuple[str, ...]:
+        part, change = step / margin.margin, margin.change
+        f = (wrench.f[0] + part * change.f[0], wrench.f[1] + part * change.f[1])
+        there = PlanarWrench(f=f, moment=wrench.moment + part * change.moment)
+        return tuple(mode.mode for mode in planar_contact_modes(body, velocity, contacts, there).modes)
+
+    for margin in planar_mode_margins(body, velocity, contacts, wrench, margin_length=length):
+        if math.isinf(margin.margin) or margin.margin <= 1e-5 * size:
+            continue
+        largest = max(size, margin.margin)
+        assert margin.mode in asked_again(margin, margin.margin - 1e-7 * largest)
+        assert margin.modes_beyond == asked_again(margin, margin.margin + 1e-5 * largest)
 
 
 def test_a_wrench_in_a_tray_has_modes_like_rsrs() -> None:
