@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from contact_dynamics.contact_modes import ContactModeAnswer, planar_contact_modes
 from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_modes.evidence import check_evidence
 from oracles.contact_mode_cases import FloatCase, draw, rounded
 
 SWAPPED = str.maketrans("lr", "rl")
@@ -99,6 +100,37 @@ def test_a_contact_that_leaves_adds_an_s(case: FloatCase) -> None:
     answer, wider = ask(case), ask((body, moving, [*contacts, leaving], wrench))
     for found, expected in zip(strings(wider), strings(answer), strict=True):
         assert found == {mode + "s" for mode in expected}
+
+
+@given(cases, st.integers(10, 20))
+@settings(max_examples=60, deadline=None)
+def test_many_copies_of_all_contacts_repeat_the_letters(case: FloatCase, copies: int) -> None:
+    """So that the cones have many rows, most of which change nothing."""
+    body, velocity, contacts, wrench = case
+    many = ask((body, velocity, contacts * copies, wrench))
+    answer = ask(case)
+    for found, expected in zip(strings(many), strings(answer), strict=True):
+        assert found == {mode * copies for mode in expected}
+    for one, other in zip(answer.modes, many.modes, strict=True):
+        assert one.motion_unique == other.motion_unique
+    check_evidence(many, body, velocity, contacts * copies, wrench)
+
+
+@given(cases, st.floats(0.1, 10.0), st.integers(20, 60))
+@settings(max_examples=60, deadline=None)
+def test_many_feet_between_two_add_only_letters(case: FloatCase, width: float, count: int) -> None:
+    body, _, contacts, wrench = case
+    resting = PlanarVelocity(v=(0.0, 0.0), w=0.0)
+    feet = [
+        PlanarContact(r=(width * (2.0 * i / count - 1.0), -3.0), normal=(0.0, 1.0), friction=0.5)
+        for i in range(count + 1)
+    ]
+    answer = ask((body, resting, [feet[0], feet[-1], *contacts], wrench))
+    wider = ask((body, resting, [*feet, *contacts], wrench))
+    for found, expected in zip(strings(wider), strings(answer), strict=True):
+        assert {mode[0] + mode[count:] for mode in found} == expected
+        assert len(found) == len(expected)
+    check_evidence(wider, body, resting, [*feet, *contacts], wrench)
 
 
 @given(cases, st.floats(1.0, 1e3), st.floats(-0.9, 0.9))
