@@ -1,9 +1,9 @@
 """Counts of contacting and separating modes: published ones, and those of polytopes that are known.
 
 Huang, Cheng and Mason, Efficient Contact Mode Enumeration in 3D (WAFR 2020), count the modes of a box with
-walls (its four corners on each), of a peg in a hole and of a box upon a box. The sets here are theirs, as their
-published program draws them. Of the counts in their table 184 is known to us, for the box upon a box at two
-walls (16 contacts, 9 dimensions); the others follow from the face counts of polytopes.
+walls (its four corners on each), of a peg in a hole and of a box upon a box. The sets here are theirs, as
+their published program draws them. Of the counts in their table 184 is known to us, for the box upon a box at
+two walls (16 contacts, 9 dimensions); the others follow from the face counts of polytopes.
 """
 
 from __future__ import annotations
@@ -45,10 +45,10 @@ def box_at(walls: int) -> ContactSet:
 
 @pytest.mark.parametrize(("walls", "count"), [(1, 10), (2, 46), (3, 136), (4, 10), (5, 2), (6, 1)])
 def test_a_box_at_walls(walls: int, count: int) -> None:
-    # One wall: the cone over a square, 1 + 4 + 4 + 1 faces. Two and three: 46 is a quarter of the published 184
-    # (below), 136 is what a linear program for each of the 2^12 strings finds. Between opposite walls the box
-    # keeps three coordinates, and two conditions each from the floor and the third wall: a square again. Four
-    # walls around it let it rise, or not; six hold it.
+    # One wall: the cone over a square, 1 + 4 + 4 + 1 faces. Two and three: 46 is a quarter of the published
+    # 184 (below), 136 is what a linear program for each of the 2^12 strings finds. Between opposite walls the
+    # box keeps three coordinates, and two conditions each from the floor and the third wall: a square again.
+    # Four walls around it let it rise, or not; six hold it.
     modes = spatial_kinematic_modes(AT_REST, box_at(walls))
     assert len(modes) == count
     assert "c" * (4 * walls) in modes
