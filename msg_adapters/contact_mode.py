@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         ModeWrenchSet,
         SpatialMode,
         SpatialModeAnswer,
+        SpatialModeMargin,
     )
     from contact_dynamics.planar import PlanarWrench, Vector2
     from contact_dynamics.plane_of_motion import PlanarProblem, PlaneOfMotion
@@ -110,6 +111,16 @@ def write_statics(response: Any, statics: BodyStatics) -> None:
     response.jammed = int(statics.jammed)
     response.wedged = response.POSSIBLE if statics.wedged else response.NO
     response.stable_disturbance = statics.stable_disturbance
+
+
+def write_spatial_margins(response: Any, margins: Sequence[SpatialModeMargin]) -> None:
+    """Write the margins of the consistent modes into a response that holds those modes, in the same order."""
+    for msg, margin in zip(response.modes, margins, strict=True):
+        msg.margin = margin.margin
+        msg.margin_length = margin.length
+        msg.margin_wrench = margin.change_W
+        msg.margin_verdict = int(margin.verdict_beyond)
+        msg.margin_modes = list(margin.modes_beyond)
 
 
 def wrench_set_to_msg(wrenches: ModeWrenchSet, plane: PlaneOfMotion) -> ModeWrenches:

@@ -12,6 +12,7 @@ from contact_dynamics.contact_modes import (
     planar_statics,
     spatial_contact_modes,
     spatial_kinematic_modes,
+    spatial_mode_margins,
     spatial_statics,
 )
 from contact_dynamics.contact_modes.spatial_dynamics import FRICTION_FACETS
@@ -33,6 +34,7 @@ from msg_adapters.contact_mode import (
     write_planar_answer,
     write_planar_margins,
     write_spatial_answer,
+    write_spatial_margins,
     write_statics,
 )
 from msg_adapters.contacts import contacts_to_msg
@@ -151,10 +153,9 @@ def _answer_in_plane(
 
 
 def _answer_in_space(request: Any, response: Any, question: Question) -> None:
-    for field in ("want_margins", "want_wrenches"):
-        if getattr(request, field):
-            why = f" ({response.out_of_plane_reason})" if response.out_of_plane_reason else ""
-            raise NotSupportedError(f"{field}: found true in space, allowed in a plane of motion only{why}")
+    if request.want_wrenches:
+        why = f" ({response.out_of_plane_reason})" if response.out_of_plane_reason else ""
+        raise NotSupportedError(f"want_wrenches: found true in space, allowed in a plane of motion only{why}")
     subject, contacts = question.subject, question.contacts
     answer = spatial_contact_modes(
         subject.body.mass_properties,
@@ -175,6 +176,18 @@ def _answer_in_space(request: Any, response: Any, question: Question) -> None:
             subject.state, contacts, velocity_tolerance=question.velocity_tolerance
         ),
     )
+    if request.want_margins:
+        margins = spatial_mode_margins(
+            subject.body.mass_properties,
+            subject.state,
+            contacts,
+            force_W=question.force_W,
+            torque_W=question.torque_W,
+            friction_facets=question.friction_facets,  # those of the answer, so that the modes are the same
+            margin_length=_margin_length(request),
+            velocity_tolerance=question.velocity_tolerance,
+        )
+        write_spatial_margins(response, margins)
     if request.want_statics:
         statics = spatial_statics(
             subject.body.mass_properties,

@@ -255,3 +255,28 @@ def test_statics_of_a_brick_that_is_pushed_askew(client: Client) -> None:
             assert answer.stable_disturbance > 0.0
         else:
             assert math.isnan(answer.stable_disturbance)
+
+
+def test_margins_of_a_brick_in_space(client: Client) -> None:
+    """At rest on four feet: the way to the side of the friction cone, or of its pyramid; then it slides."""
+    request = brick_on_floor()
+    request.problem, request.want_margins, request.margin_length = request.SPATIAL, True, 1e-4
+    request.friction_facets = 16
+    (mode,) = client.ask(request).modes
+    slope = MU * math.cos(math.pi / 16.0)
+    low, high = (MASS * G * mu / math.hypot(1.0, mu) for mu in (slope, MU))
+    assert low * (1.0 - 1e-3) <= mode.margin <= high * (1.0 + 1e-9)  # torques cost nearly all
+    assert mode.margin_length == 1e-4
+    assert np.linalg.norm(mode.margin_wrench[:3]) == pytest.approx(mode.margin, rel=1e-3)
+    assert list(mode.margin_modes) == ["cccc"]
+
+
+def test_a_mode_that_begins_to_slide_in_space_has_no_margin(client: Client) -> None:
+    request = brick_on_floor()
+    request.want_margins = True
+    request.applied_wrench.force.x = request.applied_wrench.force.y = 1.0
+    answer = client.ask(request)
+    assert (answer.status, answer.problem) == (answer.OK, request.SPATIAL)
+    (mode,) = answer.modes
+    assert mode.mode == "cccc"
+    assert math.isnan(mode.margin)
