@@ -43,6 +43,9 @@ REST_FRAMES: Final = 2
 REST_DEVIATIONS: Final = 3.0
 """Slow is what cannot be told from rest: within so many deviations of the velocities' noise."""
 
+CURVE_POINTS: Final = 120
+"""Of polhode and herpolhode, for the picture."""
+
 _START_S: Final = 30.0
 _POLL_S: Final = 0.1
 _NOW: Final = Time()  # zero asks about the newest state
@@ -161,8 +164,11 @@ class Questioner(Node):
             body_name=self._toss.body.name, rate=self._toss.rate, fit_window=self._flight_seen()
         )
         request.sampling = request.UNTIL_CONTACT
+        request.curve_points = CURVE_POINTS
         asked = self._ask(request)
         landing = self.seconds_of(asked.response.state.header.stamp) + float(asked.response.event_time)
+        if landing - self._now <= LAST_MOMENT:  # it touches, or soon will: no flight to fit is left
+            self._flying_since = self._now
         if not landing - self._now > LAST_MOMENT:  # NaN, where it does not land; or too late to ask on
             return None
         self.flights.append(asked)
