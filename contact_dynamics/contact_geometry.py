@@ -2,9 +2,10 @@
 
 A face or an edge that lies flush gives its extreme points, which carry every force that the whole face or
 edge can: the corners of a face, the two ends of a cylinder's or a capsule's line. A ball touches in one
-point. A rim touches in its lowest point, and one that lies flush as a whole in `RIM_POINTS` points evenly
-spaced, the first towards the body's x axis (for a rim about x: its y axis): their wrenches are a cone
-inscribed in that of the whole rim, with at least 92 % of its tipping moments (the cosine of 22.5 degrees).
+point. A rim touches in its lowest point, and one that lies flush as a whole in eight points
+(`flat_contact.RIM_POINTS`) evenly spaced, the first towards the body's x axis (for a rim about x: its y
+axis): their wrenches are a cone inscribed in that of the whole rim, with at least 92 % of its tipping moments
+(the cosine of 22.5 degrees).
 
 Where a body is round its curvature comes with the contact (`contact_curvature`): that of the ball that rolls
 over the shape, and along a rim of radius R whose plane is tilted by theta, sin(theta) / R.
@@ -14,30 +15,25 @@ Flats are treated here; obstacles, which have edges and corners, in `obstacle_co
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from contact_dynamics.contact import ContactSet
 from contact_dynamics.contact_curvature import Curvatures
-from contact_dynamics.obstacle_contact import Touch, touches_of
-from contact_dynamics.rim_descent import radii_of
+from contact_dynamics.flat_contact import flat_touches
+from contact_dynamics.obstacle_contact import touches_of
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
 from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
+    from contact_dynamics.flat_contact import Side, Touch
     from contact_dynamics.obstacle import Obstacle
-    from contact_dynamics.obstacle_contact import Side
     from contact_dynamics.rigid_body import BodyState
-    from contact_dynamics.rim_descent import Radii
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body
-
-RIM_POINTS: Final = 8
-"""Contacts of a rim that lies flush."""
 
 
 def find_contacts(
@@ -54,21 +50,21 @@ def find_contacts(
     The set may be empty.
 
     Raises:
-        NotSupportedError: an obstacle, and a body with rims or rounded corners (`obstacle_contact`).
+        NotSupportedError: a round side of the body at an edge of an obstacle (`obstacle_contact`).
     """
     shape, R_WB = body.shape, state.R_WB
     points = state.p_WB_W + shape.vertices @ R_WB.T
     flats = [surface for surface in surfaces if isinstance(surface, Surface)]
     if shape.is_polyhedron and len(flats) == len(surfaces):
         return _corners(points, flats, distance_tolerance)
-    rims = [_turned(radii_of(rim), state.p_WB_W, R_WB) for rim in shape.rims]
     touches: list[Touch] = []
     owners: list[Surface | Obstacle] = []
     for surface in surfaces:
         if isinstance(surface, Surface):
-            touches += _of_corners(points, surface, shape.rounding, distance_tolerance)
-            for rim in rims:
-                touches += _of_rim(rim, surface, shape.rounding, distance_tolerance)
+            level = float(surface.p_WS_W @ surface.normal_W)
+            touches += flat_touches(
+                shape, state.p_WB_W, R_WB, surface.normal_W, level=level, tolerance=distance_tolerance
+            )
         elif not shape.is_empty:
             touches += touches_of(shape, state.p_WB_W, R_WB, surface, distance_tolerance)
         owners += [surface] * (len(touches) - len(owners))
@@ -91,13 +87,6 @@ def _sides(sides: list[Side]) -> Curvatures:
     )
 
 
-def _of_corners(points: FloatArray, surface: Surface, rounding: float, tolerance: float) -> Iterator[Touch]:
-    n_W, tangent = surface.normal_W, _any_tangent(surface.normal_W)
-    corner = 1.0 / rounding if rounding > 0.0 else math.inf
-    for i in np.flatnonzero(surface.gaps(points) - rounding <= tolerance):
-        yield Touch(points[i] - rounding * n_W, n_W, (corner, corner, tangent), (0.0, 0.0, tangent))
-
-
 def _corners(points: FloatArray, surfaces: Sequence[Surface], distance_tolerance: float) -> ContactSet:
     touching = [np.flatnonzero(surface.gaps(points) <= distance_tolerance) for surface in surfaces]
     counts = [len(indices) for indices in touching]
@@ -108,49 +97,3 @@ def _corners(points: FloatArray, surfaces: Sequence[Surface], distance_tolerance
         restitutions=np.repeat(np.array([s.restitution for s in surfaces]), counts),
         surfaces=tuple(s.name for s, count in zip(surfaces, counts, strict=True) for _ in range(count)),
     )
-
-
-class _RimW(NamedTuple):
-    """A rim in the world."""
-
-    center: FloatArray  # (3,), m
-    first: FloatArray  # (3,), m, a radius
-    second: FloatArray  # (3,), m, one across
-    radius: float  # m
-
-
-def _turned(radii: Radii, p_WB_W: FloatArray, R_WB: FloatArray) -> _RimW:
-    first, second = R_WB @ radii.first, R_WB @ radii.second
-    return _RimW(p_WB_W + R_WB @ radii.center, first, second, math.sqrt(first @ first))
-
-
-def _of_rim(rim: _RimW, surface: Surface, rounding: float, tolerance: float) -> Iterator[Touch]:
-    n_W = surface.normal_W
-    height = float(surface.gaps(rim.center)) - rounding
-    a_1, a_2 = float(n_W @ rim.first), float(n_W @ rim.second)
-    size = math.hypot(a_1, a_2)  # m, R sin(theta)
-    if height - size > tolerance:
-        return
-    flush = height + size <= tolerance
-    corner = 1.0 / rounding if rounding > 0.0 else math.inf
-    tangent = _any_tangent(n_W)
-    flat = (0.0, 0.0, tangent)
-    if flush:
-        turns = [2.0 * math.pi * i / RIM_POINTS for i in range(RIM_POINTS)]
-        directions = [(math.cos(turn), math.sin(turn)) for turn in turns]
-    else:
-        directions = [(-a_1 / size, -a_2 / size)]
-    for cosine, sine in directions:
-        p_WC_W = rim.center + cosine * rim.first + sine * rim.second - rounding * n_W
-        if flush:
-            yield Touch(p_WC_W, n_W, (corner, corner, tangent), flat)
-        else:
-            around = (cosine * rim.second - sine * rim.first) / rim.radius  # level: along the rim
-            radius = rim.radius * rim.radius / size + rounding
-            yield Touch(p_WC_W, n_W, (1.0 / radius, corner, around), flat)
-
-
-def _any_tangent(n_W: FloatArray) -> FloatArray:
-    least = np.eye(3)[int(np.abs(n_W).argmin())]
-    tangent: FloatArray = least - (least @ n_W) * n_W
-    return tangent / math.sqrt(tangent @ tangent)

@@ -73,7 +73,7 @@ def first_contact(
         InvalidFieldError: an array of another shape, a number that is not finite, a normal that is not unit,
             or horizon < 0; an integrated motion that does not get as far as the search has to go.
     """
-    search = _Search(
+    search = Descent(
         motion,
         shape_B if isinstance(shape_B, ConvexShape) else ConvexShape(vertices=np.asarray(shape_B)),
         check_array("plane_point", p_WS_W, (3,)),
@@ -83,7 +83,7 @@ def first_contact(
     return None if search.shape.is_empty else search.run(until)
 
 
-class _At(NamedTuple):
+class Above(NamedTuple):
     """A shape above a plane at one time."""
 
     heights: FloatArray  # (k + m,), m, of corners, then of the lowest points of rims
@@ -93,7 +93,7 @@ class _At(NamedTuple):
     centre_rate: float  # m/s
 
 
-class _Search:
+class Descent:
     """Heights of all parts of a shape above one plane, and the way down through time."""
 
     def __init__(self, motion: Motion, shape: ConvexShape, p_WS_W: FloatArray, normal_W: FloatArray) -> None:
@@ -107,6 +107,7 @@ class _Search:
         self.reach = max([float(self.arms.max(initial=0.0)), *(rim.reach for rim in self.rims)])  # m
 
     def run(self, horizon: float) -> FirstContact | None:
+        """Return the first contact within a horizon, s, or None."""
         now, before = 0.0, None
         while True:
             at = self.at(now)
@@ -124,7 +125,7 @@ class _Search:
             before = now, at.heights
             now = min(now + self.free_for(at, bound), bound.until, horizon)
 
-    def free_for(self, at: _At, bound: Bound) -> float:
+    def free_for(self, at: Above, bound: Bound) -> float:
         """Return for how long, s, no part can arrive while a bound holds."""
         corners = len(self.arms)
         pulls = bound.fall + self.arms * bound.turning
@@ -136,7 +137,7 @@ class _Search:
             step = max(step, float(free_for(*alone)[0]))
         return step
 
-    def at(self, seconds: float) -> _At:
+    def at(self, seconds: float) -> Above:
         """Return how the shape is above the plane at one time."""
         sample = self.motion.sample(seconds)
         a, b, c = self.normal_W
@@ -151,7 +152,7 @@ class _Search:
         heights = self.shape.vertices @ normal_B + centre
         rates = self.shape.vertices @ turning_B + centre_rate
         if not self.rims:
-            return _At(heights, rates, [], centre, centre_rate)
+            return Above(heights, rates, [], centre, centre_rate)
         rims = [
             RimAbove(
                 centre + _dot(normal_B, rim.center),
@@ -162,7 +163,7 @@ class _Search:
             for rim in self.rims
         ]
         lowest = np.array([rim.lowest()[:2] for rim in rims])
-        return _At(
+        return Above(
             np.append(heights, lowest[:, 0]), np.append(rates, lowest[:, 1]), rims, centre, centre_rate
         )
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.rim_descent import radii_of
+
 if TYPE_CHECKING:
     from contact_dynamics.convex_shape import ConvexShape
     from contact_dynamics.validation import FloatArray
@@ -16,6 +18,8 @@ _FLAT: Final = 1e-9
 
 _SAME: Final = 1e-9
 """1 - cos of the angle, 4e-5 rad, within which normals, or directions of edges, are one."""
+
+_RIM_CORNERS: Final = 32
 
 _KEPT: Final = 64
 """Shapes whose features are remembered."""
@@ -32,8 +36,16 @@ class Features(NamedTuple):
 
 @lru_cache(maxsize=_KEPT)
 def features_of(shape: ConvexShape) -> Features:
-    """Return the features of the hull of a shape's corners, in its axes."""
-    return hull_features(shape.vertices)
+    """Return the features of the hull of a shape's corners and of points of its rims, in its axes.
+
+    Rims have `_RIM_CORNERS` corners there: their directions are some of those that a round side has.
+    """
+    rims = [radii_of(rim) for rim in shape.rims]
+    turns = np.linspace(0.0, 2.0 * np.pi, _RIM_CORNERS, endpoint=False)
+    circle = np.column_stack([np.ones(_RIM_CORNERS), np.cos(turns), np.sin(turns)])
+    return hull_features(
+        np.concatenate([shape.vertices, *(circle @ [rim.center, rim.first, rim.second] for rim in rims)])
+    )
 
 
 def hull_features(points: FloatArray) -> Features:

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.contact_geometry import RIM_POINTS, find_contacts
+from contact_dynamics.contact_geometry import find_contacts
 from contact_dynamics.convex_shape import (
     MOST_RIMS,
     ConvexShape,
@@ -25,6 +25,7 @@ from contact_dynamics.convex_shape import (
     sphere,
 )
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.flat_contact import RIM_POINTS
 from contact_dynamics.landing import next_landing
 from contact_dynamics.rigid_body import BodyState, MassProperties
 from contact_dynamics.world import Body, Surface, World

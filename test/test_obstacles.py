@@ -295,12 +295,53 @@ def test_a_landing_on_a_table_s_edge_and_past_it_on_the_floor() -> None:
     assert past.seconds == pytest.approx(math.sqrt(2.0 * 1.45 / 10.0), abs=1e-12)
 
 
-@pytest.mark.parametrize("shape", [cylinder(radius=0.1, length=0.2), capsule(radius=0.1, length=0.2)])
-def test_rims_and_rounded_bodies_are_refused_beside_obstacles(shape: ConvexShape) -> None:
-    with pytest.raises(NotSupportedError, match="shape: found"):
-        find_contacts(body(shape), at((0.0, 0.0, 1.0)), [TABLE])
-    with pytest.raises(NotSupportedError, match="shape: found"):
-        drop(at((0.0, 0.0, 1.0)), shape)
+CAN = cylinder(radius=0.1, length=0.4)
+PILL = capsule(radius=0.1, length=0.4)
+ON_SIDE = Rotation.from_euler("y", 90.0, degrees=True)
+
+
+def test_a_can_that_stands_on_a_table_and_reaches_over_its_edge() -> None:
+    inside = find_contacts(body(CAN), at((0.0, 0.0, 0.2)), [TABLE])
+    assert kinds(inside) == ["corner on face"] * 8
+    over = find_contacts(body(CAN), at((1.0, 0.0, 0.2)), [TABLE])
+    assert sorted(kinds(over)) == ["corner on face"] * 5  # two of the eight are on the edge
+    further = find_contacts(body(CAN), at((0.97, 0.0, 0.2)), [TABLE])
+    assert sorted(kinds(further)) == ["corner on face"] * 5 + ["edge on edge"] * 2
+    assert further.p_WC_W[:, 0].max() == pytest.approx(1.0)
+    assert len(find_contacts(body(CAN), at((1.11, 0.0, 0.2)), [TABLE])) == 0
+
+
+@pytest.mark.parametrize("shape", [CAN, PILL])
+def test_a_can_and_a_pill_on_their_sides_reach_over_the_edge_with_their_line(shape: ConvexShape) -> None:
+    lying = find_contacts(body(shape), at((0.5, 0.0, 0.1), ON_SIDE), [TABLE])
+    np.testing.assert_allclose(np.sort(lying.p_WC_W[:, 0]), [0.3, 0.7], atol=1e-12)
+    over = find_contacts(body(shape), at((0.9, 0.0, 0.1), ON_SIDE), [TABLE])
+    np.testing.assert_allclose(np.sort(over.p_WC_W[:, 0]), [0.7, 1.0], atol=1e-12)
+    at_edge = int(over.p_WC_W[:, 0].argmax())
+    assert sides(over.surface_curvatures)[at_edge] == (0.0, INF)
+    along, across = sides(over.body_curvatures)[at_edge]
+    assert (along, across) == (0.0, pytest.approx(10.0))
+    assert over.body_curvatures is not None
+    assert abs(over.body_curvatures.directions_W[at_edge, 0]) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("shape", [CAN, PILL])
+def test_when_they_land_on_it(shape: ConvexShape) -> None:
+    fall = math.sqrt(2.0 * 0.45 / 10.0)
+    assert drop(at((0.0, 0.0, 0.55), ON_SIDE), shape) == pytest.approx(fall, abs=1e-9)
+    assert drop(at((1.1, 0.0, 0.55), ON_SIDE), shape) == pytest.approx(fall, abs=1e-9)
+    assert drop(at((1.5, 0.0, 0.55), ON_SIDE), shape) is None
+
+
+@pytest.mark.parametrize("shape", [CAN, PILL])
+def test_round_sides_at_an_edge_are_refused(shape: ConvexShape) -> None:
+    along = Rotation.from_euler("x", 90.0, degrees=True)
+    hanging = at((1.06, 0.0, 0.08), along)
+    with pytest.raises(NotSupportedError, match="shape: found a round side at an edge of obstacle 'it'"):
+        find_contacts(body(shape), hanging, [TABLE])
+    with pytest.raises(NotSupportedError, match="shape: found a round side"):
+        drop(at((1.06, 0.0, 0.5), along), shape)
+    assert len(find_contacts(body(shape), at((1.061, 0.0, 0.081), along), [TABLE])) == 0
 
 
 def test_a_body_that_hovers_is_refused() -> None:
