@@ -1,8 +1,12 @@
-"""Contact modes against the number of contacts; in the plane beside a linear program for each of 4^n strings.
+"""Contact modes against the number of contacts; in the plane beside linear programs.
 
-Sets: `ring`, whose contacts all bound the motion (the most modes there are), `drawn`, where few do, and
-`flush`, a row of feet, where all planes share a line. The linear programs are SciPy's HiGHS, on the `drawn`
-set; they must find the same strings.
+Sets: `ring`, whose contacts all bound the motion (the most modes there are), `drawn`, where few do, `flush`,
+a row of feet, where all planes share a line, and `slot`, a row of feet with another one against it. The
+linear programs are SciPy's HiGHS, one for each of the 4^n strings, and one for the forces of each mode that
+is left; they must find the same strings and the same modes.
+
+Targets: to enumerate 0.3, 2, 6 and 25 ms at 4, 16, 64 and 200 contacts, growing by no more than n^2; 30 us a
+mode in bulk, 100 us for any one.
 """
 
 from __future__ import annotations
@@ -10,6 +14,7 @@ from __future__ import annotations
 import itertools
 import math
 import time
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -17,20 +22,28 @@ from scipy.optimize import linprog
 
 from contact_dynamics.contact import ContactSet
 from contact_dynamics.contact_modes import planar_contact_modes, spatial_kinematic_modes
+from contact_dynamics.contact_modes.dynamics import judge_all
 from contact_dynamics.contact_modes.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.problem import planar_problem
 from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.rigid_body import BodyState
+from contact_dynamics.tolerances import ACCELERATION_TOLERANCE
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
+
+    from contact_dynamics.contact_modes.enumeration import Cell
+    from contact_dynamics.contact_modes.problem import PlanarProblem
 
 BODY: Final = PlanarBody(mass=1.0, inertia=1.0)
 AT_REST: Final = PlanarVelocity(v=(0.0, 0.0), w=0.0)
 WRENCH: Final = PlanarWrench(f=(0.1, -1.0), moment=0.05)
 COUNTS: Final = (1, 2, 4, 8, 16, 32, 64, 200, 800)
 MOST_STRINGS: Final = 4**4  # more take minutes
-REPEATS: Final = 5
+MOST_PROGRAMS: Final = 16  # contacts, up to which the modes are compared with linear programs
+MOST_TIMED: Final = 40  # modes of a set that are timed one by one
+REPEATS: Final = 5  # at least
+AT_LEAST_S: Final = 0.02
 
 
 def ring(n: int) -> list[PlanarContact]:
@@ -65,21 +78,51 @@ def flush(n: int) -> list[PlanarContact]:
     return [PlanarContact(r=((i + 0.5) / n - 0.5, -0.5), normal=(0.0, 1.0), friction=0.5) for i in range(n)]
 
 
+def slot(n: int) -> list[PlanarContact]:
+    """Return feet on a floor and, every other one, under a ceiling."""
+    return [
+        PlanarContact(
+            r=((i // 2 + 0.5) / n - 0.5, 0.5 if i % 2 else -0.5),
+            normal=(0.0, -1.0 if i % 2 else 1.0),
+            friction=0.5,
+        )
+        for i in range(n)
+    ]
+
+
 def best_of(task: Callable[[], object]) -> float:
     """Return the shortest of some runs, s."""
     best = math.inf
-    for _ in range(REPEATS):
+    repeats, until = 0, time.perf_counter() + AT_LEAST_S
+    while repeats < REPEATS or time.perf_counter() < until:
         start = time.perf_counter()
         task()
         best = min(best, time.perf_counter() - start)
+        repeats += 1
     return best
 
 
-def enumerate_only(contacts: list[PlanarContact]) -> dict[str, object]:
-    """Return the kinematically possible modes."""
+def problem_of(contacts: list[PlanarContact]) -> PlanarProblem:
+    """Return the problem of a body at rest."""
     at_rest = [(0.0, 0.0)] * len(contacts)
-    problem = planar_problem(BODY, AT_REST, contacts, at_rest, WRENCH, velocity_tolerance=0.0)
-    return dict(kinematic_cells(problem))
+    return planar_problem(BODY, AT_REST, contacts, at_rest, WRENCH, velocity_tolerance=0.0)
+
+
+def enumerate_only(contacts: list[PlanarContact]) -> dict[str, Cell]:
+    """Return the kinematically possible modes."""
+    return kinematic_cells(problem_of(contacts))
+
+
+def slowest_mode(contacts: list[PlanarContact]) -> float:
+    """Return the time of the mode that takes longest to judge, s, of some over all the set."""
+    problem = problem_of(contacts)
+    cells = kinematic_cells(problem)
+    chosen = sorted(cells)[:: 1 + len(cells) // MOST_TIMED]
+
+    def judged(some: Mapping[str, Cell]) -> float:
+        return best_of(lambda: judge_all(problem, some, ACCELERATION_TOLERANCE))
+
+    return max(judged({mode: cells[mode]}) for mode in chosen)
 
 
 def all_strings(contacts: list[PlanarContact]) -> set[str]:
@@ -106,6 +149,34 @@ def all_strings(contacts: list[PlanarContact]) -> set[str]:
     return found
 
 
+def program_of_mode(contacts: list[PlanarContact], letters: str) -> bool:
+    """Return whether forces bring a mode about, by a linear program: forces along edges, and their motion."""
+    rows = {
+        axis: np.array([(*d, c.r[0] * d[1] - c.r[1] * d[0]) for c in contacts for d in (getattr(c, axis),)])
+        for axis in ("normal", "tangent")
+    }
+    N, T = rows["normal"], rows["tangent"]
+    edges = [(i, -1.0) for i, letter in enumerate(letters) if letter in "rf"]
+    edges += [(i, 1.0) for i, letter in enumerate(letters) if letter in "lf"]
+    forces = [N[i] + sign * contacts[i].friction * T[i] for i, sign in edges]
+    # Unknowns: acceleration, forces, slack. For unit mass and inertia acceleration less forces is the wrench.
+    free = [0.0] * len(edges)
+    equal = [[*row, *free, 0.0] for i, row in enumerate(N) if letters[i] != "s"]
+    equal += [[*row, *free, 0.0] for i, row in enumerate(T) if letters[i] == "f"]
+    newton = [[*np.eye(3)[k], *(-force[k] for force in forces), 0.0] for k in range(3)]
+    positive = [[*-row, *free, 1.0] for i, row in enumerate(N) if letters[i] == "s"]
+    positive += [[*(t if x == "l" else -t), *free, 1.0] for t, x in zip(T, letters, strict=True) if x in "lr"]
+    outcome = linprog(
+        [*[0.0] * (3 + len(edges)), -1.0],
+        A_eq=[*equal, *newton],
+        b_eq=[0.0] * len(equal) + [*WRENCH.f, WRENCH.moment],
+        A_ub=positive or None,
+        b_ub=[0.0] * len(positive) or None,
+        bounds=[(None, None)] * 3 + [(0.0, None)] * len(edges) + [(0.0, 1.0)],
+    )
+    return bool(outcome.status == 0 and -outcome.fun > 1e-9)
+
+
 def in_space(n: int) -> ContactSet:
     """Return contacts all over a ball whose normals point upwards, more or less."""
     chance = np.random.default_rng(n)
@@ -128,31 +199,49 @@ def run_in_space() -> None:
     for n in (4, 8, 16, 32):
         contacts = in_space(n)
         modes = len(spatial_kinematic_modes(still, contacts))
-        seconds = best_of(lambda contacts=contacts: spatial_kinematic_modes(still, contacts))
+        seconds = best_of(partial(spatial_kinematic_modes, still, contacts))
         print(f"{n:11d} {modes:6d} {1e3 * seconds:9.2f} ms")
 
 
 def run() -> None:
     """Print times and counts."""
     print(
-        f"{'set':>6} {'n':>4} {'modes':>6} {'enumerate':>12} {'answer':>12} {'a mode':>10}"
-        f" {'4^n programs':>14}"
+        f"{'set':>6} {'n':>4} {'modes':>6} {'enumerate':>12} {'answer':>12} {'a mode':>10} {'slowest':>10}"
+        f" {'program of one':>15} {'4^n programs':>14}"
     )
-    for make in (ring, drawn, flush):
+    for make in (ring, drawn, flush, slot):
+        times = {}
         for n in COUNTS:
             contacts = make(n)
             modes = len(enumerate_only(contacts))
-            enumeration = best_of(lambda contacts=contacts: enumerate_only(contacts))
-            answer = best_of(lambda contacts=contacts: planar_contact_modes(BODY, AT_REST, contacts, WRENCH))
-            peer = ""
-            if make is drawn and 4**n <= MOST_STRINGS:
-                start = time.perf_counter()
-                assert all_strings(contacts) == set(enumerate_only(contacts))
-                peer = f"{1e3 * (time.perf_counter() - start):11.0f} ms"
+            times[n] = best_of(partial(enumerate_only, contacts))
+            answer = best_of(partial(planar_contact_modes, BODY, AT_REST, contacts, WRENCH))
             # One contact is answered in closed form, without enumeration.
-            dynamics = (answer if n == 1 else max(0.0, answer - enumeration)) / modes
+            dynamics = (answer if n == 1 else max(0.0, answer - times[n])) / modes
             print(
-                f"{make.__name__:>6} {n:4d} {modes:6d} {1e3 * enumeration:9.3f} ms {1e3 * answer:9.3f} ms"
-                f" {1e6 * dynamics:7.1f} us {peer:>14}"
+                f"{make.__name__:>6} {n:4d} {modes:6d} {1e3 * times[n]:9.3f} ms {1e3 * answer:9.3f} ms"
+                f" {1e6 * dynamics:7.1f} us {1e6 * slowest_mode(contacts):7.1f} us {peers(make, contacts)}",
+                flush=True,
             )
+        few, many = COUNTS[-3], COUNTS[-1]
+        growth = math.log(times[many] / times[few]) / math.log(many / few)
+        print(f"{make.__name__:>6} from {few} to {many} contacts the enumeration grows as n^{growth:.1f}")
     run_in_space()
+
+
+def peers(make: Callable[[int], list[PlanarContact]], contacts: list[PlanarContact]) -> str:
+    """Return the times of the linear programs, where there are not too many; they must agree."""
+    n = len(contacts)
+    if n > MOST_PROGRAMS:
+        return ""
+    answer = planar_contact_modes(BODY, AT_REST, contacts, WRENCH)
+    start = time.perf_counter()
+    found = [mode for mode in answer.kinematic_modes if program_of_mode(contacts, mode)]
+    one = (time.perf_counter() - start) / len(answer.kinematic_modes)
+    assert found == [mode.mode for mode in answer.modes]
+    text = f"{1e6 * one:12.0f} us"
+    if make is drawn and 4**n <= MOST_STRINGS:
+        start = time.perf_counter()
+        assert all_strings(contacts) == set(answer.kinematic_modes)
+        text += f" {1e3 * (time.perf_counter() - start):11.0f} ms"
+    return text

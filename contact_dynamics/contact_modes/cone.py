@@ -150,9 +150,12 @@ class PolyhedralCone:
         return (0, second, third)
 
     def _cut_many(self, first: tuple[int, ...]) -> None:
-        """Cut with all rows but the ``first``; after those that cut most, many others change nothing."""
+        """Cut with all rows but the ``first``: after the extreme ones most of the others change nothing."""
         matrix = np.array(self.rows)
-        waiting = np.delete(np.arange(len(matrix)), first)
+        extreme = {*matrix.argmin(axis=0).tolist(), *matrix.argmax(axis=0).tolist()}.difference(first)
+        for index in extreme:
+            self._cut(self.rows[index], index)
+        waiting = np.delete(np.arange(len(matrix)), [*first, *extreme])
         at_once = 4
         while len(waiting) > 0 and self.rays:
             heights = matrix[waiting] @ np.array(self.rays).T
