@@ -171,6 +171,8 @@ def _sharpened(
 
 def _ends(found: Found, weights: FloatArray) -> tuple[bool, FloatArray | None, FloatArray | None]:
     """Return whether a combination of edge forces is the same for all that the mode allows, and its ends."""
+    largest = float(np.abs(weights).max(initial=0.0))
+    weights = weights / largest if largest > 0.0 else weights  # whatever the units of force
     ends = found.program.spread(weights)
     if ends is None:
         return False, None, None
