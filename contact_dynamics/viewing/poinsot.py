@@ -88,6 +88,13 @@ def draw_poinsot(recording: rr.RecordingStream, body_name: str, picture: Poinsot
         show_labels=False,
     )
     recording.log(f"{path}/momentum", momentum)
+    style = rr.Arrows3D.from_fields(
+        colors=palette.AFTER_IMPACT,
+        radii=_ARROW_WIDTH * unit,
+        labels=["angular velocity"],
+        show_labels=False,
+    )
+    recording.log(f"{path}/angular_velocity", style)
 
 
 def draw_rolling(recording: rr.RecordingStream, body_name: str, states: Sequence[BodyState]) -> None:
@@ -101,13 +108,6 @@ def draw_rolling(recording: rr.RecordingStream, body_name: str, states: Sequence
     rates = np.array([state.w_WB_W for state in states])
     arrows = rr.Arrows3D.columns(vectors=rates, origins=np.zeros_like(rates))
     recording.send_columns(f"{path}/angular_velocity", indexes=[stamps], columns=arrows)
-    style = rr.Arrows3D.from_fields(
-        colors=palette.AFTER_IMPACT,
-        radii=_ARROW_WIDTH * float(np.linalg.norm(rates, axis=1).max()),
-        labels=["angular velocity"],
-        show_labels=False,
-    )
-    recording.log(f"{path}/angular_velocity", style, static=True)
 
 
 def ellipsoid_net(semi_axes: FloatArray) -> list[FloatArray]:

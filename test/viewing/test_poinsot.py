@@ -45,6 +45,7 @@ def test_the_ellipsoid_touches_the_plane_where_the_angular_velocity_ends(
     states = [motion.state_at(seconds) for seconds in curves.seconds.tolist()]
     draw_poinsot(recording, "brick", picture)
     draw_rolling(recording, "brick", sorted(states, key=lambda state: state.stamp_ns))
+    draw_rolling(recording, "brick", [])
     drawn = read()
     view = drawn.array(PATH, "Transform3D:mat3x3")[0].reshape(3, 3).T  # stored by columns
     np.testing.assert_allclose(view @ view.T * constants.ellipsoid_semi_axes.max() ** 2, np.eye(3), atol=1e-5)
