@@ -67,6 +67,8 @@ class ContactSet:
         object.__setattr__(self, "frictions", frictions)
         object.__setattr__(self, "restitutions", restitutions)
         object.__setattr__(self, "surfaces", tuple(self.surfaces))
+        if self.body_curvatures is None and self.surface_curvatures is None:
+            return
         for name in ("body_curvatures", "surface_curvatures"):
             checked = checked_curvatures(f"contacts.{name}", getattr(self, name), normals)
             object.__setattr__(self, name, checked)

@@ -130,9 +130,11 @@ def check_pairs(
     normals_W: FloatArray, body_curvatures: Curvatures | None, surface_curvatures: Curvatures | None
 ) -> None:
     """Raise `InvalidFieldError` for the first contact that is not one at a point with a normal of its own."""
-    if body_curvatures is None and surface_curvatures is None:
-        return
-    for i in range(len(normals_W)):
+    n = len(normals_W)
+    mine, theirs = _least_and_most(body_curvatures, n, math.inf), _least_and_most(surface_curvatures, n, 0.0)
+    # Quick: one side convex in all directions and the other flat.
+    clear = ((mine[0] > 0.0) & (theirs == 0.0).all(axis=0)) | ((theirs[0] > 0.0) & (mine == 0.0).all(axis=0))
+    for i in np.flatnonzero(~clear).tolist():
         frame = _frame(normals_W[i])
         body, surface = _side(body_curvatures, i, frame, math.inf), _side(surface_curvatures, i, frame, 0.0)
         if _rolling(body, surface, (0.0, 0.0), (0.0, 0.0)) is None:
@@ -141,6 +143,13 @@ def check_pairs(
                 f"{[k for k, _ in body]} of the body, {[k for k, _ in surface]} of the surface, 1/m",
                 "a sum > 0 in all directions, and no corner on a corner",
             )
+
+
+def _least_and_most(curvatures: Curvatures | None, n: int, default: float) -> FloatArray:
+    """Return the smaller and the larger curvature of each contact, (2, n), 1/m."""
+    if curvatures is None:
+        return np.full((2, n), default)
+    return np.sort([curvatures.along, curvatures.across], axis=0)
 
 
 def velocity_accelerations(contacts: ContactSet, velocities_W: FloatArray, w_W: FloatArray) -> FloatArray:
@@ -157,7 +166,11 @@ def velocity_accelerations(contacts: ContactSet, velocities_W: FloatArray, w_W: 
     added = np.zeros((len(contacts), 3))
     if contacts.body_curvatures is None and contacts.surface_curvatures is None:
         return added
-    for i, normal in enumerate(contacts.normals_W):
+    n = len(contacts)
+    mine = _least_and_most(contacts.body_curvatures, n, math.inf)
+    theirs = _least_and_most(contacts.surface_curvatures, n, 0.0)
+    for i in np.flatnonzero(np.isfinite(mine[0]) | (theirs != 0.0).any(axis=0)).tolist():  # not point on flat
+        normal = contacts.normals_W[i]
         frame = _frame(normal)
         m = frame @ np.cross(normal, w_W)
         v = frame @ velocities_W[i]
