@@ -129,7 +129,9 @@ class _Slide:
             straight |= (speeding < 0.0) & (speed <= slowest[lanes])
             on = np.flatnonzero(straight)
             self._straight(lanes[on], (d1[on], d2[on]), speed[on], speeding[on], lifting[on])
-            goes_on = ~straight
+            smooth = ~straight & (law.mu == 0.0)
+            self._without_friction(lanes[smooth])
+            goes_on = ~(straight | smooth)
             slowing = np.flatnonzero(goes_on & (speeding < 0.0))
             goes_on[slowing[self._jump(lanes[slowing], lifting[slowing])]] = False
             swerving = np.flatnonzero(goes_on)
@@ -137,6 +139,13 @@ class _Slide:
             self._stretch(lanes, lifting[swerving])
             lanes = lanes[~self.progress.over[lanes]]
         raise AssertionError  # each stretch turns or slows the sliding by a fixed part
+
+    def _without_friction(self, lanes: Lanes) -> None:
+        """Take lanes to their ends whose sliding changes along a line."""
+        law, none = taken_law(self.sliding, lanes), np.zeros(len(lanes))
+        p = self.progress.go_straight(lanes, np.full(len(lanes), math.inf), (none, none), law.kn)
+        self.u1[lanes] += law.k1 * p
+        self.u2[lanes] += law.k2 * p
 
     def _alone(self, lane: int, *, started: bool) -> None:
         """Follow one lane to its end."""

@@ -28,6 +28,7 @@ from contact_dynamics.impact.response import (
     response,
     velocity_at_contact,
 )
+from contact_dynamics.impact.routh import LARGEST_FRICTION
 from contact_dynamics.impact.sliding import SlidingLaw
 from contact_dynamics.impact.spatial_result import SpatialImpact
 from contact_dynamics.impact.swerve import trace
@@ -164,7 +165,7 @@ def _impact(
         u1 = u2 = 0.0
     if v_n >= -tolerance:
         v_n = 0.0
-    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, mu)
+    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, min(mu, LARGEST_FRICTION))
     path = trace(sliding, (u1, u2), v_n, restitution=e, law=law)
 
     impulse = axes.in_world(path.impulse)

@@ -15,6 +15,7 @@ from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.lockstep import trace_all
 from contact_dynamics.impact.response import Responding, contact_axes, pushed, responding, velocity_at_contact
+from contact_dynamics.impact.routh import LARGEST_FRICTION
 from contact_dynamics.impact.sliding import SlidingLaw
 from contact_dynamics.impact.table import (
     check_law_rows,
@@ -182,7 +183,7 @@ def _strike(
     still = np.sqrt(u1 * u1 + u2 * u2) <= tolerance
     u1[still] = u2[still] = 0.0
     v_n[v_n >= -tolerance] = 0.0
-    mu = np.broadcast_to(rows["frictions"], count)
+    mu = np.minimum(np.broadcast_to(rows["frictions"], count), LARGEST_FRICTION)
     e = np.broadcast_to(rows["restitutions"], count)
     sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, mu)
     paths = trace_all(sliding, (u1, u2), v_n, restitution=e, law=law)

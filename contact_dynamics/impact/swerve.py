@@ -2,7 +2,8 @@
 
 Phases: sliding that swerves (`series`), or slides straight where its direction is invariant; after a stop,
 sticking or leaving in the one admissible direction, both straight (`sliding`). The straight ones are closed
-forms: a central or spherical impact, a planar impact embedded in space, and every impact after its stop.
+forms: a central or spherical impact, a planar impact embedded in space, one without friction, and every
+impact after its stop.
 """
 
 from __future__ import annotations
@@ -110,6 +111,10 @@ def slide(
             speeding < 0.0 and speed <= slowest
         ):
             return _slide_straight(sliding, (d1, d2), speed, progress)
+        if sliding.mu == 0.0:
+            # Without friction u changes along a line, which misses 0.
+            p = progress.go_straight(math.inf, (0.0, 0.0, 1.0), sliding.kn)
+            return (u1 + sliding.k1 * p, u2 + sliding.k2 * p)
         if speeding < 0.0:
             stop = stop_ahead(sliding, (u1, u2), first_speed, with_work=with_work)
             if stop is not None and _jump(sliding, (u1, u2), stop, lifting, progress):

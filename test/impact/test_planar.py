@@ -287,6 +287,28 @@ def test_admissible(law: RestitutionLaw, problem: impact_exact.Problem) -> None:
         assert after >= before
 
 
+@settings(max_examples=150, deadline=None)
+@given(problem=problems())
+def test_the_energetic_law_returns_its_part_of_the_work(problem: impact_exact.Problem) -> None:
+    """The work of the normal impulse, exactly, along the straight pieces of the path: out = e^2 in."""
+    answer = answer_to(problem, RestitutionLaw.ENERGETIC)
+    assume(answer.outcome is not ImpactOutcome.NO_IMPULSE)
+    _, b, c, _ = answer.inverse_inertia
+    v_n = [answer.velocity_before_C[1] + b * i_t + c * p for _, (i_t, p) in answer.path]
+    work = [
+        0.5 * (v_n[i] + v_n[i + 1]) * (answer.path[i + 1][1][1] - answer.path[i][1][1])
+        for i in range(len(v_n) - 1)
+    ]
+    events = [event for event, _ in answer.path]
+    end = events.index(PathEvent.COMPRESSION_ENDS)
+    taken, returned = -sum(work[:end]), sum(work[end:])
+    # v_n is a difference of terms of this size, and so is its error.
+    speed = abs(answer.velocity_before_C[1]) + abs(b * answer.impulse_C[0]) + c * answer.impulse_C[1]
+    assert returned == pytest.approx(
+        float(problem.e) ** 2 * taken, rel=1e-9, abs=1e-14 * speed * answer.impulse_C[1]
+    )
+
+
 @pytest.mark.parametrize("law", RestitutionLaw)
 @settings(max_examples=150, deadline=None)
 @given(problem=problems())

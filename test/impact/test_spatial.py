@@ -143,7 +143,100 @@ def increments(problem: dict[str, object], law: RestitutionLaw, increment: float
     )
 
 
+@pytest.mark.parametrize("seed", [6, 8, 11, 21, 25, 45, 48, 65, 77, 100, 111])
+def test_sliding_stops_where_the_integrated_equations_do(seed: int) -> None:
+    """Whether the direction turns fast or hardly beside the slowing down; the oracle stops at 1e-12."""
+    problem = random_problem(seed)
+    problem["friction"] *= 3.0 if seed % 2 else 1.0
+    state = problem["state"]
+    answer = solve(problem)
+    stop = answer.path_W[answer.path_events.index(PathEvent.SLIDING_STOPS)]
+    expected = impact_keller.impulse_to_stop(
+        mass=problem["body"].mass,
+        inertia=problem["body"].inertia_in_world(state.R_WB),
+        v=state.v_WB_W,
+        w=state.w_WB_W,
+        arm=problem["p_WC_W"] - state.p_WB_W,
+        normal=problem["n_W"],
+        mu=problem["friction"],
+    )
+    assert stop == pytest.approx(expected, abs=2e-11 * float(np.linalg.norm(expected)))
+
+
 # Closed forms.
+
+
+@pytest.mark.parametrize("law", RestitutionLaw)
+@pytest.mark.parametrize("friction", [1e6, 1e100, 1e308])
+def test_unbounded_friction_is_the_rough_limit(friction: float, law: RestitutionLaw) -> None:
+    """A rough contact stops at once; then normal impulse meets the normal response of a held contact.
+
+    Compression makes the contact's velocity W I + u zero, restitution is one-dimensional.
+    """
+    for seed in range(20):
+        problem = random_problem(seed)
+        problem["friction"] = friction
+        answer, e, n = solve(problem, law), problem["restitution"], problem["n_W"]
+        compression = -np.linalg.solve(answer.inverse_inertia_W, answer.velocity_before_W)
+        if n @ compression <= 0.0:
+            continue
+        assert answer.outcome is ImpactOutcome.STICKS_IN_COMPRESSION
+        size = float(np.linalg.norm(compression))
+        # What is left of the slide at finite friction is its share of the impulse.
+        assert answer.compression_W == pytest.approx(compression, abs=1e-8 * size + 30.0 / friction * size)
+        if law is RestitutionLaw.POISSON:
+            held = np.linalg.solve(answer.inverse_inertia_W, n)
+            restitution = e * (n @ compression) * held / (n @ held)
+            tolerance = (1e-8 + 30.0 / friction) * size
+            assert answer.restitution_W == pytest.approx(restitution, abs=tolerance)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.3, 1.0])
+def test_without_friction_the_laws_agree(restitution: float) -> None:
+    """The impulse is normal, and (1 + e) times what stops the approach."""
+    for seed in range(20):
+        problem = {**random_problem(seed), "friction": 0.0, "restitution": restitution}
+        n = problem["n_W"]
+        for law in RestitutionLaw:
+            answer = solve(problem, law)
+            size = -(1.0 + restitution) * (n @ answer.velocity_before_W) / (n @ answer.inverse_inertia_W @ n)
+            assert answer.impulse_W == pytest.approx(size * n, abs=1e-12 * size)
+
+
+def test_newton_creates_energy_where_friction_stops_the_slide() -> None:
+    """The planar example in space: 0.07 J, and only Newton's law."""
+    answers = {
+        law: spatial_impact(
+            MassProperties(mass=1.0, I_B=np.eye(3)),
+            BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[-0.3, 0.0, -1.0], w_WB_W=np.zeros(3)),
+            p_WC_W=[1.0, 0.0, -1.0],
+            n_W=UP,
+            friction=0.6,
+            restitution=1.0,
+            law=law,
+        )
+        for law in RestitutionLaw
+    }
+    assert answers[RestitutionLaw.NEWTON].energy_change == pytest.approx(0.07, rel=1e-12)
+    assert [law for law in RestitutionLaw if answers[law].creates_energy] == [RestitutionLaw.NEWTON]
+
+
+@pytest.mark.parametrize("angle", np.linspace(0.0, 6.0, 7))
+def test_from_rest_a_contact_leaves_in_an_invariant_direction(angle: float) -> None:
+    """A contact that friction cannot hold slides straight, the way that its own sliding keeps."""
+    c, s = math.cos(angle), math.sin(angle)
+    body = MassProperties(mass=1.0, I_B=np.diag([0.2, 0.3, 0.35]))
+    arm = np.array([0.8 * c, 0.8 * s, -0.6])
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[0.0, 0.0, -1.0], w_WB_W=np.zeros(3))
+    answer = spatial_impact(body, state, p_WC_W=arm, n_W=UP, friction=0.1, restitution=0.5)
+    assert answer.outcome is ImpactOutcome.SLIDES
+    assert PathEvent.SAMPLE not in answer.path_events
+    after = answer.velocity_after_W[:2]
+    along, friction = after / np.linalg.norm(after), answer.impulse_W[:2] / answer.impulse_W[2]
+    assert friction == pytest.approx(-0.1 * along, rel=1e-12)
+    # The acceleration under the friction of this direction has this direction.
+    rate = answer.inverse_inertia_W @ [*friction, 1.0]
+    assert rate[0] * along[1] - rate[1] * along[0] == pytest.approx(0.0, abs=1e-13 * np.linalg.norm(rate))
 
 
 @pytest.mark.parametrize(("friction", "grips"), [(0.1, False), (0.9, True)])
