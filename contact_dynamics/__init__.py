@@ -8,8 +8,10 @@ The table of contents, chapters in reading order; everything here is plain NumPy
   `contact_dynamics.poinsot`.
 - Motion under wrenches and drag: `motion_of`. A state from several: `fit_free_motion`. Its covariance along
   the way: `propagate_covariance`.
-- Where a flight ends: `first_contact`, `next_landing`, in a `World` of `Body` and `Surface`.
-- Contacts: `ContactSet` in space (`contact`), from geometry (`find_contacts`); `PlanarContact` and its kin in
+- Where a flight ends: `first_contact`, `next_landing`, in a `World` of `Body`, `Surface` and `Obstacle`. Shapes
+  of bodies, from spheres to polyhedra: `contact_dynamics.convex_shape`.
+- Contacts: `ContactSet` in space (`contact`), of all kinds (`contact_curvature`), from geometry
+  (`find_contacts`); `PlanarContact` and its kin in
   the plane (`planar`), reached from space by a `PlaneOfMotion`.
 - Lecture 26, contact modes: `planar_contact_modes` (`contact_modes`).
 - Lecture 27, impact: `planar_impact`, `spatial_impact` (`impact`).
@@ -17,6 +19,7 @@ The table of contents, chapters in reading order; everything here is plain NumPy
 """
 
 from contact_dynamics.contact import ContactSet
+from contact_dynamics.contact_curvature import Curvatures
 from contact_dynamics.contact_geometry import find_contacts
 from contact_dynamics.contact_modes import (
     ConsistentMode,
@@ -29,6 +32,7 @@ from contact_dynamics.contact_modes import (
     spatial_contact_modes,
     spatial_mode_margins,
 )
+from contact_dynamics.convex_shape import ConvexShape
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.first_contact import FirstContact, first_contact
 from contact_dynamics.forced_motion import motion_of
@@ -45,6 +49,7 @@ from contact_dynamics.inertia import MassDistribution
 from contact_dynamics.landing import Landing, next_landing
 from contact_dynamics.motion_fit import fit_free_motion
 from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.obstacle import Obstacle
 from contact_dynamics.plane_of_motion import PlanarProblem, PlaneOfMotion, best_plane, project
 from contact_dynamics.rigid_body import BodyState, MassProperties, angular_momentum, kinetic_energy, momentum
 from contact_dynamics.tumbling import FreeMotion, Regime, Trajectory, free_motion
@@ -58,6 +63,8 @@ __all__ = [
     "ContactDynamicsError",
     "ContactModeAnswer",
     "ContactSet",
+    "ConvexShape",
+    "Curvatures",
     "FirstContact",
     "FreeMotion",
     "ImpactOutcome",
@@ -65,6 +72,7 @@ __all__ = [
     "MassDistribution",
     "MassProperties",
     "ModeVerdict",
+    "Obstacle",
     "PlanarBody",
     "PlanarContact",
     "PlanarImpact",

@@ -32,7 +32,7 @@ ACCELERATION_TOLERANCE: Final = 1e-9
 forces."""
 
 DISTANCE_TOLERANCE: Final = 1e-6
-"""m. A vertex within it of a surface touches, where no other tolerance is asked for."""
+"""m. A point within it of a surface touches, where no other tolerance is asked for."""
 
 ENERGY_TOLERANCE: Final = 1e-12
 """Relative to the energy that an impact exchanges. A gain above it is a law that creates energy, not
@@ -63,7 +63,7 @@ hundred times that for contacts far from the centre of mass; what is built from 
 is still right within it."""
 
 GRAZING_DEPTH: Final = 1e-9
-"""m. A vertex that dips into a plane by less, and rises again, may be overlooked by the search for the first
+"""m. A point that dips into a plane by less, and rises again, may be overlooked by the search for the first
 contact; deeper ones never are. Far below what sensors resolve, and enough for the search not to creep."""
 
 LARGEST_NUMBER: Final = 1e60
