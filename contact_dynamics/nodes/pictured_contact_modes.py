@@ -134,6 +134,9 @@ def _words(response: Any) -> list[str]:
     verdict = VERDICTS[ModeVerdict(response.verdict)]
     modes = ", ".join(f"{mode.mode} {margin_words(mode)}".strip() for mode in response.modes)
     words = [f"{verdict}: {modes}" if modes else verdict]
+    shared = [mode.mode for mode in response.modes if not mode.forces_unique]
+    if shared:
+        words.append(f"the contact forces of {', '.join(shared)} are one choice of many")
     speeds = np.linalg.norm(rows(response.contact_velocities), axis=1)
     words += [f"contact {i + 1} approaches with {speeds[i]:.3g} m/s" for i in response.approaching_contacts]
     refused = response.refused_modes
@@ -153,7 +156,10 @@ def _words(response: Any) -> list[str]:
     for impact in response.impact:
         outcome = ImpactOutcome(impact.outcome).name.replace("_", " ").lower()
         after = numbers(vector_from_msg(impact.state_after.linear_velocity))
-        words.append(f"settled by an impact, which {outcome}: velocity becomes ({after}) m/s")
+        words.append(f"an impact settles it: {outcome}; velocity becomes ({after}) m/s")
+        modes = ", ".join(mode.mode for mode in response.modes_after_impact)
+        verdict = VERDICTS[ModeVerdict(response.verdict_after_impact)]
+        words.append(f"then it {verdict}: {modes}" if modes else f"then it {verdict}")
     return words
 
 

@@ -281,6 +281,7 @@ def contact_mode_answer(**fields: Any) -> PredictContactMode.Response:
             mode=mode,
             contact_forces=[0.0, 0.0, 2.0, 0.0, 0.0, 2.0],
             contact_accelerations=[0.0] * 6,
+            forces_unique=mode == "fl",
             margin=0.25,
             margin_modes=["ff"],
         )
@@ -303,8 +304,22 @@ def test_contact_modes_are_drawn_with_every_mode_in_words(bench: Bench) -> None:
     assert drawn.last("/world/contacts/brick/points", "Points3D:labels") == ["f", "l|f"]
     assert drawn.last("/world/contacts/brick/mode_2/forces", "Arrows3D:labels") == ["2 N", "2 N"]
     text = drawn.last("/answers/newest", "TextDocument:text")[0]
-    assert "does not choose: fl (0.25 N from ff), ff (0.25 N from ff); refused: ss" in text
+    assert "does not choose: fl (0.25 N from ff), ff (0.25 N from ff); the contact" in text
+    assert "refused: ss" in text
+    assert "the contact forces of ff are one choice of many" in text
     assert "equilibrium possible, jammed no, wedged no" in text
+
+
+def test_the_impact_that_settles_a_case_is_told_with_what_follows(bench: Bench) -> None:
+    answer = contact_mode_answer(approaching_contacts=[1], impact=[impact_answer(two_contacts()).impact])
+    answer.verdict, answer.modes = answer.IMPACT, []
+    answer.contact_velocities = [0.0, 0.0, 0.0, 0.0, 0.0, -0.5]
+    answer.modes_after_impact = [ContactMode(mode="fs")]
+    bench.answer("predict_contact_mode", answer)
+    text = bench.drawn().last("/answers/newest", "TextDocument:text")[0]
+    assert "contact 2 approaches with 0.5 m/s" in text
+    assert "an impact settles it: sticks in compression; velocity becomes (1, 0, -2) m/s" in text
+    assert "then it has one consistent mode: fs" in text
 
 
 def test_a_planar_answer_is_drawn_in_its_plane_with_the_map(bench: Bench) -> None:
