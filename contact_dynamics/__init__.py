@@ -8,11 +8,11 @@ The table of contents, chapters in reading order; everything here is plain NumPy
   `contact_dynamics.poinsot`.
 - Motion under wrenches and drag: `motion_of`. A state from several: `fit_free_motion`. Its covariance along
   the way: `propagate_covariance`.
-- Where a flight ends: `first_contact`, `next_landing`, in a `World` of `Body`, `Surface` and `Obstacle`. Shapes
-  of bodies, from spheres to polyhedra: `contact_dynamics.convex_shape`.
+- Where a flight ends: `first_contact`, `next_landing`, in a `World` of `Body`, `Surface` and `Obstacle`.
+  Shapes of bodies, from spheres to polyhedra: `contact_dynamics.convex_shape`.
 - Contacts: `ContactSet` in space (`contact`), of all kinds (`contact_curvature`), from geometry
-  (`find_contacts`); `PlanarContact` and its kin in
-  the plane (`planar`), reached from space by a `PlaneOfMotion`.
+  (`find_contacts`); `PlanarContact` and its kin in the plane (`planar`), reached from space by a
+  `PlaneOfMotion`.
 - Lecture 26, contact modes: `planar_contact_modes` (`contact_modes`).
 - Lecture 27, impact: `planar_impact`, `spatial_impact` (`impact`).
 - What is refused, and how: `errors`. What counts as zero: `tolerances`.
@@ -48,8 +48,8 @@ from contact_dynamics.impact import (
 from contact_dynamics.inertia import MassDistribution
 from contact_dynamics.landing import Landing, next_landing
 from contact_dynamics.motion_fit import fit_free_motion
-from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.obstacle import Obstacle
+from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.plane_of_motion import PlanarProblem, PlaneOfMotion, best_plane, project
 from contact_dynamics.rigid_body import BodyState, MassProperties, angular_momentum, kinetic_energy, momentum
 from contact_dynamics.tumbling import FreeMotion, Regime, Trajectory, free_motion
