@@ -45,7 +45,7 @@ def told(verdict: int, modes: list[Any]) -> str:
 
 
 def test_every_example_is_found() -> None:
-    assert len(EXAMPLES) == README.count("ros2 service call /contact_dynamics/predict_contact_mode") == 6
+    assert len(EXAMPLES) == README.count("ros2 service call /contact_dynamics/predict_contact_mode") == 7
 
 
 @pytest.mark.parametrize(("request_text", "stated"), EXAMPLES)
