@@ -179,8 +179,12 @@ def test_stiff_springs_in_the_plane_by_the_hundred() -> None:
         for seconds, steps in ((1e-3, 500), (1e-4, 5000))
     )
     assert second.max() < 2e-3
-    # First order in the duration; of the steps, which are first order too, some 1e-6 may be left.
-    assert (second < 0.11 * first + 5e-6).all()
+    # Both of first order, errors of stiffness and of steps fall tenfold; where they cancel in the first, a
+    # tenth of what they are elsewhere may be left.
+    assert (second < 0.1 * first + 1e-4).all()
+    for outcome in set(rigid.outcomes.tolist()):
+        chosen = rigid.outcomes == outcome
+        assert np.median(second[chosen]) < 0.11 * np.median(first[chosen])
 
 
 @pytest.mark.slow
