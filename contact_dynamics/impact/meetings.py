@@ -15,10 +15,10 @@ from contact_dynamics.contact import ContactSet
 from contact_dynamics.first_contact import first_contact
 from contact_dynamics.landing import Landing, next_landing
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
+from contact_dynamics.tumbling import free_motion
 
 if TYPE_CHECKING:
-    from contact_dynamics.rigid_body import BodyState
-    from contact_dynamics.tumbling import FreeMotion
+    from contact_dynamics.rigid_body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
 
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 class Meetings(Protocol):
     """Where a flight ends, and the contacts that it ended at so far."""
 
-    def next(self, motion: FreeMotion, horizon: float) -> Landing | None:
-        """Return where a flight ends within ``horizon``, s, or None."""
+    def next(self, state: BodyState, horizon: float) -> Landing | None:
+        """Return where free flight from a state ends within ``horizon``, s, or None."""
 
     def index(self, landing: Landing, row: int) -> int:
         """Return the number of the contact that is row ``row`` of a landing's contacts."""
@@ -44,17 +44,19 @@ class FoundMeetings:
         self, body: Body, world: World, *, distance_tolerance: float, velocity_tolerance: float
     ) -> None:
         self._body, self._world = body, world
-        self._tolerances = {
-            "distance_tolerance": distance_tolerance,
-            "velocity_tolerance": velocity_tolerance,
-        }
+        self._distance_tolerance, self._velocity_tolerance = distance_tolerance, velocity_tolerance
         self._points_B: list[FloatArray] = []
         self._met: list[ContactSet] = []
 
-    def next(self, motion: FreeMotion, horizon: float) -> Landing | None:
-        """Return where a flight ends within ``horizon``, s, or None."""
+    def next(self, state: BodyState, horizon: float) -> Landing | None:
+        """Return where free flight from a state ends within ``horizon``, s, or None."""
         return next_landing(
-            self._body, motion.state, self._world, horizon=horizon, motion=motion, **self._tolerances
+            self._body,
+            state,
+            self._world,
+            horizon=horizon,
+            distance_tolerance=self._distance_tolerance,
+            velocity_tolerance=self._velocity_tolerance,
         )
 
     def index(self, landing: Landing, row: int) -> int:
@@ -95,18 +97,27 @@ class NamedMeetings:
     """Points of a body that touch at a state, each with the plane it touches there and no other."""
 
     def __init__(
-        self, contacts: ContactSet, state: BodyState, *, distance_tolerance: float, velocity_tolerance: float
+        self,
+        body: MassProperties,
+        state: BodyState,
+        contacts: ContactSet,
+        *,
+        gravity_W: FloatArray,
+        distance_tolerance: float,
+        velocity_tolerance: float,
     ) -> None:
+        self._body, self._gravity_W = body, gravity_W
         self._contacts = contacts
         self._points_B = (contacts.p_WC_W - state.p_WB_W) @ state.R_WB
         self._distance_tolerance, self._velocity_tolerance = distance_tolerance, velocity_tolerance
         self._rows: list[int] = []  # of the newest landing
 
-    def next(self, motion: FreeMotion, horizon: float) -> Landing | None:
-        """Return where a flight ends within ``horizon``, s, or None."""
-        now = self._touching(0.0, motion.state, self._distance_tolerance)
+    def next(self, state: BodyState, horizon: float) -> Landing | None:
+        """Return where free flight from a state ends within ``horizon``, s, or None."""
+        now = self._touching(0.0, state, self._distance_tolerance)
         if now is not None:
             return now
+        motion = free_motion(self._body, state, gravity_W=self._gravity_W)
         arrivals = [
             found.seconds
             for point_B, plane_W, normal_W in zip(

@@ -11,7 +11,12 @@ accumulate: rebounds that shrink by a ratio r < 1 have all ended d / (1 - r) aft
 takes d (Zeno). Then free flight is over, and which contacts stay, slide or roll is a question
 of contact modes, not of impacts.
 
-Not covered: motion on a contact that stays, and a resting contact that its own sliding jams.
+With a ``hold_step`` it goes on: the body moves freely for that time, an impulse without restitution then
+takes the contact's approach (Moreau's time-stepping, with Coulomb's friction), and so on until it leaves.
+That part alone is an approximation, of first order in the step: times are known to a step, the contact sinks
+by half a step's fall each time, and what approaches by no more than two steps' fall meanwhile is held too.
+
+Not covered: a resting contact that its own sliding jams.
 """
 
 from __future__ import annotations
@@ -26,8 +31,9 @@ from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.meetings import FoundMeetings, NamedMeetings
 from contact_dynamics.impact.sequence_result import ImpactSequence, SequenceEnd, TimedStrike
 from contact_dynamics.impact.spatial import spatial_impact
+from contact_dynamics.rigid_body import cross_matrix
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, VELOCITY_TOLERANCE
-from contact_dynamics.tumbling import free_motion
+from contact_dynamics.tumbling import Precision, free_motion
 from contact_dynamics.validation import check_array, check_not_negative, check_positive
 from contact_dynamics.world import STANDARD_GRAVITY_W
 
@@ -36,6 +42,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact import ContactSet
     from contact_dynamics.impact.meetings import Meetings
+    from contact_dynamics.impact.spatial_result import SpatialImpact
     from contact_dynamics.landing import Landing
     from contact_dynamics.rigid_body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
@@ -51,6 +58,12 @@ CHATTER_HEIGHT: Final = 1e-7
 """m. Rebounds lower than this are not followed: a hundred times what the search for the first contact may
 overlook, and far below the roughness of surfaces."""
 
+HELD: Final = 2.0
+"""Of the speed that a step of free motion gives a contact that is held: above it, something else struck."""
+
+HELD_STILL: Final = 0.01
+"""Of that speed: what may be left of it, where several contacts that are held throw each other back."""
+
 PAUSE: Final = 1e-6
 """s. When to look again where a contact that leaves, at the height of rounding, was found as arriving."""
 
@@ -65,6 +78,7 @@ def impact_sequence(
     most_strikes: int = MOST_STRIKES,
     distance_tolerance: float = DISTANCE_TOLERANCE,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
+    hold_step: float | None = None,
 ) -> ImpactSequence:
     """Return the strikes of a body's corners on the world's surfaces, from a state in contact or in flight.
 
@@ -77,18 +91,27 @@ def impact_sequence(
         most_strikes: How many strikes to resolve at most, >= 1.
         distance_tolerance: m, >= 0. A corner within it of a surface touches.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
+        hold_step: s, > 0. Where a contact stays, go on in steps of this length. None: end there.
 
     Raises:
         InvalidFieldError: a number that is not allowed.
     """
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
+    held = None if hold_step is None else check_positive("hold_step", hold_step)
     meetings = FoundMeetings(
         body,
         world,
         distance_tolerance=check_not_negative("distance_tolerance", distance_tolerance),
         velocity_tolerance=tolerance,
     )
-    sequence = _Sequence(body.mass_properties, world.gravity_W, meetings, restitution_law, tolerance)
+    sequence = _Sequence(
+        body.mass_properties,
+        world.gravity_W,
+        meetings,
+        restitution_law,
+        tolerance=tolerance,
+        hold_step=held,
+    )
     return sequence.run(state, check_positive("window", window), most_strikes)
 
 
@@ -103,6 +126,7 @@ def impact_sequence_of(
     most_strikes: int = MOST_STRIKES,
     distance_tolerance: float = DISTANCE_TOLERANCE,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
+    hold_step: float | None = None,
 ) -> ImpactSequence:
     """Return the strikes at contacts that touch now: each a point of the body, and the plane it touches.
 
@@ -118,21 +142,25 @@ def impact_sequence_of(
         most_strikes: How many strikes to resolve at most, >= 1.
         distance_tolerance: m, >= 0. A point within it of its plane touches.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
+        hold_step: s, > 0. Where a contact stays, go on in steps of this length. None: end there.
 
     Raises:
         InvalidFieldError: a number that is not allowed, or a contact with curvature: it is no fixed point.
     """
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
+    held = None if hold_step is None else check_positive("hold_step", hold_step)
     if contacts.body_curvatures is not None or contacts.surface_curvatures is not None:
         raise InvalidFieldError("contacts.curvatures", "some", "none: a point of the body on a plane")
+    gravity = check_array("gravity", gravity_W, (3,))
     meetings = NamedMeetings(
-        contacts,
+        body,
         state,
+        contacts,
+        gravity_W=gravity,
         distance_tolerance=check_not_negative("distance_tolerance", distance_tolerance),
         velocity_tolerance=tolerance,
     )
-    gravity = check_array("gravity", gravity_W, (3,))
-    sequence = _Sequence(body, gravity, meetings, restitution_law, tolerance)
+    sequence = _Sequence(body, gravity, meetings, restitution_law, tolerance=tolerance, hold_step=held)
     return sequence.run(state, check_positive("window", window), most_strikes)
 
 
@@ -145,10 +173,12 @@ class _Sequence:
         gravity_W: FloatArray,
         meetings: Meetings,
         law: RestitutionLaw,
+        *,
         tolerance: float,
+        hold_step: float | None,
     ) -> None:
         self.body, self.gravity_W, self.meetings = body, gravity_W, meetings
-        self.law, self.tolerance = law, tolerance
+        self.law, self.tolerance, self.hold_step = law, tolerance, hold_step
         self.strikes: list[TimedStrike] = []
         self.chattering: tuple[int, float] | None = None  # the contact struck last, if so, and its limit time
         self.limit: float | None = None
@@ -170,49 +200,69 @@ class _Sequence:
     def _strike_on(self, state: BodyState, window: float, most: int) -> SequenceEnd:
         now, until, lifts = 0.0, window, 0  # s since the beginning
         while True:
-            motion = free_motion(self.body, state, gravity_W=self.gravity_W)
-            landing = self.meetings.next(motion, until - now)
+            landing = self.meetings.next(state, until - now)
             if self.chattering is not None and not self._strikes_elsewhere(landing, now):
-                contact, self.limit = self.chattering
-                self.staying = (contact,)
-                return SequenceEnd.CHATTERS
-            if landing is None:
+                self._stay((self.chattering[0],), self.chattering[1])
+                end, wait = SequenceEnd.CHATTERS, self.hold_step
+            elif landing is None:
+                self._fly()
                 return SequenceEnd.NOTHING_STRIKES
-            now += landing.seconds
-            if not landing.strikes:
-                wait = self._time_to_leave(landing)
+            else:
+                if landing.seconds > 0.0:
+                    self._fly()
+                state = landing.state
+                now += landing.seconds
+                if landing.strikes and not self._approaches_by(landing, HELD_STILL):
+                    if self._approaches_by(landing, HELD):
+                        state = self._impact(landing, _fastest(landing), restitution=0.0).state
+                        continue
+                    if len(self.strikes) == most:
+                        return SequenceEnd.MOST_STRIKES
+                    state = self._strike(landing, now)
+                    until = now + window
+                    continue
                 lifts += 1
-                if wait is None or lifts > most:
-                    pressed = np.flatnonzero(self._lifting(landing) <= 0.0).tolist()
-                    self.staying = tuple(self.meetings.index(landing, row) for row in pressed)
-                    self.limit = now
-                    return SequenceEnd.STAYS
-                now += wait
-                if now >= until:
-                    return SequenceEnd.NOTHING_STRIKES
-                state = free_motion(self.body, landing.state, gravity_W=self.gravity_W).state_at(wait)
-                continue
-            if len(self.strikes) == most:
-                return SequenceEnd.MOST_STRIKES
-            state = self._strike(landing, now)
-            until = now + window
+                end, wait = self._wait(landing, now, may_leave=lifts <= most)
+            now += wait or 0.0
+            if wait is None or now >= until:
+                return end
+            self.chattering = None
+            motion = free_motion(self.body, state, gravity_W=self.gravity_W, precision=Precision.DOUBLE)
+            state = motion.state_at(wait)
+
+    def _wait(self, landing: Landing, now: float, *, may_leave: bool) -> tuple[SequenceEnd, float | None]:
+        """Return for how long to wait where nothing strikes, s, None: not at all; and the end after that."""
+        wait = self._time_to_leave(landing)
+        if wait is not None and may_leave:
+            return SequenceEnd.NOTHING_STRIKES, wait
+        pressed = np.flatnonzero(self._lifting(landing) <= 0.0).tolist()
+        self._stay(tuple(self.meetings.index(landing, row) for row in pressed), now)
+        return SequenceEnd.STAYS, self.hold_step
+
+    def _stay(self, contacts: tuple[int, ...], since: float) -> None:
+        """Note that contacts stay; one that stayed before keeps the time."""
+        if self.limit is None:
+            self.limit = since
+        self.staying = contacts
+
+    def _fly(self) -> None:
+        """Note that no contact stays."""
+        self.staying, self.limit = (), None
+
+    def _approaches_by(self, landing: Landing, share: float) -> bool:
+        """Return whether a contact stays, and what approaches does so by a share of a step's fall."""
+        if self.hold_step is None or self.limit is None:
+            return False
+        row = _fastest(landing)
+        speed = -float(landing.velocities_W[row] @ landing.contacts.normals_W[row])
+        return speed <= share * self.hold_step * -float(self._lifting(landing)[row])
 
     def _strike(self, landing: Landing, now: float) -> BodyState:
         """Resolve the strike at the contact that approaches fastest; return the state after it."""
         contacts, row = landing.contacts, _fastest(landing)
         contact = self.meetings.index(landing, row)
         normal = contacts.normals_W[row]
-        impact = spatial_impact(
-            self.body,
-            landing.state,
-            p_WC_W=contacts.p_WC_W[row],
-            n_W=normal,
-            friction=float(contacts.frictions[row]),
-            restitution=float(contacts.restitutions[row]),
-            law=self.law,
-            # Half, since the approach was judged by another sum with other rounding.
-            velocity_tolerance=0.5 * self.tolerance,
-        )
+        impact = self._impact(landing, row, restitution=float(contacts.restitutions[row]))
         approach, rebound = float(-impact.velocity_before_W @ normal), float(impact.velocity_after_W @ normal)
         pressing = -float(self._lifting(landing)[row])
         self.chattering = None
@@ -229,6 +279,20 @@ class _Sequence:
             )
         )
         return impact.state
+
+    def _impact(self, landing: Landing, row: int, *, restitution: float) -> SpatialImpact:
+        contacts = landing.contacts
+        return spatial_impact(
+            self.body,
+            landing.state,
+            p_WC_W=contacts.p_WC_W[row],
+            n_W=contacts.normals_W[row],
+            friction=float(contacts.frictions[row]),
+            restitution=restitution,
+            law=self.law,
+            # Half, since the approach was judged by another sum with other rounding.
+            velocity_tolerance=0.5 * self.tolerance,
+        )
 
     def _time_to_leave(self, landing: Landing) -> float | None:
         """Return the time, s, in which the free motion takes resting contacts off, or None if they stay."""
@@ -251,10 +315,10 @@ class _Sequence:
         """Return the accelerations, (n,), m/s^2, that the contacts' gaps have in free motion."""
         state, contacts = landing.state, landing.contacts
         w = state.w_WB_W
-        inertia = self.body.inertia_in_world(state.R_WB)
-        turning = np.linalg.solve(inertia, -np.cross(w, inertia @ w))
-        arms = contacts.p_WC_W - state.p_WB_W
-        accelerations = self.gravity_W + np.cross(turning, arms) + np.cross(w, np.cross(w, arms))
+        inertia, spin = self.body.inertia_in_world(state.R_WB), cross_matrix(w)
+        angular: FloatArray = np.linalg.solve(inertia, -spin @ inertia @ w)
+        turning = cross_matrix(angular) + spin @ spin
+        accelerations = self.gravity_W + (contacts.p_WC_W - state.p_WB_W) @ turning.T
         rolling = velocity_accelerations(contacts, landing.velocities_W, w)
         return _normal_parts(accelerations + rolling, contacts)
 

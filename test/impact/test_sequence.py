@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from contact_dynamics.contact import ContactSet
@@ -367,3 +368,74 @@ def test_a_ball_that_spins_bounces_as_one_that_does_not() -> None:
     assert sequence.limit_seconds == pytest.approx(2.0 * e * 0.2 / (G * (1.0 - e)), abs=1e-10)
     still = impact_sequence(ball, state, world_of(ball, floor(e=0.0)))
     assert (still.end, still.order, still.staying) == (SequenceEnd.STAYS, (0,), (0,))
+
+
+# Going on where a contact stays
+
+
+@pytest.mark.parametrize("friction", [0.0, 50.0])
+def test_a_rod_that_turns_about_a_held_end_strikes_with_the_other(friction: float) -> None:
+    """One end rests on the floor, the other is let go. By energy: m g (sin t0 - sin t) l = J w^2 / 2.
+
+    J = I + m l^2 about an end that sticks, I + m l^2 cos^2 t for one that slides without friction. The steps
+    are of first order: the strike is found at the end of a step.
+    """
+    tilt, mass, inertia, step = 0.1, 2.0, 2.0 / 3.0, 1e-3
+    state = BodyState(
+        p_WB_W=np.array([0.0, 0.0, math.sin(tilt)]),
+        q_WB=np.array([0.0, math.sin(tilt / 2), 0.0, math.cos(tilt / 2)]),
+        v_WB_W=np.zeros(3),
+        w_WB_W=np.zeros(3),
+    )
+
+    def rate(angle: float) -> float:
+        lever = 1.0 if friction > 0.0 else math.cos(angle) ** 2
+        lost = mass * G * (math.sin(tilt) - math.sin(angle))
+        return math.sqrt(2.0 * lost / (inertia + mass * lever))
+
+    # With t = t0 - s^2 the integrand of dt / w is smooth.
+    expected = quad(lambda s: 2.0 * s / rate(tilt - s * s), 0.0, math.sqrt(tilt))[0]
+    world = world_of(ROD, floor(e=0.0, mu=friction))
+    ended = impact_sequence(ROD, state, world, window=0.3)
+    assert (ended.end, ended.strikes, ended.staying) == (SequenceEnd.STAYS, (), (0,))
+    held = impact_sequence(ROD, state, world, window=0.3, most_strikes=1, hold_step=step)
+    assert held.order == (1,)
+    strike = held.strikes[0]
+    assert strike.seconds == pytest.approx(expected, abs=1.5 * step)
+    assert -strike.state_before.w_WB_W[1] == pytest.approx(rate(0.0), rel=0.02)
+    assert strike.state_before.p_WB_W[0] == pytest.approx(
+        math.cos(tilt) - 1.0 if friction > 0.0 else 0.0, abs=1e-3
+    )
+
+
+@settings(max_examples=10, deadline=None)
+@given(seed=st.integers(0, 2**32), e=st.sampled_from([0.0, 0.1, 0.4]), mu=st.sampled_from([0.0, 0.2, 1.0]))
+def test_holding_takes_energy_and_never_gives(seed: int, e: float, mu: float) -> None:
+    body, state = random_toss(seed)
+    step = 1e-3
+    sequence = impact_sequence(
+        body, state, world_of(body, floor(e=e, mu=mu)), window=0.02, hold_step=step, most_strikes=12
+    )
+    energies = [energy(body, state)]
+    for strike in sequence.strikes:
+        energies += [energy(body, strike.state_before), energy(body, strike.impact.state)]
+        # It sinks by what a corner at 3 m/s goes in one step, and by half a step's fall in each other.
+        heights = strike.state_before.p_WB_W[2] + (body.vertices_B @ strike.state_before.R_WB.T)[:, 2]
+        assert heights.min() > -4.0 * step
+    size = max(energies) - min(0.0, *energies)
+    assert np.diff(energies).max() <= 1e-12 * size
+    if sequence.end in {SequenceEnd.STAYS, SequenceEnd.CHATTERS}:
+        assert sequence.staying
+        assert sequence.limit_seconds is not None
+
+
+def test_what_leaves_is_not_held() -> None:
+    """A sequence that no contact ends is the same with and without holding."""
+    body, state = random_toss(1)
+    world = world_of(body, floor(e=0.9))
+    free = impact_sequence(body, state, world, window=0.1, most_strikes=4)
+    held = impact_sequence(body, state, world, window=0.1, most_strikes=4, hold_step=1e-3)
+    assert free.limit_seconds is None
+    assert [strike.seconds for strike in held.strikes] == [strike.seconds for strike in free.strikes]
+    with pytest.raises(InvalidFieldError, match="hold_step"):
+        impact_sequence(body, state, world, hold_step=0.0)
