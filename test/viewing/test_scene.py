@@ -8,6 +8,8 @@ import rerun as rr
 from hypothesis import given
 from hypothesis import strategies as st
 
+from contact_dynamics.obstacle import Obstacle
+from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.scene import (
     MOST_GRID_LINES,
     draw_axes,
@@ -16,7 +18,7 @@ from contact_dynamics.viewing.scene import (
     tangents,
 )
 from contact_dynamics.viewing.shape import convex_shape
-from contact_dynamics.world import Surface
+from contact_dynamics.world import Surface, World, box_vertices
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -70,6 +72,19 @@ def test_a_body_is_drawn_in_its_own_axes(
     faces = drawn.array("/world/bodies/brick/faces", "Mesh3D:vertex_positions")
     np.testing.assert_allclose(np.unique(np.abs(faces), axis=0), [[0.075, 0.045, 0.025]], rtol=1e-6)
     assert len(drawn.last("/world/bodies/brick/edges", "LineStrips3D:strips")) == 12
+
+
+def test_an_obstacle_is_drawn_where_it_stands(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, floor: Surface
+) -> None:
+    corners = box_vertices((0.4, 0.2, 0.1)) + np.array([1.0, 2.0, 0.05])
+    step = Obstacle(name="step", vertices_W=corners, friction=0.3, restitution=0.0)
+    Picture(recording, World(bodies=(body,), surfaces=(floor, step)), surface_side=1.0)
+    drawn = read()
+    faces = drawn.array("/world/surfaces/step/patch", "Mesh3D:vertex_positions")
+    np.testing.assert_allclose(faces.min(axis=0), [0.8, 1.9, 0.0], atol=1e-6)
+    np.testing.assert_allclose(faces.max(axis=0), [1.2, 2.1, 0.1], atol=1e-6)
+    assert "/world/surfaces/floor/grid" in drawn.entities
 
 
 def test_a_body_without_shape_is_a_ball(recording: rr.RecordingStream, read: Callable[[], Drawn]) -> None:
