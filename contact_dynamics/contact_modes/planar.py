@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from contact_dynamics.contact_modes.coincident import coincident
 from contact_dynamics.contact_modes.dynamics import judge_all
 from contact_dynamics.contact_modes.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.problem import contact_velocities, planar_problem
@@ -84,10 +85,19 @@ def planar_contact_modes(
                 accuracy=accuracy,
             )
         else:
+            same = coincident(contacts, velocities, body.radius_of_gyration)
             problem = planar_problem(
-                body, velocity, contacts, velocities, wrench, velocity_tolerance=v_tolerance
+                body,
+                velocity,
+                contacts if same is None else [contacts[i] for i in same.firsts],
+                velocities if same is None else [velocities[i] for i in same.firsts],
+                wrench,
+                velocity_tolerance=v_tolerance,
             )
             modes, refused = judge_all(problem, kinematic_cells(problem), accuracy)
+            if same is not None:
+                modes = [same.consistent(mode, accuracy * problem.load) for mode in modes]
+                refused = [same.refused(mode) for mode in refused]
             a_tolerance = accuracy * problem.load / body.mass
     found = tuple(modes)
     return ContactModeAnswer(

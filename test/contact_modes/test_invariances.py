@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from dataclasses import replace
 
@@ -100,6 +101,28 @@ def test_a_contact_that_leaves_adds_an_s(case: FloatCase) -> None:
     answer, wider = ask(case), ask((body, moving, [*contacts, leaving], wrench))
     for found, expected in zip(strings(wider), strings(answer), strict=True):
         assert found == {mode + "s" for mode in expected}
+
+
+@given(cases, st.floats(0.0, 7.0), st.randoms(use_true_random=False))
+@settings(max_examples=60, deadline=None)
+def test_copies_that_rounding_parts_are_copies_all_the_same(
+    case: FloatCase, angle: float, chance: random.Random
+) -> None:
+    """As the feet of a box on both sides of its plane of motion, the lower ones of an inclined face."""
+    body, velocity, contacts, wrench = case
+    c, s = math.cos(angle), math.sin(angle)
+    near = [
+        replace(one, r=(one.r[0] + 1e-16 * c, one.r[1] + 1e-16 * s), normal=one.normal) for one in contacts
+    ]
+    order = list(range(len(contacts)))
+    chance.shuffle(order)
+    answer, doubled = ask(case), ask((body, velocity, [*contacts, *(near[i] for i in order)], wrench))
+    for found, expected in zip(strings(doubled), strings(answer), strict=True):
+        assert found == {mode + "".join(mode[i] for i in order) for mode in expected}
+    for one, other in zip(answer.modes, doubled.modes, strict=True):
+        assert other.motion_unique == one.motion_unique
+        pressed = any(f_n > 1e-6 for _, f_n in one.contact_forces)
+        assert other.forces_unique == (one.forces_unique and not pressed)
 
 
 @given(cases, st.integers(10, 20))
