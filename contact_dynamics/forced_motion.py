@@ -178,8 +178,7 @@ def motion_of(
     A constant force in world axes is a change of gravity, and the motion is then still in closed form.
     Arguments and errors are those of `forced_motion`.
     """
-    turns = bool(np.any(wrench.torque)) or (wrench.axes is WrenchAxes.BODY and bool(np.any(wrench.force)))
-    if turns or drag != NO_DRAG or wrench_of is not None:
+    if turns_or_drags(wrench, drag, wrench_of):
         forced = forced_motion(
             body,
             state,
@@ -192,6 +191,12 @@ def motion_of(
         return ChosenMotion(forced, Method.INTEGRATED)
     fall = check_array("gravity", gravity_W, (3,)) + wrench.force / body.mass
     return ChosenMotion(free_motion(body, state, gravity_W=fall), Method.CLOSED_FORM)
+
+
+def turns_or_drags(wrench: ConstantWrench, drag: Drag, wrench_of: WrenchFunction | None) -> bool:
+    """Return whether something acts that the closed form knows nothing of."""
+    turns = bool(np.any(wrench.torque)) or (wrench.axes is WrenchAxes.BODY and bool(np.any(wrench.force)))
+    return turns or drag != NO_DRAG or wrench_of is not None
 
 
 def forced_motion(

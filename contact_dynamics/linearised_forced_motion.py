@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.applied_wrench import WrenchAxes
-from contact_dynamics.collocation import NODES, nodes_of, solutions
+from contact_dynamics.collocation import Collocation
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rotations import cross_matrices, matrices_of, turned
 from contact_dynamics.tumbling import Sample
@@ -35,9 +35,11 @@ if TYPE_CHECKING:
     from contact_dynamics.forced_motion import ForcedMotion, WrenchFunction
     from contact_dynamics.tumbling import Trajectory
 
+GAUSS: Final = Collocation(8)
+
 PIECE: Final = 0.5
-"""Length of a piece times the fastest rate at which neighbours turn, part or meet, rad: 12 points then err by
-some (PIECE / 4)^12, 1e-11, in the middle of a piece, and by far less at its end."""
+"""Length of a piece times the fastest rate at which neighbours turn, part or meet, rad: 8 points then err by
+some (PIECE / 4)^8 / 8!, 1e-12, in the middle of a piece, and by far less at its end."""
 
 DIFFERENCE: Final = 1e-5
 """m, rad, m/s and rad/s, by which a user's function is differenced, or that part of a larger number. Central:
@@ -65,10 +67,10 @@ def forced_state_derivatives(motion: ForcedMotion, seconds: ArrayLike) -> FloatA
 
 def _one_way(motion: ForcedMotion, times: FloatArray) -> FloatArray:
     edges = _edges(motion, float(times[np.argmax(np.abs(times))]))
-    nodes = nodes_of(edges).ravel()
-    K = _coefficients(motion, nodes).reshape(-1, NODES, 12, 12)
+    nodes = GAUSS.nodes_of(edges).ravel()
+    K = _coefficients(motion, nodes).reshape(-1, GAUSS.count, 12, 12)
     with np.errstate(over="ignore", invalid="ignore"):  # neighbours may part beyond all doubles
-        flow = solutions(K, edges, times)[1]
+        flow = GAUSS.solutions(K, edges, times)[1]
         begin = _rates_for_momenta(motion, motion.at([0.0]))[0]
         found: FloatArray = _rates_for_momenta(motion, motion.at(times)) @ flow @ np.linalg.inv(begin)
     return found

@@ -33,7 +33,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.collocation import NODES, POINTS, integrals, nodes_of, slopes, solutions
+from contact_dynamics.collocation import Collocation
 from contact_dynamics.poinsot import polhode_period
 from contact_dynamics.rigid_body import angular_momentum, cross_matrix
 from contact_dynamics.rotations import cross_matrices, matrices_of
@@ -44,6 +44,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from contact_dynamics.tumbling import FreeMotion
+
+GAUSS: Final = Collocation(12)
 
 PIECE: Final = 0.5
 """Length of a piece in u, the argument of the elliptic functions. Their nearest poles are pi/2 away, so the
@@ -110,10 +112,10 @@ def _slowly(motion: FreeMotion, times: FloatArray) -> tuple[FloatArray, FloatArr
     for side in (times > 0.0, times < 0.0):
         if side.any():
             span = float(times[side][np.argmax(np.abs(times[side]))])
-            inverse = _inverse_inertia(motion, matrices_of(motion.at(span * POINTS).q_WB))
+            inverse = _inverse_inertia(motion, matrices_of(motion.at(span * GAUSS.points).q_WB))
             forcing = span * np.concatenate([inverse @ L_cross, inverse], axis=2)[None]
-            rates = slopes(forcing[..., :3], forcing)[0]
-            answers[side] = np.einsum("nk,kij->nij", integrals(times[side] / span), rates)
+            rates = GAUSS.slopes(forcing[..., :3], forcing)[0]
+            answers[side] = np.einsum("nk,kij->nij", GAUSS.integrals(times[side] / span), rates)
     return np.eye(3) + answers[:, :, :3], answers[:, :, 3:]
 
 
@@ -171,8 +173,8 @@ def _in_pieces(motion: FreeMotion, times: FloatArray, rate: float) -> tuple[Floa
         ahead = np.abs(times[here])
         edges = _edges(float(ahead.max()), rate, largest_rate(motion.rotation))
         edges *= sign
-        K = _coefficients(motion, nodes_of(edges).ravel()).reshape(-1, NODES, 3, 3)
-        begin, answers[here] = solutions(K, edges, times[here])
+        K = _coefficients(motion, GAUSS.nodes_of(edges).ravel()).reshape(-1, GAUSS.count, 3, 3)
+        begin, answers[here] = GAUSS.solutions(K, edges, times[here])
         which = np.minimum(np.searchsorted(np.abs(edges), ahead, side="right") - 1, len(edges) - 2)
         errors[here] = ROUNDING * np.square(np.maximum.accumulate(_largest(begin))[which])
     return answers, errors

@@ -30,8 +30,9 @@ def state(v: object = (1.0, -0.5, 2.0), w: object = (0.9, -1.4, 0.6)) -> BodySta
 
 def spring(_: float, sample: object) -> tuple[list[float], list[float]]:
     """A force towards the origin, and a torque that rights the body's x axis: both of the state."""
-    along = Rotation.from_quat(sample.q_WB).apply([1.0, 0.0, 0.0])
-    return [-3.0 * x for x in sample.p_WB_W], np.cross(along, [0.0, 0.0, 0.7]).tolist()
+    x, y, z, w = sample.q_WB
+    along = (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z))
+    return [-3.0 * x for x in sample.p_WB_W], [0.7 * along[1], -0.7 * along[0], 0.0]
 
 
 FORCES = {

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from contact_dynamics.applied_wrench import NO_DRAG, ConstantWrench, Drag, WrenchAxes
-from contact_dynamics.errors import NotSupportedError, TooLargeError
+from contact_dynamics.applied_wrench import ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.errors import TooLargeError
 from contact_dynamics.flips import next_flips
 from contact_dynamics.forced_motion import ForcedMotion, motion_of
+from contact_dynamics.forced_motion_fit import fit_motion
 from contact_dynamics.nodes.sampling import MOST_INTEGRATED_STEPS, times_of
 from contact_dynamics.nodes.subject import Knowledge, Subject, covariance_of, gravity_of, subject_of
 from contact_dynamics.poinsot import poinsot, rolling_curves
@@ -40,19 +42,14 @@ MOST_CURVE_POINTS: Final = 10_000
 
 def predict_tumbling(request: Any, response: Any, knowledge: Knowledge) -> None:
     """Answer one request, or raise a `ContactDynamicsError` that says what is wrong with it."""
-    wrench, drag = _wrench_of(request), _drag_of(request)
-    if request.fit_window > 0.0 and (wrench.force.any() or wrench.torque.any() or drag != NO_DRAG):
-        found = f"found {request.fit_window:g} with a wrench or drag"
-        raise NotSupportedError(f"fit_window: {found}, allowed is 0: fits are of free flights")
-    subject = subject_of(request, knowledge)
-    motion, method = motion_of(
-        subject.body.mass_properties,
-        subject.state,
-        gravity_W=gravity_of(request, knowledge),
-        wrench=wrench,
-        drag=drag,
-        most_steps=MOST_INTEGRATED_STEPS,
-    )
+    forces: dict[str, Any] = {
+        "gravity_W": gravity_of(request, knowledge),
+        "wrench": _wrench_of(request),
+        "drag": _drag_of(request),
+        "most_steps": MOST_INTEGRATED_STEPS,
+    }
+    subject = subject_of(request, knowledge, fit=partial(fit_motion, **forces))
+    motion, method = motion_of(subject.body.mass_properties, subject.state, **forces)
     times, event = times_of(request, response, subject, motion, knowledge)
     if isinstance(motion, ForcedMotion):
         response.poinsot = torque_acts()

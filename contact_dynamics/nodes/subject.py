@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from msg_adapters.geometry import mass_properties_from_msg, vector_from_msg
 from msg_adapters.stamps import stamp_ns_from_msg
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from builtin_interfaces.msg import Time
     from geometry_msgs.msg import Inertia
@@ -33,9 +33,11 @@ if TYPE_CHECKING:
     from contact_dynamics.contact import ContactSet
     from contact_dynamics.nodes.parameters import ServerParameters
     from contact_dynamics.nodes.state_store import StateStore
-    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.rigid_body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
     from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
+
+    Fitting: TypeAlias = Callable[[MassProperties, Sequence[BodyState]], FitResult]
 
 _LONGEST_NAME = 256
 
@@ -66,8 +68,10 @@ class Subject:
         )
 
 
-def subject_of(request: Any, knowledge: Knowledge) -> Subject:
+def subject_of(request: Any, knowledge: Knowledge, *, fit: Fitting | None = None) -> Subject:
     """Return the body and the state that a request of any of the three services names or carries.
+
+    ``fit`` finds the state that fits a window of published ones best; None: that of a free flight.
 
     Raises:
         ContactDynamicsError: the body is unknown, its state unknown or stale, or a number not allowed.
@@ -87,7 +91,7 @@ def subject_of(request: Any, knowledge: Knowledge) -> Subject:
         explicit=explicit,
         stamp=request.stamp,
         window=window,
-        gravity_W=gravity_of(request, knowledge) if hasattr(request, "gravity") else None,
+        fit=fit,
     )
 
 
@@ -124,7 +128,7 @@ def _subject(
     explicit: BodyStateMsg | None,
     stamp: Time,
     window: float = 0.0,
-    gravity_W: FloatArray | None = None,
+    fit: Fitting | None = None,
 ) -> Subject:
     parameters = knowledge.parameters
     body = _body_of(name, inertia, knowledge)
@@ -144,10 +148,12 @@ def _subject(
         states = [_carried_over(state, configured, body) for state in states]
     if window == 0.0:
         return Subject(body=body, state=states[-1], world_frame=parameters.world_frame)
-    falls = parameters.world.gravity_W if gravity_W is None else gravity_W
-    fit = fit_free_motion(body.mass_properties, states, gravity_W=falls)
+    if fit is None:
+        best = fit_free_motion(body.mass_properties, states, gravity_W=parameters.world.gravity_W)
+    else:
+        best = fit(body.mass_properties, states)
     return Subject(
-        body=body, state=fit.state, world_frame=parameters.world_frame, covariance=fit.covariance, fit=fit
+        body=body, state=best.state, world_frame=parameters.world_frame, covariance=best.covariance, fit=best
     )
 
 

@@ -125,7 +125,7 @@ def test_a_fit_to_the_last_states_does_not_care_for_a_bad_velocity(client: Clien
     assert raw.fit_count == 0
 
 
-def test_fits_are_of_flights_in_the_gravity_asked_for_and_of_free_ones(client: Client) -> None:
+def test_fits_are_of_flights_under_the_forces_asked_for(client: Client) -> None:
     """Poses of a body that floats: with gravity the fit finds it falling."""
     publisher = client.publisher(Odometry, "/brick/odometry")
     begin_ns = client.node.get_clock().now().nanoseconds + 300_000_000  # after what was published before
@@ -148,10 +148,17 @@ def test_fits_are_of_flights_in_the_gravity_asked_for_and_of_free_ones(client: C
     assert answers[-1].state.linear_velocity.z == pytest.approx(2.0, abs=1e-6)
     request.gravity = request.GRAVITY_AS_CONFIGURED
     assert client.ask(request).fit_position_residual > 1e-3
-    request.linear_drag = 0.1
-    answer = client.ask(request)
-    assert answer.status == answer.NOT_SUPPORTED
-    assert "fit_window: found 0.115 with a wrench or drag, allowed is 0" in answer.message
+    # What keeps it at its speed: a force as large as its weight, or as its weight and drag.
+    request.applied_wrench.force.z = 0.4 * G
+    held = client.ask(request)
+    assert held.method == held.CLOSED_FORM
+    assert held.fit_position_residual < 1e-8
+    request.linear_drag, request.applied_wrench.force.z = 0.2, 0.4 * G + 0.2 * 2.0
+    dragged = client.ask(request)
+    assert dragged.status == dragged.OK, dragged.message
+    assert (dragged.method, dragged.fit_count) == (dragged.INTEGRATED, 12)
+    assert dragged.fit_position_residual < 1e-8
+    assert dragged.state.linear_velocity.z == pytest.approx(2.0, abs=1e-6)
 
 
 def test_a_window_that_holds_too_little_is_refused(client: Client) -> None:
