@@ -1,10 +1,11 @@
 """Contact modes (Mason, lecture 26): does the body, at each contact, separate, slide or stay fixed?
 
 In reading order: verdicts and evidence (`result`); one contact in closed form (`single`); any planar set
-(`planar`, `coincident`), stated as a cone (`problem`, `cone`), its modes enumerated (`enumeration`) and judged
-(`dynamics`, `independent`, `wrench_cone`, `least_force`); applied wrenches of each mode (`wrench_sets`), their map and margins
-(`margins`); equilibrium, jamming and wedging (`statics`). In space: contacting and separating modes
-(`spatial`); sticking and sliding, with mechanics (`spatial_dynamics`, `spatial_result`): every combination of
+(`planar`, `coincident`), stated as a cone (`problem`, `cone`), its modes enumerated (`enumeration`) and
+judged (`dynamics`, `independent`, `wrench_cone`, `least_force`); applied wrenches of each mode
+(`wrench_sets`), their map and margins (`margins`); equilibrium, jamming and wedging (`statics`). In space:
+contacting and separating modes (`spatial`); sticking and sliding, with mechanics (`spatial_dynamics`,
+`spatial_result`): every combination of
 letters (`spatial_search`, `spatial_letters`, `spatial_regions`, `spatial_program`), shown with exact friction
 (`spatial_sharpening`) and shared forces (`spatial_forces`); statics (`spatial_statics`). What follows where
 no mode is consistent though no contact approaches: `jamming`, by `complementarity`.
