@@ -6,7 +6,8 @@ The table of contents, chapters in reading order; everything here is plain NumPy
 - Lecture 24, 25, mass properties from particles, shapes and meshes: `MassDistribution` (`inertia`).
 - Lecture 25, tumbling: `free_motion` and its `FreeMotion` (`tumbling`); Poinsot's picture of it is in
   `contact_dynamics.poinsot`.
-- Motion under wrenches and drag: `motion_of`. A state from several: `fit_free_motion`. Its covariance along
+- Motion under wrenches and drag: `motion_of`. A state from several: `fit_free_motion`, and under
+  forces `fit_motion`. Its covariance along
   the way: `propagate_covariance`.
 - Where a flight ends: `first_contact`, `next_landing`, in a `World` of `Body`, `Surface` and `Obstacle`.
   Shapes of bodies, from spheres to polyhedra: `contact_dynamics.convex_shape`.
@@ -36,6 +37,7 @@ from contact_dynamics.convex_shape import ConvexShape
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.first_contact import FirstContact, first_contact
 from contact_dynamics.forced_motion import motion_of
+from contact_dynamics.forced_motion_fit import fit_motion
 from contact_dynamics.impact import (
     ImpactOutcome,
     PlanarImpact,
@@ -52,7 +54,7 @@ from contact_dynamics.obstacle import Obstacle
 from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.plane_of_motion import PlanarProblem, PlaneOfMotion, best_plane, project
 from contact_dynamics.rigid_body import BodyState, MassProperties, angular_momentum, kinetic_energy, momentum
-from contact_dynamics.tumbling import FreeMotion, Regime, Trajectory, free_motion
+from contact_dynamics.tumbling import FreeMotion, Regime, Trajectory, free_motion, states_of_many
 from contact_dynamics.uncertainty import propagate_covariance
 from contact_dynamics.world import Body, Surface, World, box_vertices
 
@@ -94,6 +96,7 @@ __all__ = [
     "find_contacts",
     "first_contact",
     "fit_free_motion",
+    "fit_motion",
     "free_motion",
     "kinetic_energy",
     "momentum",
@@ -107,5 +110,6 @@ __all__ = [
     "several_impact",
     "spatial_contact_modes",
     "spatial_impact",
+    "states_of_many",
     "spatial_mode_margins",
 ]

@@ -55,9 +55,9 @@ def fit_motion(
     """Return the motion that fits ``states``, in order of time, best under the forces that act.
 
     Where `contact_dynamics.motion_of` would have it in closed form it is `fit_free_motion`'s. Seconds of
-    ``wrench_of`` count from the newest state; ``most_steps`` is `forced_motion`'s. With ``noise`` the covariance follows from it, and velocities
-    are used that it has a deviation for; without, poses alone, and the covariance follows from their
-    residuals.
+    ``wrench_of`` count from the newest state; ``most_steps`` is `forced_motion`'s. With ``noise`` the
+    covariance follows from it, and velocities are used that it has a deviation for; without, poses alone, and
+    the covariance follows from their residuals.
 
     Raises:
         InvalidFieldError, TooLargeError: as `fit_free_motion` and `forced_motion`; or the motion grows
