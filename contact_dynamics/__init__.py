@@ -7,8 +7,7 @@ The table of contents, chapters in reading order; everything here is plain NumPy
 - Lecture 25, tumbling: `free_motion` and its `FreeMotion` (`tumbling`); Poinsot's picture of it is in
   `contact_dynamics.poinsot`.
 - Motion under wrenches and drag: `motion_of`. A state from several: `fit_free_motion`, and under
-  forces `fit_motion`. Its covariance along
-  the way: `propagate_covariance`.
+  forces `fit_motion`. Its covariance along the way: `propagate_covariance`.
 - Where a flight ends: `first_contact`, `next_landing`, in a `World` of `Body`, `Surface` and `Obstacle`.
   Shapes of bodies, from spheres to polyhedra: `contact_dynamics.convex_shape`.
 - Contacts: `ContactSet` in space (`contact`), of all kinds (`contact_curvature`), from geometry
@@ -110,6 +109,6 @@ __all__ = [
     "several_impact",
     "spatial_contact_modes",
     "spatial_impact",
-    "states_of_many",
     "spatial_mode_margins",
+    "states_of_many",
 ]
