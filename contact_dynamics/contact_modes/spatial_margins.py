@@ -1,8 +1,7 @@
 """How far an applied wrench in space is from leaving its contact modes, and into which ones it would.
 
-The applied wrenches of a mode are what its motions need less what its contact forces give: sums of generators
-in R^6, a polyhedron whose facets are the extreme rays of the dual cone. Centripetal terms add a seventh
-coordinate, at height one. The margin is the distance to the nearest facet in a stated metric, as for planes.
+The applied wrenches of a mode (`spatial_wrenches`) are a polyhedron in R^6 whose facets are the extreme rays
+of the dual cone. The margin is the distance to the nearest facet in a stated metric, as in the plane.
 
 Where contacts stick, pyramids inside the round cones make a margin at most the true one, short by the part
 1 - cos(pi / facets) of friction or less. Where those that stay slide already, it is exact.
@@ -20,9 +19,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact_modes.spatial_case import SpatialCase, search_of, spatial_case
-from contact_dynamics.contact_modes.spatial_cone import cone_of, null_space
+from contact_dynamics.contact_modes.spatial_cone import cone_of
 from contact_dynamics.contact_modes.spatial_dynamics import evidenced, spatial_contact_modes
 from contact_dynamics.contact_modes.spatial_statics import MOST_EDGES
+from contact_dynamics.contact_modes.spatial_wrenches import wrench_generators
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import ROW_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_not_negative, check_positive
@@ -146,10 +146,9 @@ def _nearest(
         return math.nan, np.zeros(6)
     motion = case.motion
     unit = motion.mass * motion.scale  # N; wrenches are divided by it, and torques by the length
-    generators = _generators(case, search, found, metric)
+    letters = "".join(one.letter for one in found.letters)
+    generators = wrench_generators(case, search, letters, search.acting(found), metric)
     target = np.append(motion.wrench / metric / unit, 1.0)
-    if not np.any(generators[:, :6]):
-        generators = generators[:0]
     sizes = np.linalg.norm(generators, axis=1)
     rows = generators[sizes > ROW_TOLERANCE] / sizes[sizes > ROW_TOLERANCE, None]
     if len(rows) == 0:
@@ -167,34 +166,3 @@ def _nearest(
             if depth < margin:
                 margin, way = depth, -ray[:6] / across
     return margin * unit, way
-
-
-def _generators(case: SpatialCase, search: Search, found: Found, metric: FloatArray) -> FloatArray:
-    """Return what the mode's wrenches are positive sums of, (k, 7); the last is the height, one in all."""
-    motion = case.motion
-    zero, positive = [np.zeros((0, 7))], [np.zeros((0, 7))]
-    for contact, letters in zip(search.touching, found.letters, strict=True):
-        rows = contact.point if letters.letter == "f" else (contact.normal @ contact.point)[None, :]
-        (positive if letters.letter == "s" else zero).append(rows)
-    height = np.eye(1, 7, 6)
-    free = null_space(_unit(np.vstack(zero)))  # (7, k)
-    within = _unit(np.vstack([*positive, height]) @ free)
-    inside = cone_of(within)
-    motions = np.vstack([inside.rays, inside.lines, -inside.lines]) @ free.T
-    inertia = np.zeros((6, 6))
-    inertia[:3, :3] = np.eye(3) * motion.mass
-    inertia[3:, 3:] = motion.inertia
-    needs = motions[:, :6] / motion.lengths @ inertia / metric / motion.mass
-    given = [np.zeros((0, 6))]
-    for i, edges in zip(case.touching.tolist(), search.acting(found), strict=True):
-        given.append(-(edges @ motion.points[3 * i : 3 * i + 3]) / metric)
-    forces = np.vstack(given)
-    return np.vstack(
-        [np.column_stack([needs, motions[:, 6]]), np.column_stack([forces, np.zeros(len(forces))])]
-    )
-
-
-def _unit(rows: FloatArray) -> FloatArray:
-    sizes = np.linalg.norm(rows, axis=1)
-    found: FloatArray = rows[sizes > ROW_TOLERANCE] / sizes[sizes > ROW_TOLERANCE, None]
-    return found
