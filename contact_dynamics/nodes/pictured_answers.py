@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
@@ -72,7 +73,17 @@ def show_tumbling(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns
         speed = np.linalg.norm(vector_from_msg(response.event_velocity))
         where = response.event_surface or "the plane"
         event = f"reaches {where} in {response.event_time:.4g} s at ({point}) m with {speed:.3g} m/s"
-    tell(picture, TUMBLING, [event, REGIMES[response.poinsot.regime]], response, stamp_ns=stamp_ns)
+    words = [event, REGIMES[response.poinsot.regime], *flips_in_words(response.poinsot)]
+    tell(picture, TUMBLING, words, response, stamp_ns=stamp_ns)
+
+
+def flips_in_words(msg: Any) -> list[str]:
+    """Return when a body that spins near its middle axis turns over next, with its deviation if told."""
+    flips = [
+        f"{seconds:.3g} s" + ("" if math.isnan(deviation) else f" (±{deviation:.2g} s)")
+        for seconds, deviation in zip(msg.flip_times, msg.flip_time_deviations, strict=True)
+    ]
+    return [f"its middle axis turns over after {', '.join(flips)}"] if flips else []
 
 
 def poinsot_picture(msg: Any) -> PoinsotPicture:
@@ -109,9 +120,8 @@ def show_impact(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns: 
         strikes=strikes_from_msg(impact, p_FB_F=p_FB_F),
     )
     picture.show_impact(name, shown, stamp_ns=stamp_ns)
-    outcome = ImpactOutcome(impact.outcome).name.replace("_", " ").lower()
     words = [
-        f"strikes in {response.time_to_contact:.4g} s: {outcome}",
+        f"strikes in {response.time_to_contact:.4g} s: {in_words(impact.outcome)}",
         f"velocity ({numbers(state.v_WB_W)}) becomes ({numbers(after)}) m/s",
         f"impulse {np.linalg.norm(impulses.sum(axis=0)):.3g} N s",
         f"{impact.kinetic_energy_before - impact.kinetic_energy_after:.3g} J lost",
@@ -119,12 +129,29 @@ def show_impact(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns: 
     for other, other_after in zip(response.other_state_before, impact.other_state_after, strict=True):
         velocity = numbers(vector_from_msg(other_after.linear_velocity))
         words.append(f"that of {other.body_name or 'the other body'} becomes ({velocity}) m/s")
+    words += probabilities_in_words(impact)
     if shown.strikes:
         count, last = len(shown.strikes), 1e3 * shown.strikes[-1].seconds
         words.append(f"{count} strikes within {last:.3g} ms; then {SEQUENCE_ENDS[impact.sequence_end]}")
     if impact.creates_energy:
         words.append("the law creates energy: do not trust this answer")
     tell(picture, IMPACT, words, response, stamp_ns=stamp_ns)
+
+
+def probabilities_in_words(msg: Any) -> list[str]:
+    """Return how probable each outcome is, the most probable first, where that was told."""
+    if len(msg.outcome_probabilities) == 0:
+        return []
+    named = [(share, in_words(i)) for i, share in enumerate(msg.outcome_probabilities) if share > 0.0]
+    if msg.miss_probability > 0.0:
+        named.append((msg.miss_probability, "separates"))
+    named.sort(reverse=True)
+    return [f"outcomes: {', '.join(f'{words} {100.0 * share:.2g} %' for share, words in named)}"]
+
+
+def in_words(outcome: int) -> str:
+    """Return what a contact does in an impact, in words."""
+    return ImpactOutcome(outcome).name.replace("_", " ").lower()
 
 
 def strikes_from_msg(msg: Any, *, p_FB_F: FloatArray) -> tuple[DrawnStrike, ...]:

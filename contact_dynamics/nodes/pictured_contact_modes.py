@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from contact_dynamics.contact_modes import ConsistentMode, ModeVerdict, ModeWrenchSet, WrenchHalfSpace
-from contact_dynamics.impact.law import ImpactOutcome
-from contact_dynamics.nodes.pictured_answers import numbers, rows, tell
+from contact_dynamics.nodes.pictured_answers import in_words, numbers, rows, tell
 from contact_dynamics.planar import PlanarContact, PlanarWrench
 from contact_dynamics.plane_of_motion import PlaneOfMotion
 from contact_dynamics.viewing.contact_modes import ContactModesPicture, DrawnMode
@@ -154,9 +153,8 @@ def _words(response: Any) -> list[str]:
         ]
         words.append(", ".join(answers))
     for impact in response.impact:
-        outcome = ImpactOutcome(impact.outcome).name.replace("_", " ").lower()
         after = numbers(vector_from_msg(impact.state_after.linear_velocity))
-        words.append(f"an impact settles it: {outcome}; velocity becomes ({after}) m/s")
+        words.append(f"an impact settles it: {in_words(impact.outcome)}; velocity becomes ({after}) m/s")
         modes = ", ".join(mode.mode for mode in response.modes_after_impact)
         verdict = VERDICTS[ModeVerdict(response.verdict_after_impact)]
         words.append(f"then it {verdict}: {modes}" if modes else f"then it {verdict}")

@@ -262,6 +262,19 @@ def test_polhode_and_herpolhode_are_drawn_where_the_answer_carries_them(bench: B
     assert drawn.stamps("/poinsot/brick/body", "Transform3D:quaternion") == [STAMP_NS, STAMP_NS + 7]
 
 
+def test_flips_and_how_probable_outcomes_are_is_told(bench: Bench) -> None:
+    answer = tumbling_answer()
+    answer.poinsot.flip_times, answer.poinsot.flip_time_deviations = [0.4, 1.25], [0.01, float("nan")]
+    bench.answer("predict_tumbling", answer)
+    struck = impact_answer(two_contacts())
+    struck.impact.outcome_probabilities = [0.0, 0.25, 0.7, 0.0, 0.0, 0.0, 0.0, 0.0]
+    struck.impact.miss_probability = 0.05
+    bench.answer("predict_impact", struck)
+    text = str(bench.drawn().values["/answers/log", "TextLog:text"])
+    assert "its middle axis turns over after 0.4 s (±0.01 s), 1.25 s" in text
+    assert "outcomes: sticks in compression 70 %, slides 25 %, separates 5 %" in text
+
+
 def test_an_impact_is_drawn_when_it_was_asked_for(bench: Bench) -> None:
     bench.answer("predict_impact", impact_answer(two_contacts()))
     drawn = bench.drawn()

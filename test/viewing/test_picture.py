@@ -95,6 +95,20 @@ def test_the_first_trajectory_is_looked_at_with_the_ground_below_it_and_later_on
     np.testing.assert_allclose(patch.mean(axis=0), [*center[:2], 0.0], atol=1e-6)
 
 
+def test_a_diagram_gets_its_tab_when_it_is_first_drawn(
+    recording: rr.RecordingStream,
+    read: Callable[[], Drawn],
+    *,
+    world: World,
+    state: BodyState,
+    two_contacts: ContactSet,
+) -> None:
+    picture = Picture(recording, world, surface_side=0.5)
+    for _ in range(3):
+        picture.show_impact("brick", an_impact(state, two_contacts), stamp_ns=STAMP_NS)
+    assert read().blueprints == 2  # without, then with impulse space
+
+
 def test_the_last_look_is_at_what_is_in_view_then(
     recording: rr.RecordingStream, read: Callable[[], Drawn], world: World, state: BodyState
 ) -> None:
