@@ -12,17 +12,22 @@ takes some. This holds for every mode and refuses much at once.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from contact_dynamics.contact_modes.spatial_letters import STRICT, any_letter, pyramid_of, with_acting
 from contact_dynamics.contact_modes.spatial_program import Program
 from contact_dynamics.contact_modes.spatial_regions import Image, Region, image_of, whole
+from contact_dynamics.errors import TooLargeError
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial_letters import Letters, Pyramid
     from contact_dynamics.validation import FloatArray
+
+MOST_EXAMINED: Final = 30_000
+"""Trials, of some 0.1 ms each, after which a search is given up: where many feet slide along the border of
+two sectors of their pyramids at once, either sector is consistent for each."""
 
 _REGION_TAG = -2
 _CONTACT_TAG = -3
@@ -133,6 +138,12 @@ class Search:
 
     def _holds(self, program: Program) -> bool:
         self.examined += 1
+        if self.examined > MOST_EXAMINED:
+            raise TooLargeError(
+                "contacts",
+                f"{len(self.touching)} whose modes take more than {MOST_EXAMINED} trials",
+                "fewer contacts, or other friction_facets",
+            )
         return program.solve()
 
     def _narrowed(self, program: Program, at: int, letters: Letters, *, staying: bool = False) -> Program:
