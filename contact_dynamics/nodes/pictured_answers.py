@@ -13,6 +13,7 @@ from contact_dynamics.rigid_body import rotation_matrix
 from contact_dynamics.tumbling import Trajectory
 from contact_dynamics.viewing.impact import DrawnStrike, ImpactPicture, OtherBody
 from contact_dynamics.viewing.poinsot import PoinsotPicture
+from contact_dynamics.viewing.trajectory import PositionUncertainty
 from contact_dynamics_interfaces.msg import Impact, Poinsot
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 from msg_adapters.body_state import body_state_from_msg
@@ -56,7 +57,8 @@ def show_tumbling(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns
     stamp_ns = stamp_ns_from_msg(response.state.header.stamp) or now_ns
     name = response.state.body_name
     trajectory = trajectory_from_msg(response.trajectory, p_FB_F=p_FB_F)
-    picture.show_trajectory(name, trajectory, stamp_ns=stamp_ns)
+    uncertainty = uncertainty_from_msg(response.trajectory)
+    picture.show_trajectory(name, trajectory, stamp_ns=stamp_ns, uncertainty=uncertainty)
     if len(response.poinsot.polhode) > 0 and response.poinsot.regime not in (
         Poinsot.UNKNOWN,
         Poinsot.AT_REST,
@@ -206,6 +208,16 @@ def trajectory_from_msg(msg: Any, *, p_FB_F: FloatArray) -> Trajectory:
         q_WB=orientations,
         v_WB_W=rows(msg.linear_velocities),
         w_WB_W=rows(msg.angular_velocities),
+    )
+
+
+def uncertainty_from_msg(msg: Any) -> PositionUncertainty | None:
+    """Return how uncertain the centre of mass is along a trajectory; None: not told."""
+    if len(msg.covariances) == 0:
+        return None
+    return PositionUncertainty(
+        covariances_W=np.reshape(msg.covariances, (-1, 12, 12))[:, :3, :3],
+        trusted=tuple(msg.covariances_trusted),
     )
 
 

@@ -9,6 +9,7 @@ LEGEND_TEXT: Final = """\
 | --- | --- |
 | blue grey body, trail, curves | measured |
 | orange paths, outlines, curves | predicted, in the last 10 s |
+| orange ellipsoids | two deviations of the predicted centre of mass; white: not to be relied on |
 | orange translucent body | end of the newest prediction |
 | red outlines, arrows | bodies at predicted impacts in the last 10 s, impulses on them |
 | pale, bright yellow arrow | velocity of the centre of mass before, after the newest of them |

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from contact_dynamics.viewing.impact import ImpactPicture
     from contact_dynamics.viewing.planar_modes import PlanarModesPicture
     from contact_dynamics.viewing.poinsot import PoinsotPicture
+    from contact_dynamics.viewing.trajectory import PositionUncertainty
     from contact_dynamics.world import Body, World
 
 
@@ -95,10 +96,18 @@ class Picture:
         while self._recent[-1][0] - self._recent[0][0] > WINDOW_S * 1e9:
             self._recent.popleft()
 
-    def show_trajectory(self, body_name: str, trajectory: Trajectory, *, stamp_ns: int) -> None:
-        """Draw where the body was predicted to be from a stamp on."""
+    def show_trajectory(
+        self,
+        body_name: str,
+        trajectory: Trajectory,
+        *,
+        stamp_ns: int,
+        uncertainty: PositionUncertainty | None = None,
+    ) -> None:
+        """Draw where the body was predicted to be from a stamp on, and how surely."""
         set_time(self._recording, stamp_ns)
-        draw_trajectory(self._recording, body_name, self._shape(body_name), trajectory)
+        shape = self._shape(body_name)
+        draw_trajectory(self._recording, body_name, shape, trajectory, uncertainty=uncertainty)
         self._predictions[body_name] = _Prediction(begin_ns=stamp_ns, trajectory=trajectory)
         if len(trajectory) > 0 and not self._framed:
             self._framed = True

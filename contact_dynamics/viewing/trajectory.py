@@ -1,7 +1,12 @@
-"""Where a body was predicted to be: the path of its centre of mass, outlines on it, the pose at its end."""
+"""Where a body was predicted to be: the path of its centre of mass, outlines on it, the pose at its end.
+
+Where the prediction has covariances, an ellipsoid stands at each outline: with two deviations to each side
+it holds the centre of mass in three of four cases. White: not to be relied on any more.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -28,7 +33,10 @@ NEARBY: Final = 0.25
 """Relative to the size of the body: an end that is nearer to the start is not drawn, since it would only hide
 the body."""
 
-RECENT: Final = ("path", "outlines", "end")
+DEVIATIONS: Final = 2.0
+"""Half axes of the ellipsoids of uncertainty, in standard deviations: 74 % of a normal distribution."""
+
+RECENT: Final = ("path", "outlines", "end", "uncertainty")
 """What stays in view beside what comes after it."""
 
 _PATH_WIDTH: Final = -2.0  # negative: points of the screen
@@ -36,8 +44,21 @@ _OUTLINE_WIDTH: Final = -0.8
 _END_WIDTH: Final = -1.5
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PositionUncertainty:
+    """How uncertain the centre of mass is at each sample of a trajectory."""
+
+    covariances_W: FloatArray  # (n, 3, 3), m^2, world axes
+    trusted: tuple[bool, ...]  # (n,), whether each can be relied on
+
+
 def draw_trajectory(
-    recording: rr.RecordingStream, body_name: str, shape: Shape, trajectory: Trajectory
+    recording: rr.RecordingStream,
+    body_name: str,
+    shape: Shape,
+    trajectory: Trajectory,
+    *,
+    uncertainty: PositionUncertainty | None = None,
 ) -> None:
     """Draw a trajectory at the recording's current time; one without samples clears what was drawn before."""
     path = predicted_entity(body_name)
@@ -56,6 +77,8 @@ def draw_trajectory(
     edges = [edge for edges in outlines for edge in edges]
     color = palette.translucent(palette.PREDICTED, 0.45)
     recording.log(f"{path}/outlines", rr.LineStrips3D(edges, colors=color, radii=_OUTLINE_WIDTH))
+    ellipsoids = _ellipsoids(trajectory, uncertainty, [*chosen.tolist(), last])
+    recording.log(f"{path}/uncertainty", ellipsoids or rr.Clear(recursive=False))
     p_WB_W, q_WB = trajectory.p_WB_W[last], trajectory.q_WB[last]
     moves_away = travelled > NEARBY * shape.size
     edges = list(outline(shape, p_WB_W, q_WB)) if moves_away else []
@@ -64,6 +87,27 @@ def draw_trajectory(
     recording.log(f"{path}/newest_end", pose)
     faces = solid(shape, palette.translucent(palette.PREDICTED, 0.25))
     recording.log(f"{path}/newest_end/faces", faces if moves_away else rr.Clear(recursive=False))
+
+
+def _ellipsoids(
+    trajectory: Trajectory, uncertainty: PositionUncertainty | None, samples: list[int]
+) -> rr.Ellipsoids3D | None:
+    if uncertainty is None:
+        return None
+    from scipy.spatial.transform import Rotation
+
+    known = [i for i in samples if np.isfinite(uncertainty.covariances_W[i]).all()]
+    variances, axes_W = np.linalg.eigh(uncertainty.covariances_W[known])
+    right_handed = axes_W * np.linalg.det(axes_W)[:, None, None]
+    turns = Rotation.from_matrix(right_handed).as_quat() if known else []
+    return rr.Ellipsoids3D(
+        centers=trajectory.p_WB_W[known],
+        half_sizes=DEVIATIONS * np.sqrt(np.maximum(variances, 0.0)),
+        quaternions=[rr.Quaternion(xyzw=turn) for turn in turns],
+        colors=[palette.PREDICTED if uncertainty.trusted[i] else palette.UNDECIDED for i in known],
+        line_radii=_OUTLINE_WIDTH,
+        fill_mode=rr.components.FillMode.MajorWireframe,
+    )
 
 
 def outline(shape: Shape, p_WB_W: FloatArray, q_WB: FloatArray) -> FloatArray:

@@ -245,6 +245,16 @@ def test_a_trajectory_is_that_of_the_centre_of_mass(bench: Bench) -> None:
     assert "it tumbles about its major axis (1.2 ms)" in text
 
 
+def test_covariances_are_drawn_where_the_answer_carries_them(bench: Bench) -> None:
+    answer = tumbling_answer()
+    covariance = np.diag([1e-4, 4e-4, 9e-4] + [1.0] * 9)
+    answer.trajectory.covariances = [*covariance.ravel(), *(4.0 * covariance).ravel()]
+    answer.trajectory.covariances_trusted = [True, True]
+    bench.answer("predict_tumbling", answer)
+    half_sizes = bench.drawn().array("/world/predicted/brick/uncertainty", "Ellipsoids3D:half_sizes")
+    np.testing.assert_allclose(np.sort(half_sizes[-1]), [0.04, 0.08, 0.12], rtol=1e-5)
+
+
 def test_polhode_and_herpolhode_are_drawn_where_the_answer_carries_them(bench: Bench) -> None:
     answer = tumbling_answer()
     answer.poinsot.rotational_energy = 0.5

@@ -8,8 +8,15 @@ from scipy.spatial.transform import Rotation
 
 from contact_dynamics.rigid_body import BodyState
 from contact_dynamics.tumbling import free_motion
+from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.shape import convex_shape
-from contact_dynamics.viewing.trajectory import MOST_OUTLINES, MOST_PATH_POINTS, draw_trajectory
+from contact_dynamics.viewing.trajectory import (
+    DEVIATIONS,
+    MOST_OUTLINES,
+    MOST_PATH_POINTS,
+    PositionUncertainty,
+    draw_trajectory,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -44,6 +51,45 @@ def test_path_outlines_and_end_are_those_of_the_trajectory(
         corners = trajectory.p_WB_W[sample] + turned_vertices
         distances = np.linalg.norm(outline[:, None] - corners, axis=2).min(axis=1)
         np.testing.assert_allclose(distances, 0.0, atol=1e-6)
+
+
+def test_ellipsoids_have_two_deviations_along_the_axes_of_the_covariance(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, trajectory: Trajectory
+) -> None:
+    axes = Rotation.from_rotvec([0.3, -0.5, 0.8]).as_matrix()
+    deviations = np.array([0.01, 0.02, 0.05])
+    covariance = axes @ np.diag(deviations**2) @ axes.T
+    covariances = (
+        np.tile(covariance, (len(trajectory), 1, 1)) * np.linspace(0.0, 1.0, len(trajectory))[:, None, None]
+    )
+    trusted = (True,) * (len(trajectory) - 1) + (False,)
+    uncertainty = PositionUncertainty(covariances_W=covariances, trusted=trusted)
+    draw_trajectory(recording, "brick", convex_shape(body.vertices_B), trajectory, uncertainty=uncertainty)
+    drawn = read()
+    path = f"{PREDICTED}/uncertainty"
+    np.testing.assert_allclose(
+        drawn.array(path, "Ellipsoids3D:centers")[-1], trajectory.p_WB_W[-1], atol=1e-6
+    )
+    half_axes = drawn.array(path, "Ellipsoids3D:half_sizes")[-1]
+    np.testing.assert_allclose(np.sort(half_axes), DEVIATIONS * deviations, rtol=1e-5)
+    R = Rotation.from_quat(drawn.array(path, "Ellipsoids3D:quaternions")[-1]).as_matrix()
+    found = R @ np.diag((half_axes / DEVIATIONS) ** 2) @ R.T
+    np.testing.assert_allclose(found, covariance, atol=1e-7)
+    first, *_, last = drawn.last(path, "Ellipsoids3D:colors")
+    assert (first.to_bytes(4, "big"), last.to_bytes(4, "big")) == (
+        bytes(palette.PREDICTED),
+        bytes(palette.UNDECIDED),
+    )
+
+
+def test_what_no_double_holds_is_not_drawn(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, trajectory: Trajectory
+) -> None:
+    unknown = PositionUncertainty(
+        covariances_W=np.full((len(trajectory), 3, 3), np.nan), trusted=(False,) * len(trajectory)
+    )
+    draw_trajectory(recording, "brick", convex_shape(body.vertices_B), trajectory, uncertainty=unknown)
+    assert read().last(f"{PREDICTED}/uncertainty", "Ellipsoids3D:centers") == []
 
 
 @pytest.mark.parametrize("samples", [1, 2, 3, 50 * MOST_PATH_POINTS + 7])
