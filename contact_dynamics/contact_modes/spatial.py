@@ -7,7 +7,8 @@ rays' sets, kept as the bits of integers. The rays are the facets of the convex 
 inner point (Huang, Cheng and Mason, Efficient Contact Mode Enumeration in 3D, 2020). The cost follows the
 number of modes.
 
-A body that turns adds centripetal terms; the polyhedron is then the section at height one of a cone in R^7.
+A body that turns adds centripetal terms, and curved contacts those of their kind (`contact_curvature`); the
+polyhedron is then the section at height one of a cone in R^7.
 
 Does not cover: which way a contact that stays slides, or whether it sticks, and the forces.
 """
@@ -18,9 +19,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.contact_curvature import velocity_accelerations
 from contact_dynamics.contact_modes.spatial_cone import cone_of
 from contact_dynamics.errors import TooLargeError
-from contact_dynamics.tolerances import ROW_TOLERANCE, VELOCITY_TOLERANCE
+from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, ROW_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_not_negative
 
 if TYPE_CHECKING:
@@ -56,25 +58,27 @@ def spatial_kinematic_modes(
     n = len(contacts)
     if n > MOST_SPATIAL_CONTACTS:
         raise TooLargeError("contacts", f"{n} contacts", f"at most {MOST_SPATIAL_CONTACTS}")
-    r_W = contacts.p_WC_W - state.p_WB_W
-    v_n = np.sum(contacts.normals_W * state.velocity_of_point(contacts.p_WC_W), axis=1)
+    velocities = state.velocity_of_point(contacts.p_WC_W)
+    v_n = np.sum(contacts.normals_W * velocities, axis=1)
     if np.any(v_n < -tolerance):
         return ()
     touching = np.flatnonzero(v_n <= tolerance)
     if touching.size == 0:
         return ("s" * n,)
+    r_W = contacts.p_WC_W - state.p_WB_W
     rows = _contact_rows(r_W[touching], contacts.normals_W[touching])
-    reach = float(np.linalg.norm(r_W, axis=1).max())
+    w_W = state.w_WB_W
+    if float(np.linalg.norm(w_W)) * float(np.linalg.norm(r_W, axis=1).max()) <= tolerance:
+        w_W = np.zeros(3)
+    turned = np.cross(w_W, np.cross(w_W, r_W)) + velocity_accelerations(contacts, velocities, w_W)
+    offsets = np.sum(contacts.normals_W * turned, axis=1)[touching]
+    scale = float(np.abs(offsets).max())
     below = 0
-    if float(np.linalg.norm(state.w_WB_W)) * reach > tolerance:
-        turned = np.cross(state.w_WB_W, np.cross(state.w_WB_W, r_W[touching]))
-        offsets = np.sum(contacts.normals_W[touching] * turned, axis=1)
-        scale = float(np.abs(offsets).max())
-        if scale > 0.0:
-            below = 1 << touching.size
-            rows = np.vstack(
-                [np.column_stack([rows, offsets / scale]), np.eye(1, rows.shape[1] + 1, rows.shape[1])]
-            )
+    if scale > ACCELERATION_TOLERANCE * float(np.abs(turned).max()):
+        below = 1 << touching.size
+        rows = np.vstack(
+            [np.column_stack([rows, offsets / scale]), np.eye(1, rows.shape[1] + 1, rows.shape[1])]
+        )
     faces = cone_faces(rows / np.linalg.norm(rows, axis=1)[:, None])
     return tuple(sorted(_string(n, touching, face) for face in faces if not face & below))
 

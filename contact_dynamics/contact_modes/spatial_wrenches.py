@@ -1,7 +1,7 @@
 """The applied wrenches in space that can bring letters about: what motions need, less what contacts give.
 
 They are the positive sums of generators. Centripetal terms add a seventh coordinate, in which a wrench has
-the height one. A wrench is (force, torque / length) / mass, in the units in which a case states accelerations.
+the height one. A wrench is (force, torque / length) / mass, in the units of a case's accelerations.
 """
 
 from __future__ import annotations

@@ -9,6 +9,7 @@ import pytest
 from scipy.optimize import linprog
 
 from contact_dynamics.contact import ContactSet
+from contact_dynamics.contact_curvature import Curvatures
 from contact_dynamics.contact_modes import spatial_kinematic_modes
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.rigid_body import BodyState
@@ -155,6 +156,30 @@ def test_a_body_that_turns_about_its_contacts(seed: int) -> None:
     now = state(v=tuple(-np.cross(w, centre)), w=tuple(w))
     contacts = contact_set(pairs)
     assert set(spatial_kinematic_modes(now, contacts)) == all_strings(now, contacts)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_spin_about_the_normal_changes_nothing_however_the_table_leans(seed: int) -> None:
+    # Its centripetal terms lie in the table, but for rounding.
+    turned = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
+    contacts = contact_set([(tuple(turned @ p), tuple(turned @ n)) for p, n in TABLE])
+    assert len(spatial_kinematic_modes(state(w=tuple(2.0 * turned[:, 2])), contacts)) == 10
+
+
+def test_a_wheel_between_two_plates_rolls_and_a_bar_between_them_cannot() -> None:
+    places = [((0, 0, -1), (0, 0, 1)), ((0, 0, 1), (0, 0, -1))]
+    bar = contact_set(places)
+    wheel = ContactSet(
+        p_WC_W=bar.p_WC_W,
+        normals_W=bar.normals_W,
+        frictions=bar.frictions,
+        restitutions=bar.restitutions,
+        body_curvatures=Curvatures(along=np.ones(2), across=np.ones(2), directions_W=np.zeros((2, 3))),
+    )
+    rolling = state(v=(2.0, 0.0, 0.0), w=(0.0, 2.0, 0.0))
+    # The material points accelerate to the axis, w^2 R, but the wheel's rim stays where it is.
+    assert spatial_kinematic_modes(rolling, wheel) == ("cc",)
+    assert spatial_kinematic_modes(rolling, bar) == ("cs", "sc", "ss")
 
 
 def test_approaching_and_leaving_contacts() -> None:
