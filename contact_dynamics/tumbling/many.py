@@ -46,6 +46,9 @@ def states_of_many(
 ) -> Trajectory:
     """Return where n bodies are, each from its own state at its own time: row i is body i.
 
+    Principal axes are found in doubles: a needle's small moment is off by what rounding the entries of an
+    oblique I_B does to it, 1e-16 of the large one.
+
     Args:
         I_B: (3, 3) for all bodies, or (n, 3, 3), kg m^2, about the centre of mass, body axes.
         p_WB_W: (n, 3), m, centres of mass in the world.
@@ -274,5 +277,7 @@ def _values(r: _Tumbles, times: FloatArray) -> FloatArray:
             series: Harmonics | Bumps = make(xi[rows], eta[rows], peaks, functions=np)
             turns = z[rows] / unit
             whole = np.rint(turns)
-            values[:, rows] = series.values(np, turns - whole, whole, psi[rows])
+            each = series.values(np, turns - whole, whole, psi[rows])
+            for value, row in zip(values, each, strict=True):
+                value[rows] = row  # one number where no term of a series matters, as in symmetric bodies
     return values

@@ -53,6 +53,13 @@ def test_steady_spins() -> None:
     check(np.array([0.5, 1.0, 1.0]), np.array([[0.0, 0.5, 0.7], [0.3, -0.5, 1.0]]), np.array(3.0))
 
 
+@pytest.mark.parametrize("moments", [(1.0, 1.0, 1.6), (0.4, 1.0, 1.0), (1.0, 1.0 + 1e-9, 1.6)])
+@pytest.mark.parametrize("count", [1, 3])
+def test_symmetric_bodies_among_themselves(moments: tuple[float, ...], count: int) -> None:
+    w = np.array([[0.3, -0.5, 1.2], [1.0, 2.0, -0.1], [-3.0, 0.2, 0.7]])[:count]
+    check(np.array(moments), w, np.array(3.0))
+
+
 def test_the_separatrix() -> None:
     w = np.array([[2.0, -0.5, 1.0], [-2.0, -0.5, 1.0], [2.0, 0.0, -1.0]])
     check(np.array([3.0, 4.0, 6.0]), w, np.array([2.0, -3.0, 1.0]))
