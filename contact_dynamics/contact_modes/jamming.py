@@ -25,7 +25,7 @@ import numpy as np
 from contact_dynamics.contact_curvature import velocity_accelerations
 from contact_dynamics.contact_modes.complementarity import solve_complementarity
 from contact_dynamics.contact_modes.touching import spatial_contact_velocities
-from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.friction import tangents
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw, SeveralImpact, SeveralVerdict
 from contact_dynamics.rigid_body import BodyState, MassProperties
@@ -37,6 +37,9 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact import ContactSet
     from contact_dynamics.validation import FloatArray
+
+MOST_JAMMED_CONTACTS: Final = 64
+"""Longest list of contacts accepted: the pivots of their complementarity problem take a second or so."""
 
 _SHORT: Final = (1e-7, 1e-5, 1e-3)
 """What the wrench may change of velocities in the time it acts, relative to the largest speed: the first that
@@ -93,12 +96,17 @@ def jamming_impact(
 
     Raises:
         InvalidFieldError: no contacts, a wrench that is not finite, a negative tolerance, too few facets.
+        TooLargeError: more than `MOST_JAMMED_CONTACTS` contacts.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     force = check_array("force", force_W, (3,))
     torque = check_array("torque", torque_W, (3,))
     if len(contacts) == 0:
         raise InvalidFieldError("contacts", "none", "at least one contact")
+    if len(contacts) > MOST_JAMMED_CONTACTS:
+        raise TooLargeError(
+            "contacts", f"{len(contacts)} contacts", f"at most {MOST_JAMMED_CONTACTS} that jam"
+        )
     if friction_facets < 3:
         raise InvalidFieldError("friction_facets", friction_facets, "a whole number >= 3")
     w, inertia = state.w_WB_W, body.inertia_in_world(state.R_WB)

@@ -15,9 +15,10 @@ from contact_dynamics.contact_modes import (
     spatial_mode_margins,
     spatial_statics,
 )
+from contact_dynamics.contact_modes.problem import MOST_CONTACTS
 from contact_dynamics.contact_modes.spatial_dynamics import FRICTION_FACETS
 from contact_dynamics.contact_modes.touching import spatial_contact_velocities
-from contact_dynamics.errors import InvalidFieldError, NotSupportedError, OutOfPlaneError
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError, OutOfPlaneError, TooLargeError
 from contact_dynamics.nodes.settled_impact import Question, settle_in_plane, settle_in_space
 from contact_dynamics.nodes.subject import (
     contacts_of,
@@ -68,6 +69,8 @@ def predict_contact_mode(request: Any, response: Any, knowledge: Knowledge) -> N
 def _question(request: Any, knowledge: Knowledge) -> Question:
     subject = subject_of(request, knowledge)
     contacts = contacts_of(request, subject, knowledge)
+    if len(contacts) > MOST_CONTACTS:
+        raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MOST_CONTACTS}")
     force_W = check_array("applied_wrench.force", vector_from_msg(request.applied_wrench.force), (3,))
     return Question(
         subject=subject,

@@ -12,7 +12,7 @@ from contact_dynamics.contact import ContactSet
 from contact_dynamics.contact_modes import ModeVerdict, planar_contact_modes
 from contact_dynamics.contact_modes.complementarity import solve_complementarity
 from contact_dynamics.contact_modes.jamming import jamming_impact
-from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact import SeveralImpact, SeveralVerdict, planar_impact
 from contact_dynamics.impact.several_planar import planar_in_space
 from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
@@ -143,6 +143,8 @@ def test_misuse_is_refused_by_name() -> None:
     )
     with pytest.raises(InvalidFieldError, match="contacts"):
         jamming_impact(body, state, none, force_W=(0, 0, -1))
+    with pytest.raises(TooLargeError, match="contacts"):
+        jamming_impact(body, state, touching.subset([0] * 65), force_W=(0, 0, -1))
     with pytest.raises(InvalidFieldError, match="friction_facets"):
         jamming_impact(body, state, touching, force_W=(0, 0, -1), friction_facets=2)
 

@@ -280,3 +280,16 @@ def test_a_mode_that_begins_to_slide_in_space_has_no_margin(client: Client) -> N
     (mode,) = answer.modes
     assert mode.mode == "cccc"
     assert math.isnan(mode.margin)
+
+
+def test_sets_beyond_reason_are_refused_by_name_and_not_by_silence(client: Client) -> None:
+    many = explicit([(1.0, 0.1 * i, -1.0) for i in range(1001)], 0.5)
+    answer = client.ask(many)
+    assert answer.status == answer.TOO_LARGE
+    assert "contacts: found 1001 contacts, allowed is at most 1000" in answer.message
+    ring = [2.0 * math.pi * i / 65 for i in range(65)]
+    request = explicit([(math.cos(a), math.sin(a), -1.0) for a in ring], 0.5)
+    request.problem = request.SPATIAL
+    answer = client.ask(request)
+    assert answer.status == answer.TOO_LARGE
+    assert "contacts: found 65" in answer.message
