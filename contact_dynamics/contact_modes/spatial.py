@@ -70,11 +70,12 @@ def spatial_kinematic_modes(
     w_W = state.w_WB_W
     if float(np.linalg.norm(w_W)) * float(np.linalg.norm(r_W, axis=1).max()) <= tolerance:
         w_W = np.zeros(3)
-    turned = np.cross(w_W, np.cross(w_W, r_W)) + velocity_accelerations(contacts, velocities, w_W)
-    offsets = np.sum(contacts.normals_W * turned, axis=1)[touching]
+    turning, rolling = np.cross(w_W, np.cross(w_W, r_W)), velocity_accelerations(contacts, velocities, w_W)
+    offsets = np.sum(contacts.normals_W * (turning + rolling), axis=1)[touching]
     scale = float(np.abs(offsets).max())
     below = 0
-    if scale > ACCELERATION_TOLERANCE * float(np.abs(turned).max()):
+    # Where a body rolls the two cancel; what is left of them is rounding.
+    if scale > ACCELERATION_TOLERANCE * float(np.abs(turning).max() + np.abs(rolling).max()):
         below = 1 << touching.size
         rows = np.vstack(
             [np.column_stack([rows, offsets / scale]), np.eye(1, rows.shape[1] + 1, rows.shape[1])]

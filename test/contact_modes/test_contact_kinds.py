@@ -6,11 +6,17 @@ import math
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from contact_dynamics.contact import ContactSet
 from contact_dynamics.contact_curvature import Curvatures
 from contact_dynamics.contact_geometry import find_contacts
-from contact_dynamics.contact_modes import ConsistentMode, planar_contact_modes, spatial_contact_modes
+from contact_dynamics.contact_modes import (
+    ConsistentMode,
+    planar_contact_modes,
+    spatial_contact_modes,
+    spatial_kinematic_modes,
+)
 from contact_dynamics.convex_shape import cylinder, sphere
 from contact_dynamics.errors import OutOfPlaneError
 from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
@@ -204,3 +210,23 @@ def test_a_can_that_lies_askew_to_the_plane_is_refused() -> None:
             force_W=np.zeros(3),
             torque_W=np.zeros(3),
         )
+
+
+@pytest.mark.parametrize("turned", [0.0, 0.3, 1.1, 2.0])
+def test_a_can_that_rolls_may_do_what_one_at_rest_may(turned: float) -> None:
+    """Its centripetal terms cancel but for rounding, which must not count as acceleration."""
+    radius = 0.237
+    can = Body(
+        name="can",
+        mass_properties=MassProperties(mass=M, I_B=np.diag([0.05, 0.05, 0.5 * M * radius * radius])),
+        shape=cylinder(radius=radius, length=0.4),
+    )
+    ahead = np.array([math.cos(turned), math.sin(turned), 0.0])
+    q = (Rotation.from_euler("z", turned) * Rotation.from_euler("x", 90.0, degrees=True)).as_quat()
+    lying = BodyState(
+        p_WB_W=np.array([0.0, 0.0, radius]),
+        q_WB=q,
+        v_WB_W=3.0 * ahead,
+        w_WB_W=np.cross([0.0, 0.0, 1.0], ahead) * 3.0 / radius,
+    )
+    assert spatial_kinematic_modes(lying, find_contacts(can, lying, [FLOOR])) == ("cc", "cs", "sc", "ss")
