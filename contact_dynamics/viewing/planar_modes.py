@@ -14,7 +14,7 @@ import rerun as rr
 
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.contact_modes import MOST_MODES
-from contact_dynamics.viewing.entities import PLANAR_MODES
+from contact_dynamics.viewing.entities import MODE_MAP, PLANAR_MODES
 from contact_dynamics.viewing.mode_map import chart_for, draw_mode_map
 from contact_dynamics.viewing.planar_scene import draw_planar_scene, upright
 from contact_dynamics.viewing.shape import FLAT
@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 
 NO_SIZE: Final = 0.1
 """m. Size that a body without shape, at its only contact, is drawn with."""
+
+MOST_SETS: Final = 100
+"""A map of more modes has regions too small to see, and takes seconds to draw: it is left out."""
 
 _AROUND: Final = 0.45  # room around body and contacts in each picture, relative to the body's size
 _WALL: Final = 0.15  # half of the length of a contact's flat, likewise
@@ -81,7 +84,9 @@ def draw_planar_modes(
         recording.log(f"{path}/title", points)
         room = rr.Points2D(upright(np.array([low, high]) + aside), colors=palette.BACKGROUND, radii=0.0)
         recording.log(f"{path}/room", room)  # what the viewer fits into the view
-    if picture.sets:
+    if len(picture.sets) > MOST_SETS:
+        recording.log(MODE_MAP, rr.Clear(recursive=True))
+    elif picture.sets:
         chart = chart_for(picture.sets, length=picture.length, applied=picture.applied)
         draw_mode_map(recording, picture.sets, chart, applied=picture.applied, change=picture.change)
 

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 from contact_dynamics.contact_modes import planar_contact_modes, planar_mode_map, planar_mode_margins
 from contact_dynamics.nodes.pictured_contact_modes import applied_wrench
 from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
-from contact_dynamics.viewing.planar_modes import PlanarModesPicture, draw_planar_modes, silhouette
+from contact_dynamics.viewing.planar_modes import MOST_SETS, PlanarModesPicture, draw_planar_modes, silhouette
 from contact_dynamics.viewing.shape import convex_shape
 from contact_dynamics.world import box_vertices
 
@@ -68,6 +69,17 @@ def test_the_inconsistent_rod_says_so(recording: rr.RecordingStream, read: Calla
     assert drawn.last("/planar_modes/mode_1/title", "Points2D:labels") == ["no consistent mode"]
     assert drawn.last("/planar_modes/mode_2", "Clear:is_recursive") == [True]
     assert "black: none is" in drawn.last("/mode_map/captions", "Points2D:labels")[-1]
+
+
+def test_a_map_of_too_many_modes_is_left_out(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    picture = picture_of(applied=ALONG, velocity=AT_REST)
+    many = replace(picture, sets=picture.sets[:1] * (MOST_SETS + 1))
+    draw_planar_modes(recording, many, outline=np.zeros((0, 2)))
+    drawn = read()
+    assert drawn.last("/mode_map", "Clear:is_recursive") == [True]
+    assert "/mode_map/regions" not in drawn.entities
 
 
 @pytest.mark.parametrize("applied", [ALONG, PlanarWrench(f=(0.3, -2.0), moment=0.4)])
