@@ -102,6 +102,45 @@ def test_2_indeterminate_rod(client: Client, mu: float, modes: list[str]) -> Non
     assert "s" in answer.refused_modes
 
 
+# Rows of lecture 26's table: v_n, v_t; the applied f_t and f_n that make a_t and a_n; verdict, letter, f_t.
+# A particle of mass 1 with mu = 0.5: without contact forces the acceleration is the applied force.
+TABLE = [
+    ("impact", -1.0, 0.0, 0.0, -1.0, "IMPACT", "", 0.0),
+    ("leaves", 1.0, 0.0, 0.0, -1.0, "UNIQUE", "s", 0.0),
+    ("is lifted", 0.0, 0.0, 0.0, 1.0, "UNIQUE", "s", 0.0),
+    ("slides left", 0.0, -1.0, 0.0, -1.0, "UNIQUE", "l", 0.5),
+    ("slides right", 0.0, 1.0, 0.0, -1.0, "UNIQUE", "r", -0.5),
+    ("begins to slide left", 0.0, 0.0, -0.6, -1.0, "UNIQUE", "l", 0.5),
+    ("begins to slide right", 0.0, 0.0, 0.6, -1.0, "UNIQUE", "r", -0.5),
+    ("stays", 0.0, 0.0, 0.4, -1.0, "UNIQUE", "f", -0.4),
+    ("skims without force", 0.0, 0.0, -1.0, 0.0, "UNIQUE", "l", 0.0),
+]
+
+
+@pytest.mark.parametrize("problem", ["PLANAR", "SPATIAL"])
+@pytest.mark.parametrize("row", TABLE, ids=lambda row: row[0])
+def test_every_row_of_the_lectures_table(
+    client: Client, problem: str, row: tuple[str, float, float, float, float, str, str, float]
+) -> None:
+    _, v_n, v_t, f_t, f_n, verdict, letter, friction = row
+    request = PredictContactMode.Request()
+    planar_request(request, np.zeros(3), 0.5)
+    request.problem = getattr(request, problem)
+    request.gravity = request.GRAVITY_NONE
+    request.state.linear_velocity.x, request.state.linear_velocity.z = v_t, v_n
+    request.applied_wrench.force.x, request.applied_wrench.force.z = f_t, f_n
+    answer = client.ask(request)
+    assert answer.verdict == getattr(answer, verdict)
+    sliding = {"l": "c", "r": "c"} if problem == "SPATIAL" else {}
+    assert [mode.mode for mode in answer.modes] == ([sliding.get(letter, letter)] if letter else [])
+    if letter in {"l", "r", "f"}:
+        (mode,) = answer.modes
+        np.testing.assert_allclose(mode.contact_forces, [friction, 0.0, -f_n], atol=1e-7)
+    if letter in {"l", "r"} and problem == "SPATIAL":
+        side = -1.0 if letter == "l" else 1.0
+        np.testing.assert_allclose(mode.tangential_directions, [side, 0.0, 0.0], atol=1e-6)
+
+
 def test_3_left_drifting_particle(client: Client) -> None:
     epsilon = 0.05
     request = PredictImpact.Request()
