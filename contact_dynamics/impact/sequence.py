@@ -21,6 +21,7 @@ Not covered: a resting contact that its own sliding jams.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -63,6 +64,10 @@ HELD: Final = 2.0
 
 HELD_STILL: Final = 0.01
 """Of that speed: what may be left of it, where several contacts that are held throw each other back."""
+
+STILL: Final = 0.1
+"""Of that speed: a body that is held and moves no faster, after a step, rests. One that begins to fall over
+has more by then, unless it is balanced to within some degrees."""
 
 PAUSE: Final = 1e-6
 """s. When to look again where a contact that leaves, at the height of rounding, was found as arriving."""
@@ -235,9 +240,19 @@ class _Sequence:
         wait = self._time_to_leave(landing)
         if wait is not None and may_leave:
             return SequenceEnd.NOTHING_STRIKES, wait
-        pressed = np.flatnonzero(self._lifting(landing) <= 0.0).tolist()
-        self._stay(tuple(self.meetings.index(landing, row) for row in pressed), now)
-        return SequenceEnd.STAYS, self.hold_step
+        lifting = self._lifting(landing)
+        rests = self.limit is not None and self._is_still(landing, float(-lifting.min()))
+        self._stay(
+            tuple(self.meetings.index(landing, int(row)) for row in np.flatnonzero(lifting <= 0.0)), now
+        )
+        return SequenceEnd.STAYS, None if rests else self.hold_step
+
+    def _is_still(self, landing: Landing, pressing: float) -> bool:
+        """Return whether a body that is held has not moved, after a step, by more than holding leaves it."""
+        state = landing.state
+        reach = float(np.linalg.norm(landing.contacts.p_WC_W - state.p_WB_W, axis=1).max())
+        speed = math.hypot(*state.v_WB_W.tolist()) + reach * math.hypot(*state.w_WB_W.tolist())
+        return speed <= STILL * pressing * (self.hold_step or 0.0)
 
     def _stay(self, contacts: tuple[int, ...], since: float) -> None:
         """Note that contacts stay; one that stayed before keeps the time."""
@@ -316,7 +331,7 @@ class _Sequence:
         state, contacts = landing.state, landing.contacts
         w = state.w_WB_W
         inertia, spin = self.body.inertia_in_world(state.R_WB), cross_matrix(w)
-        angular: FloatArray = np.linalg.solve(inertia, -spin @ inertia @ w)
+        angular = np.array(np.linalg.solve(inertia, np.cross(inertia @ w, w)), dtype=np.float64)
         turning = cross_matrix(angular) + spin @ spin
         accelerations = self.gravity_W + (contacts.p_WC_W - state.p_WB_W) @ turning.T
         rolling = velocity_accelerations(contacts, landing.velocities_W, w)

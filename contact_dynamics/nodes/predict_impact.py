@@ -28,7 +28,12 @@ from contact_dynamics.nodes.subject import (
     or_configured,
     planar_problem_of,
 )
-from contact_dynamics.plane_to_space import check_mirrored, planar_velocity, with_planar_velocity
+from contact_dynamics.plane_to_space import (
+    check_mirrored,
+    mirror_partners,
+    planar_velocity,
+    with_planar_velocity,
+)
 from contact_dynamics.uncertainty import propagate_covariance
 from msg_adapters.contacts import contacts_to_msg
 from msg_adapters.geometry import vector_to_msg
@@ -95,6 +100,7 @@ def _in_time(request: Any, strike: Strike, knowledge: Knowledge) -> ImpactSequen
         "restitution_law": strike.law,
         "window": or_configured("strike_window", request.strike_window, STRIKE_WINDOW),
         "most_strikes": request.most_strikes or MOST_STRIKES,
+        "hold_step": or_configured("hold_step", request.hold_step, 0.0) or None,
         "distance_tolerance": distance_tolerance_of(request, knowledge),
         "velocity_tolerance": strike.velocity_tolerance,
     }
@@ -171,12 +177,13 @@ def _in_plane(request: Any, response: Any, strike: Strike, knowledge: Knowledge)
     response.plane_normal = vector_to_msg(problem.plane.normal_W)
     response.out_of_plane = problem.out_of_plane
     if len(problem.contacts) > 1:
-        check_mirrored(
+        partners = mirror_partners(
             problem.plane,
             strike.state,
             strike.contacts,
             distance_tolerance=distance_tolerance_of(request, knowledge),
         )
+        check_mirrored(problem.plane, strike.state, strike.contacts, partners)
         return _several_in_plane(request, strike, problem)
     impact = planar_impact(
         problem.body,

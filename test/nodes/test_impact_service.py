@@ -398,3 +398,25 @@ def test_the_energetic_law_is_not_one_at_once(client: Client) -> None:
     answer = client.ask(request)
     assert answer.status == answer.INVALID_FIELD
     assert "restitution_law: found ENERGETIC, allowed is POISSON or NEWTON for SIMULTANEOUS" in answer.message
+
+
+def test_over_a_corner_that_stays_it_goes_on_where_asked(client: Client) -> None:
+    """The lower edge chatters to rest before the other one is down; held, the brick falls flat over it."""
+    request = falling_brick(height=0.06, tilt=0.35)
+    request.state.angular_velocity.z = 0.5  # so that no two corners strike at one instant
+    request.several_contacts_law = request.SEQUENTIAL_IN_TIME
+    request.strike_window = 0.1
+    ended = client.ask(request)
+    assert ended.status == ended.OK, ended.message
+    assert ended.impact.sequence_end == Impact.CHATTERS
+    request.hold_step = 0.001
+    held = client.ask(request)
+    assert held.status == held.OK, held.message
+    done = len(ended.impact.strike_times)
+    assert list(held.impact.strike_contacts)[:done] == list(ended.impact.strike_contacts)
+    assert len(held.impact.strike_times) > done
+    assert held.impact.sequence_end == Impact.STAYS
+    assert len(held.impact.staying_contacts) >= 3  # it lies flat
+    np.testing.assert_allclose(list(held.impact.strike_times)[:done], ended.impact.strike_times, atol=1e-12)
+    request.hold_step = -0.001
+    assert client.ask(request).status == held.INVALID_FIELD
