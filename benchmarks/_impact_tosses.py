@@ -20,9 +20,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 import numpy as np
-from scipy.optimize import minimize
 
-from contact_dynamics.demo.cube_tosses import BOARD, CUBE, HALF_SIDE, read_cube_toss
+from benchmarks import _impact_landings
+from benchmarks._measured_errors import GYRATION, engine, print_both, print_head, print_row
+from contact_dynamics.demo.cube_tosses import BOARD, CUBE, read_cube_toss
 from contact_dynamics.demo.measured_events import measure_events
 from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact import RestitutionLaw, spatial_impact
@@ -41,9 +42,6 @@ ALONE: Final = 0.01
 
 SHARPEST: Final = 0.15
 """m/s, rad/s times the radius of gyration. Strikes whose velocities are known less well are left out."""
-
-GYRATION: Final = math.sqrt(float(CUBE.mass_properties.I_B[0, 0]) / CUBE.mass_properties.mass)
-"""m. Weighs rad/s against m/s in the fit."""
 
 
 class Strike(NamedTuple):
@@ -75,35 +73,43 @@ def run() -> None:
     print(
         f"Measurement: {noise[0]:.3f} m/s, {noise[1]:.2f} rad/s (median standard deviation of a component)\n"
     )
-    print(f"{'':>28} {'mu':>6} {'e':>6} {'linear, m/s':>24} {'angular, rad/s':>24}")
-    print(f"{'':>28} {'':>6} {'':>6} {'median':>8}{'mean':>8}{'90 %':>8} {'median':>8}{'mean':>8}{'90 %':>8}")
-    _row("no impact", "", "", held_out, lambda strike: _velocity(strike.before))
-    _predictions(CUBE.mass_properties, np.zeros(3), training, held_out)
+    print_head()
+    print_row("no impact", "", "", held_out, lambda strike: _velocity(strike.before))
+    as_published = _predictions(CUBE.mass_properties, np.zeros(3), training, held_out)
     body, centre = balanced_body(training)
     print(
         f"\nMomentum balance of the training strikes: inertia {body.I_B[0, 0]:.2e} kg m^2 (published"
         f" {CUBE.mass_properties.I_B[0, 0]:.2e}),\ncentre of mass at"
         f" ({', '.join(f'{1e3 * x:.1f}' for x in centre)}) mm in the cube. With these:"
     )
-    _predictions(
+    as_balanced = _predictions(
         body,
         centre,
         [about_centre(strike, centre) for strike in training],
         [about_centre(strike, centre) for strike in held_out],
     )
+    landings = [
+        landing
+        for landing in _impact_landings.measured_landings(path, TOSSES)
+        if max(landing.velocity_std, GYRATION * landing.spin_std) <= SHARPEST
+    ]
+    _impact_landings.compare(landings, body, centre, of_one_corner=(as_published, as_balanced))
 
 
 def _predictions(
     body: MassProperties, centre: FloatArray, training: Sequence[Strike], held_out: Sequence[Strike]
-) -> None:
+) -> tuple[float, float]:
+    """Print the errors of each law; return mu and e as fitted under the first."""
     nominal = (BOARD.friction, BOARD.restitution)
-    for law in RestitutionLaw:
-        _both(law.name.lower(), training, held_out, nominal, _rigid(body, law))
-    engine = _engine(body, centre)
-    if engine is None:
+    fitted = [
+        print_both(law.name.lower(), training, held_out, nominal, _rigid(body, law)) for law in RestitutionLaw
+    ]
+    by_engine = _by_engine(body, centre)
+    if by_engine is None:
         print(f"{'MuJoCo':>28}  is not installed")
     else:
-        _both("MuJoCo", training, held_out, nominal, engine)
+        print_both("MuJoCo", training, held_out, nominal, by_engine)
+    return fitted[0]
 
 
 def measured_strikes(path: Path) -> tuple[list[Strike], int]:
@@ -184,94 +190,21 @@ def _rigid(body: MassProperties, law: RestitutionLaw) -> Prediction:
     return predict
 
 
-def _both(
-    name: str,
-    training: Sequence[Strike],
-    held_out: Sequence[Strike],
-    nominal: tuple[float, float],
-    predict: Prediction,
-) -> None:
-    """Print the errors with the published constants and with fitted ones."""
-    _row(f"{name}, published", *nominal, held_out, lambda strike: predict(strike, *nominal))
-
-    def cost(parameters: FloatArray) -> float:
-        friction, restitution = abs(parameters[0]), min(abs(parameters[1]), 1.0)
-        errors = np.array([predict(strike, friction, restitution) - strike.after for strike in training])
-        errors[:, 3:] *= GYRATION
-        # Absolute errors, so that a few strikes of another kind do not decide.
-        return float(np.linalg.norm(errors, axis=1).mean())
-
-    best = minimize(
-        cost, nominal, method="Nelder-Mead", options={"xatol": 2e-3, "fatol": 1e-5, "maxfev": 60}
-    ).x
-    fitted = (abs(float(best[0])), min(abs(float(best[1])), 1.0))
-    _row(f"{name}, fitted", *fitted, held_out, lambda strike: predict(strike, *fitted))
-
-
-def _row(
-    name: str,
-    friction: float | str,
-    restitution: float | str,
-    strikes: Sequence[Strike],
-    predict: Callable[[Strike], FloatArray],
-) -> None:
-    errors = np.array([predict(strike) - strike.after for strike in strikes])
-    text = f"{name:>28} "
-    text += " ".join(f"{x:6.3f}" if isinstance(x, float) else f"{x:>6}" for x in (friction, restitution))
-    for part in (errors[:, :3], errors[:, 3:]):
-        sizes = np.linalg.norm(part, axis=1)
-        text += " " + "".join(
-            f"{x:8.3f}" for x in (np.median(sizes), sizes.mean(), np.percentile(sizes, 90.0))
-        )
-    print(text, flush=True)
-
-
-def _engine(body: MassProperties, centre: FloatArray) -> Prediction | None:
-    """Return a prediction by MuJoCo, stepped until the cube has left the floor; None: not installed.
-
-    Its restitution is not a parameter: e sets the damping of the contact's spring so that the spring alone,
-    against a wall, would give e.
-    """
-    try:
-        import mujoco
-    except ImportError:
+def _by_engine(body: MassProperties, centre: FloatArray) -> Prediction | None:
+    """Return a prediction by MuJoCo, stepped until the cube has left the floor; None: not installed."""
+    cube = engine(body, centre)
+    if cube is None:
         return None
-    x, y, z = -centre
-    inertia = " ".join(str(x) for x in np.diag(body.I_B))
-    model = mujoco.MjModel.from_xml_string(f"""
-        <mujoco>
-          <option timestep="0.0001" integrator="implicitfast" cone="elliptic" impratio="10"/>
-          <worldbody>
-            <geom name="floor" type="plane" size="5 5 1"/>
-            <body name="cube">
-              <freejoint/>
-              <inertial pos="0 0 0" mass="{body.mass}" diaginertia="{inertia}"/>
-              <geom name="cube" type="box" pos="{x} {y} {z}" size="{HALF_SIDE} {HALF_SIDE} {HALF_SIDE}"/>
-            </body>
-          </worldbody>
-        </mujoco>""")
-    data = mujoco.MjData(model)
     longest = 300  # steps, 30 ms: by then a strike of a corner is over, or it is none
 
     def predict(strike: Strike, friction: float, restitution: float) -> FloatArray:
-        logarithm = math.log(max(restitution, 1e-3))
-        damping_ratio = -logarithm / math.hypot(math.pi, logarithm)
-        model.geom_friction[:, 0] = friction
-        model.geom_solref[:] = (0.002, max(damping_ratio, 0.01))
-        mujoco.mj_resetData(model, data)
-        data.qpos[:3] = strike.before.p_WB_W
-        data.qpos[2] -= strike.corner[2] - 1e-5
-        data.qpos[3:] = np.roll(strike.before.q_WB, 1)  # to w, x, y, z
-        data.qvel[:3] = strike.before.v_WB_W
-        data.qvel[3:] = strike.before.R_WB.T @ strike.before.w_WB_W
+        cube.start(strike.before, friction, restitution, lower=float(strike.corner[2]) - 1e-5)
         touched = False
         for _ in range(longest):
-            mujoco.mj_step(model, data)
-            if data.ncon:
-                touched = True
-            elif touched:
+            touches = cube.step()
+            if touched and not touches:
                 break
-        turned = data.body("cube").xmat.reshape(3, 3)
-        return np.concatenate([data.qvel[:3], turned @ data.qvel[3:]])
+            touched = touched or touches
+        return cube.velocity()
 
     return predict
