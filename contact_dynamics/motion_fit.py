@@ -4,7 +4,8 @@ Model: a torque-free body in uniform gravity (`contact_dynamics.tumbling`), seen
 in position and orientation and, where they are to be used, in the velocities. The centre of mass is a linear
 least-squares problem. The rotation has six unknowns, attitude and angular velocity at the newest stamp, found
 by Gauss's and Newton's method with the exact derivative of the motion (`contact_dynamics.linearised_motion`),
-from a start that no single velocity decides: L is constant, so it is averaged over all neighbouring pairs.
+from a start that no single velocity decides: L is constant, so it is averaged over all neighbouring pairs
+(where that fits worse than the last turn alone, as for needles, from that).
 
 Not covered: windows in which something touched the body, drag, outliers, noise that is correlated from state
 to state, unknown mass properties; half a turn or more between neighbouring states.
@@ -198,7 +199,11 @@ def _fit_rotation(
         q_WB = turned(motion.state.q_WB[None], step[None, :3])[0]
         return _motion_from(body, q_WB, motion.state.w_WB_W + step[3:])
 
-    start = _motion_from(body, measured[-1], _averaged_rate(body, measured, seconds))
+    starts = [
+        _motion_from(body, measured[-1], rate)
+        for rate in (_averaged_rate(body, measured, seconds), _last_rate(measured, seconds))
+    ]
+    start = min(starts, key=lambda motion: float(np.square(misses(motion)).sum()))
     attitudes = 3 * len(seconds)
     negligible = np.full(2 * attitudes if by_w else attitudes, math.inf)
     negligible[:attitudes] = by_q * SMALL_STEP
@@ -229,4 +234,13 @@ def _averaged_rate(body: MassProperties, q: FloatArray, seconds: FloatArray) -> 
     L = np.einsum("nij,jk,nlk,nl->ni", halfway, body.I_B, halfway, turns * between[:, None])
     R = matrices_of(q[-1:])[0]
     rate: FloatArray = R @ np.linalg.solve(body.I_B, R.T @ (L.sum(axis=0) / (between @ between)))
+    return rate
+
+
+def _last_rate(q: FloatArray, seconds: FloatArray) -> FloatArray:
+    """Return the angular velocity, (3,), of the last turn.
+
+    It is noisier than what L says, but for a needle: its spin about its own axis is the smallest part of L.
+    """
+    rate: FloatArray = rotation_vectors(q[-1:], q[-2:-1])[0] / (seconds[-1] - seconds[-2])
     return rate

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.inertia.principal import principal_axes
 from contact_dynamics.rigid_body import angular_momentum, rotation_matrix
 from contact_dynamics.tumbling.arithmetic import ARRAYS, DOUBLES
@@ -156,6 +157,10 @@ def rolling_curves(motion: FreeMotion, count: int) -> RollingCurves:
     """Return ``count`` points of `polhode` with the times at which the motion passes them, and where then.
 
     They go once around the polhode, through the period that holds time 0; see `polhode` for what has none.
+
+    Raises:
+        InvalidFieldError: the period is so long that doubles do not tell turns apart in it, as it may be in
+            bodies whose moments differ by their last digits.
     """
     rotation = motion.rotation
     if isinstance(rotation, Spin) or motion.regime in CONSTANT_RATE:
@@ -172,6 +177,10 @@ def rolling_curves(motion: FreeMotion, count: int) -> RollingCurves:
         halves = np.rint(angle / math.pi)
         u = np.where(halves % 2.0 == 0.0, u, -u) + halves * (math.pi / float(rotation.quarter))
     seconds = (u - float(rotation.u0)) / float(rotation.omega_p)
+    longest = float(np.abs(seconds).max(initial=0.0))
+    if longest > motion.farthest:
+        allowed = f"one within {motion.farthest:g} s, in which doubles tell turns apart"
+        raise InvalidFieldError("rolling curves", f"a period of {longest:g} s", allowed)
     order = slice(None) if float(rotation.omega_p) > 0.0 else slice(None, None, -1)
     return RollingCurves(
         seconds=seconds[order],

@@ -259,3 +259,18 @@ def test_gravity_is_finite() -> None:
     motion = motion_of("flat")
     with pytest.raises(InvalidFieldError, match="gravity"):
         fit_free_motion(motion.body, published(motion, WINDOW, None), gravity_W=[0.0, 0.0, math.nan])
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_needles_are_found_whose_spin_is_lost_in_their_momentum(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    slim = 10.0 ** rng.uniform(-5.0, -3.0)
+    body = MassProperties(mass=1.0, I_B=np.diag([slim, 1.0, 1.0 + 0.5 * slim]))
+    w = rng.normal(size=3)
+    begin = BodyState(
+        p_WB_W=np.zeros(3), q_WB=(0, 0, 0, 1), v_WB_W=np.zeros(3), w_WB_W=10.0 * w / np.linalg.norm(w)
+    )
+    motion = free_motion(body, begin)
+    fit = fit_free_motion(body, [motion.state_at(0.01 * i) for i in range(12)])
+    assert fit.converged
+    assert fit.orientation_residual < 1e-8

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.inertia import principal_axes
 from contact_dynamics.poinsot import (
     herpolhode,
@@ -19,6 +20,7 @@ from contact_dynamics.poinsot import (
 )
 from contact_dynamics.rigid_body import BodyState, MassProperties, angular_momentum, rotational_energy
 from contact_dynamics.tumbling import FreeMotion, Regime, free_motion
+from oracles.tumbling_draws import draw
 from tumbling.known_motions import MOTIONS, motion_of
 
 PERIODIC = [name for name in MOTIONS if math.isfinite(poinsot(motion_of(name)).polhode_period)]
@@ -132,6 +134,15 @@ def test_curves_touch_where_the_motion_is_then(name: str) -> None:
     if name in PERIODIC:
         period = poinsot(motion).polhode_period
         assert curves.seconds[-1] - curves.seconds[0] == pytest.approx(period, rel=1e-13)
+
+
+def test_curves_that_take_longer_than_doubles_can_tell_are_refused() -> None:
+    """Moments that nearly agree, and spin near their plane: some 1e16 turns a period."""
+    drawn = draw(np.random.default_rng(2000316))
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=drawn.q_WB, v_WB_W=np.zeros(3), w_WB_W=drawn.w_WB_W)
+    motion = free_motion(MassProperties(mass=1.0, I_B=drawn.I_B), state)
+    with pytest.raises(InvalidFieldError, match="rolling curves: found a period of"):
+        rolling_curves(motion, 10)
 
 
 def length(curve: np.ndarray) -> float:
