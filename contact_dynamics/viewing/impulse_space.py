@@ -66,28 +66,29 @@ def draw_impulse_space(
     picture: ImpactPicture,
     *,
     other: MassProperties | None = None,
+    entity: str = IMPULSE_SPACE,
 ) -> None:
     """Draw the impulse path of the picture's main contact, at the recording's current time.
 
     Without the mass properties of all that moves the sticking and compression lines are left out; ``other``
-    are those of the body that is struck.
+    are those of the body that is struck. ``entity``, a name without slashes, is where to draw.
     """
     contact = picture.main_contact
     axes_W = contact_axes(picture, contact)
     chosen = [i for i, owner in enumerate(picture.path_contacts) if owner == contact]
     path = picture.path_W[chosen] @ axes_W.T
     extent = MARGIN * float(np.abs(path).max(initial=0.0)) or 1.0
-    _draw_background(recording, float(picture.contacts.frictions[contact]), extent)
+    _draw_background(recording, entity, float(picture.contacts.frictions[contact]), extent)
     # Labels of the path stand on its side of the normal, the names of the lines on the other.
     side = -1.0 if len(path) > 0 and path[-1, 0] < 0.0 else 1.0
-    _draw_names(recording, -side * _NAMES * extent, extent)
+    _draw_names(recording, entity, -side * _NAMES * extent, extent)
     lines = None
     if mass_properties is not None and (picture.other is None or other is not None):
         lines = _lines(mass_properties, picture, contact, axes_W, other=other)
     for i, (name, color) in enumerate(_NAMED[:2]):
         part = np.zeros((0, 2, 2)) if lines is None else line_in_box(lines[i], extent)
-        _strips(recording, name, part, color)
-    _strips(recording, "path", [path], palette.IMPACT, width=_PATH_WIDTH)
+        _strips(recording, [entity, name], part, color)
+    _strips(recording, [entity, "path"], [path], palette.IMPACT, width=_PATH_WIDTH)
     events = [(i, picture.path_events[i]) for i in chosen if picture.path_events[i] in _EVENTS]
     ends = [k for k, (_, event) in enumerate(events) if event == PathEvent.RESTITUTION_ENDS]
     events = events[: ends[0] + 1] if ends else events  # the lines are those of the first strike
@@ -97,10 +98,10 @@ def draw_impulse_space(
         for (_, event), (t, n) in zip(events, points.tolist(), strict=True)
     ]
     shown = rr.Points2D(_on_screen(points), colors=palette.IMPACT, radii=_POINT_SIZE)
-    recording.log(f"{IMPULSE_SPACE}/events", shown)
+    recording.log([entity, "events"], shown)
     places = points + np.array([side * _LABEL_OFFSET * extent, 0.0])
     labels = rr.Points2D(_on_screen(places), colors=palette.IMPACT, radii=0.0, labels=texts, show_labels=True)
-    recording.log([IMPULSE_SPACE, "event labels"], labels)
+    recording.log([entity, "event labels"], labels)
 
 
 def contact_axes(picture: ImpactPicture, contact: int) -> FloatArray:
@@ -166,34 +167,34 @@ def _lines(
     return Line(response[0], float(velocity[0])), Line(response[1], float(velocity[1]))
 
 
-def _draw_background(recording: rr.RecordingStream, friction: float, extent: float) -> None:
+def _draw_background(recording: rr.RecordingStream, entity: str, friction: float, extent: float) -> None:
     axes = [[(-extent, 0.0), (extent, 0.0)], [(0.0, 0.0), (0.0, extent)]]
-    _strips(recording, "axes", axes, palette.SURFACE_GRID)
+    _strips(recording, [entity, "axes"], axes, palette.SURFACE_GRID)
     half_angle = math.atan(friction)
     rim: Vector2 = (extent * math.sin(half_angle), extent * math.cos(half_angle))
     cone = [[(-rim[0], rim[1]), (0.0, 0.0), rim]]
-    _strips(recording, "friction cone", cone, palette.translucent(palette.FRICTION_CONE, 1.0))
+    _strips(recording, [entity, "friction cone"], cone, palette.translucent(palette.FRICTION_CONE, 1.0))
 
 
-def _draw_names(recording: rr.RecordingStream, t: float, extent: float) -> None:
+def _draw_names(recording: rr.RecordingStream, entity: str, t: float, extent: float) -> None:
     points = np.array([(t, extent * (1.0 - 0.13 * i)) for i in range(len(_NAMED))])
     colors = [color for _, color in _NAMED]
     labels = rr.Points2D(
         _on_screen(points), colors=colors, radii=0.0, labels=[name for name, _ in _NAMED], show_labels=True
     )
-    recording.log(f"{IMPULSE_SPACE}/names", labels)
+    recording.log([entity, "names"], labels)
 
 
 def _strips(
     recording: rr.RecordingStream,
-    name: str,
+    path: list[str],
     strips: Iterable[ArrayLike],
     color: palette.Color,
     *,
     width: float = _LINE_WIDTH,
 ) -> None:
     drawn = [_on_screen(np.asarray(strip)) for strip in strips]
-    recording.log([IMPULSE_SPACE, name], rr.LineStrips2D(drawn, colors=color, radii=width))
+    recording.log(path, rr.LineStrips2D(drawn, colors=color, radii=width))
 
 
 def _on_screen(points: FloatArray) -> FloatArray:

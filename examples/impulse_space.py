@@ -1,0 +1,59 @@
+"""Lecture 27's rigid body example in impulse space, for several places of its contact.
+
+Writes `impulse_space.rrd` (or the path given) for rerun's viewer: `rerun impulse_space.rrd`.
+"""
+
+import sys
+
+import numpy as np
+import rerun as rr
+import rerun.blueprint as rrb
+
+from contact_dynamics import BodyState, ContactSet, MassProperties, spatial_impact
+from contact_dynamics.viewing import palette
+from contact_dynamics.viewing.impact import ImpactPicture
+from contact_dynamics.viewing.impulse_space import draw_impulse_space
+
+# rho = 1, m = 1, v = (-1, -1), w = 0, mu = 0.25, e = 0.5; the plane is x, z. The figure with r is lost.
+ARMS = [(0.0, -1.0), (0.1, -1.5), (0.3, -3.0), (1.0, -1.2), (1.0, -2.0), (-1.0, -9.0)]
+body = MassProperties(mass=1.0, I_B=np.eye(3))
+state = BodyState(
+    p_WB_W=np.zeros(3),
+    q_WB=np.array([0.0, 0.0, 0.0, 1.0]),
+    v_WB_W=np.array([-1.0, 0.0, -1.0]),
+    w_WB_W=np.zeros(3),
+)
+up = np.array([0.0, 0.0, 1.0])
+
+views = []
+with rr.RecordingStream("contact_dynamics") as recording:
+    recording.save(sys.argv[1] if len(sys.argv) > 1 else "impulse_space.rrd")
+    for i, (x, z) in enumerate(ARMS):
+        arm = np.array([x, 0.0, z])
+        impact = spatial_impact(body, state, p_WC_W=arm, n_W=up, friction=0.25, restitution=0.5)
+        (t, _, n), outcome = impact.impulse_W, impact.outcome.name.lower().replace("_", " ")
+        if impact.jams:
+            outcome = f"jams, {outcome}"
+        print(f"r = ({x:g}, {z:g}): {outcome}, impulse ({t:.4f}, {n:.4f}) N s")
+        picture = ImpactPicture(
+            state=state,
+            v_after_W=impact.state.v_WB_W,
+            contacts=ContactSet(
+                p_WC_W=arm[None], normals_W=up[None], frictions=np.array([0.25]), restitutions=np.array([0.5])
+            ),
+            impulses_W=impact.impulse_W[None],
+            path_W=impact.path_W,
+            path_events=tuple(int(event) for event in impact.path_events),
+            path_contacts=(0,) * len(impact.path_W),
+            plane_normal_W=np.array([0.0, -1.0, 0.0]),
+        )
+        entity = f"example_{i}"
+        draw_impulse_space(recording, body, picture, entity=entity)
+        name = f"r = ({x:g}, {z:g}): {outcome}"
+        height = 1.3 * float(np.abs(impact.path_W).max())
+        # Rerun's 2D views have the second coordinate downwards.
+        bounds = rrb.VisualBounds2D(x_range=(-1.25 * height, 1.25 * height), y_range=(-height, 0.2 * height))
+        views.append(
+            rrb.Spatial2DView(origin=entity, name=name, background=palette.BACKGROUND, visual_bounds=bounds)
+        )
+    recording.send_blueprint(rrb.Blueprint(rrb.Grid(*views, grid_columns=3), collapse_panels=True))
