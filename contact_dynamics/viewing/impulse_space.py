@@ -187,7 +187,7 @@ def _draw_names(recording: rr.RecordingStream, entity: str, t: float, extent: fl
 
 def _strips(
     recording: rr.RecordingStream,
-    path: list[str],
+    path: list[object],
     strips: Iterable[ArrayLike],
     color: palette.Color,
     *,
