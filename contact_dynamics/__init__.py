@@ -14,7 +14,7 @@ The table of contents, chapters in reading order; everything here is plain NumPy
   (`find_contacts`); `PlanarContact` and its kin in the plane (`planar`), reached from space by a
   `PlaneOfMotion`.
 - Lecture 26, contact modes: `planar_contact_modes` (`contact_modes`).
-- Lecture 27, impact: `planar_impact`, `spatial_impact` (`impact`).
+- Lecture 27, impact: `planar_impact`, `spatial_impact`, strikes in time `impact_sequence` (`impact`).
 - What is refused, and how: `errors`. What counts as zero: `tolerances`.
 """
 
@@ -42,6 +42,7 @@ from contact_dynamics.impact import (
     PlanarImpact,
     RestitutionLaw,
     SpatialImpact,
+    impact_sequence,
     planar_impact,
     several_impact,
     spatial_impact,
@@ -97,6 +98,7 @@ __all__ = [
     "fit_free_motion",
     "fit_motion",
     "free_motion",
+    "impact_sequence",
     "kinetic_energy",
     "momentum",
     "motion_of",
