@@ -12,11 +12,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from contact_dynamics.contact_curvature import planar_gap_acceleration
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.tolerances import UNIT_LENGTH_TOLERANCE
+from contact_dynamics.tolerances import LARGEST_NUMBER, UNIT_LENGTH_TOLERANCE
 from contact_dynamics.validation import (
     LENGTH_ROUNDING,
     check_finite,
@@ -33,7 +33,7 @@ class PlanarBody:
     """Mass and scalar angular inertia of a planar body.
 
     Raises:
-        InvalidFieldError: either is not a finite number > 0.
+        InvalidFieldError: either is not a finite number > 0, or beyond `LARGEST_NUMBER` or below its inverse.
     """
 
     mass: float  # kg
@@ -41,8 +41,8 @@ class PlanarBody:
 
     def __post_init__(self) -> None:
         """Check both fields."""
-        object.__setattr__(self, "mass", check_positive("mass", self.mass))
-        object.__setattr__(self, "inertia", check_positive("inertia", self.inertia))
+        object.__setattr__(self, "mass", _check_size("mass", check_positive("mass", self.mass)))
+        object.__setattr__(self, "inertia", _check_size("inertia", check_positive("inertia", self.inertia)))
 
     @property
     def radius_of_gyration(self) -> float:
@@ -55,7 +55,7 @@ class PlanarVelocity:
     """Velocity of a planar body.
 
     Raises:
-        InvalidFieldError: a number is not finite.
+        InvalidFieldError: a number is not finite, or beyond `LARGEST_NUMBER`.
     """
 
     v: Vector2  # m/s, of the centre of mass
@@ -64,7 +64,7 @@ class PlanarVelocity:
     def __post_init__(self) -> None:
         """Check both fields."""
         object.__setattr__(self, "v", check_vector2("linear_velocity", self.v))
-        object.__setattr__(self, "w", check_finite("angular_velocity", self.w))
+        object.__setattr__(self, "w", _check_number("angular_velocity", self.w))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,7 +72,7 @@ class PlanarWrench:
     """Force and moment applied to a planar body, besides those of its contacts.
 
     Raises:
-        InvalidFieldError: a number is not finite.
+        InvalidFieldError: a number is not finite, or beyond `LARGEST_NUMBER`.
     """
 
     f: Vector2  # N
@@ -81,7 +81,7 @@ class PlanarWrench:
     def __post_init__(self) -> None:
         """Check both fields."""
         object.__setattr__(self, "f", check_vector2("force", self.f))
-        object.__setattr__(self, "moment", check_finite("torque", self.moment))
+        object.__setattr__(self, "moment", _check_number("torque", self.moment))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -154,12 +154,25 @@ class PlanarContact:
 
 
 def check_vector2(field: str, value: Vector2) -> Vector2:
-    """Return ``value`` as a pair of finite floats, or raise `InvalidFieldError`."""
+    """Return ``value`` as a pair of floats up to `LARGEST_NUMBER`, or raise `InvalidFieldError`."""
     try:
         x, y = value
     except (TypeError, ValueError):
         raise InvalidFieldError(field, value, "two finite numbers") from None
-    # The common case first: a sum is finite only if both are.
-    if type(x) is float and type(y) is float and math.isfinite(x + y):
+    # The common case first; NaN compares as false.
+    if type(x) is float and type(y) is float and abs(x) + abs(y) <= LARGEST_NUMBER:
         return (x, y)
-    return (check_finite(field, x), check_finite(field, y))
+    return (_check_number(field, x), _check_number(field, y))
+
+
+def _check_number(field: str, value: Any) -> float:
+    number = check_finite(field, value)
+    if abs(number) > LARGEST_NUMBER:
+        raise InvalidFieldError(field, value, f"a number of at most {LARGEST_NUMBER:g}, by size")
+    return number
+
+
+def _check_size(field: str, value: float) -> float:
+    if not 1.0 / LARGEST_NUMBER <= value <= LARGEST_NUMBER:
+        raise InvalidFieldError(field, value, f"a number from {1.0 / LARGEST_NUMBER:g} to {LARGEST_NUMBER:g}")
+    return value

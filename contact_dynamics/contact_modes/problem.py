@@ -21,7 +21,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.errors import TooLargeError
-from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, ROW_TOLERANCE
+from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, LARGEST_NUMBER, ROW_TOLERANCE
 from contact_dynamics.vector3 import Vector3, cross, dot, norm, normalised, without
 
 if TYPE_CHECKING:
@@ -147,9 +147,8 @@ def planar_problem(
         size_n, size_t = norm(N), norm(T)
         unit_n, unit_t = _divided(N, size_n), _divided(T, size_t)
         slides = float((v_t > 0.0) - (v_t < 0.0))
-        rows.append(
-            ContactRow(index, N, T, unit_n, unit_t, size_n, size_t, b_n, b_t, slides, contact.friction)
-        )
+        friction = min(contact.friction, LARGEST_NUMBER)
+        rows.append(ContactRow(index, N, T, unit_n, unit_t, size_n, size_t, b_n, b_t, slides, friction))
     return PlanarProblem(
         contacts=contacts,
         mass=body.mass,

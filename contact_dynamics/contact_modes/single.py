@@ -19,7 +19,7 @@ from typing import Final, NamedTuple
 
 from contact_dynamics.contact_modes.result import ConsistentMode, Refusal, RefusedMode
 from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarWrench, Vector2
-from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.tolerances import LARGEST_NUMBER, ROW_TOLERANCE
 
 _ROUNDING: Final = 1e-14  # relative to the terms of a sum: some ten times what they are rounded by
 
@@ -134,7 +134,7 @@ def _contact_axes(
         w_t=w_t,
         w_n=w_n,
         terms=(abs(f_x) + abs(f_y)) * per_mass + (abs(r_t) + abs(r_n)) * abs(alpha) + centripetal,
-        friction=contact.friction,
+        friction=min(contact.friction, LARGEST_NUMBER),
         load=math.sqrt(force) + centripetal / math.sqrt(per_mass),
         accuracy=accuracy,
     )

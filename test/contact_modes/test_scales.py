@@ -6,12 +6,16 @@ of terms 1e14 times its size, so that doubles do not say whether it is zero.
 
 from __future__ import annotations
 
+import math
+import random
 from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 
 from contact_dynamics.contact_modes import planar_contact_modes
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from oracles.contact_mode_cases import contact, draw, resting, rounded
 from oracles.contact_modes import ExactCase, consistent_modes, kinematic_modes
 
@@ -64,3 +68,49 @@ def test_a_body_on_two_feet_tips_where_its_weight_passes_a_foot(
     answer = planar_contact_modes(*rounded(case))  # with the default tolerance
     assert ("ff" in {mode.mode for mode in answer.modes}) == rests
     assert {mode.mode for mode in answer.modes} == consistent_modes(case, kinematic_modes(case))
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_numbers_of_any_size_give_finite_evidence(seed: int) -> None:
+    chance = random.Random(seed)
+
+    def number() -> float:
+        if chance.random() < 0.4:
+            return float(chance.randint(-2, 2))
+        return chance.choice([-1.0, 1.0]) * 10.0 ** chance.uniform(-30.0, 30.0)
+
+    angles = [chance.choice([0.0, 0.5 * math.pi, math.pi, chance.uniform(0.0, 7.0)]) for _ in range(2)]
+    places = [(number(), number()) for _ in range(3)]
+    contacts = []
+    for _ in range(chance.choice([1, 2, 3, 5, 30])):
+        angle = chance.choice(angles) + chance.choice([0.0, 1e-15, 1e-10, 1e-8])
+        contacts.append(
+            PlanarContact(
+                r=chance.choice(places),
+                normal=(-math.sin(angle), math.cos(angle)),
+                friction=chance.choice([0.0, 0.5, abs(number()), 1e300]),
+            )
+        )
+    body = PlanarBody(mass=10.0 ** chance.uniform(-30.0, 30.0), inertia=10.0 ** chance.uniform(-30.0, 30.0))
+    velocity = PlanarVelocity(v=(0.0, 0.0), w=0.0)
+    if chance.random() < 0.4:
+        velocity = PlanarVelocity(v=(number(), number()), w=number())
+    answer = planar_contact_modes(
+        body, velocity, contacts, PlanarWrench(f=(number(), number()), moment=number())
+    )
+    for mode in answer.modes:
+        pairs = (mode.acceleration, *mode.contact_forces, *mode.contact_accelerations)
+        assert all(math.isfinite(x) and math.isfinite(y) for x, y in pairs)
+        assert math.isfinite(mode.angular_acceleration)
+
+
+def test_numbers_whose_products_leave_the_range_of_doubles_are_refused() -> None:
+    for make in (
+        lambda: PlanarBody(mass=1e61, inertia=1.0),
+        lambda: PlanarBody(mass=1.0, inertia=1e-61),
+        lambda: PlanarVelocity(v=(0.0, 1e61), w=0.0),
+        lambda: PlanarWrench(f=(0.0, 0.0), moment=-1e61),
+        lambda: PlanarContact(r=(1e61, 0.0), normal=(0.0, 1.0), friction=0.5),
+    ):
+        with pytest.raises(InvalidFieldError, match=r"1e[+-]?61.* allowed is a number .*1e\+60"):
+            make()
