@@ -17,6 +17,8 @@ EXAMPLES = {
     "next_landing.py": "impulse",
     "poinsot.py": "about_major_axis",
     "impulse_space.py": "r = (1, -2): reverses in compression",
+    "landing_on_corners.py": "ms: corner 1",
+    "newtons_cradle.py": "0.000  0.000  0.000  0.000  1.000 m/s",
     "tray.py": "brings about rsrs",
 }
 
@@ -55,7 +57,10 @@ def test_asking_the_server() -> None:
     assert "orientation x y z w" in result.stdout
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/contact-modes.md", "docs/impact.md", "docs/tumbling.md"])
+@pytest.mark.parametrize(
+    "page",
+    ["README.md", "docs/contact-modes.md", "docs/impact.md", "docs/several-contacts.md", "docs/tumbling.md"],
+)
 def test_the_code_in_the_documents(page: str, tmp_path: Path) -> None:
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), re.DOTALL)
     assert blocks
