@@ -6,8 +6,8 @@ flight, and says the velocities at the beginning of the second:
 
 * one strike: the corner that lands first, and free flight from there on;
 * at once: all corners that are then within `ALONE` of the floor, one after the other at that instant;
-* in time: the strikes that follow, each when it comes (`impact_sequence`). It ends where a corner stays on the
-  floor: how many do is printed. From there on free flight is assumed, which then is wrong;
+* in time: the strikes that follow, each when it comes (`impact_sequence`). It ends where a corner stays on
+  the floor: how many do is printed. From there on free flight is assumed, which then is wrong;
 * held: the same, going on in steps over corners that stay, with mu and e of the strikes of a single corner.
 """
 
