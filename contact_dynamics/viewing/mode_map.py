@@ -38,12 +38,13 @@ OUTSIDE: Final = 0
 NO_MODE: Final = 1
 """Classes of the picture's points; the others count up from here."""
 
-LIVE_RESOLUTION: Final = 300
+LIVE_RESOLUTION: Final = 240
 """Points on a side: as many as the view of the visualizer shows. Such a map takes about 0.1 s to draw."""
 
 _NAMED_FROM: Final = 0.045
 """Relative to a part's side: a region that holds no circle of this radius has no room for its name."""
 
+_SEEN: Final = 5e-3  # of unit normals: what moves a border by one point of the picture
 _COARSE: Final = 4  # every so many points suffice to find where a region is widest
 _EDGE: Final = 1e-9  # relative: what is outside by less is on the boundary
 _BORDER_WIDTH: Final = -1.0  # negative: points of the screen
@@ -132,7 +133,24 @@ def draw_mode_map(
     if (regions.classes == NO_MODE).any():
         notes.append("black: none is")
     draw_frame(recording, chart, entity, note="; ".join(notes))
-    _draw_applied(recording, chart, entity, applied=applied, change=change)
+    draw_applied(recording, chart, entity=entity, applied=applied, change=change)
+
+
+def look_alike(one: Sequence[ModeWrenchSet], other: Sequence[ModeWrenchSet], *, length: float) -> bool:
+    """Return whether two maps over directions differ by less than can be seen; ``length`` as in the chart."""
+    if [a.mode for a in one] != [b.mode for b in other]:
+        return False
+    for a, b in zip(one, other, strict=True):
+        if len(a.half_spaces) != len(b.half_spaces):
+            return False
+        if not a.half_spaces:
+            continue
+        sides = (np.array([side.a for side in each.half_spaces]).reshape(-1, 1, 3) for each in (a, b))
+        first, second = (normals * (1.0, 1.0, length) for normals in sides)
+        apart = np.abs(first - second.transpose(1, 0, 2)).max(axis=2)
+        if max(float(apart.min(axis=0).max()), float(apart.min(axis=1).max())) > _SEEN:
+            return False
+    return True
 
 
 def chart_for(
@@ -244,14 +262,15 @@ def draw_frame(recording: rr.RecordingStream, chart: WrenchChart, entity: str, *
     recording.log(f"{entity}/captions", captions)
 
 
-def _draw_applied(
+def draw_applied(
     recording: rr.RecordingStream,
     chart: WrenchChart,
-    entity: str,
     *,
+    entity: str = MODE_MAP,
     applied: PlanarWrench | None,
     change: PlanarWrench | None,
 ) -> None:
+    """Mark a wrench on a map, and its least change that brings about another mode as a way from it."""
     start = np.zeros(3) if applied is None else np.array([*applied.f, applied.moment])
     if not start.any():
         recording.log(f"{entity}/applied", rr.Clear(recursive=True))

@@ -25,7 +25,7 @@ from contact_dynamics.viewing.impact import draw_impact
 from contact_dynamics.viewing.impulse_space import draw_impulse_space
 from contact_dynamics.viewing.legend import LEGEND_TEXT
 from contact_dynamics.viewing.measured import draw_prediction_at, draw_states, set_time, style_series
-from contact_dynamics.viewing.planar_modes import draw_planar_modes, silhouette
+from contact_dynamics.viewing.planar_modes import DrawnMap, draw_planar_map, draw_planar_modes, silhouette
 from contact_dynamics.viewing.poinsot import draw_poinsot, draw_rolling
 from contact_dynamics.viewing.scene import draw_axes, draw_body, draw_obstacle, draw_surface
 from contact_dynamics.viewing.shape import Shape, drawn_shape
@@ -64,6 +64,7 @@ class Picture:
         self._newest: dict[str, BodyState] = {}
         self._predictions: dict[str, _Prediction] = {}
         self._answers: dict[str, str] = {}
+        self._map: DrawnMap | None = None
         self._rolling: set[str] = set()  # bodies that Poinsot's picture was drawn of
         self._framed = False
         self._eye: Eye | None = None
@@ -146,6 +147,7 @@ class Picture:
         """Draw a planar answer about contact modes in 2D, seen along two axes, (2, 3), unit, body axes."""
         set_time(self._recording, stamp_ns)
         draw_planar_modes(self._recording, modes, outline=silhouette(self._shape(body_name), axes_B))
+        self._map = draw_planar_map(self._recording, modes, self._map)
         self._bring_up(PLANAR_MODES, *([MODE_MAP] if modes.sets else []))
 
     def body(self, body_name: str) -> Body | None:

@@ -15,15 +15,17 @@ import rerun as rr
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.contact_modes import MOST_MODES
 from contact_dynamics.viewing.entities import MODE_MAP, PLANAR_MODES
-from contact_dynamics.viewing.mode_map import chart_for, draw_mode_map
+from contact_dynamics.viewing.mode_map import chart_for, draw_applied, draw_mode_map, look_alike
 from contact_dynamics.viewing.planar_scene import draw_planar_scene, upright
 from contact_dynamics.viewing.shape import FLAT
+from contact_dynamics.viewing.wrench_chart import DirectionChart
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes import ConsistentMode, ModeWrenchSet
     from contact_dynamics.planar import PlanarContact, PlanarWrench
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.shape import Shape
+    from contact_dynamics.viewing.wrench_chart import WrenchChart
 
 NO_SIZE: Final = 0.1
 """m. Size that a body without shape, at its only contact, is drawn with."""
@@ -52,7 +54,7 @@ class PlanarModesPicture:
 def draw_planar_modes(
     recording: rr.RecordingStream, picture: PlanarModesPicture, *, outline: FloatArray
 ) -> None:
-    """Draw the consistent modes side by side, and the map if it was told, at the current time.
+    """Draw the consistent modes side by side, at the current time.
 
     ``outline`` is a closed strip, (k, 2), m from the centre of mass; without points the body has no shape.
     """
@@ -84,11 +86,39 @@ def draw_planar_modes(
         recording.log(f"{path}/title", points)
         room = rr.Points2D(upright(np.array([low, high]) + aside), colors=palette.BACKGROUND, radii=0.0)
         recording.log(f"{path}/room", room)  # what the viewer fits into the view
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class DrawnMap:
+    """A map that is in the picture."""
+
+    sets: tuple[ModeWrenchSet, ...]
+    chart: WrenchChart
+
+
+def draw_planar_map(
+    recording: rr.RecordingStream, picture: PlanarModesPicture, before: DrawnMap | None
+) -> DrawnMap | None:
+    """Draw the map that was told at the current time, and return what is drawn then.
+
+    Where it looks like the one ``before``, only the wrench in question moves.
+    """
+    if not picture.sets:
+        return before
     if len(picture.sets) > MOST_SETS:
         recording.log(MODE_MAP, rr.Clear(recursive=True))
-    elif picture.sets:
-        chart = chart_for(picture.sets, length=picture.length, applied=picture.applied)
-        draw_mode_map(recording, picture.sets, chart, applied=picture.applied, change=picture.change)
+        return None
+    chart = chart_for(picture.sets, length=picture.length, applied=picture.applied)
+    if (
+        before is not None
+        and isinstance(chart, DirectionChart)
+        and isinstance(before.chart, DirectionChart)
+        and look_alike(before.sets, picture.sets, length=chart.length)
+    ):
+        draw_applied(recording, before.chart, applied=picture.applied, change=picture.change)
+        return before
+    draw_mode_map(recording, picture.sets, chart, applied=picture.applied, change=picture.change)
+    return DrawnMap(sets=picture.sets, chart=chart)
 
 
 def silhouette(shape: Shape, axes_B: FloatArray) -> FloatArray:

@@ -17,6 +17,7 @@ from contact_dynamics.viewing.mode_map import (
     chart_for,
     color_of_modes,
     draw_mode_map,
+    look_alike,
     mode_regions,
     widest_places,
 )
@@ -162,4 +163,5 @@ def test_a_map_without_half_spaces_is_one_region() -> None:
     always = ModeWrenchSet(mode="f", vertices=(), generators=(), half_spaces=())
     regions = mode_regions([always], DirectionChart(length=1.0, resolution=20))
     assert regions.modes[2:] == (("f",),)
+    assert look_alike([always], [always], length=1.0)
     assert not borders_of(always, DirectionChart(length=1.0, resolution=20))

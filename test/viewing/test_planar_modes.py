@@ -10,7 +10,13 @@ import pytest
 from contact_dynamics.contact_modes import planar_contact_modes, planar_mode_map, planar_mode_margins
 from contact_dynamics.nodes.pictured_contact_modes import applied_wrench
 from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
-from contact_dynamics.viewing.planar_modes import MOST_SETS, PlanarModesPicture, draw_planar_modes, silhouette
+from contact_dynamics.viewing.planar_modes import (
+    MOST_SETS,
+    PlanarModesPicture,
+    draw_planar_map,
+    draw_planar_modes,
+    silhouette,
+)
 from contact_dynamics.viewing.shape import convex_shape
 from contact_dynamics.world import box_vertices
 
@@ -58,17 +64,34 @@ def test_the_modes_of_the_indeterminate_rod_stand_side_by_side(
     assert places[1][0] - places[0][0] > 2.0 * abs(TIP.r[0]) + 1.0
     assert places[1][1] == places[0][1]
     assert drawn.last("/planar_modes/mode_3", "Clear:is_recursive") == [True]
-    assert "/mode_map/applied" in drawn.entities
 
 
 def test_the_inconsistent_rod_says_so(recording: rr.RecordingStream, read: Callable[[], Drawn]) -> None:
     falling = PlanarWrench(f=(0.0, -9.81))
     picture = picture_of(applied=falling, velocity=PlanarVelocity(v=(-1.0, 0.0), w=0.0))
     draw_planar_modes(recording, picture, outline=np.zeros((0, 2)))
+    draw_planar_map(recording, picture, None)
     drawn = read()
     assert drawn.last("/planar_modes/mode_1/title", "Points2D:labels") == ["no consistent mode"]
     assert drawn.last("/planar_modes/mode_2", "Clear:is_recursive") == [True]
     assert "black: none is" in drawn.last("/mode_map/captions", "Points2D:labels")[-1]
+
+
+def test_a_map_that_looks_as_before_is_not_drawn_again(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    picture = picture_of(applied=ALONG, velocity=AT_REST)
+    turned = replace(TIP, r=(TIP.r[0] * 1.001, TIP.r[1]))
+    nearly = replace(picture, sets=planar_mode_map(ROD, [turned]), applied=PlanarWrench(f=(0.0, -1.0)))
+    far = replace(picture, sets=planar_mode_map(ROD, [replace(TIP, friction=0.9)]))
+    drawn_map = draw_planar_map(recording, picture, None)
+    assert draw_planar_map(recording, nearly, drawn_map) is drawn_map
+    other = draw_planar_map(recording, far, drawn_map)
+    assert other is not drawn_map
+    assert draw_planar_map(recording, replace(picture, sets=()), other) is other
+    drawn = read()
+    assert len(drawn.values["/mode_map/regions", "Image:buffer"]) == 2
+    assert len(drawn.values["/mode_map/applied", "Points2D:positions"]) == 3
 
 
 def test_a_map_of_too_many_modes_is_left_out(
@@ -76,7 +99,7 @@ def test_a_map_of_too_many_modes_is_left_out(
 ) -> None:
     picture = picture_of(applied=ALONG, velocity=AT_REST)
     many = replace(picture, sets=picture.sets[:1] * (MOST_SETS + 1))
-    draw_planar_modes(recording, many, outline=np.zeros((0, 2)))
+    assert draw_planar_map(recording, many, None) is None
     drawn = read()
     assert drawn.last("/mode_map", "Clear:is_recursive") == [True]
     assert "/mode_map/regions" not in drawn.entities
