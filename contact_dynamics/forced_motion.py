@@ -78,6 +78,12 @@ class ForcedMotion:
     ahead: _Steps  # what has been stepped into the future
     back: _Steps  # and into the past
 
+    @property
+    def rotates_freely(self) -> bool:
+        """Whether only forces act: the rotation is then that of `free_motion`, Poinsot's picture and all."""
+        angular_drag = self.drag.linear_angular or self.drag.quadratic_angular
+        return not (self.wrench.torque.any() or angular_drag or self.wrench_of is not None)
+
     def sample(self, seconds: float) -> Sample:
         """Return the motion at one time, s after the state's stamp, in plain floats.
 

@@ -286,6 +286,22 @@ def test_integrated_where_something_does(forces: dict) -> None:
     assert isinstance(motion, ForcedMotion)
 
 
+def test_forces_alone_leave_the_rotation_free() -> None:
+    through_the_centre = ConstantWrench(force=[1.0, 2.0, 3.0], axes=WrenchAxes.BODY)
+    motion = forced_motion(BODY, state(), wrench=through_the_centre, drag=Drag(linear=0.3, quadratic=0.1))
+    assert motion.rotates_freely
+    times = [-1.0, 3.0]
+    found, free = motion.at(times), free_motion(BODY, state()).at(times)
+    np.testing.assert_allclose(found.q_WB, free.q_WB, rtol=0.0, atol=1e-12)
+    for forces in (
+        {"wrench": ConstantWrench(torque=[0.0, 1e-9, 0.0])},
+        {"drag": Drag(linear_angular=1e-9)},
+        {"drag": Drag(quadratic_angular=1e-9)},
+        {"wrench_of": lambda _, __: ([0.0] * 3, [0.0] * 3)},
+    ):
+        assert not forced_motion(BODY, state(), **forces).rotates_freely
+
+
 def test_methods_are_numbered_as_in_the_service() -> None:
     assert (Method.CLOSED_FORM, Method.INTEGRATED) == (0, 1)
 

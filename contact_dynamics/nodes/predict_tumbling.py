@@ -14,6 +14,7 @@ from contact_dynamics.forced_motion_fit import fit_motion
 from contact_dynamics.nodes.sampling import MOST_INTEGRATED_STEPS, times_of
 from contact_dynamics.nodes.subject import Knowledge, Subject, covariance_of, gravity_of, subject_of
 from contact_dynamics.poinsot import poinsot, rolling_curves
+from contact_dynamics.tumbling import free_motion
 from contact_dynamics.uncertainty import CarriedCovariance, covariance_along
 from contact_dynamics.validation import check_array
 from msg_adapters.geometry import point_to_msg, vector_from_msg, vector_to_msg
@@ -51,10 +52,7 @@ def predict_tumbling(request: Any, response: Any, knowledge: Knowledge) -> None:
     subject = subject_of(request, knowledge, fit=partial(fit_motion, **forces))
     motion, method = motion_of(subject.body.mass_properties, subject.state, **forces)
     times, event = times_of(request, response, subject, motion, knowledge)
-    if isinstance(motion, ForcedMotion):
-        response.poinsot = torque_acts()
-    else:
-        response.poinsot = _poinsot(request, subject, motion)
+    response.poinsot = _poinsot(request, subject, motion)
     response.trajectory = trajectory_to_msg(
         motion.at(times),
         stamp_ns=subject.state.stamp_ns,
@@ -75,7 +73,11 @@ def predict_tumbling(request: Any, response: Any, knowledge: Knowledge) -> None:
     response.state = subject.state_to_msg(subject.state)
 
 
-def _poinsot(request: Any, subject: Subject, motion: FreeMotion) -> PoinsotMsg:
+def _poinsot(request: Any, subject: Subject, motion: FreeMotion | ForcedMotion) -> PoinsotMsg:
+    if isinstance(motion, ForcedMotion):
+        if not motion.rotates_freely:
+            return torque_acts()
+        motion = free_motion(motion.body, motion.state)
     count = request.curve_points
     if count > MOST_CURVE_POINTS:
         raise TooLargeError("curve_points", count, f"at most {MOST_CURVE_POINTS}")

@@ -166,6 +166,21 @@ def test_a_torque_in_body_axes_spins_up_and_a_force_alone_stays_in_closed_form(c
     np.testing.assert_allclose(answer.trajectory.positions, 0.0, atol=1e-14)
 
 
+def test_poinsots_picture_holds_where_only_forces_act(client: Client) -> None:
+    request = spinning(w=(0.3, -0.5, 1.2), moments=(0.1, 0.14, 0.19))
+    request.times, request.curve_points = [3.0], 10
+    free = client.ask(request)
+    request.linear_drag, request.applied_wrench.force.x, request.wrench_in_body_axes = 0.5, 1.0, True
+    dragged = client.ask(request)
+    assert dragged.method == dragged.INTEGRATED
+    assert dragged.poinsot == free.poinsot
+    np.testing.assert_allclose(
+        dragged.trajectory.orientations, free.trajectory.orientations, rtol=0.0, atol=1e-11
+    )
+    request.linear_angular_drag = 1e-6
+    assert client.ask(request).poinsot.regime == Poinsot.UNKNOWN
+
+
 def test_first_contact_under_drag(client: Client) -> None:
     """Falling from rest with linear drag: z = z0 - (g/k) (t - (1 - e^(-k t)) / k), solved for the floor."""
     request = PredictTumbling.Request(body_name="brick", state_source=PredictTumbling.Request.STATE_EXPLICIT)
