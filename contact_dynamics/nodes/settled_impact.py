@@ -14,7 +14,7 @@ from contact_dynamics.impact import (
     spatial_impact,
 )
 from contact_dynamics.impact.several_planar import planar_in_space
-from contact_dynamics.plane_to_space import planar_velocity, with_planar_velocity
+from contact_dynamics.plane_to_space import equal_shares, planar_velocity, with_planar_velocity
 from msg_adapters.contact_mode import planar_modes_to_msgs, spatial_modes_to_msgs
 from msg_adapters.impact import (
     Before,
@@ -109,7 +109,8 @@ def settle_in_plane(
         question: In space.
         problem: The same in its plane of motion.
         verdict: On it.
-        partners: The mirror image of each contact in the plane, for the shares of forces.
+        partners: The mirror image of each contact in the plane, for the shares of forces and of impulses at
+            once; impulses in turn belong to the contact that struck.
     """
     if verdict not in _UNSETTLED:
         return
@@ -128,7 +129,8 @@ def settle_in_plane(
         several = _several(question, *flat, verdict, plane_normal_W=plane.normal_W)
         velocity = planar_velocity(plane, several.state)
         after = with_planar_velocity(problem, state, velocity)
-        msg = several_impact_to_msg(replace(several, state=after), question.before)
+        impulses = several.impulses_W if several.strikes else equal_shares(several.impulses_W, partners)
+        msg = several_impact_to_msg(replace(several, state=after, impulses_W=impulses), question.before)
         outcomes = _orders(question, *flat, verdict)
         if outcomes is not None:
             write_orders(msg, outcomes)
