@@ -64,6 +64,7 @@ class Picture:
         self._newest: dict[str, BodyState] = {}
         self._predictions: dict[str, _Prediction] = {}
         self._answers: dict[str, str] = {}
+        self._told_ns: int | None = None  # stamp of the last answer
         self._map: DrawnMap | None = None
         self._rolling: set[str] = set()  # bodies that Poinsot's picture was drawn of
         self._framed = False
@@ -157,6 +158,7 @@ class Picture:
     def tell(self, kind: str, text: str, *, stamp_ns: int, is_error: bool = False) -> None:
         """Write an answer in words: to the log of all, and as the newest one of its kind."""
         set_time(self._recording, stamp_ns)
+        self._told_ns = stamp_ns
         level = rr.TextLogLevel.WARN if is_error else rr.TextLogLevel.INFO
         self._recording.log(ANSWER_LOG, rr.TextLog(f"{kind}: {text}", level=level))
         self._answers[kind] = text
@@ -169,8 +171,8 @@ class Picture:
             self._look_at(np.array([p_WB_W for _, p_WB_W in self._recent]))
 
     def newest_stamp_ns(self) -> int | None:
-        """Return the stamp of the newest measured state, if there is one."""
-        return max((state.stamp_ns for state in self._newest.values()), default=None)
+        """Return the stamp of the newest measured state; without one that of the last answer, if any."""
+        return max((state.stamp_ns for state in self._newest.values()), default=self._told_ns)
 
     def _draw_scene(self) -> None:
         draw_axes(self._recording, self._up_W)

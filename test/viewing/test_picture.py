@@ -134,7 +134,9 @@ def test_the_newest_answer_of_each_kind_stands_in_words_and_all_in_the_log(
     recording: rr.RecordingStream, read: Callable[[], Drawn], world: World
 ) -> None:
     picture = Picture(recording, world, surface_side=2.0)
+    assert picture.newest_stamp_ns() is None
     picture.tell("Impact", "first", stamp_ns=STAMP_NS)
+    assert picture.newest_stamp_ns() == STAMP_NS
     picture.tell("Tumbling", "second", stamp_ns=STAMP_NS + 1)
     picture.tell("Impact", "third", stamp_ns=STAMP_NS + 2, is_error=True)
     drawn = read()
