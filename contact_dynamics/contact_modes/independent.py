@@ -28,6 +28,14 @@ _DIRECTION: Final = {LEFT: -1.0, RIGHT: 1.0}
 Vector4: TypeAlias = tuple[float, float, float, float]
 
 
+class _Equation(NamedTuple):
+    """An acceleration that is zero, and the force that sees to it."""
+
+    row: Vector4  # of the acceleration, of unit length in its first three parts
+    wrench: Vector3  # of the force, unit
+    length: float  # N, or N m by rho, per N
+
+
 class _Unknown(NamedTuple):
     """One unknown force."""
 
@@ -39,7 +47,7 @@ class _Unknown(NamedTuple):
 class IndependentModes:
     """Solves and judges the modes of one problem."""
 
-    __slots__ = ("_accuracy", "_load", "_problem", "_scale", "_wrench")
+    __slots__ = ("_accuracy", "_equations", "_load", "_problem", "_scale", "_wrench")
 
     def __init__(self, problem: PlanarProblem, accuracy: float) -> None:
         """Judge with zero as the relative ``accuracy`` has it."""
@@ -48,6 +56,7 @@ class IndependentModes:
         self._wrench: Vector4 = (*problem.w, problem.mass * self._scale)
         self._load = _size(self._wrench)
         self._accuracy = accuracy
+        self._equations: dict[tuple[int, int], tuple[_Equation, ...]] = {}  # of the letters met so far
 
     def forces(self, mode: str, letters: Letters) -> list[Vector2] | RefusedMode | None:
         """Return (f_t, f_n) of each contact that stays, or the first reason against the mode.
@@ -66,24 +75,34 @@ class IndependentModes:
     def _unknowns(self, letters: Letters) -> list[_Unknown] | None:
         if len(letters) > _MOST_EQUATIONS:
             return None
-        rows: list[Vector4] = []
-        wrenches: list[tuple[Vector3, float]] = []
-        for position, letter in letters:
-            row = self._problem.rows[position]
-            rows.append((*row.unit_n, self._offset(row.b_n, row.size_n)))
-            if letter == FIXED:
-                rows.append((*row.unit_t, self._offset(row.b_t, row.size_t)))
-                wrenches += ((row.unit_n, row.size_n), (row.unit_t, row.size_t))
-            else:
-                edge = _edge(row, letter)
-                length = norm(edge)
-                wrenches.append(((edge[0] / length, edge[1] / length, edge[2] / length), length))
-        if len(rows) > _MOST_EQUATIONS:
+        equations: list[_Equation] = []
+        for letter in letters:
+            known = self._equations.get(letter)
+            if known is None:
+                known = self._equations[letter] = self._equations_of(*letter)
+            equations += known
+        if len(equations) > _MOST_EQUATIONS:
             return None
-        responses = _solved(rows, [wrench for wrench, _ in wrenches])
+        responses = _solved(equations)
         if responses is None:
             return None
-        return [_Unknown(*one, response) for one, response in zip(wrenches, responses, strict=True)]
+        return [
+            _Unknown(one.wrench, one.length, response)
+            for one, response in zip(equations, responses, strict=True)
+        ]
+
+    def _equations_of(self, position: int, letter: int) -> tuple[_Equation, ...]:
+        row = self._problem.rows[position]
+        normal: Vector4 = (*row.unit_n, self._offset(row.b_n, row.size_n))
+        if letter == FIXED:
+            tangential: Vector4 = (*row.unit_t, self._offset(row.b_t, row.size_t))
+            return (
+                _Equation(normal, row.unit_n, row.size_n),
+                _Equation(tangential, row.unit_t, row.size_t),
+            )
+        edge = _edge(row, letter)
+        length = norm(edge)
+        return (_Equation(normal, (edge[0] / length, edge[1] / length, edge[2] / length), length),)
 
     def _judged_forces(
         self, mode: str, letters: Letters, unknowns: list[_Unknown], sizes: list[float]
@@ -161,16 +180,19 @@ class IndependentModes:
         return offset / (length * self._scale) if self._scale else 0.0
 
 
-def _solved(rows: list[Vector4], wrenches: list[Vector3]) -> list[Vector4] | None:
-    """Return B = (A U)^-1 A+ for the unit rows A+ and the unit wrenches U, as columns; None: no inverse."""
-    count = len(rows)
+def _solved(equations: list[_Equation]) -> list[Vector4] | None:
+    """Return B = (A U)^-1 A+ for the unit rows A+ and the unit wrenches U, row by row; None: no inverse."""
+    count = len(equations)
     if count == 1:  # most modes
-        (row,), (wrench,) = rows, wrenches
-        gain = dot(row[:3], wrench)
+        row, wrench, _ = equations[0]
+        gain = row[0] * wrench[0] + row[1] * wrench[1] + row[2] * wrench[2]
         if abs(gain) <= ROW_TOLERANCE:
             return None
         return [(row[0] / gain, row[1] / gain, row[2] / gain, row[3] / gain)]
-    table = [[*(dot(row[:3], wrench) for wrench in wrenches), *row] for row in rows]
+    wrenches = [wrench for _, wrench, _ in equations]
+    table = [
+        [*(row[0] * x + row[1] * y + row[2] * z for x, y, z in wrenches), *row] for row, _, _ in equations
+    ]
     for k in range(count):
         pivot = max(range(k, count), key=lambda i: abs(table[i][k]))
         if abs(table[pivot][k]) <= ROW_TOLERANCE:
