@@ -4,11 +4,13 @@ In reading order: verdicts and evidence (`result`); one contact in closed form (
 (`planar`, `coincident`), stated as a cone (`problem`, `cone`), its modes enumerated (`enumeration`) and
 judged (`dynamics`, `independent`, `wrench_cone`, `least_force`); applied wrenches of each mode
 (`wrench_sets`), their map and margins (`margins`); equilibrium, jamming and wedging (`statics`). In space:
-contacting and separating modes (`spatial`); sticking and sliding, with mechanics (`spatial_dynamics`,
-`spatial_result`): every combination of
-letters (`spatial_search`, `spatial_letters`, `spatial_regions`, `spatial_program`), shown with exact friction
-(`spatial_sharpening`) and shared forces (`spatial_forces`); statics (`spatial_statics`). What follows where
-no mode is consistent though no contact approaches: `jamming`, by `complementarity`.
+contacting and separating modes (`spatial`, `spatial_cone`), and with ways of sliding (`spatial_sliding`);
+sticking and sliding with mechanics (`spatial_dynamics`, `spatial_result`, `spatial_case`): every combination
+of letters (`spatial_search`, `spatial_letters`, `spatial_regions`, `spatial_program`), shown with exact
+friction (`spatial_sharpening`) and shared forces (`spatial_forces`); margins (`spatial_margins`,
+`spatial_wrenches`); statics (`spatial_statics`). What follows where
+no mode is consistent though no contact approaches: `jamming`, by `complementarity`, until it is over
+(`settling`).
 """
 
 from contact_dynamics.contact_modes.jamming import jamming_impact
@@ -21,10 +23,12 @@ from contact_dynamics.contact_modes.result import (
     Refusal,
     RefusedMode,
 )
+from contact_dynamics.contact_modes.settling import settling_impact
 from contact_dynamics.contact_modes.spatial import spatial_kinematic_modes
 from contact_dynamics.contact_modes.spatial_dynamics import spatial_contact_modes
 from contact_dynamics.contact_modes.spatial_margins import SpatialModeMargin, spatial_mode_margins
 from contact_dynamics.contact_modes.spatial_result import SpatialMode, SpatialModeAnswer
+from contact_dynamics.contact_modes.spatial_sliding import spatial_sliding_modes
 from contact_dynamics.contact_modes.spatial_statics import spatial_statics
 from contact_dynamics.contact_modes.statics import BodyStatics, Certainty, planar_statics
 from contact_dynamics.contact_modes.wrench_sets import ModeWrenchSet, WrenchHalfSpace
@@ -48,8 +52,10 @@ __all__ = [
     "planar_mode_map",
     "planar_mode_margins",
     "planar_statics",
+    "settling_impact",
     "spatial_contact_modes",
     "spatial_kinematic_modes",
     "spatial_mode_margins",
+    "spatial_sliding_modes",
     "spatial_statics",
 ]

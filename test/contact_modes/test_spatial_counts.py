@@ -2,8 +2,9 @@
 
 Huang, Cheng and Mason, Efficient Contact Mode Enumeration in 3D (WAFR 2020), count the modes of a box with
 walls (its four corners on each), of a peg in a hole and of a box upon a box. The sets here are theirs, as
-their published program draws them. Of the counts in their table 184 is known to us, for the box upon a box at
-two walls (16 contacts, 9 dimensions); the others follow from the face counts of polytopes.
+their published program draws them, and that program finds the same six counts for the box. Of the counts in
+their table 184 is known to us, for the box upon a box at two walls (16 contacts, 9 dimensions); the others
+follow from the face counts of polytopes.
 """
 
 from __future__ import annotations
