@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.contact_modes import ModeVerdict, planar_contact_modes, spatial_contact_modes
-from contact_dynamics.contact_modes.jamming import jamming_impact
+from contact_dynamics.contact_modes.settling import settling_impact
 from contact_dynamics.impact import (
     outcomes_over_orders,
     planar_impact,
@@ -25,9 +25,13 @@ from msg_adapters.impact import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from contact_dynamics.contact import ContactSet
+    from contact_dynamics.contact_modes import ContactModeAnswer, SpatialModeAnswer
     from contact_dynamics.impact import OrderedOutcomes, SeveralImpact
     from contact_dynamics.nodes.subject import Subject
+    from contact_dynamics.planar import PlanarVelocity
     from contact_dynamics.plane_of_motion import PlanarProblem
     from contact_dynamics.rigid_body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
@@ -64,6 +68,18 @@ def settle_in_space(response: Any, question: Question, verdict: ModeVerdict) -> 
     if verdict not in _UNSETTLED:
         return
     body, state, contacts = question.before.body, question.before.state, question.contacts
+
+    def modes_after(state: BodyState) -> SpatialModeAnswer:
+        return spatial_contact_modes(
+            body,
+            state,
+            contacts,
+            force_W=question.force_W,
+            torque_W=question.torque_W,
+            friction_facets=question.friction_facets,
+            velocity_tolerance=question.velocity_tolerance,
+        )
+
     if len(contacts) == 1:
         impact = spatial_impact(
             body,
@@ -76,20 +92,19 @@ def settle_in_space(response: Any, question: Question, verdict: ModeVerdict) -> 
         )
         after, msg = impact.state, spatial_impact_to_msg(impact, question.before)
     else:
-        several = _several(question, body, state, contacts, verdict)
+        several = _several(
+            question,
+            body,
+            state,
+            contacts,
+            verdict,
+            is_settled=lambda state: modes_after(state).verdict != ModeVerdict.INCONSISTENT,
+        )
         after, msg = several.state, several_impact_to_msg(several, question.before)
         outcomes = _orders(question, body, state, contacts, verdict)
         if outcomes is not None:
             write_orders(msg, outcomes)
-    then = spatial_contact_modes(
-        body,
-        after,
-        contacts,
-        force_W=question.force_W,
-        torque_W=question.torque_W,
-        friction_facets=question.friction_facets,
-        velocity_tolerance=question.velocity_tolerance,
-    )
+    then = modes_after(after)
     response.impact = [msg]
     response.verdict_after_impact = int(then.verdict)
     response.modes_after_impact = spatial_modes_to_msgs(then.modes)
@@ -114,7 +129,17 @@ def settle_in_plane(
     """
     if verdict not in _UNSETTLED:
         return
-    state = question.before.state
+    plane = problem.plane
+
+    def modes_after(velocity: PlanarVelocity) -> ContactModeAnswer:
+        return planar_contact_modes(
+            problem.body,
+            velocity,
+            problem.contacts,
+            problem.wrench,
+            velocity_tolerance=question.velocity_tolerance,
+        )
+
     if len(problem.contacts) == 1:
         impact = planar_impact(
             problem.body,
@@ -124,23 +149,24 @@ def settle_in_plane(
         )
         velocity, msg = impact.velocity, planar_impact_to_msg(impact, problem, question.before)
     else:
-        plane = problem.plane
         flat = planar_in_space(problem.body, problem.velocity, problem.contacts, axes_W=plane.axes_W)
-        several = _several(question, *flat, verdict, plane_normal_W=plane.normal_W)
+        several = _several(
+            question,
+            *flat,
+            verdict,
+            is_settled=lambda state: (
+                modes_after(planar_velocity(plane, state)).verdict != ModeVerdict.INCONSISTENT
+            ),
+            plane_normal_W=plane.normal_W,
+        )
         velocity = planar_velocity(plane, several.state)
-        after = with_planar_velocity(problem, state, velocity)
+        after = with_planar_velocity(problem, question.before.state, velocity)
         impulses = several.impulses_W if several.strikes else equal_shares(several.impulses_W, partners)
         msg = several_impact_to_msg(replace(several, state=after, impulses_W=impulses), question.before)
         outcomes = _orders(question, *flat, verdict)
         if outcomes is not None:
             write_orders(msg, outcomes)
-    then = planar_contact_modes(
-        problem.body,
-        velocity,
-        problem.contacts,
-        problem.wrench,
-        velocity_tolerance=question.velocity_tolerance,
-    )
+    then = modes_after(velocity)
     response.impact = [msg]
     response.verdict_after_impact = int(then.verdict)
     response.modes_after_impact = planar_modes_to_msgs(then.modes, problem, partners)
@@ -153,15 +179,17 @@ def _several(
     contacts: ContactSet,
     verdict: ModeVerdict,
     *,
+    is_settled: Callable[[BodyState], bool],
     plane_normal_W: FloatArray | None = None,
 ) -> SeveralImpact:
     """Return the impact of several contacts: those that approach strike in turn, those that jam at once."""
     if verdict == ModeVerdict.IMPACT:
         return several_impact(body, state, contacts, velocity_tolerance=question.velocity_tolerance)
-    return jamming_impact(
+    return settling_impact(
         body,
         state,
         contacts,
+        is_settled=is_settled,
         force_W=question.force_W,
         torque_W=question.torque_W,
         plane_normal_W=plane_normal_W,

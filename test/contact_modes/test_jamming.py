@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from contact_dynamics.contact import ContactSet
-from contact_dynamics.contact_modes import ModeVerdict, planar_contact_modes
+from contact_dynamics.contact_modes import ModeVerdict, planar_contact_modes, spatial_contact_modes
 from contact_dynamics.contact_modes.complementarity import solve_complementarity
 from contact_dynamics.contact_modes.jamming import jamming_impact
+from contact_dynamics.contact_modes.settling import MOST_JAMS, settling_impact
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact import SeveralImpact, SeveralVerdict, planar_impact
 from contact_dynamics.impact.several_planar import planar_in_space
@@ -125,6 +126,67 @@ def test_laws_of_impact_on_drawn_sets(*, in_space: bool) -> None:
         settled += after.verdict in {ModeVerdict.UNIQUE, ModeVerdict.INDETERMINATE}
     # A few of these sets, degenerate by design, jam again.
     assert settled >= 0.9 * len(cases)
+
+
+def inconsistent_in_space(seed: int) -> tuple[MassProperties, BodyState, ContactSet, np.ndarray] | None:
+    """Return a body that slides, without turning, along surfaces; None where a mode is consistent."""
+    chance = np.random.default_rng(seed)
+    way = chance.normal(size=3)
+    way /= np.linalg.norm(way)
+    n = int(chance.integers(2, 5))
+    normals = chance.normal(size=(n, 3))
+    normals -= np.outer(normals @ way, way)
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    touching = ContactSet(
+        p_WC_W=2.0 * chance.normal(size=(n, 3)),
+        normals_W=normals,
+        frictions=chance.uniform(0.3, 2.0, n),
+        restitutions=np.zeros(n),
+    )
+    body = MassProperties(mass=1.0, I_B=np.diag([0.1, 0.2, 0.25]))
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=way, w_WB_W=np.zeros(3))
+    force = chance.normal(size=3) - 2.0 * normals.sum(axis=0)
+    answer = spatial_contact_modes(body, state, touching, force_W=force)
+    return (body, state, touching, force) if answer.verdict == ModeVerdict.INCONSISTENT else None
+
+
+def test_what_jams_in_space_is_settled() -> None:
+    cases = [case for case in map(inconsistent_in_space, range(120)) if case is not None]
+    assert len(cases) > 15
+    for body, state, touching, force in cases:
+
+        def verdict(
+            now: BodyState,
+            body: MassProperties = body,
+            touching: ContactSet = touching,
+            force: np.ndarray = force,
+        ) -> ModeVerdict:
+            return spatial_contact_modes(body, now, touching, force_W=force).verdict
+
+        impact = settling_impact(
+            body,
+            state,
+            touching,
+            force_W=force,
+            is_settled=lambda now: verdict(now) != ModeVerdict.INCONSISTENT,
+        )
+        assert impact.verdict == SeveralVerdict.RESOLVED
+        assert verdict(impact.state) in {ModeVerdict.UNIQUE, ModeVerdict.INDETERMINATE}
+        assert kinetic_energy(body, impact.state) < kinetic_energy(body, state)
+        jump = body.mass * (impact.state.v_WB_W - state.v_WB_W)
+        size = float(np.abs(impact.impulses_W).max())
+        np.testing.assert_allclose(impact.impulses_W.sum(axis=0), jump, atol=SOLVED * (1.0 + size))
+
+
+def test_what_never_settles_says_so() -> None:
+    body, state, touching = planar_in_space(*slot(2.0)[:3], axes_W=AXES)
+    how = {"force_W": (3.0, 3.0, 0.0), "torque_W": (0.0, 0.0, 1.0), "plane_normal_W": OUT}
+    asked = []
+    impact = settling_impact(body, state, touching, is_settled=lambda now: bool(asked.append(now)), **how)
+    assert impact.verdict == SeveralVerdict.NOT_CONVERGED
+    assert len(asked) == MOST_JAMS
+    once = jamming_impact(body, state, touching, **how)
+    np.testing.assert_allclose(impact.state.v_WB_W, once.state.v_WB_W, atol=1e-6)  # it stopped at once
 
 
 def test_restitution_throws_a_jammed_rod_off() -> None:
