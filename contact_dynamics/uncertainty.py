@@ -112,14 +112,15 @@ def covariance_along(
     """
     start = check_covariance("covariance", covariance)
     seconds = check_array("times", times, (None,))
+    probes = _probes(motion, seconds)
     if method is PropagationMethod.LINEARISED:
-        covariances = _linearised(motion, start, seconds)
+        everywhere = _linearised(motion, start, np.concatenate([seconds, probes]))
+        covariances, on_the_way = everywhere[: len(seconds)], _deviations(everywhere[len(seconds) :])
     else:
         if samples < FEWEST_SAMPLES:
             raise InvalidFieldError("samples", samples, f"at least {FEWEST_SAMPLES}")
         covariances = _sampled(motion, start, seconds, draws=_draws(start, samples, seed))
-    probes = _probes(motion, seconds)
-    on_the_way = _deviations(_linearised(motion, start, probes))
+        on_the_way = _deviations(_linearised(motion, start, probes))
     deviations = _deviations(covariances)
     return CarriedCovariance(
         seconds=seconds,

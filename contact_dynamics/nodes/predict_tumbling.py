@@ -11,7 +11,7 @@ from contact_dynamics.errors import TooLargeError
 from contact_dynamics.flips import next_flips
 from contact_dynamics.forced_motion import ForcedMotion, motion_of
 from contact_dynamics.forced_motion_fit import fit_motion
-from contact_dynamics.nodes.sampling import MOST_INTEGRATED_STEPS, times_of
+from contact_dynamics.nodes.sampling import MOST_INTEGRATED_STEPS, check_turns, times_of
 from contact_dynamics.nodes.subject import Knowledge, Subject, covariance_of, gravity_of, subject_of
 from contact_dynamics.poinsot import poinsot, rolling_curves
 from contact_dynamics.tumbling import free_motion
@@ -36,6 +36,9 @@ FLIPS: Final = 3
 
 MOST_COVARIANCES: Final = 2000
 """Most samples with covariances in one answer, for the same reason as `sampling.MOST_SAMPLES`."""
+
+MOST_CARRIED_TURNS: Final = 30.0
+"""Longest motion under torque or drag with covariances, in turns: 1 or 2 s of computing."""
 
 MOST_CURVE_POINTS: Final = 10_000
 """Of polhode and herpolhode, for the same reason."""
@@ -91,6 +94,8 @@ def _poinsot(request: Any, subject: Subject, motion: FreeMotion | ForcedMotion) 
 def _covariances(subject: Subject, motion: FreeMotion | ForcedMotion, times: FloatArray) -> CarriedCovariance:
     if len(times) > MOST_COVARIANCES:
         raise TooLargeError("times", f"{len(times)} samples with covariances", f"at most {MOST_COVARIANCES}")
+    if isinstance(motion, ForcedMotion):
+        check_turns("times", motion, times, MOST_CARRIED_TURNS, "with covariances under torque or drag")
     return covariance_along(motion, covariance_of(subject), times)
 
 

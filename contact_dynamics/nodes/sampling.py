@@ -29,7 +29,7 @@ MOST_INTEGRATED_TURNS: Final = 100.0
 """Longest motion under torque or drag in one answer, in turns at the present rate: 1 or 2 s of computing,
 during which nobody else is answered."""
 
-MOST_INTEGRATED_STEPS: Final = 4000
+MOST_INTEGRATED_STEPS: Final = 6000
 """Of the integrator, for the same reason: what a torque spins up takes more than its present rate says."""
 
 MOST_SEARCHED_TURNS: Final = 1000.0
@@ -140,6 +140,13 @@ def _check_reach(
         most, when = MOST_SEARCHED_TURNS, "to search for a contact"
     else:
         return  # the closed form reaches everywhere
+    check_turns(field, motion, times, most, when)
+
+
+def check_turns(
+    field: str, motion: FreeMotion | ForcedMotion, times: FloatArray, most: float, when: str
+) -> None:
+    """Refuse times, (n,), s, by which a body turns more than ``most``, at its present rate; say why."""
     w_WB_W = motion.state.w_WB_W
     turns = float(np.abs(times).max(initial=0.0)) * math.sqrt(w_WB_W @ w_WB_W) / (2.0 * math.pi)
     if turns > most:

@@ -219,7 +219,7 @@ def test_what_a_torque_spins_up_beyond_reason_is_refused(client: Client) -> None
     answer = client.ask(request)
     assert answer.status == answer.INVALID_FIELD
     assert (
-        "times: found 60 s, allowed is no further than 4000 steps of the integrator reach" in answer.message
+        "times: found 60 s, allowed is no further than 6000 steps of the integrator reach" in answer.message
     )
 
 

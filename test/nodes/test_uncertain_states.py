@@ -64,6 +64,10 @@ def test_drag_lets_errors_of_velocity_fade(client: Client) -> None:
         np.testing.assert_allclose(variances[first : first + 3], before[0] + before[1] * gone**2, rtol=1e-9)
         np.testing.assert_allclose(variances[first + 6 : first + 9], before[1] * left**2, rtol=1e-9)
     assert list(answer.trajectory.covariances_trusted) == [True, True]
+    request.state.angular_velocity.z, request.times = 10.0, [25.0]
+    answer = client.ask(request)
+    assert answer.status == answer.INVALID_FIELD
+    assert "times: found 39.7887 turns of the body ahead, allowed is at most 30 with cov" in answer.message
 
 
 def test_an_uncertain_landing_has_probabilities_that_sum_to_one(client: Client) -> None:
