@@ -65,6 +65,9 @@ HELD: Final = 2.0
 HELD_STILL: Final = 0.01
 """Of that speed: what may be left of it, where several contacts that are held throw each other back."""
 
+MOST_HELD: Final = 100
+"""Impulses that hold contacts at one instant. Two ends of a rod need four, the corners of a face some ten."""
+
 STILL: Final = 0.1
 """Of that speed: a body that is held and moves no faster, after a step, rests. One that begins to fall over
 has more by then, unless it is balanced to within some degrees."""
@@ -192,33 +195,36 @@ class _Sequence:
     def run(self, state: BodyState, window: float, most_strikes: int) -> ImpactSequence:
         most = round(check_positive("most_strikes", most_strikes))
         end = self._strike_on(state, window, most)
+        stays = end in {SequenceEnd.STAYS, SequenceEnd.CHATTERS}
         return ImpactSequence(
             restitution_law=self.law,
             contacts=self.meetings.contacts,
             strikes=tuple(self.strikes),
             end=end,
             state=self.strikes[-1].impact.state if self.strikes else state,
-            staying=self.staying,
-            limit_seconds=self.limit,
+            staying=self.staying if stays else (),
+            limit_seconds=self.limit if stays else None,
         )
 
     def _strike_on(self, state: BodyState, window: float, most: int) -> SequenceEnd:
-        now, until, lifts = 0.0, window, 0  # s since the beginning
+        now, until = 0.0, window  # s since the beginning
+        lifts = held = 0  # since the beginning; at this instant
         while True:
             landing = self.meetings.next(state, until - now)
             if self.chattering is not None and not self._strikes_elsewhere(landing, now):
                 self._stay((self.chattering[0],), self.chattering[1])
                 end, wait = SequenceEnd.CHATTERS, self.hold_step
             elif landing is None:
-                self._fly()
                 return SequenceEnd.NOTHING_STRIKES
             else:
-                if landing.seconds > 0.0:
-                    self._fly()
+                if landing.seconds > 0.0:  # it has left all contacts meanwhile
+                    self.staying, self.limit = (), None
                 state = landing.state
                 now += landing.seconds
-                if landing.strikes and not self._approaches_by(landing, HELD_STILL):
+                still = HELD_STILL if held < MOST_HELD else HELD
+                if landing.strikes and not self._approaches_by(landing, still):
                     if self._approaches_by(landing, HELD):
+                        held += 1
                         state = self._impact(landing, _fastest(landing), restitution=0.0).state
                         continue
                     if len(self.strikes) == most:
@@ -231,7 +237,7 @@ class _Sequence:
             now += wait or 0.0
             if wait is None or now >= until:
                 return end
-            self.chattering = None
+            self.chattering, held = None, 0
             motion = free_motion(self.body, state, gravity_W=self.gravity_W, precision=Precision.DOUBLE)
             state = motion.state_at(wait)
 
@@ -259,10 +265,6 @@ class _Sequence:
         if self.limit is None:
             self.limit = since
         self.staying = contacts
-
-    def _fly(self) -> None:
-        """Note that no contact stays."""
-        self.staying, self.limit = (), None
 
     def _approaches_by(self, landing: Landing, share: float) -> bool:
         """Return whether a contact stays, and what approaches does so by a share of a step's fall."""
