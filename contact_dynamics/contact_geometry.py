@@ -50,7 +50,7 @@ def find_contacts(
     The set may be empty.
 
     Raises:
-        NotSupportedError: a round side of the body at an edge of an obstacle (`obstacle_contact`).
+        NotSupportedError: a rim of the body at an edge of an obstacle (`obstacle_contact`).
     """
     shape, R_WB = body.shape, state.R_WB
     points = state.p_WB_W + shape.vertices @ R_WB.T

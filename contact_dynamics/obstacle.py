@@ -43,7 +43,12 @@ class Obstacle:
 
 
 def closest_point(features: Features, p_W: FloatArray) -> FloatArray:
-    """Return the point of a hull's faces that is nearest to a point, (3,), m (Ericson 2005, 5.1.5)."""
+    """Return the point of a hull's faces, or of a rod, that is nearest to a point, (3,), m.
+
+    As Ericson, Real-Time Collision Detection, 2005, 5.1.
+    """
+    if len(features.triangles) == 0:
+        return _on_side(features.corners[0], features.corners[-1], p_W)
     best: FloatArray = features.corners[0]
     least = math.inf
     for a, b, c in features.triangles:

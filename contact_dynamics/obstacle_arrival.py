@@ -7,7 +7,7 @@ dynamic simulation of rigid body systems, Berkeley 1996). A touch is found withi
 deeper one is missed.
 
 Not covered: what hovers so close and so long that `MOST_STEPS` do not get it past (`NotSupportedError`);
-round sides that come to edges and corners (`obstacle_contact`).
+rims that come to edges and corners (`obstacle_contact`).
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def first_touch(motion: Motion, shape_B: ConvexShape, obstacle: Obstacle, *, hor
 
     Raises:
         InvalidFieldError: horizon < 0, or an integrated motion that does not get as far as the search has to.
-        NotSupportedError: a round side that comes to an edge or a corner, or a body that hovers.
+        NotSupportedError: a rim that comes to an edge or a corner, or a body that hovers.
     """
     until = check_not_negative("horizon", horizon)
     if shape_B.is_empty:

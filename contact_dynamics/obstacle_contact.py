@@ -8,13 +8,14 @@ contact is where the two overlap: its extreme points, which carry every force th
 corners of the body (point on flat), corners of the obstacle (flat on point) and crossings of edges (edge on
 edge).
 
-A ball touches in the point of the obstacle that is nearest to its centre: in a face, an edge or a corner.
-Other round bodies are covered where a face of the obstacle touches them: as on a flat, but within the face.
+Where a ball rolls over a polyhedron (a sphere, a capsule, a rounded box) the directions between nearest
+points of corners and hulls are added, and contact may also be a corner's ball on an edge or on a corner. Rims
+are covered where a face of the obstacle touches them: as on a flat, but within the face.
 
-A corner on an edge, or on a corner, has no normal of its own: it gets one of those above. Bodies that
+A sharp corner on an edge, or on a corner, has no normal of its own: it gets one of those above. Bodies that
 penetrate get the direction of the least penetration.
 
-Not covered: rims and rounded corners at an edge or a corner of the obstacle (`NotSupportedError`).
+Not covered: rims at an edge or a corner of the obstacle (`NotSupportedError`).
 """
 
 from __future__ import annotations
@@ -25,13 +26,14 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.errors import NotSupportedError
-from contact_dynamics.flat_contact import Touch, any_tangent, flat_touches
+from contact_dynamics.flat_contact import flat_touches
 from contact_dynamics.hull_features import features_of
 from contact_dynamics.obstacle import closest_point
+from contact_dynamics.outlines import Rounded, outline, overlap, tangents_of
 
 if TYPE_CHECKING:
     from contact_dynamics.convex_shape import ConvexShape
-    from contact_dynamics.flat_contact import Side
+    from contact_dynamics.flat_contact import Touch
     from contact_dynamics.hull_features import Features
     from contact_dynamics.obstacle import Obstacle
     from contact_dynamics.validation import FloatArray
@@ -82,13 +84,12 @@ def _axes(
     polyhedral = theirs.normals, -(mine.normals @ R_WB.T), np.concatenate([crosses, -crosses])
     if shape.rounding == 0.0:
         return polyhedral
-    away = []
-    for center in p_WB_W + shape.vertices @ R_WB.T:
-        arm = center - closest_point(theirs, center)
-        distance = math.sqrt(arm @ arm)
-        if distance > _AS_GOOD and _is_outside(theirs.normals, theirs.corners, center):
-            away.append(arm / distance)
-    return (*polyhedral, np.array(away).reshape(-1, 3))
+    # Those between the nearest points of a corner and the other hull, which a ball that rolls over it needs.
+    arms = [corner - closest_point(theirs, corner) for corner in p_WB_W + mine.corners @ R_WB.T]
+    arms += [R_WB @ (closest_point(mine, q_B) - q_B) for q_B in (theirs.corners - p_WB_W) @ R_WB]
+    away = np.array(arms)
+    sizes = np.linalg.norm(away, axis=1)
+    return (*polyhedral, away[sizes > _AS_GOOD] / sizes[sizes > _AS_GOOD, None])
 
 
 def _lowest(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, axes: FloatArray) -> FloatArray:
@@ -108,149 +109,19 @@ def touches_of(
     """Return the contacts of a body of a pose with an obstacle within a tolerance, m; none where it is apart.
 
     Raises:
-        NotSupportedError: a rim or a rounded corner is at an edge or a corner of the obstacle.
+        NotSupportedError: a rim is at an edge or a corner of the obstacle.
     """
     site = site_of(shape, p_WB_W, R_WB, obstacle)
     if site.gap > tolerance:
         return []
     theirs, n_W = obstacle.features, site.normal_W
-    if shape.rounding > 0.0 and len(shape.vertices) == 1 and not shape.rims:
-        return [_of_ball(p_WB_W + R_WB @ shape.vertices[0], shape.rounding, site, theirs.corners)]
-    frame = _tangents(n_W)
-    lowest = float(_lowest(shape, p_WB_W, R_WB, n_W[None])[0])
-    lower = _outline(theirs.corners[theirs.corners @ n_W >= lowest - tolerance], frame)
-    if not shape.is_polyhedron and float((theirs.normals @ n_W).max()) < 1.0 - _AS_GOOD:
-        message = (
-            f"shape: found a round side at an edge of obstacle {obstacle.name!r}, allowed is one at a face"
-        )
+    if shape.rims and float((theirs.normals @ n_W).max()) < 1.0 - _AS_GOOD:
+        message = f"shape: found a rim at an edge of obstacle {obstacle.name!r}, allowed is one at a face"
         raise NotSupportedError(message)
+    frame = tangents_of(n_W)
     touches = list(flat_touches(shape, p_WB_W, R_WB, n_W, level=site.level, tolerance=tolerance))
-    return _overlap(touches, lower, frame)
-
-
-def _of_ball(center: FloatArray, radius: float, site: Site, corners: FloatArray) -> Touch:
-    n_W = site.normal_W
-    tangent = any_tangent(n_W)
-    near = corners[corners @ n_W >= site.level - _AS_GOOD]
-    if len(near) >= 3:
-        surface: Side = (0.0, 0.0, tangent)
-    elif len(near) == 2:
-        along = near[1] - near[0]
-        surface = (0.0, math.inf, along / math.sqrt(along @ along))
-    else:
-        surface = (math.inf, math.inf, tangent)
-    return Touch(center - radius * n_W, n_W, (1.0 / radius, 1.0 / radius, tangent), surface)
-
-
-class _Outline(NamedTuple):
-    """A convex polygon, a line or a point in the touching plane."""
-
-    points: FloatArray  # (k, 3), m, world, in order
-    flat: FloatArray  # (k, 2), m, in the plane, counterclockwise
-    order: list[int]  # (k,), which of the points that were given
-
-    def holds(self, points: FloatArray) -> np.ndarray:
-        """Return which points (n, 2) are in the polygon, edges included; none where it is a line."""
-        if len(self.flat) < 3:
-            return np.zeros(len(points), dtype=bool)
-        sides = np.roll(self.flat, -1, axis=0) - self.flat
-        lengths = np.linalg.norm(sides, axis=1)
-        arms = points[:, None] - self.flat
-        heights = (sides[:, 0] * arms[:, :, 1] - sides[:, 1] * arms[:, :, 0]) / lengths
-        inside: np.ndarray = (heights >= -_AS_GOOD).all(axis=1)
-        return inside
-
-    def sides(self) -> list[tuple[int, int]]:
-        count = len(self.flat)
-        if count < 3:
-            return [(0, 1)] if count == 2 else []
-        return [(i, (i + 1) % count) for i in range(count)]
-
-
-def _outline(points: FloatArray, frame: FloatArray) -> _Outline:
-    flat = points @ frame.T
-    if len(flat) < 3:
-        return _Outline(points, flat, list(range(len(flat))))
-    spread = flat - flat.mean(axis=0)
-    _, sizes, axes = np.linalg.svd(spread, full_matrices=False)
-    if sizes[1] <= _AS_GOOD:
-        along = spread @ axes[0]
-        ends = [int(along.argmin()), int(along.argmax())]
-        return _Outline(points[ends], flat[ends], ends)
-    from scipy.spatial import ConvexHull
-
-    order = ConvexHull(flat).vertices.tolist()
-    return _Outline(points[order], flat[order], order)
-
-
-def _overlap(touches: list[Touch], lower: _Outline, frame: FloatArray) -> list[Touch]:
-    """Return the extreme points of where a body, as it touches a plane, and an obstacle's outline overlap."""
-    if not touches:
-        return []
-    n_W = touches[0].normal_W
-    upper = _outline(np.array([touch.p_WC_W for touch in touches]), frame)
-    flat, point = (0.0, 0.0, frame[0]), (math.inf, math.inf, frame[0])
-    found = [touches[upper.order[i]] for i in np.flatnonzero(lower.holds(upper.flat))]
-    taken = [frame @ touch.p_WC_W for touch in found]
-    for i in np.flatnonzero(upper.holds(lower.flat)):
-        if _is_new(lower.flat[i], taken):
-            found.append(Touch(lower.points[i], n_W, flat, point))
-            taken.append(lower.flat[i])
-    for a, b in upper.sides():
-        for c, d in lower.sides():
-            share = _crossing(upper.flat[a], upper.flat[b], lower.flat[c], lower.flat[d])
-            if share is None:
-                continue
-            place = upper.flat[a] + share * (upper.flat[b] - upper.flat[a])
-            if _is_new(place, taken):
-                taken.append(place)
-                mine = _along(upper.flat[b] - upper.flat[a], frame)
-                theirs = _along(lower.flat[d] - lower.flat[c], frame)
-                round_by = min(_curvature_across(touches[upper.order[i]], mine) for i in (a, b))
-                p_WC_W = upper.points[a] + share * (upper.points[b] - upper.points[a])
-                found.append(Touch(p_WC_W, n_W, (0.0, round_by, mine), (0.0, math.inf, theirs)))
-    return found
-
-
-def _curvature_across(touch: Touch, side_W: FloatArray) -> float:
-    """Return the body's curvature, 1/m, at right angles to a side that ends there."""
-    along, across, direction = touch.body
-    return across if abs(float(direction @ side_W)) > math.sqrt(0.5) else along
-
-
-def _crossing(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray) -> float | None:
-    """Return where on a side a to b, 0 to 1, it crosses c to d, ends included; None where it does not."""
-    x, y = _two(b - a)
-    u, v = _two(d - c)
-    p, q = _two(c - a)
-    apart = x * v - y * u
-    one, two = math.hypot(x, y), math.hypot(u, v)
-    if abs(apart) <= _PARALLEL * one * two:
-        return None
-    share, other = (p * v - q * u) / apart, (p * y - q * x) / apart
-    if not (-_AS_GOOD <= share * one <= one + _AS_GOOD and -_AS_GOOD <= other * two <= two + _AS_GOOD):
-        return None
-    return min(max(share, 0.0), 1.0)
-
-
-def _two(vector: FloatArray) -> tuple[float, float]:
-    return float(vector[0]), float(vector[1])
-
-
-def _is_new(place: FloatArray, taken: list[FloatArray]) -> bool:
-    return all(math.dist(place, other) > _AS_GOOD for other in taken)
-
-
-def _along(side: FloatArray, frame: FloatArray) -> FloatArray:
-    direction: FloatArray = side @ frame
-    return direction / math.sqrt(direction @ direction)
-
-
-def _is_outside(normals: FloatArray, corners: FloatArray, p_W: FloatArray) -> bool:
-    return bool((normals @ p_W > (normals @ corners.T).max(axis=1)).any())
-
-
-def _tangents(n_W: FloatArray) -> FloatArray:
-    first = np.cross(n_W, np.eye(3)[int(np.abs(n_W).argmin())])
-    first = first / math.sqrt(first @ first)
-    return np.array([first, np.cross(n_W, first)])
+    upper = outline(np.array([touch.p_WC_W for touch in touches]).reshape(-1, 3), frame)
+    lowest = float(_lowest(shape, p_WB_W, R_WB, n_W[None])[0])
+    lower = outline(theirs.corners[theirs.corners @ n_W >= lowest - tolerance], frame)
+    rounded = Rounded(1.0 / shape.rounding, tolerance) if shape.rounding > 0.0 and not shape.rims else None
+    return overlap([touches[i] for i in upper.order], upper, lower, frame, rounded)

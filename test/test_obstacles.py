@@ -20,6 +20,7 @@ from contact_dynamics.convex_shape import (
     capsule,
     cylinder,
     polyhedron,
+    rounded,
     sphere,
 )
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
@@ -333,15 +334,76 @@ def test_when_they_land_on_it(shape: ConvexShape) -> None:
     assert drop(at((1.5, 0.0, 0.55), ON_SIDE), shape) is None
 
 
-@pytest.mark.parametrize("shape", [CAN, PILL])
-def test_round_sides_at_an_edge_are_refused(shape: ConvexShape) -> None:
-    along = Rotation.from_euler("x", 90.0, degrees=True)
-    hanging = at((1.06, 0.0, 0.08), along)
-    with pytest.raises(NotSupportedError, match="shape: found a round side at an edge of obstacle 'it'"):
-        find_contacts(body(shape), hanging, [TABLE])
-    with pytest.raises(NotSupportedError, match="shape: found a round side"):
-        drop(at((1.06, 0.0, 0.5), along), shape)
-    assert len(find_contacts(body(shape), at((1.061, 0.0, 0.081), along), [TABLE])) == 0
+ALONG = Rotation.from_euler("x", 90.0, degrees=True)  # the edge of the table at x = 1
+
+
+def test_a_rim_at_an_edge_is_refused() -> None:
+    with pytest.raises(NotSupportedError, match="shape: found a rim at an edge of obstacle 'it'"):
+        find_contacts(body(CAN), at((1.06, 0.0, 0.08), ALONG), [TABLE])
+    with pytest.raises(NotSupportedError, match="shape: found a rim"):
+        drop(at((1.06, 0.0, 0.5), ALONG), CAN)
+    assert len(find_contacts(body(CAN), at((1.061, 0.0, 0.081), ALONG), [TABLE])) == 0
+
+
+def test_a_pill_along_an_edge_touches_with_its_two_ends_or_the_edge_s() -> None:
+    found = find_contacts(body(PILL), at((1.06, 0.0, 0.08), ALONG), [TABLE])
+    np.testing.assert_allclose(found.normals_W, [[0.6, 0.0, 0.8]] * 2, atol=1e-12)
+    np.testing.assert_allclose(np.sort(found.p_WC_W[:, 1]), [-0.2, 0.2], atol=1e-12)
+    assert sides(found.body_curvatures) == [(10.0, 10.0)] * 2
+    assert sides(found.surface_curvatures) == [(0.0, INF)] * 2
+    out = find_contacts(body(PILL), at((1.06, 0.9, 0.08), ALONG), [TABLE])
+    np.testing.assert_allclose(np.sort(out.p_WC_W[:, 1]), [0.7, 1.0], atol=1e-12)
+    corner = int(out.p_WC_W[:, 1].argmax())
+    assert sides(out.body_curvatures)[corner] == (0.0, pytest.approx(10.0))
+    assert sides(out.surface_curvatures)[corner] == (INF, INF)
+
+
+def test_a_pill_across_a_ridge_and_one_whose_end_is_on_a_spike() -> None:
+    across = find_contacts(body(PILL), at((0.05, 0.3, 0.1), ON_SIDE), [RIDGE])
+    np.testing.assert_allclose(across.p_WC_W, [[0.0, 0.3, 0.0]], atol=1e-12)
+    assert sides(across.body_curvatures) == [(0.0, 10.0)]
+    assert sides(across.surface_curvatures) == [(0.0, INF)]
+    upright = find_contacts(body(PILL), at((0.0, 0.0, 0.3)), [SPIKE])
+    np.testing.assert_allclose(upright.p_WC_W, [[0.0, 0.0, 0.0]], atol=1e-12)
+    assert sides(upright.body_curvatures) == [(10.0, 10.0)]
+    assert sides(upright.surface_curvatures) == [(INF, INF)]
+
+
+def test_a_pill_that_falls_on_an_edge() -> None:
+    fall = math.sqrt(2.0 * 0.45 / 10.0)
+    assert drop(at((1.06, 0.0, 0.53), ALONG), PILL) == pytest.approx(fall, abs=1e-9)
+    assert drop(at((1.101, 0.0, 0.53), ALONG), PILL) is None
+
+
+PILLOW = rounded(box(size=(0.4, 0.2, 0.1)), radius=0.05)
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    q=turns,
+    p=places,
+    shape=st.sampled_from([PILL, PILLOW, sphere(radius=0.1), BRICK]),
+    which=st.sampled_from([TABLE, SPIKE, RIDGE]),
+)
+def test_every_contact_is_on_both_and_where_they_are_nearest(
+    q: tuple[float, ...], p: tuple[float, float, float], shape: ConvexShape, which: Obstacle
+) -> None:
+    """The body is brought to where the two touch, along the normal of its site."""
+    turn = Rotation.from_quat(q)
+    R = turn.as_matrix()
+    site = site_of(shape, np.array(p), R, which)
+    core = shape.vertices @ R.T + np.array(p)
+    assume(distance(core, which.vertices_W) > shape.rounding + 1e-3)
+    if shape.rounding > 0.0:  # then the gap is the distance
+        assert site.gap == pytest.approx(distance(core, which.vertices_W) - shape.rounding, abs=1e-6)
+    place = np.array(p) - site.gap * site.normal_W
+    found = find_contacts(body(shape), at(tuple(place), turn), [which])
+    if shape.rounding > 0.0:
+        assert len(found) > 0
+    for point, normal in zip(found.p_WC_W, found.normals_W, strict=True):
+        assert distance(point[None], which.vertices_W) < 2e-6
+        assert distance(point[None], core - np.array(p) + place) == pytest.approx(shape.rounding, abs=2e-6)
+        np.testing.assert_allclose(normal, site.normal_W, atol=1e-6)
 
 
 def test_a_body_that_hovers_is_refused() -> None:
