@@ -111,6 +111,7 @@ class _Slide:
     def run(self, lanes: Lanes) -> None:
         """Follow ``lanes`` until each stops, with u = 0, or its impact is over."""
         self.first_speed = np.sqrt(self.u1 * self.u1 + self.u2 * self.u2)
+        self.ends_before = np.full(len(self.u1), -1)
         slowest = STOPPED * self.first_speed
         whole = self.sliding
         still = np.maximum(STRAIGHT * whole.scale, UNCOUPLED * (whole.l1 + whole.l2))
@@ -132,7 +133,8 @@ class _Slide:
             smooth = ~straight & (law.mu == 0.0)
             self._without_friction(lanes[smooth])
             goes_on = ~(straight | smooth)
-            slowing = np.flatnonzero(goes_on & (speeding < 0.0))
+            open_ended = self.progress.compressing[lanes] != self.ends_before[lanes]
+            slowing = np.flatnonzero(goes_on & (speeding < 0.0) & open_ended)
             goes_on[slowing[self._jump(lanes[slowing], lifting[slowing])]] = False
             swerving = np.flatnonzero(goes_on)
             lanes = lanes[swerving]
@@ -157,6 +159,7 @@ class _Slide:
                 progress,
                 first_speed=float(self.first_speed[lane]),
                 started=started,
+                ends_before=None if self.ends_before[lane] < 0 else bool(self.ends_before[lane]),
             )
 
     def _straight(
@@ -183,7 +186,10 @@ class _Slide:
         law, at = taken_law(law, found), lanes[found]
         same_sign = (lifting[found] < 0.0) == (law.lifting(stop.d1, stop.d2) < 0.0)
         impulse, v_n, work = at_stop(law, (self.u1[at], self.u2[at]), self.progress.v_n[at], stop)
-        jumps = same_sign & self.progress.reaches(at, impulse[2], v_n, work)
+        reaches = self.progress.reaches(at, impulse[2], v_n, work)
+        beyond = at[same_sign & ~reaches]
+        self.ends_before[beyond] = self.progress.compressing[beyond]
+        jumps = same_sign & reaches
         self.progress.jump(at[jumps], taken(impulse, jumps), v_n[jumps], work[jumps])
         self.u1[at[jumps]] = self.u2[at[jumps]] = 0.0
         jumped: Lanes = found[jumps]

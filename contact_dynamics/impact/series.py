@@ -38,9 +38,9 @@ LONGEST: Final = 16.0
 SURE: Final = 0.5
 """Of s. Where the last terms underflow they tell nothing; over it the direction hardly turns even then."""
 
-WITH_WORK: Final = 0.75
+WITH_WORK: Final = 0.85
 """Part of the length that is used where the work is asked for: as a product of two series, it leaves out more
-at the same degree, by a factor of 0.75^-24 = 1000."""
+at the same degree, by a factor of some 0.85^-24 = 50."""
 
 CLOSE: Final = 1e-15
 """Relative. Newton's method has located an event where its next step is within it."""

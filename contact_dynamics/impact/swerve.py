@@ -60,7 +60,7 @@ def trace(
         none = progress.impulse
         return SpatialPath(ImpactOutcome.NO_IMPULSE, jams, progress.path, none, none, u, 0.0)
     if speed > 0.0:
-        u = slide(sliding, u, progress, first_speed=speed, started=False)
+        u = slide(sliding, u, progress, first_speed=speed)
         if progress.over:
             return _path(ImpactOutcome.SLIDES, progress, u, jams=jams)
         in_compression = progress.compressing
@@ -87,7 +87,13 @@ def _path(outcome: ImpactOutcome, progress: Progress, u: tuple[float, float], *,
 
 
 def slide(
-    sliding: SlidingLaw, u: tuple[float, float], progress: Progress, *, first_speed: float, started: bool
+    sliding: SlidingLaw,
+    u: tuple[float, float],
+    progress: Progress,
+    *,
+    first_speed: float,
+    started: bool = False,
+    ends_before: bool | None = None,
 ) -> tuple[float, float]:
     """Follow sliding until it stops or the impact is over; return the sliding velocity there, m/s.
 
@@ -97,6 +103,7 @@ def slide(
         progress: How far the impact has come; it is advanced.
         first_speed: m/s, that of the whole path, which errors are compared with.
         started: Whether sliding has already swerved.
+        ends_before: The phase, compressing or not, that is known to end before the stop ahead; None: none is.
     """
     u1, u2 = u
     slowest = STOPPED * first_speed
@@ -115,10 +122,13 @@ def slide(
             # Without friction u changes along a line, which misses 0.
             p = progress.go_straight(math.inf, (0.0, 0.0, 1.0), sliding.kn)
             return (u1 + sliding.k1 * p, u2 + sliding.k2 * p)
-        if speeding < 0.0:
+        if speeding < 0.0 and progress.compressing is not ends_before:
             stop = stop_ahead(sliding, (u1, u2), first_speed, with_work=with_work)
-            if stop is not None and _jump(sliding, (u1, u2), stop, lifting, progress):
-                return (0.0, 0.0)
+            # The one direction that v_n goes at both ends is the one all the way.
+            if stop is not None and (lifting < 0.0) == (sliding.lifting(stop.d1, stop.d2) < 0.0):
+                if progress.jump(*at_stop(sliding, (u1, u2), progress.v_n, stop)):
+                    return (0.0, 0.0)
+                ends_before = progress.compressing
         series = SlidingSeries(sliding, (u1, u2), progress.v_n, with_work=with_work)
         u1, u2 = _slide_along(series, progress, lifting)
         if progress.over:
@@ -126,16 +136,6 @@ def slide(
         progress.sample()
         started = True
     raise AssertionError  # each stretch turns or slows the sliding by a fixed part
-
-
-def _jump(
-    sliding: SlidingLaw, u: tuple[float, float], stop: Stop, lifting: float, progress: Progress
-) -> bool:
-    """Go to the stop ahead at once, if neither compression nor the impact ends before it."""
-    if (lifting < 0.0) != (sliding.lifting(stop.d1, stop.d2) < 0.0):
-        return False
-    impulse, v_n, work = at_stop(sliding, u, progress.v_n, stop)
-    return progress.jump(impulse, v_n, work)
 
 
 def at_stop(
