@@ -293,3 +293,26 @@ def test_sets_beyond_reason_are_refused_by_name_and_not_by_silence(client: Clien
     answer = client.ask(request)
     assert answer.status == answer.TOO_LARGE
     assert "contacts: found 65" in answer.message
+
+
+@pytest.mark.parametrize(
+    ("push", "lift", "torque"),
+    [(0.0, 0.0, 0.0), (2.0, 0.0, 0.0), (-2.0, 1.0, 0.0), (0.0, 0.0, 0.35), (1.5, 0.0, -0.4), (0.5, 5.0, 0.0)],
+    ids=["rests", "slides", "slides back", "tips", "tips and slides", "is lifted"],
+)
+def test_plane_and_space_agree_where_automatic_takes_the_plane(
+    client: Client, push: float, lift: float, torque: float
+) -> None:
+    request = brick_on_floor()
+    request.applied_wrench.force.x, request.applied_wrench.force.z = push, lift
+    request.applied_wrench.torque.y = torque
+    plane = client.ask(request)
+    request.problem = request.SPATIAL
+    space = client.ask(request)
+    assert (plane.problem, space.problem) == (request.PLANAR, request.SPATIAL)
+    assert plane.verdict == space.verdict == plane.UNIQUE
+    (one,), (other,) = plane.modes, space.modes
+    assert one.mode.translate(str.maketrans("lr", "cc")) == other.mode
+    scale = SOLVED * (G + abs(push) / MASS + abs(torque) / 0.00083)
+    np.testing.assert_allclose(one.linear_acceleration, other.linear_acceleration, atol=scale)
+    np.testing.assert_allclose(one.angular_acceleration, other.angular_acceleration, atol=100.0 * scale)
