@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from contact_dynamics.errors import InvalidFieldError, NoContactError, NotSupportedError
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
@@ -26,8 +25,6 @@ if TYPE_CHECKING:
     from contact_dynamics.contact import ContactSet
     from contact_dynamics.rigid_body import BodyState
     from contact_dynamics.validation import FloatArray
-
-Law = TypeVar("Law", bound=Enum)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,19 +76,14 @@ def strike_of(request: Any, knowledge: Knowledge) -> Strike:
     else:
         seconds, state, contacts = _landing(request, subject, knowledge)
     _check_supported(request, has_other=other is not None, contact_count=len(contacts))
-    in_time = request.several_contacts_law == request.SEQUENTIAL_IN_TIME
     return Strike(
         subject=subject,
         other=other,
         seconds=seconds,
         state=state,
         contacts=contacts,
-        law=_law("restitution_law", request.restitution_law, RestitutionLaw),
-        several_law=(
-            SeveralContactsLaw.SEQUENTIAL
-            if in_time
-            else _law("several_contacts_law", request.several_contacts_law, SeveralContactsLaw)
-        ),
+        law=_restitution_law(request.restitution_law),
+        several_law=_several_law(request),
         velocity_tolerance=velocity_tolerance_of(request, knowledge),
         gravity_W=knowledge.parameters.world.gravity_W,
     )
@@ -121,12 +113,22 @@ def _check_supported(request: Any, *, has_other: bool, contact_count: int) -> No
         raise NotSupportedError(message)
 
 
-def _law(field: str, value: int, laws: type[Law]) -> Law:
+def _restitution_law(value: int) -> RestitutionLaw:
     try:
-        return laws(value)
+        return RestitutionLaw(value)
     except ValueError:
-        allowed = ", ".join(f"{law.name} ({law.value})" for law in laws)
-        raise InvalidFieldError(field, value, allowed) from None
+        allowed = ", ".join(f"{law.name} ({law.value})" for law in RestitutionLaw)
+        raise InvalidFieldError("restitution_law", value, allowed) from None
+
+
+def _several_law(request: Any) -> SeveralContactsLaw:
+    if request.several_contacts_law == request.SEQUENTIAL_IN_TIME:
+        return SeveralContactsLaw.SEQUENTIAL  # at one instant
+    try:
+        return SeveralContactsLaw(request.several_contacts_law)
+    except ValueError:
+        allowed = "SEQUENTIAL (0), SIMULTANEOUS (1), SEQUENTIAL_IN_TIME (2)"
+        raise InvalidFieldError("several_contacts_law", request.several_contacts_law, allowed) from None
 
 
 def _landing(request: Any, subject: Subject, knowledge: Knowledge) -> tuple[float, BodyState, ContactSet]:
