@@ -59,6 +59,7 @@ def show_contact_modes(picture: Picture, response: Any, *, p_FB_F: FloatArray, n
     velocities = rows(response.contact_velocities)
     drawn = ContactModesPicture(
         p_WB_W=state.p_WB_W,
+        q_WB=state.q_WB,
         contacts=contacts,
         modes=tuple(
             _drawn_mode(mode, contacts, velocities, response.acceleration_tolerance)

@@ -15,6 +15,7 @@ import rerun as rr
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import contacts_entity
 from contact_dynamics.viewing.impact import friction_cones
+from contact_dynamics.viewing.trajectory import outline
 
 if TYPE_CHECKING:
     from contact_dynamics.contact import ContactSet
@@ -30,6 +31,7 @@ MOST_MODES: Final = 6
 _ACCELERATION_LENGTH: Final = 0.6  # of the arrow at the centre of mass, relative to the size of the body
 _SLIDING_LENGTH: Final = 0.3  # of the arrows of sliding directions, likewise
 _CONE_HEIGHT: Final = 0.25  # likewise
+_OUTLINE_WIDTH: Final = -0.8  # negative: points of the screen
 _POINT_SIZE: Final = 0.035  # likewise
 _ARROW_WIDTH: Final = 0.01  # likewise
 
@@ -49,6 +51,7 @@ class ContactModesPicture:
     """What the picture of an answer about contact modes is made of."""
 
     p_WB_W: FloatArray  # (3,), m, centre of mass, world
+    q_WB: FloatArray  # (4,), unit quaternion x, y, z, w
     contacts: ContactSet  # n contacts
     modes: tuple[DrawnMode, ...]  # every consistent mode
 
@@ -69,6 +72,9 @@ def draw_contact_modes(
         contacts.p_WC_W, contacts.normals_W, contacts.frictions, height=_CONE_HEIGHT * size
     )
     recording.log(f"{path}/cones", rr.Clear(recursive=False) if cones is None else cones)
+    edges = list(outline(shape, picture.p_WB_W, picture.q_WB))
+    body = rr.LineStrips3D(edges, colors=palette.translucent(palette.NORMAL, 0.6), radii=_OUTLINE_WIDTH)
+    recording.log(f"{path}/body", body)
     for i, name in enumerate(mode_names()):
         mode_path = f"{path}/{name}"
         if i < len(picture.modes):

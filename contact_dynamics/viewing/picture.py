@@ -80,6 +80,8 @@ class Picture:
         if not states:
             return
         before = self._newest.get(body_name)
+        if before is None:  # until now it was nowhere
+            draw_body(self._recording, body_name, self._shape(body_name))
         draw_states(self._recording, body_name, states, before=before, up_W=self._up_W)
         prediction = self._predictions.get(body_name)
         if prediction is not None:
@@ -181,8 +183,7 @@ class Picture:
                 draw_surface(self._recording, surface, center_W=surface.p_WS_W, side=self._surface_side)
             else:
                 draw_obstacle(self._recording, surface)
-        for name, shape in self._shapes.items():
-            draw_body(self._recording, name, shape)
+        for name in self._shapes:
             style_series(self._recording, name)
         legend = rr.TextDocument(LEGEND_TEXT, media_type=rr.MediaType.MARKDOWN)
         self._recording.log(LEGEND, legend, static=True)
@@ -195,7 +196,6 @@ class Picture:
     def _shape(self, body_name: str) -> Shape:
         if body_name not in self._shapes:
             self._shapes[body_name] = drawn_shape(NO_SHAPE)
-            draw_body(self._recording, body_name, self._shapes[body_name])
         return self._shapes[body_name]
 
     def _look_at(self, points_W: FloatArray) -> None:

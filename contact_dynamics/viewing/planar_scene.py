@@ -28,6 +28,7 @@ ARROW_LENGTH: Final = 0.4
 """Of the longest arrow of a kind, relative to the body's size."""
 
 _LABEL_OFFSET: Final = 0.07  # of a contact's label from the contact, out of the body, relative to its size
+_COVERED: Final = 0.06  # labels that are nearer cover each other, likewise
 _OUTLINE_WIDTH: Final = -1.8  # negative: points of the screen
 _WALL_WIDTH: Final = -3.6
 _CONE_WIDTH: Final = -1.2
@@ -126,11 +127,16 @@ def upright(points: FloatArray) -> FloatArray:
 
 
 def _same_places(places: FloatArray, size: float) -> list[list[int]]:
-    """Return the indices of places, (k, 2), m, grouped by what is drawn as one."""
-    groups: dict[tuple[float, ...], list[int]] = {}
-    for i, place in enumerate(places / size if size > 0.0 else places):
-        groups.setdefault(tuple(np.round(place, 3)), []).append(i)
-    return list(groups.values())
+    """Return the indices of places, (k, 2), m, grouped by those whose labels would cover each other."""
+    groups: list[list[int]] = []
+    for i, place in enumerate(places):
+        near = (same for same in groups if np.linalg.norm(places[same[0]] - place) <= _COVERED * size)
+        group = next(near, None)
+        if group is None:
+            groups.append([i])
+        else:
+            group.append(i)
+    return groups
 
 
 def _strips(

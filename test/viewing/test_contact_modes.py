@@ -60,7 +60,9 @@ def mode_of(mode: str, forces: FloatArray, *, slides: FloatArray | None = None) 
 
 
 def picture_of(contacts: ContactSet, *modes: DrawnMode) -> ContactModesPicture:
-    return ContactModesPicture(p_WB_W=np.array([0.0, 0.0, 0.1]), contacts=contacts, modes=modes)
+    return ContactModesPicture(
+        p_WB_W=np.array([0.0, 0.0, 0.1]), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), contacts=contacts, modes=modes
+    )
 
 
 def test_points_carry_letters_and_forces_their_direction(
@@ -81,6 +83,8 @@ def test_points_carry_letters_and_forces_their_direction(
     np.testing.assert_allclose(slide / np.linalg.norm(slide), [1.0, 0.0, 0.0], atol=1e-6)
     assert drawn.last(f"{CONTACTS}/mode_1/acceleration", "Arrows3D:labels") == ["sr: 2 m/s²"]
     assert (f"{CONTACTS}/cones", "Mesh3D:vertex_positions") in drawn.values
+    edges = drawn.array(f"{CONTACTS}/body", "LineStrips3D:strips")  # where the answer is about it
+    np.testing.assert_allclose(edges.reshape(-1, 3).mean(axis=0), [0.0, 0.0, 0.1], atol=1e-6)
 
 
 def test_each_mode_is_an_entity_of_its_own(

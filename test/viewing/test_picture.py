@@ -56,7 +56,9 @@ def test_each_answer_appears_at_its_stamp(
     picture.add_states("brick", [state])
     picture.show_trajectory("brick", trajectory, stamp_ns=STAMP_NS)
     picture.show_impact("brick", an_impact(state, two_contacts), stamp_ns=STAMP_NS + 1)
-    modes = ContactModesPicture(p_WB_W=np.zeros(3), contacts=two_contacts, modes=())
+    modes = ContactModesPicture(
+        p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), contacts=two_contacts, modes=()
+    )
     picture.show_contact_modes("brick", modes, stamp_ns=STAMP_NS + 2)
     drawn = read()
     assert drawn.stamps("/world/predicted/brick/path", "LineStrips3D:strips") == [STAMP_NS]
