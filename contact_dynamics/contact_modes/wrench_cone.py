@@ -14,10 +14,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-import numpy as np
-
 from contact_dynamics.contact_modes.cone import PolyhedralCone, bits
-from contact_dynamics.contact_modes.enumeration import FIXED, RIGHT, Cell, Letters
+from contact_dynamics.contact_modes.edges import friction_edges, reactions
+from contact_dynamics.contact_modes.enumeration import Cell
 from contact_dynamics.contact_modes.least_force import least_force
 from contact_dynamics.contact_modes.problem import PlanarProblem, lifted
 from contact_dynamics.contact_modes.span import orthonormal
@@ -27,35 +26,8 @@ from contact_dynamics.vector3 import Vector3, dot, norm, normalised, opposite
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from contact_dynamics.contact_modes.problem import ContactRow
-    from contact_dynamics.validation import FloatArray
-
 
 _MOST_INDEPENDENT: Final = 3  # wrenches in the plane
-
-
-class Edges(NamedTuple):
-    """Edges of the friction cones: the contact forces of a mode are positive combinations of them."""
-
-    positions: list[int]  # the row of the problem that each belongs to
-    slopes: list[float]  # f_t / f_n
-    wrenches: FloatArray  # (k, 3), of a unit f_n
-
-
-def friction_edges(rows: Sequence[ContactRow], letters: Letters) -> Edges:
-    """Return the edges of the forces that the letters of a mode allow."""
-    positions: list[int] = []
-    slopes: list[float] = []
-    for position, letter in letters:
-        friction = rows[position].friction
-        if letter != RIGHT:
-            positions.append(position)
-            slopes.append(friction)
-        if letter == RIGHT or (letter == FIXED and friction > 0.0):
-            positions.append(position)
-            slopes.append(-friction)
-    both = np.array([rows[position].N + rows[position].T for position in positions]).reshape(-1, 6)
-    return Edges(positions, slopes, both[:, :3] + np.array(slopes)[:, None] * both[:, 3:])
 
 
 class HalfSpace(NamedTuple):
@@ -68,34 +40,23 @@ class HalfSpace(NamedTuple):
 class ModeWrenches:
     """The cone of applied wrenches of one mode, and where the problem's own wrench stands in it."""
 
-    __slots__ = ("_common", "_lengths", "_problem", "_rays", "_seen", "_target", "dual", "edges")
+    __slots__ = ("_common", "_problem", "_rays", "_reactions", "_target", "dual", "edges")
 
     def __init__(self, problem: PlanarProblem, cell: Cell) -> None:
-        """Build the cone; its rays stand first among the columns of ``dual``, then the seen reactions."""
+        """Build the cone; its rays stand first among the rows of ``dual``, then the reactions."""
         lift = problem.lift
         self._problem = problem
         self._rays = cell.rays
         self.edges = friction_edges(problem.rows, cell.letters)
-        across = self.edges.wrenches
-        lengths = _lengths(across)
-        seen = np.arange(len(across))
-        if lift is not None:
-            sizes = lengths
-            across = np.column_stack([across @ np.array(lift.across).T, np.zeros(len(across))])
-            lengths = _lengths(across)
-            seen = np.flatnonzero(lengths > ROW_TOLERANCE * sizes)
-            across, lengths = across[seen], lengths[seen]
-        self._seen: list[int] = seen.tolist()
-        self._lengths: list[float] = lengths.tolist()
-        reactions = [(x, y, z) for x, y, z in (across / -lengths[:, None]).tolist()]
-        self.dual = PolyhedralCone([*cell.rays, *reactions], tolerance=ROW_TOLERANCE)
+        self._reactions = reactions(lift, self.edges.wrenches)
+        self.dual = PolyhedralCone([*cell.rays, *self._reactions.units], tolerance=ROW_TOLERANCE)
         self._target = lifted(lift, problem.w, problem.mass * lift.scale * lift.scale if lift else 0.0)
         self._common = self.dual.all_rows
 
     def generated_by(self) -> tuple[list[Vector3], list[Vector3]]:
         """Return vertices, N, and rays whose averages and positive combinations are the mode's wrenches."""
         lift = self._problem.lift
-        rays = [(x, y, z) for x, y, z in (-self.edges.wrenches).tolist()]
+        rays = [opposite(wrench) for wrench in self.edges.wrenches]
         if lift is None:
             return [(0.0, 0.0, 0.0)], [*self._rays, *rays]
         rays += [lift.line, opposite(lift.line)]
@@ -175,23 +136,21 @@ class ModeWrenches:
         found = least_force([self.dual.rows[i] for i in used], rest, absent)
         wrenches = self.edges.wrenches
         shares = [0.0] * len(wrenches)
-        idle = set(self._seen)  # the others act along the line of symmetry: any of them may
+        idle = set(self._reactions.edges)  # the others act along the line of symmetry: any of them may
         for column, value in zip(used, found, strict=True):
             if column >= len(self._rays):
-                index = self._seen[column - len(self._rays)]
-                shares[index] = value / self._lengths[column - len(self._rays)]
-                idle.remove(index)
-        return shares, self._uniqueness([i for i in range(len(wrenches)) if i not in idle])
+                edge = self._reactions.edges[column - len(self._rays)]
+                shares[edge] = value / self._reactions.lengths[column - len(self._rays)]
+                idle.remove(edge)
+        return shares, self._uniqueness([wrench for i, wrench in enumerate(wrenches) if i not in idle])
 
-    def _uniqueness(self, acting: list[int]) -> tuple[bool, bool]:
-        """Return whether forces and motion are unique, ``acting`` being all edges that can act."""
+    def _uniqueness(self, acting: list[Vector3]) -> tuple[bool, bool]:
+        """Return whether forces and motion are unique, ``acting`` being the edges that can act."""
         motions = orthonormal(self._motions())
         if not motions and len(acting) > _MOST_INDEPENDENT:
             return False, True
         height = () if self._problem.lift is None else (0.0,)
-        forces = orthonormal(
-            (*normalised((x, y, z)), *height) for x, y, z in self.edges.wrenches[acting].tolist()
-        )
+        forces = orthonormal((*normalised(wrench), *height) for wrench in acting)
         total = len(orthonormal([*motions, *forces])) if motions else len(forces)
         return total == len(motions) + len(acting), total == len(motions) + len(forces)
 
@@ -225,11 +184,6 @@ class ModeWrenches:
             return ray
         one, two = lift.across
         return (*(ray[0] * x + ray[1] * y for x, y in zip(one, two, strict=True)), ray[2])
-
-
-def _lengths(rows: FloatArray) -> FloatArray:
-    lengths: FloatArray = np.sqrt(np.einsum("ij,ij->i", rows, rows))
-    return lengths
 
 
 def _total(rays: Sequence[Vector3]) -> Vector3:
