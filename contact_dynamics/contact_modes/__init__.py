@@ -2,7 +2,7 @@
 
 In reading order: verdicts and evidence (`result`); one contact in closed form (`single`); any planar set
 (`planar`, `coincident`), stated as a cone (`problem`, `cone`), its modes enumerated (`enumeration`) and
-judged (`dynamics`, `independent`, `wrench_cone`, `least_force`); applied wrenches of each mode
+judged (`dynamics`, `independent`, `edges`, `wrench_cone`, `least_force`); applied wrenches of each mode
 (`wrench_sets`), their map and margins (`margins`); equilibrium, jamming and wedging (`statics`). In space:
 contacting and separating modes (`spatial`, `spatial_cone`), and with ways of sliding (`spatial_sliding`);
 sticking and sliding with mechanics (`spatial_dynamics`, `spatial_result`, `spatial_case`): every combination
