@@ -316,6 +316,40 @@ def test_planar_problems_have_planar_answers(law: RestitutionLaw, seed: int) -> 
     )
 
 
+@pytest.mark.parametrize("law", RestitutionLaw)
+@settings(max_examples=100, deadline=None)
+@given(seed=st.integers(0, 2**32))
+def test_planes_along_the_axes_have_planar_answers_to_rounding(law: RestitutionLaw, seed: int) -> None:
+    """Where no turn rounds the plane away, the whole path is the planar one, vertex by vertex."""
+    rng = np.random.default_rng(seed)
+    r, v = rng.normal(size=2), rng.normal(size=2) * [rng.choice([0.0, 1.0]), 1.0]
+    v[1] = -abs(v[1])
+    mass, inertia = float(rng.uniform(0.3, 3.0)), float(10.0 ** rng.uniform(-1.0, 1.0))
+    friction, e = float(rng.choice([0.0, 10.0 ** rng.uniform(-2.0, 1.0), 1e9])), float(rng.uniform())
+    flat = planar_impact(
+        PlanarBody(mass=mass, inertia=inertia),
+        PlanarVelocity(v=tuple(v), w=0.0),
+        PlanarContact(r=tuple(r), normal=(0.0, 1.0), friction=friction, restitution=e),
+        law=law,
+    )
+    answer = spatial_impact(
+        MassProperties(mass=mass, I_B=inertia * np.diag([0.7, 1.0, 0.8])),
+        BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[v[0], 0.0, v[1]], w_WB_W=np.zeros(3)),
+        p_WC_W=[r[0], 0.0, r[1]],
+        n_W=UP,
+        friction=friction,
+        restitution=e,
+        law=law,
+    )
+    assert answer.outcome is flat.outcome
+    assert list(answer.path_events) == [event for event, _ in flat.path]
+    vertices = np.array([[i_t, 0.0, i_n] for _, (i_t, i_n) in flat.path])
+    # The same formulas in another order: rounding, times what nearly jamming makes of it.
+    lifting = abs(flat.inverse_inertia.c - friction * abs(flat.inverse_inertia.b))
+    amplified = 1.0 + flat.inverse_inertia.c / lifting if friction < 100.0 else 2.0
+    assert answer.path_W == pytest.approx(vertices, abs=1e-13 * amplified * math.hypot(*flat.impulse))
+
+
 # What every answer obeys.
 
 
@@ -396,6 +430,33 @@ def test_turned_and_mirrored_problems_have_turned_and_mirrored_answers(seed: int
     assert other.impulse_W == pytest.approx(
         turn @ answer.impulse_W, abs=1e-7 * float(np.linalg.norm(answer.impulse_W))
     )
+
+
+@pytest.mark.parametrize("law", RestitutionLaw)
+@settings(max_examples=60, deadline=None)
+@given(seed=st.integers(0, 2**32))
+def test_mirrored_problems_have_mirrored_answers_to_the_last_bit(law: RestitutionLaw, seed: int) -> None:
+    """In a coordinate plane, since only signs change."""
+    problem = random_problem(seed)
+    state, body = problem["state"], problem["body"]
+    mirror = np.array([1.0, -1.0, 1.0])
+    image = {
+        **problem,
+        "body": MassProperties(mass=body.mass, I_B=body.I_B * np.outer(mirror, mirror)),
+        "state": BodyState(
+            p_WB_W=state.p_WB_W * mirror,
+            q_WB=state.q_WB * [-1.0, 1.0, -1.0, 1.0],
+            v_WB_W=state.v_WB_W * mirror,
+            w_WB_W=-state.w_WB_W * mirror,
+        ),
+        "p_WC_W": problem["p_WC_W"] * mirror,
+        "n_W": problem["n_W"] * mirror,
+    }
+    answer, other = solve(problem, law), solve(image, law)
+    assert other.outcome is answer.outcome
+    assert other.impulse_W.tolist() == (answer.impulse_W * mirror).tolist()
+    assert other.state.v_WB_W.tolist() == (answer.state.v_WB_W * mirror).tolist()
+    assert other.state.w_WB_W.tolist() == (-answer.state.w_WB_W * mirror).tolist()
 
 
 # Special cases by name.
