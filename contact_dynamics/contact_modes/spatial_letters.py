@@ -39,7 +39,7 @@ class Letters(NamedTuple):
     raised: int | None  # the normal acceleration's name, where that is positive
     rows: FloatArray  # (k, 7), zero or not negative
     equalities: int  # how many rows are zero; the first ones
-    parts: tuple[Letters, ...]  # the letters that it stands for, in groups; empty where it is a letter
+    parts: tuple[Letters, ...]  # what it stands for, in groups; empty where it is a letter
 
 
 class Pyramid(NamedTuple):
@@ -79,7 +79,7 @@ def pyramid_of(
 
 
 def any_letter(pyramid: Pyramid, point: FloatArray, normal_name: int) -> Letters:
-    """Return all letters of one touching contact.
+    """Return all letters of one touching contact, but for its ways of sliding (`ways_of_sliding`).
 
     Args:
         pyramid: Its force edges.
@@ -93,16 +93,24 @@ def any_letter(pyramid: Pyramid, point: FloatArray, normal_name: int) -> Letters
     if pyramid.frame is None:
         stays = Letters("c", -1, zeroed, None, nothing, 0, ())
     else:
-        frame = np.array(pyramid.frame) @ point
-        sticks = Letters("f", -1, frozenset(), None, frame, 2, ())
-        count = len(own)
-        angles = 2.0 * math.pi * np.arange(count) / count
-        along = np.column_stack([np.cos(angles), np.sin(angles)]) @ frame
-        # Sectors and borders alternate around the circle; no arc may be wider than a third of it.
-        arcs = np.array_split(np.arange(2 * count), count if count < 6 else 4)
-        slides = [_slides(arc.tolist(), pyramid.first, along) for arc in arcs]
-        stays = Letters("", -1, zeroed, None, nothing, 0, (sticks, *slides))
+        sticks = Letters("f", -1, frozenset(), None, np.array(pyramid.frame) @ point, 2, ())
+        stays = Letters("", -1, zeroed, None, nothing, 0, (sticks,))
     return Letters("", -1, frozenset(), None, nothing, 0, (separates, stays))
+
+
+def ways_of_sliding(pyramid: Pyramid, point: FloatArray) -> tuple[Letters, ...]:
+    """Return the letters of a contact that slides, in arcs that together go around the circle.
+
+    Args:
+        pyramid: Its force edges, more than one.
+        point: (3, 7), its acceleration as a function of the motion.
+    """
+    count = len(pyramid.edges)
+    angles = 2.0 * math.pi * np.arange(count) / count
+    along = np.column_stack([np.cos(angles), np.sin(angles)]) @ (np.array(pyramid.frame) @ point)
+    # Sectors and borders alternate around the circle; no arc may be wider than a third of it.
+    arcs = np.array_split(np.arange(2 * count), count if count < 6 else 4)
+    return tuple(_slides(arc.tolist(), pyramid.first, along) for arc in arcs)
 
 
 def _slides(arc: list[int], first_name: int, along: FloatArray) -> Letters:

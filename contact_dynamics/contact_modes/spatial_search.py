@@ -16,7 +16,13 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.spatial_letters import STRICT, any_letter, pyramid_of, with_acting
+from contact_dynamics.contact_modes.spatial_letters import (
+    STRICT,
+    any_letter,
+    pyramid_of,
+    ways_of_sliding,
+    with_acting,
+)
 from contact_dynamics.contact_modes.spatial_program import Program
 from contact_dynamics.contact_modes.spatial_regions import Image, Region, image_of, whole
 from contact_dynamics.errors import TooLargeError
@@ -114,6 +120,7 @@ class Search:
             any_letter(pyramid, contact.point, first + i)
             for i, (contact, pyramid) in enumerate(zip(touching, self.pyramids, strict=True))
         ]
+        self._ways: dict[int, tuple[Letters, ...]] = {}
         self._found: dict[tuple[tuple[str, int], ...], list[Letters]] = {}
 
     def run(self) -> list[Found]:
@@ -173,6 +180,8 @@ class Search:
         frames = np.array([trials[i].parts[0].rows for i in open_ones]).reshape(-1, 2, 7)
         if len(open_ones) < 2 or np.any(frames[:, :, -1]):
             # One contact's letters are as few as regions; with centripetal terms directions are not cones.
+            for i in open_ones:
+                trials = [*trials[:i], self._with_ways(i, trials[i]), *trials[i + 1 :]]
             self._decide_letters(program, trials, [0] * len(trials))
             return
         sticking, all_stick = program, list(trials)
@@ -202,8 +211,14 @@ class Search:
         for i in open_ones:
             pyramid = self.pyramids[i]
             own = frozenset(range(pyramid.first, pyramid.first + len(pyramid.edges)))
-            fewer[i] = with_acting(trials[i], silent, own)
+            fewer[i] = with_acting(self._with_ways(i, trials[i]), silent, own)
         self._decide_letters(narrower, fewer, [0] * len(trials))
+
+    def _with_ways(self, at: int, stays: Letters) -> Letters:
+        """Return the letters of a contact that stays, with its ways of sliding."""
+        if at not in self._ways:
+            self._ways[at] = ways_of_sliding(self.pyramids[at], self.touching[at].point)
+        return stays._replace(parts=(*stays.parts, *self._ways[at]))
 
     def _decide_letters(self, program: Program, trials: list[Letters], depths: list[int]) -> None:
         open_ones = [i for i, letters in enumerate(trials) if letters.parts]
