@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
+from contact_dynamics.errors import InvalidFieldError, NoContactError, SeparatingContactError
 from contact_dynamics.impact import (
+    SequenceEnd,
     bodies_impact,
     impact_sequence,
     impact_sequence_of,
@@ -95,7 +96,7 @@ def predict_impact(request: Any, response: Any, knowledge: Knowledge) -> None:
 
 
 def _in_time(request: Any, strike: Strike, knowledge: Knowledge) -> ImpactSequence:
-    """Return the strikes from a state on; without one raise `SeparatingContactError`."""
+    """Return the strikes from a state on; without one raise `SeparatingContactError` or `NoContactError`."""
     how: dict[str, Any] = {
         "restitution_law": strike.law,
         "window": or_configured("strike_window", request.strike_window, STRIKE_WINDOW),
@@ -111,6 +112,12 @@ def _in_time(request: Any, strike: Strike, knowledge: Knowledge) -> ImpactSequen
         )
     else:
         sequence = impact_sequence(strike.subject.body, strike.state, world, **how)
+    if not sequence.strikes and sequence.end == SequenceEnd.STAYS:
+        message = (
+            "contacts: found one that stays and none that strikes (~/predict_contact_mode says what follows; "
+            "a hold_step goes on over it)"
+        )
+        raise NoContactError(message)
     if not sequence.strikes:
         raise SeparatingContactError(
             "contacts", "none that strikes", f"one that approaches or comes back within {how['window']:g} s"

@@ -420,3 +420,27 @@ def test_over_a_corner_that_stays_it_goes_on_where_asked(client: Client) -> None
     np.testing.assert_allclose(list(held.impact.strike_times)[:done], ended.impact.strike_times, atol=1e-12)
     request.hold_step = -0.001
     assert client.ask(request).status == held.INVALID_FIELD
+
+
+def test_a_brick_that_tips_over_its_edge_strikes_when_it_is_down(client: Client) -> None:
+    """It rests on one edge, tilted by 0.1: held there it falls about it, and the other edge strikes.
+
+    The upper edge, twice as far from the lower one as the centre, is pulled down by some 3/2 g where the lower
+    one sticks and by more where it slides, so that free fall from its height takes about as long.
+    """
+    tilt = 0.1
+    height = 0.025 * math.cos(tilt) + 0.075 * math.sin(tilt)
+    request = falling_brick(height=height, tilt=tilt)
+    request.several_contacts_law = request.SEQUENTIAL_IN_TIME
+    request.strike_window = 0.2
+    answer = client.ask(request)
+    assert answer.status == answer.NO_CONTACT
+    assert "hold_step goes on over it" in answer.message
+    request.hold_step = 0.001
+    answer = client.ask(request)
+    assert answer.status == answer.OK, answer.message
+    fall = math.sqrt(2.0 * 0.15 * math.sin(tilt) / G)
+    assert 0.7 * fall < answer.time_to_contact < 1.5 * fall
+    first = answer.impact.strike_contacts[0]
+    assert answer.contacts.positions[3 * first] < 0.0  # the edge that was up, at -x
+    assert answer.impact.sequence_end == Impact.STAYS  # and then it lies flat
