@@ -425,7 +425,7 @@ def test_over_a_corner_that_stays_it_goes_on_where_asked(client: Client) -> None
 def test_a_brick_that_tips_over_its_edge_strikes_when_it_is_down(client: Client) -> None:
     """It rests on one edge, tilted by 0.1: held there it falls about it, and the other edge strikes.
 
-    The upper edge, twice as far from the lower one as the centre, is pulled down by some 3/2 g where the lower
+    The upper edge, twice as far from the lower one as the centre, falls with some 3/2 g where the lower
     one sticks and by more where it slides, so that free fall from its height takes about as long.
     """
     tilt = 0.1
