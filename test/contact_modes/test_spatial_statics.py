@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import linprog
 
 from contact_dynamics.contact import ContactSet
 from contact_dynamics.contact_modes import BodyStatics, Certainty, planar_statics, spatial_statics
@@ -144,6 +145,44 @@ def test_planar_cases_have_the_planes_answer(seed: int) -> None:
     if space.equilibrium != Certainty.NO:
         assert space.stable_disturbance <= plane.stable_disturbance * (1.0 + 1e-6)
         assert (space.jammed == Certainty.NO) == (plane.jammed == Certainty.NO)
+
+
+def can_balance(found: ContactSet, wrench: np.ndarray, share: float) -> bool:
+    """Whether forces in cones of 64 edges, friction scaled by ``share``, balance a wrench."""
+    columns = []
+    for point, normal, friction in zip(found.p_WC_W, found.normals_W, found.frictions, strict=True):
+        one = np.cross(normal, [1.0, 0.0, 0.0] if abs(normal[0]) < 0.9 else [0.0, 1.0, 0.0])
+        one /= np.linalg.norm(one)
+        for angle in 2.0 * np.pi * np.arange(64) / 64:
+            way = math.cos(angle) * one + math.sin(angle) * np.cross(normal, one)
+            force = normal + share * friction * way
+            columns.append(np.concatenate([force, np.cross(point, force)]))
+    found_forces = linprog(np.zeros(len(columns)), A_eq=np.array(columns).T, b_eq=-wrench)
+    return bool(found_forces.status == 0)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_linear_programs_over_the_forces_agree(seed: int) -> None:
+    """Between pyramids that surely lie inside ours and cones that surely hold them; many coincidences."""
+    chance = np.random.default_rng(seed)
+    n, whole = int(chance.integers(2, 6)), seed % 2 == 0
+    normals = np.ones((1, 3))
+    while len(normals) != n or not normals.any(axis=1).all():
+        normals = chance.integers(-1, 2, size=(n, 3)).astype(float) if whole else chance.normal(size=(n, 3))
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    points = chance.integers(-1, 2, size=(n, 3)).astype(float) if whole else chance.normal(size=(n, 3))
+    found = touching(list(map(tuple, points)), list(map(tuple, normals)))
+    wrench = -np.concatenate([normals.sum(axis=0), np.cross(points, normals).sum(axis=0)])
+    wrench += 0.3 * chance.normal(size=6) * (seed % 3)
+    statics = spatial_statics(BODY, STATE, found, force_W=wrench[:3], torque_W=wrench[3:], margin_length=1.0)
+    inner, outer = math.cos(math.pi / 8.0), 1.0 / math.cos(math.pi / 64.0)
+    if can_balance(found, wrench, inner):
+        assert statics.equilibrium != Certainty.NO
+    if statics.equilibrium != Certainty.NO:
+        assert can_balance(found, wrench, outer)
+        room = min(statics.stable_disturbance, 10.0)
+        for way in chance.normal(size=(5, 6)):
+            assert can_balance(found, wrench + 0.999 * room * way / np.linalg.norm(way), outer)
 
 
 def test_without_contacts_only_nothing_is_held() -> None:
