@@ -2,8 +2,8 @@
 
 As in the plane (`statics`), with friction cones replaced by pyramids inside them: what is said to hold holds,
 and the disturbance is one that it surely takes. What holds by less than the pyramids leave out, a part of
-1 - cos(pi / facets) of friction, may be said not to. The wrenches that contact forces can balance are a polyhedral
-cone in R^6, torques being divided by a length; its facets are the extreme rays of the dual cone.
+1 - cos(pi / facets) of friction, may be said not to. The wrenches that contact forces can balance are a
+polyhedral cone in R^6, torques being divided by a length; its facets are the extreme rays of the dual cone.
 """
 
 from __future__ import annotations

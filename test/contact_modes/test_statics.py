@@ -7,9 +7,9 @@ import math
 import pytest
 
 from contact_dynamics.contact_modes import (
+    BodyStatics,
     Certainty,
     ModeVerdict,
-    BodyStatics,
     planar_contact_modes,
     planar_statics,
 )

@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 from scipy.optimize import nnls
 
 from contact_dynamics.contact_modes import (
+    BodyStatics,
     Certainty,
     ModeVerdict,
-    BodyStatics,
     planar_contact_modes,
     planar_mode_map,
     planar_statics,
