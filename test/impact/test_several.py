@@ -13,11 +13,18 @@ from contact_dynamics.impact import (
     RestitutionLaw,
     SeveralContactsLaw,
     SeveralVerdict,
+    bodies_impact,
     outcomes_over_orders,
     several_impact,
     spatial_impact,
 )
-from contact_dynamics.rigid_body import BodyState, MassProperties, kinetic_energy
+from contact_dynamics.rigid_body import (
+    BodyState,
+    MassProperties,
+    angular_momentum,
+    kinetic_energy,
+    momentum,
+)
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 CUBE = MassProperties(mass=0.5, I_B=0.5 * 0.1**2 / 6.0 * np.eye(3))
@@ -252,3 +259,43 @@ def test_refusals() -> None:
     )
     with pytest.raises(InvalidFieldError, match="contacts"):
         several_impact(CUBE, falling(0.05, [0.0, 0.0, -1.0]), none)
+
+
+@pytest.mark.parametrize(("law", "restitution_law"), LAWS)
+@settings(max_examples=15, deadline=None)
+@given(seed=st.integers(0, 2**32))
+def test_bodies_that_touch_no_world_keep_their_momenta(
+    law: SeveralContactsLaw, restitution_law: RestitutionLaw, seed: int
+) -> None:
+    """Linear and angular momentum about the world's origin, of two bodies with up to three contacts."""
+    body, state, contacts = random_set(seed)
+    other = MassProperties(mass=2.0, I_B=np.diag([0.5, 0.6, 0.7]))
+    below = BodyState(
+        p_WB_W=np.array([0.1, -0.2, -1.5]),
+        q_WB=IDENTITY,
+        v_WB_W=np.array([0.1, 0.0, 0.3]),
+        w_WB_W=state.w_WB_W,
+    )
+    pairs = [(0, 1)] * len(contacts)
+    try:
+        answer = bodies_impact(
+            [body, other], [state, below], contacts, pairs, law=law, restitution_law=restitution_law
+        )
+    except SeparatingContactError:
+        return
+    size = float(abs(answer.impulses_W).max()) * len(contacts) * 3.0 + 1.0  # arms are within 2 m
+    for kept in (momentum, about_origin):
+        before = kept(body, state) + kept(other, below)
+        after = kept(body, answer.states[0]) + kept(other, answer.states[1])
+        assert after == pytest.approx(before, abs=1e-12 * size)
+    if law is SEQUENTIAL and restitution_law is not RestitutionLaw.NEWTON:
+        energy_before = kinetic_energy(body, state) + kinetic_energy(other, below)
+        energy_after = kinetic_energy(body, answer.states[0]) + kinetic_energy(other, answer.states[1])
+        assert energy_after <= energy_before * (1.0 + 1e-10)
+    if answer.verdict is SeveralVerdict.RESOLVED:
+        leaving = np.einsum("ij,ij->i", answer.velocities_after_W, contacts.normals_W)
+        assert (leaving >= -1e-8).all()
+
+
+def about_origin(body: MassProperties, state: BodyState) -> np.ndarray:
+    return angular_momentum(body, state) + np.cross(state.p_WB_W, momentum(body, state))
