@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -42,41 +41,36 @@ class Obstacle:
         object.__setattr__(self, "features", features)
 
 
-def closest_point(features: Features, p_W: FloatArray) -> FloatArray:
-    """Return the point of a hull's faces, or of a rod, that is nearest to a point, (3,), m.
+def closest_points(features: Features, points: FloatArray) -> FloatArray:
+    """Return the points, (n, 3), of a hull's faces, or of a rod, that are nearest to points, (n, 3), m.
 
-    As Ericson, Real-Time Collision Detection, 2005, 5.1.
+    The nearest one of each triangle is above its inside or on a side, as Ericson, Real-Time Collision
+    Detection, 2005, 5.1.
     """
     if len(features.triangles) == 0:
-        return _on_side(features.corners[0], features.corners[-1], p_W)
-    best: FloatArray = features.corners[0]
-    least = math.inf
-    for a, b, c in features.triangles:
-        point = _in_triangle(a, b, c, p_W)
-        distance = float((point - p_W) @ (point - p_W))
-        if distance < least:
-            best, least = point, distance
-    return best
-
-
-def _in_triangle(a: FloatArray, b: FloatArray, c: FloatArray, p: FloatArray) -> FloatArray:
-    ab, ac = b - a, c - a
-    normal = np.cross(ab, ac)
-    size = float(normal @ normal)
-    if size > 0.0:
-        u = float(np.cross(b - p, c - p) @ normal) / size  # of a
-        v = float(np.cross(c - p, a - p) @ normal) / size  # of b
-        if u >= 0.0 and v >= 0.0 and u + v <= 1.0:
-            inside: FloatArray = u * a + v * b + (1.0 - u - v) * c
-            return inside
-    sides = [_on_side(a, b, p), _on_side(b, c, p), _on_side(c, a, p)]
-    nearest: FloatArray = min(sides, key=lambda q: float((q - p) @ (q - p)))
+        return _on_sides(features.corners[:1], features.corners[-1:], points)[:, 0]
+    a, b, c = features.triangles.transpose(1, 0, 2)  # (t, 3) each
+    normals = np.cross(b - a, c - a)
+    sizes = np.einsum("ij,ij->i", normals, normals)
+    p = points[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):  # of slivers only the sides count
+        u = np.einsum("nti,ti->nt", np.cross(b - p, c - p), normals) / sizes
+        v = np.einsum("nti,ti->nt", np.cross(c - p, a - p), normals) / sizes
+        inside = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0)
+        above = u[..., None] * a + v[..., None] * b + (1.0 - u - v)[..., None] * c
+    above[~inside] = np.inf
+    candidates = [above, _on_sides(a, b, points), _on_sides(b, c, points), _on_sides(c, a, points)]
+    found = np.concatenate(candidates, axis=1)
+    distances = np.einsum("nci,nci->nc", found - p, found - p)
+    nearest: FloatArray = found[np.arange(len(points)), distances.argmin(axis=1)]
     return nearest
 
 
-def _on_side(a: FloatArray, b: FloatArray, p: FloatArray) -> FloatArray:
+def _on_sides(a: FloatArray, b: FloatArray, points: FloatArray) -> FloatArray:
+    """Return the points, (n, s, 3), of sides from (s, 3) to (s, 3) that are nearest to points, (n, 3)."""
     along = b - a
-    length = float(along @ along)
-    share = min(max(float((p - a) @ along) / length, 0.0), 1.0) if length > 0.0 else 0.0
-    point: FloatArray = a + share * along
-    return point
+    lengths = np.einsum("ij,ij->i", along, along)
+    arms = np.einsum("nsi,si->ns", points[:, None] - a, along)
+    shares = np.clip(np.divide(arms, lengths, out=np.zeros_like(arms), where=lengths > 0.0), 0.0, 1.0)
+    nearest: FloatArray = a + shares[..., None] * along
+    return nearest

@@ -28,7 +28,7 @@ import numpy as np
 from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.flat_contact import flat_touches
 from contact_dynamics.hull_features import features_of
-from contact_dynamics.obstacle import closest_point
+from contact_dynamics.obstacle import closest_points
 from contact_dynamics.outlines import Rounded, outline, overlap, tangents_of
 
 if TYPE_CHECKING:
@@ -85,9 +85,10 @@ def _axes(
     if shape.rounding == 0.0:
         return polyhedral
     # Those between the nearest points of a corner and the other hull, which a ball that rolls over it needs.
-    arms = [corner - closest_point(theirs, corner) for corner in p_WB_W + mine.corners @ R_WB.T]
-    arms += [R_WB @ (closest_point(mine, q_B) - q_B) for q_B in (theirs.corners - p_WB_W) @ R_WB]
-    away = np.array(arms)
+    corners = p_WB_W + mine.corners @ R_WB.T
+    inwards = (theirs.corners - p_WB_W) @ R_WB  # in body axes
+    arms = (closest_points(mine, inwards) - inwards) @ R_WB.T
+    away = np.concatenate([corners - closest_points(theirs, corners), arms])
     sizes = np.linalg.norm(away, axis=1)
     return (*polyhedral, away[sizes > _AS_GOOD] / sizes[sizes > _AS_GOOD, None])
 

@@ -25,7 +25,7 @@ from contact_dynamics.convex_shape import (
 )
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.landing import next_landing
-from contact_dynamics.obstacle import Obstacle, closest_point
+from contact_dynamics.obstacle import Obstacle, closest_points
 from contact_dynamics.obstacle_arrival import first_touch
 from contact_dynamics.obstacle_contact import site_of
 from contact_dynamics.rigid_body import BodyState, MassProperties
@@ -201,7 +201,7 @@ def test_a_ball_is_as_far_as_its_centre(
     cloud = obstacle(points)
     apart = distance(np.array([center]), points)
     assume(apart > 1e-3)
-    nearest = closest_point(cloud.features, np.array(center))
+    (nearest,) = closest_points(cloud.features, np.array([center]))
     assert math.dist(nearest, center) == pytest.approx(apart, abs=1e-6)
     site = site_of(sphere(radius=0.05), np.array(center), Rotation.from_quat(q).as_matrix(), cloud)
     assert site.gap == pytest.approx(apart - 0.05, abs=1e-6)
