@@ -63,8 +63,10 @@ def spatial_contact_modes(
         force_W: (3,), N, applied to the body besides its contact forces, gravity included, world axes.
         torque_W: (3,), N m, applied about the centre of mass, world axes.
         friction_facets: Edges of the pyramid that stands for a friction cone at rest, >= 3.
-        sharpen: Whether friction is then turned exactly against the sliding, in modes of unique motion where
-            that has a solution (`spatial_sharpening`). Modes that become the same by it are one.
+        sharpen: Whether the pyramids' sectors are left behind: friction is turned exactly against the
+            sliding, in modes of unique motion where that has a solution (`spatial_sharpening`), and modes
+            with the same letters are one if their motion is the same, or not unique in any of them. Otherwise
+            each sector counts.
         velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero, and so
             does an angular velocity that moves no contact relative to the centre of mass by more than that.
 
@@ -98,20 +100,26 @@ def spatial_contact_modes(
 
 
 def evidenced(case: SpatialCase, search: Search, *, sharpen: bool) -> list[tuple[SpatialMode, Found]]:
-    """Return the modes of a case with what the search found of them, without those that are another's twin.
+    """Return the modes of a case with what the search found of them; of twins, if sharpened, the first.
 
-    Twins have the same letters and the same unique motion.
+    Twins have the same letters, and either the same unique motion or both one that is not unique.
     """
     found: list[tuple[SpatialMode, Found]] = []
     for one in search.run():
         mode = _evidence(case, search, one, sharpen=sharpen)
-        own = np.concatenate([mode.acceleration_W, mode.angular_acceleration_W])
-        alike = [other for other, _ in found if other.mode == mode.mode and other.motion_unique]
-        others = [np.concatenate([other.acceleration_W, other.angular_acceleration_W]) for other in alike]
-        near = _SAME * (1.0 + float(np.abs(own).max()))
-        if not mode.motion_unique or all(np.abs(own - other).max() > near for other in others):
+        if not (sharpen and any(_are_twins(mode, other) for other, _ in found)):
             found.append((mode, one))
     return found
+
+
+def _are_twins(mode: SpatialMode, other: SpatialMode) -> bool:
+    if (mode.mode, mode.motion_unique) != (other.mode, other.motion_unique):
+        return False
+    if not mode.motion_unique:
+        return True
+    one = np.concatenate([mode.acceleration_W, mode.angular_acceleration_W])
+    two = np.concatenate([other.acceleration_W, other.angular_acceleration_W])
+    return bool(np.abs(one - two).max() <= _SAME * (1.0 + np.abs(one).max()))
 
 
 def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool) -> SpatialMode:

@@ -304,6 +304,18 @@ def test_four_feet_share_a_load_and_one_foot_has_no_choice() -> None:
     assert (mode.mode, mode.motion_unique, mode.forces_unique) == ("f", True, True)
 
 
+def test_a_pushed_and_turned_block_is_one_mode_of_several_motions() -> None:
+    # How its feet share the load decides how much it turns, so that one pyramid's sectors are as good as
+    # another's; the letters are the same.
+    asked = {"force_W": (12.0, 0.1, -WEIGHT), "torque_W": (0.0, 0.0, 0.5)}
+    answer = spatial_contact_modes(BODY, state(), on_floor(FEET, 0.4), **asked)
+    assert answer.verdict == ModeVerdict.UNIQUE
+    assert [(mode.mode, mode.motion_unique) for mode in answer.modes] == [("cccc", False)]
+    sectors = spatial_contact_modes(BODY, state(), on_floor(FEET, 0.4), sharpen=False, **asked)
+    assert len(sectors.modes) > 1
+    assert {mode.mode for mode in sectors.modes} == {"cccc"}
+
+
 def test_misuse_is_refused_by_name() -> None:
     with pytest.raises(InvalidFieldError, match="friction_facets"):
         spatial_contact_modes(BODY, state(), on_floor(FEET, 0.5), force_W=(0, 0, -1), friction_facets=2)
