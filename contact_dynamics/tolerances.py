@@ -28,8 +28,9 @@ rounding of velocities of up to 1e4 m/s, far below what any sensor resolves. Mea
 level instead."""
 
 ACCELERATION_TOLERANCE: Final = 1e-9
-"""Relative to the largest acceleration in the problem. Guards the cancellation of contact and applied
-forces."""
+"""Relative to the applied wrench, and what centripetal terms add to it. An acceleration or a force counts as
+zero where a change of the wrench by that part of it turns its sign: far more than rounding of the input, far
+less than wrenches are known to."""
 
 DISTANCE_TOLERANCE: Final = 1e-6
 """m. A point within it of a surface touches, where no other tolerance is asked for."""

@@ -85,8 +85,8 @@ def planar_mode_margins(
         wrench: Applied to the body besides its contact forces, gravity included.
         margin_length: m, > 0, makes a moment comparable with a force; None: the radius of gyration.
         velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero.
-        acceleration_tolerance: Relative to the largest acceleration in the problem, >= 0: what counts as
-            zero.
+        acceleration_tolerance: Relative to the applied wrench and the centripetal terms, >= 0: forces and
+            accelerations whose sign a change by that part turns count as zero.
 
     Raises:
         InvalidFieldError: a tolerance is negative, or the length is not > 0.

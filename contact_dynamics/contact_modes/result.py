@@ -77,7 +77,7 @@ class ContactModeAnswer:
     approaching: tuple[int, ...]  # contacts that approach; not empty exactly where the verdict is IMPACT
     contact_velocities: tuple[Vector2, ...]  # m/s, (v_t, v_n), with values within tolerance as 0
     velocity_tolerance: float  # m/s, below which a contact's velocity counted as zero
-    acceleration_tolerance: float  # m/s^2, below which an acceleration counted as zero
+    acceleration_tolerance: float  # m/s^2, below which one of the centre of mass counted as zero
 
     @property
     def kinematic_modes(self) -> tuple[str, ...]:
