@@ -20,6 +20,7 @@ EXAMPLES = {
     "landing_on_corners.py": "ms: corner 1",
     "newtons_cradle.py": "0.000  0.000  0.000  0.000  1.000 m/s",
     "tray.py": "brings about rsrs",
+    "wheel_over_an_edge.py": "1.6 m/s on its edge : s, presses with 0.000 N",
 }
 
 
@@ -59,7 +60,14 @@ def test_asking_the_server() -> None:
 
 @pytest.mark.parametrize(
     "page",
-    ["README.md", "docs/contact-modes.md", "docs/impact.md", "docs/several-contacts.md", "docs/tumbling.md"],
+    [
+        "README.md",
+        "docs/contact-modes.md",
+        "docs/contacts.md",
+        "docs/impact.md",
+        "docs/several-contacts.md",
+        "docs/tumbling.md",
+    ],
 )
 def test_the_code_in_the_documents(page: str, tmp_path: Path) -> None:
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), re.DOTALL)
