@@ -6,7 +6,13 @@ import random
 
 import pytest
 
-from contact_dynamics.contact_modes import ContactModeAnswer, ModeVerdict, planar_contact_modes
+from contact_dynamics.contact_modes import (
+    ContactModeAnswer,
+    ModeVerdict,
+    cone,
+    edges,
+    planar_contact_modes,
+)
 from contact_modes.evidence import check_evidence
 from oracles.contact_mode_cases import FloatCase, contact, draw, resting, rounded
 from oracles.contact_modes import ExactCase, consistent_modes, kinematic_modes, uniqueness
@@ -95,6 +101,14 @@ def test_drawn_sets_turned_and_in_other_units(seed: int) -> None:
             time=10.0 ** chance.uniform(-2.0, 2.0),
         ),
     )
+
+
+@pytest.mark.parametrize("seed", range(2000, 2080))
+def test_drawn_sets_by_the_arrays_that_large_ones_need(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cone, "MANY", 3)
+    monkeypatch.setattr(edges, "MANY", 0)
+    exact = draw(seed, most_contacts=4)
+    compare(exact, rounded(exact, angle=0.3))
 
 
 def test_the_draws_reach_every_kind_of_answer() -> None:
