@@ -257,6 +257,29 @@ def test_the_rod_is_inconsistent_below_a_moment_of_inertia() -> None:
         assert planar_contact_modes(rod, sliding, [tip], down).verdict == verdict
 
 
+@given(st.floats(0.3, 1.4), st.floats(0.05, 20.0), st.floats(0.2, 5.0))
+def test_the_rod_along_its_wall_can_stay_from_a_friction_on(
+    theta: float, inertia: float, length: float
+) -> None:
+    # The lecture's two equations in f_n and s = f_t / f_n, solved by hand:
+    # s = (I + m l^2 cos^2) / (m l^2 sin cos), f_n = (m l)^2 g sin cos / (I + m l^2). It may always fall.
+    mass, cosine, sine = 1.5, math.cos(theta), math.sin(theta)
+    reach = mass * length**2
+    ratio = (inertia + reach * cosine**2) / (reach * sine * cosine)
+    assume(
+        ratio < 20.0
+    )  # at far more friction, rounding of the wrench moves the threshold by as much as NEAR
+    load = mass * reach * G * sine * cosine / (inertia + reach)
+    rod, sideways = PlanarBody(mass=mass, inertia=inertia), PlanarWrench(f=(-mass * G, 0.0))
+    for friction, expected in ((ratio * (1.0 - NEAR), {"l"}), (ratio * (1.0 + NEAR), {"l", "f"})):
+        tip = PlanarContact(r=(-length * cosine, -length * sine), normal=(0.0, 1.0), friction=friction)
+        by_letter = {mode.mode: mode for mode in planar_contact_modes(rod, AT_REST, [tip], sideways).modes}
+        assert set(by_letter) == expected
+        assert by_letter["l"].contact_forces == ((0.0, 0.0),)
+        if "f" in by_letter:
+            assert by_letter["f"].contact_forces[0] == pytest.approx((ratio * load, load), rel=1e-9)
+
+
 TRAY = (
     contact(-10, -2, (0, 1), "1/4"),
     contact(10, -2, (0, 1), "1/4"),
