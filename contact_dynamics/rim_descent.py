@@ -95,15 +95,15 @@ class RimAbove(NamedTuple):
             slope = self.rate - pull * t - ((b_1 * x + b_2 * y) / size if size > 0.0 else 0.0)
             if value >= 0.0 or slope >= 0.0:
                 break
-            following = max(t - value / slope, 0.0)
-            if t - following <= _ACCURACY * t:
+            before, t = t, max(t - value / slope, 0.0)
+            if before - t <= _ACCURACY * before:
                 break
-            t = following
         return t
 
 
 _ACCURACY: Final = 1e-9
-"""Relative, of a time that is used to go on with: far within what the grazing depth allows."""
+"""Relative, of the last of Newton's steps, after which the square of it is left; at an all but double root as
+much again, where the depth is its square."""
 
 
 def _arrival(height: float, rate: float, pull: float) -> float:
