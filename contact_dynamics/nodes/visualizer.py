@@ -3,11 +3,14 @@
 It is a process of its own: it listens to the bodies' states and to the service events that the server
 publishes, and nothing goes back. It takes the server's parameters, which describe bodies, surfaces and
 topics, and its own (`config/visualizer.yaml`). A drawing that fails is told once, and the rest goes on.
+
+It draws a log of the server as it does what it hears (`from_log`), and then ends.
 """
 
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import time
 import traceback
@@ -20,6 +23,7 @@ from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescri
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
+from rclpy.serialization import deserialize_message
 from service_msgs.msg import ServiceEventInfo
 
 from contact_dynamics.nodes.parameters import ConfigurationError, read_server_parameters
@@ -35,6 +39,7 @@ from contact_dynamics.nodes.pictured_contact_modes import CONTACT_MODE, show_con
 from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.state_store import StateStore
 from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
+from contact_dynamics.recording import BagReader
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import DEFAULT_PORT, OpenRecording, Sinks, ViewerMode
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
@@ -57,6 +62,9 @@ DRAW_PERIOD_S: Final = 0.05
 
 SERVER_WAIT_S: Final = 3.0
 """How long a start waits for a server: as long as one that is started at the same time may take."""
+
+LOGGED_AT_ONCE: Final = 1000
+"""Messages of a log between two drawings of their states."""
 
 _POLL_S: Final = 0.02
 _ANSWERS: Final = (
@@ -87,14 +95,16 @@ class Visualizer(Node):
         self._told: set[str] = set()
         parameters = read_server_parameters(self)
         self._world = parameters.world
-        server, surface_side, self._sinks = _read_own_parameters(self)
+        server, surface_side, self.log_path, self._sinks = _read_own_parameters(self)
         self._recording = OpenRecording(self._sinks, on_problem=self.get_logger().warning)
         self._picture = Picture(self._recording.stream, self._world, surface_side=surface_side)
         self._states = _WaitingStates()
+        self._receivers: dict[str, Callable[[bytes], None]] = {}  # by topic, for what was logged
         events = [self._listen(type_, f"{server}/{name}", kind, show) for type_, name, kind, show in _ANSWERS]
-        self._wait_for_server(server, events, server_wait)
+        if not self.log_path:
+            self._wait_for_server(server, events, server_wait)
         for topics in parameters.topics:
-            subscribe_to_states(
+            types = subscribe_to_states(
                 self,
                 topics,
                 world_frame=parameters.world_frame,
@@ -102,8 +112,24 @@ class Visualizer(Node):
                 states=self._states,
                 record=lambda _topic, _data: None,
             )
+            raw = [subscription for subscription in self.subscriptions if subscription.topic_name in types]
+            self._receivers |= {subscription.topic_name: subscription.callback for subscription in raw}
         self.create_timer(DRAW_PERIOD_S, self.draw_states, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.get_logger().info(f"ready: draws {server} to {self._recording.description}")
+
+    def draw_log(self) -> None:
+        """Draw the states and answers of the log that the parameters name.
+
+        Raises:
+            NotALogError: there is none.
+        """
+        count = 0
+        for count, message in enumerate(BagReader(self.log_path).messages(set(self._receivers)), start=1):
+            self._receivers[message.topic](message.data)
+            if count % LOGGED_AT_ONCE == 0:
+                self.draw_states()
+        self.draw_states()
+        self.get_logger().info(f"drew {count} messages of {self.log_path}")
 
     def draw_states(self) -> None:
         """Draw the states that came since the last time."""
@@ -131,7 +157,10 @@ class Visualizer(Node):
             if event.info.event_type == ServiceEventInfo.RESPONSE_SENT and event.response:
                 self._guarded(service, lambda: self._show(kind, event, show))
 
-        return self.create_subscription(service_type.Event, f"{service}/_service_event", receive, EVENT_QOS)
+        event_type = service_type.Event
+        subscription = self.create_subscription(event_type, f"{service}/_service_event", receive, EVENT_QOS)
+        self._receivers[subscription.topic_name] = lambda data: receive(deserialize_message(data, event_type))
+        return subscription
 
     def _show(self, kind: str, event: Any, show: Callable[..., None]) -> None:
         response = event.response[0]
@@ -169,7 +198,7 @@ class _WaitingStates(StateStore):
         return {name: sorted(states, key=lambda state: state.stamp_ns) for name, states in waiting.items()}
 
 
-def _read_own_parameters(node: Node) -> tuple[str, float, Sinks]:
+def _read_own_parameters(node: Node) -> tuple[str, float, str, Sinks]:
     def read(name: str, default: Any, description: str, **ranges: Any) -> Any:
         try:
             descriptor = ParameterDescriptor(description=description, read_only=True, **ranges)
@@ -184,6 +213,11 @@ def _read_own_parameters(node: Node) -> tuple[str, float, Sinks]:
         2.0,
         "Side of the square that a surface is drawn as, m.",
         floating_point_range=[FloatingPointRange(from_value=1e-3, to_value=1e4)],
+    )
+    log_path = read(
+        "from_log",
+        "",
+        "Log of the server, a folder or an .mcap file, to draw instead of listening. Empty: none.",
     )
     rrd_path = read("rrd_path", "", "File to draw into, which is replaced. Empty: none.")
     spawn = read("spawn", False, "Start rerun's viewer, unless one listens at the port already.")  # noqa: FBT003
@@ -205,13 +239,21 @@ def _read_own_parameters(node: Node) -> tuple[str, float, Sinks]:
         message = "rrd_path, spawn, serve, connect: found none, needed is somewhere to draw to"
         raise ConfigurationError(message)
     viewer = ViewerMode(chosen[0]) if chosen else ViewerMode.NONE
-    return server, side, Sinks(rrd_path=rrd_path, viewer=viewer, port=port, url=url)
+    return server, side, log_path, Sinks(rrd_path=rrd_path, viewer=viewer, port=port, url=url)
+
+
+def _make_visualizer() -> Visualizer:
+    visualizer = Visualizer(server_wait=SERVER_WAIT_S)
+    if visualizer.log_path:
+        visualizer.draw_log()
+        signal.raise_signal(signal.SIGTERM)  # it is told to stop, as there is nothing to listen to
+    return visualizer
 
 
 def main(arguments: list[str]) -> int:
-    """Run the visualizer until it is told to stop; return the exit code."""
+    """Run the visualizer until it is told to stop, or has drawn a log; return the exit code."""
     exit_code = run_node(
-        lambda: Visualizer(server_wait=SERVER_WAIT_S),
+        _make_visualizer,
         verb="visualizer",
         description="Show bodies, contacts and predictions in rerun, live or to a file.",
         arguments=arguments,

@@ -469,3 +469,33 @@ def test_answers_of_a_server_are_drawn_by_a_process_beside_it(tmp_path: Path) ->
     drawn = read_drawn(path)
     strip = drawn.array("/world/predicted/brick/path", "LineStrips3D:strips")[0]
     np.testing.assert_allclose(strip, np.array(answer.trajectory.positions).reshape(-1, 3), atol=1e-6)
+
+
+def test_a_log_is_drawn_as_what_is_heard(tmp_path: Path) -> None:
+    state = body_state()
+    asked = PredictTumbling.Request(
+        body_name="brick", state_source=PredictTumbling.Request.STATE_EXPLICIT, state=state
+    )
+    asked.sampling, asked.rate, asked.duration = PredictTumbling.Request.AT_RATE, 100.0, 0.25
+    with server_and_client(tmp_path / "log") as client:
+        publisher = client.publisher(Odometry, "/brick/odometry")
+        publisher.publish(odometry(STAMP_NS, 0.1))
+        answer = client.ask(asked)
+        assert answer.status == answer.OK, answer.message
+    (log,) = (tmp_path / "log").iterdir()
+    path = tmp_path / "drawn.rrd"
+    parameters = ("-p", f"from_log:={log}", "-p", f"rrd_path:={path}")
+    arguments = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", *parameters)
+    with process("visualizer", *arguments, ready="messages of") as started:
+        assert started.wait(10.0) == 0
+    drawn = read_drawn(path)
+    assert drawn.stamps("/world/bodies/brick", "Transform3D:translation") == [STAMP_NS]
+    strip = drawn.array("/world/predicted/brick/path", "LineStrips3D:strips")[0]
+    np.testing.assert_allclose(strip, np.array(answer.trajectory.positions).reshape(-1, 3), atol=1e-6)
+
+
+def test_a_log_that_is_none_is_named(tmp_path: Path) -> None:
+    parameters = ("-p", f"from_log:={tmp_path}", "-p", f"rrd_path:={tmp_path / 'drawn.rrd'}")
+    arguments = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", *parameters)
+    with process("visualizer", *arguments, ready="no MCAP file here") as started:
+        assert started.wait(10.0) == 2
