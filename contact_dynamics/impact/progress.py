@@ -15,7 +15,7 @@ import math
 from typing import TYPE_CHECKING
 
 from contact_dynamics.impact.law import PathEvent, RestitutionLaw
-from contact_dynamics.impact.series import crossing, value
+from contact_dynamics.impact.series import crossing, gain, value
 
 if TYPE_CHECKING:
     from contact_dynamics.impact.series import SlidingSeries
@@ -145,13 +145,13 @@ class Progress:
         return (p if self.law == RestitutionLaw.POISSON else work) >= self.due
 
     def _curved_step(self, series: SlidingSeries, begin: float, end: float) -> float:
-        p = series.gain(series.normal_impulse, begin, end)
-        work = series.gain(series.normal_work, begin, end) if self.law == RestitutionLaw.ENERGETIC else 0.0
+        p = gain(series.normal_impulse, begin, end)
+        work = gain(series.normal_work, begin, end) if self.law == RestitutionLaw.ENERGETIC else 0.0
         self._account(p, work)
         i1, i2, i_n = self.impulse
         self.impulse = (
-            i1 + series.gain(series.t1, begin, end),
-            i2 + series.gain(series.t2, begin, end),
+            i1 + gain(series.t1, begin, end),
+            i2 + gain(series.t2, begin, end),
             i_n + p,
         )
         self.v_n = value(series.normal_velocity, end)

@@ -115,10 +115,6 @@ class SlidingSeries:
             power_series.append(per_scale * total)
         return _integral(power_series)
 
-    def gain(self, series: list[Number], begin: Number, end: Number) -> Number:
-        """Return the growth of a polynomial from ``begin`` to ``end``."""
-        return value(series, end) - value(series, begin)
-
 
 def value(series: list[Number], s: Number) -> Number:
     """Return the value of a polynomial at ``s``."""
@@ -126,6 +122,12 @@ def value(series: list[Number], s: Number) -> Number:
     for c in series[-2::-1]:
         total = total * s + c
     return total
+
+
+def gain(series: list[float], begin: float, end: float) -> float:
+    """Return the growth from ``begin`` to ``end`` of one polynomial that starts at 0."""
+    total: float = value(series, end)
+    return total - value(series, begin) if begin != 0.0 else total
 
 
 def value_and_slope(series: list[Number], s: Number) -> tuple[Number, Number]:
