@@ -49,13 +49,8 @@ class ContactSet:
         normals = check_array("contacts.normals", self.normals_W, (n, 3))
         frictions = check_array("contacts.frictions", self.frictions, (n,))
         restitutions = check_array("contacts.restitutions", self.restitutions, (n,))
-        lengths = np.linalg.norm(normals, axis=1)
-        for i in np.flatnonzero(abs(lengths - 1.0) > UNIT_LENGTH_TOLERANCE)[:1]:
-            raise InvalidFieldError(f"contacts.normals[{i}]", normals[i].tolist(), "a unit vector")
-        for i in np.flatnonzero(frictions < 0.0)[:1]:
-            raise InvalidFieldError(f"contacts.frictions[{i}]", frictions[i], "a number >= 0")
-        for i in np.flatnonzero((restitutions < 0.0) | (restitutions > 1.0))[:1]:
-            raise InvalidFieldError(f"contacts.restitutions[{i}]", restitutions[i], "a number in [0, 1]")
+        lengths = np.sqrt(np.einsum("ij,ij->i", normals, normals))
+        _check_each(normals, lengths, frictions, restitutions)
         if self.surfaces and len(self.surfaces) != n:
             raise InvalidFieldError(
                 "contacts.surface_names", f"{len(self.surfaces)} names", f"{n} names, or none"
@@ -92,3 +87,18 @@ class ContactSet:
                 None if self.surface_curvatures is None else self.surface_curvatures.subset(chosen)
             ),
         )
+
+
+def _check_each(
+    normals: FloatArray, lengths: FloatArray, frictions: FloatArray, restitutions: FloatArray
+) -> None:
+    """Refuse the first contact with a number that is not allowed; in floats, since most sets are small."""
+    for i, length in enumerate(lengths.tolist()):
+        if abs(length - 1.0) > UNIT_LENGTH_TOLERANCE:
+            raise InvalidFieldError(f"contacts.normals[{i}]", normals[i].tolist(), "a unit vector")
+    for i, friction in enumerate(frictions.tolist()):
+        if friction < 0.0:
+            raise InvalidFieldError(f"contacts.frictions[{i}]", friction, "a number >= 0")
+    for i, restitution in enumerate(restitutions.tolist()):
+        if not 0.0 <= restitution <= 1.0:
+            raise InvalidFieldError(f"contacts.restitutions[{i}]", restitution, "a number in [0, 1]")

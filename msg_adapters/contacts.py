@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from array import array
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -17,6 +17,16 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from contact_dynamics.validation import FloatArray
+
+
+_CURVED_FIELDS: Final = (
+    "kinds",
+    *(
+        f"{side}_{field}"
+        for side in ("body", "surface")
+        for field in ("curvatures", "curvatures_across", "curvature_directions")
+    ),
+)
 
 
 def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
@@ -32,23 +42,17 @@ def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
             "contacts", f"{max(n, len(msg.positions) // 3)} contacts", f"at most {MOST_CONTACTS}"
         )
     for field in ("surface_velocities", "surface_accelerations"):
-        if np.any(np.asarray(getattr(msg, field))):
+        if any(getattr(msg, field)):
             raise NotSupportedError(f"contacts.{field}: found numbers, allowed is none in this version")
-    kinds = np.array(msg.kinds, dtype=np.uint8)
-    if len(kinds) not in {0, n}:
-        raise InvalidFieldError("contacts.kinds", f"{len(kinds)} kinds", f"{n}, or none")
-    for i in np.flatnonzero(kinds > ContactSetMsg.CURVED)[:1]:
-        raise InvalidFieldError(
-            f"contacts.kinds[{i}]", kinds[i], "POINT_ON_FLAT (0), FLAT_ON_POINT (1) or CURVED (2)"
-        )
+    body_curvatures, surface_curvatures = _sides(msg)
     return ContactSet(
         p_WC_W=_rows("contacts.positions", msg.positions, n),
         normals_W=_rows("contacts.normals", msg.normals, n),
         frictions=np.array(msg.frictions),
         restitutions=np.array(msg.restitutions),
         surfaces=tuple(msg.surface_names),
-        body_curvatures=_curvatures(msg, "body", kinds, point=ContactSetMsg.POINT_ON_FLAT),
-        surface_curvatures=_curvatures(msg, "surface", kinds, point=ContactSetMsg.FLAT_ON_POINT),
+        body_curvatures=body_curvatures,
+        surface_curvatures=surface_curvatures,
     )
 
 
@@ -85,6 +89,24 @@ def flat(values: FloatArray) -> array[float]:
     numbers = array("d")
     numbers.frombytes(np.ascontiguousarray(values, dtype=np.float64).tobytes())
     return numbers
+
+
+def _sides(msg: ContactSetMsg) -> tuple[Curvatures | None, Curvatures | None]:
+    """Return the curvatures of body and surface; None: points on flats, as most contacts are."""
+    if not any(len(getattr(msg, field)) for field in _CURVED_FIELDS):
+        return None, None
+    n = len(msg.frictions)
+    kinds = np.array(msg.kinds, dtype=np.uint8)
+    if len(kinds) not in {0, n}:
+        raise InvalidFieldError("contacts.kinds", f"{len(kinds)} kinds", f"{n}, or none")
+    for i in np.flatnonzero(kinds > ContactSetMsg.CURVED)[:1]:
+        raise InvalidFieldError(
+            f"contacts.kinds[{i}]", kinds[i], "POINT_ON_FLAT (0), FLAT_ON_POINT (1) or CURVED (2)"
+        )
+    return (
+        _curvatures(msg, "body", kinds, point=ContactSetMsg.POINT_ON_FLAT),
+        _curvatures(msg, "surface", kinds, point=ContactSetMsg.FLAT_ON_POINT),
+    )
 
 
 def _curvatures(msg: ContactSetMsg, side: str, kinds: NDArray[np.uint8], *, point: int) -> Curvatures | None:
