@@ -15,10 +15,12 @@ LEGEND_TEXT: Final = """\
 | pale, bright yellow arrow | velocity of the centre of mass before, after the newest of them |
 | violet cone | friction cone: the impulses and forces that friction allows |
 | green, pink, cyan points and arrows | contacts that stay fixed, slide, separate; their contact forces |
+| white outline | the body that the newest answer about contact modes is about |
 | thin pink arrow | which way a contact slides |
 | orange arrow | acceleration of the centre of mass, or of contacts |
 
-The longest arrow of each kind is drawn as long as suits the body: read its label.
+The longest arrow of each kind is drawn as long as suits the body: read its label. Strikes in sequence are
+numbered, the largest of them with the body as it is then.
 
 In *impulse space* the tangential impulse goes to the right, the normal impulse up. The red path is
 the impulse as it accumulates. On the green line the contact does not slide, on the cyan line it does not
