@@ -138,6 +138,20 @@ def test_bodies_that_move(seed: int, motion: str) -> None:
     check(state(v, w), contacts, chance.normal(size=6), 4)
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_bodies_that_pivot_about_an_edge(seed: int) -> None:
+    # Both contacts are on the axis, at rest, with centripetal terms; in odd draws a third one turns about it.
+    chance = np.random.default_rng(seed)
+    centre, w = 0.4 * chance.normal(size=3), chance.normal(size=3)
+    points = [centre + w * chance.normal(), centre + w * chance.normal()]
+    normals = [chance.normal(size=3), chance.normal(size=3)]
+    if seed % 2:
+        points.append(centre + chance.normal(size=3))
+        normals.append(centre + w * chance.normal() - points[2])
+    contacts = contact_set(points, normals, [0.5, 1.0, 0.5][: len(points)])
+    check(state(-np.cross(w, centre), w), contacts, 3.0 * chance.normal(size=6), 3)
+
+
 @pytest.mark.parametrize("moving", [0.0, 1.0])
 def test_ambiguous_and_inconsistent_sets(moving: float) -> None:
     # High friction makes both common: in the first draws, two of three answers at rest, all three in motion.
