@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.convex_shape import NO_SHAPE, ConvexShape, polyhedron
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body import MassProperties, rotation_matrix
 from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, TRIANGLE_TOLERANCE
@@ -83,19 +84,24 @@ class MassDistribution:
         """
         return MassProperties(mass=self.mass, I_B=self.I_B)
 
-    def body(self, name: str, *, vertices_F: ArrayLike | None = None) -> Body:
-        """Return a `Body` for a `World`, its convex shape given by corners (k, 3), m, in F.
+    def body(
+        self, name: str, *, vertices_F: ArrayLike | None = None, shape_F: ConvexShape = NO_SHAPE
+    ) -> Body:
+        """Return a `Body` for a `World`, its convex shape given in F, or by corners (k, 3), m, in F.
 
         Raises:
-            InvalidFieldError: as `mass_properties`, or vertices of another shape or not finite.
+            InvalidFieldError: as `mass_properties`, vertices of another shape or not finite, or both given.
             TooLargeError: more vertices than a body may have.
         """
-        vertices = np.zeros((0, 3)) if vertices_F is None else check_array("vertices", vertices_F, (None, 3))
+        if vertices_F is not None:
+            if shape_F is not NO_SHAPE:
+                raise InvalidFieldError("vertices", "vertices and a shape", "one of them")
+            shape_F = polyhedron(check_array("vertices", vertices_F, (None, 3)))
         return Body(
             name=name,
             mass_properties=self.mass_properties,
             p_FB_F=self.p_FB_F,
-            vertices_B=vertices - self.p_FB_F,
+            shape=shape_F.moved(-self.p_FB_F),
         )
 
     def placed(

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics import inertia
+from contact_dynamics.convex_shape import sphere
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.inertia import MassDistribution
 from contact_dynamics.rigid_body import MassProperties
@@ -183,6 +184,11 @@ def test_a_hammer_becomes_a_body_of_the_world() -> None:
     assert -0.15 < body.p_FB_F[2] < 0.0
     assert_equal(MassDistribution.of(body.mass_properties, body.p_FB_F), hammer, scale=1e-2)
     assert len(hammer.body("bare").vertices_B) == 0
+    ball = hammer.body("ball", shape_F=sphere(radius=0.1))
+    np.testing.assert_allclose(ball.shape.vertices + ball.p_FB_F, np.zeros((1, 3)), atol=1e-17)
+    assert ball.shape.rounding == 0.1
+    with pytest.raises(InvalidFieldError, match="vertices"):
+        hammer.body("both", vertices_F=corners, shape_F=sphere(radius=0.1))
 
 
 def test_what_is_kept_cannot_change() -> None:
