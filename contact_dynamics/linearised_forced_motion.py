@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.forced_motion import ForcedMotion, WrenchFunction
     from contact_dynamics.tumbling import Trajectory
+    from contact_dynamics.tumbling.quaternions import Quaternion
 
 GAUSS: Final = Collocation(8)
 
@@ -141,18 +142,21 @@ def _drag_derivatives(v: FloatArray, linear: float, quadratic: float) -> FloatAr
 def _differences(wrench_of: WrenchFunction, then: Trajectory, i: int) -> FloatArray:
     """Return the derivatives, (6, 12), of a user's function at sample i, by central differences."""
     seconds = float(then.seconds[i])
-    p, q, v, w = then.p_WB_W[i], then.q_WB[i], then.v_WB_W[i], then.w_WB_W[i]
+    q = then.q_WB[i]
+    attitude: Quaternion = tuple(q.tolist())
+    numbers = [*then.p_WB_W[i].tolist(), 0.0, 0.0, 0.0, *then.v_WB_W[i].tolist(), *then.w_WB_W[i].tolist()]
     found = np.empty((6, 12))
-    for column in range(12):
-        number = (*p.tolist(), 0.0, 0.0, 0.0, *v.tolist(), *w.tolist())[column]
+    for column, number in enumerate(numbers):
         size = DIFFERENCE * max(1.0, abs(number))
         pair = []
-        for step in (size * np.eye(12)[column], -size * np.eye(12)[column]):
-            (px, py, pz), (vx, vy, vz), (wx, wy, wz) = (
-                (part + step[where]).tolist() for part, where in ((p, P), (v, V), (w, W))
-            )
-            x, y, z, s = turned(q[None], step[None, THETA])[0].tolist()
-            force, torque = wrench_of(seconds, Sample((px, py, pz), (x, y, z, s), (vx, vy, vz), (wx, wy, wz)))
+        for step in (size, -size):
+            moved = numbers.copy()
+            moved[column] += step
+            px, py, pz, *theta, vx, vy, vz, wx, wy, wz = moved
+            there = attitude
+            if any(theta):
+                there = tuple(turned(q[None], np.array([theta]))[0].tolist())
+            force, torque = wrench_of(seconds, Sample((px, py, pz), there, (vx, vy, vz), (wx, wy, wz)))
             pair.append([*map(float, force), *map(float, torque)])
         found[:, column] = (np.array(pair[0]) - np.array(pair[1])) / (2.0 * size)
     if not math.isfinite(float(found.sum())):
