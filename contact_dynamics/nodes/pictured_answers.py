@@ -126,8 +126,9 @@ def show_impact(picture: Picture, response: Any, *, p_FB_F: FloatArray, now_ns: 
         f"strikes in {response.time_to_contact:.4g} s: {in_words(impact.outcome)}",
         f"velocity ({numbers(state.v_WB_W)}) becomes ({numbers(after)}) m/s",
         f"impulse {np.linalg.norm(impulses.sum(axis=0)):.3g} N s",
-        f"{impact.kinetic_energy_before - impact.kinetic_energy_after:.3g} J lost",
     ]
+    if not shown.strikes:  # between strikes in time gravity works too
+        words.append(f"{impact.kinetic_energy_before - impact.kinetic_energy_after:.3g} J lost")
     for other, other_after in zip(response.other_state_before, impact.other_state_after, strict=True):
         velocity = numbers(vector_from_msg(other_after.linear_velocity))
         words.append(f"that of {other.body_name or 'the other body'} becomes ({velocity}) m/s")
@@ -153,6 +154,8 @@ def probabilities_in_words(msg: Any) -> list[str]:
 
 def in_words(outcome: int) -> str:
     """Return what a contact does in an impact, in words."""
+    if outcome == Impact.NOT_TOLD:
+        return "several at once"
     return ImpactOutcome(outcome).name.replace("_", " ").lower()
 
 

@@ -214,6 +214,16 @@ def test_a_struck_body_and_strikes_in_sequence_are_told(bench: Bench) -> None:
     text = drawn.last("/answers/newest", "TextDocument:text")[0]
     assert "that of bat becomes (1, 0, -2) m/s" in text
     assert "2 strikes within 4 ms; then a contact stays" in text
+    assert "J lost" not in text
+
+
+def test_an_impact_at_several_contacts_at_once_is_told(bench: Bench) -> None:
+    answer = impact_answer(two_contacts())
+    answer.impact.outcome = Impact.NOT_TOLD
+    bench.answer("predict_impact", answer)
+    text = bench.drawn().last("/answers/newest", "TextDocument:text")[0]
+    assert "strikes in 0.05 s: several at once" in text
+    assert "0.75 J lost" in text
 
 
 def center_of_mass(position: list[float], orientation: list[float]) -> np.ndarray:
