@@ -1,4 +1,4 @@
-"""Contact modes against the number of contacts; in the plane beside linear programs.
+"""Contact modes in the plane against the number of contacts, beside linear programs.
 
 Sets: `ring`, whose contacts all bound the motion (the most modes there are), `drawn`, where few do, `flush`,
 a row of feet, where all planes share a line, and `slot`, a row of feet with another one against it. The
@@ -20,13 +20,11 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from scipy.optimize import linprog
 
-from contact_dynamics.contact import ContactSet
-from contact_dynamics.contact_modes import planar_contact_modes, spatial_kinematic_modes
+from contact_dynamics.contact_modes import planar_contact_modes
 from contact_dynamics.contact_modes.dynamics import judge_all
 from contact_dynamics.contact_modes.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.problem import planar_problem
 from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
-from contact_dynamics.rigid_body import BodyState
 from contact_dynamics.tolerances import ACCELERATION_TOLERANCE
 
 if TYPE_CHECKING:
@@ -177,32 +175,6 @@ def program_of_mode(contacts: list[PlanarContact], letters: str) -> bool:
     return bool(outcome.status == 0 and -outcome.fun > 1e-9)
 
 
-def in_space(n: int) -> ContactSet:
-    """Return contacts all over a ball whose normals point upwards, more or less."""
-    chance = np.random.default_rng(n)
-    points = chance.normal(size=(n, 3))
-    normals = np.array([0.0, 0.0, 1.0]) + 0.6 * chance.normal(size=(n, 3))
-    return ContactSet(
-        p_WC_W=points / np.linalg.norm(points, axis=1)[:, None],
-        normals_W=normals / np.linalg.norm(normals, axis=1)[:, None],
-        frictions=np.ones(n),
-        restitutions=np.zeros(n),
-    )
-
-
-def run_in_space() -> None:
-    """Print times and counts of contacting/separating modes in space."""
-    still = BodyState(
-        p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
-    )
-    print(f"\n{'n':>11} {'modes':>6} {'in space':>12}")
-    for n in (4, 8, 16, 32):
-        contacts = in_space(n)
-        modes = len(spatial_kinematic_modes(still, contacts))
-        seconds = best_of(partial(spatial_kinematic_modes, still, contacts))
-        print(f"{n:11d} {modes:6d} {1e3 * seconds:9.2f} ms")
-
-
 def run() -> None:
     """Print times and counts."""
     print(
@@ -226,7 +198,6 @@ def run() -> None:
         few, many = COUNTS[-3], COUNTS[-1]
         growth = math.log(times[many] / times[few]) / math.log(many / few)
         print(f"{make.__name__:>6} from {few} to {many} contacts the enumeration grows as n^{growth:.1f}")
-    run_in_space()
 
 
 def peers(make: Callable[[int], list[PlanarContact]], contacts: list[PlanarContact]) -> str:
