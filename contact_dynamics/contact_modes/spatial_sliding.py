@@ -93,15 +93,10 @@ def _letter(signs: list[int]) -> str:
     count = len(signs)
     if not any(signs):
         return "f"
-    # Just after line k its side is +, and the next ones' sides are -; half a turn on, lines come again.
-    for k in range(2 * count):
-        turned = [signs[j % count] * (-1) ** (j // count) for j in range(k, k + count)]
-        if turned[0] == 0 and all(sign < 0 for sign in turned[1:]):
-            return _WAYS[2 * k]
-        if turned[0] > 0 and all(sign < 0 for sign in turned[1:]):
-            return _WAYS[2 * k + 1]
-    message = f"no way of sliding has the signs {signs}"
-    raise AssertionError(message)
+    # From line k on its side is +, or 0 along it, and the next ones' are -; half a turn on, lines come again.
+    around = [signs[j % count] * (-1) ** (j // count) for j in range(3 * count)]
+    k = next(k for k in range(2 * count) if around[k] >= 0 and max(around[k + 1 : k + count]) < 0)
+    return _WAYS[2 * k + around[k]]
 
 
 def _open_faces(above: FloatArray, cut: FloatArray) -> list[list[int]]:
