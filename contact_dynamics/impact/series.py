@@ -29,7 +29,7 @@ ORDER: Final = 24
 and over s = 2.6 by 24, for twice the work."""
 
 TRUNCATION: Final = 1e-14
-"""Relative. The last term of u may be this part of |u| where a stretch ends; the terms left out are
+"""Relative. The last terms of u and |u| may be this part of |u| where a stretch ends; the terms left out are
 smaller."""
 
 LONGEST: Final = 16.0
@@ -102,7 +102,7 @@ class SlidingSeries:
         self.normal_velocity = _integral(self.lifting)  # m/s
         self.normal_velocity[0] = v_n
         self.normal_work = self._work(q, per_scale) if with_work else []  # J
-        length = smaller(_reach(first, u1, u2, ORDER), _reach(first, u1, u2, ORDER - 1))
+        length = smaller(*(_reach(first, (u1[n], u2[n], q[n]), n) for n in (ORDER, ORDER - 1)))
         self.length = WITH_WORK * length if with_work else length
 
     def _work(self, q: list[Number], per_scale: Number) -> list[Number]:
@@ -170,9 +170,13 @@ def _integral(series: list[Number]) -> list[Number]:
     return [0.0 * integral[0], *integral]
 
 
-def _reach(speed: Number, u1: list[Number], u2: list[Number], n: int) -> Number:
-    """Return the length at which term n of u is `TRUNCATION` of ``speed``."""
-    term = larger(abs(u1[n]), abs(u2[n]))
+def _reach(speed: Number, terms: tuple[Number, Number, Number], n: int) -> Number:
+    """Return the length at which the largest of the ``terms`` of degree ``n`` is `TRUNCATION` of ``speed``.
+
+    Those of u and of |u|, which has singularities of its own where the normal does not couple with u.
+    """
+    x, y, q = terms
+    term = larger(larger(abs(x), abs(y)), abs(q))
     if isinstance(term, float):
         return min(power(TRUNCATION * speed / term, 1.0 / n), LONGEST) if term > 0.0 else SURE
     some = term > 0.0

@@ -161,10 +161,13 @@ def _impact(
             f"v_n = {v_n:.9g} m/s",
             f"at most {tolerance:g} m/s, since above it nothing strikes",
         )
-    if math.sqrt(u1 * u1 + u2 * u2) <= tolerance:
+    still, rests = math.sqrt(u1 * u1 + u2 * u2) <= tolerance, v_n >= -tolerance
+    if still:
         u1 = u2 = 0.0
-    if v_n >= -tolerance:
+    if rests:
         v_n = 0.0
+    if still or rests:
+        velocity = axes.in_world((u1, u2, v_n))
     sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, min(mu, LARGEST_FRICTION))
     path = trace(sliding, (u1, u2), v_n, restitution=e, law=law)
 

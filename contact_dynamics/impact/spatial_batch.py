@@ -181,8 +181,11 @@ def _strike(
             f"at most {tolerance:g} m/s, since above it nothing strikes",
         )
     still = np.sqrt(u1 * u1 + u2 * u2) <= tolerance
+    rests = v_n >= -tolerance
     u1[still] = u2[still] = 0.0
-    v_n[v_n >= -tolerance] = 0.0
+    v_n[rests] = 0.0
+    counted = zip(velocity, axes.in_world((u1, u2, v_n)), strict=True)
+    velocity = tuple(np.where(still | rests, without, whole) for whole, without in counted)
     mu = np.minimum(np.broadcast_to(rows["frictions"], count), LARGEST_FRICTION)
     e = np.broadcast_to(rows["restitutions"], count)
     sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, mu)

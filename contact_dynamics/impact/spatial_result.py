@@ -22,7 +22,9 @@ class SpatialImpact:
     compression_W: FloatArray  # (3,), N s, up to the end of compression
     path_W: FloatArray  # (k, 3), N s, points of the impulse path; those at a SAMPLE lie on a curve
     path_events: tuple[PathEvent, ...]  # (k,), what each point stands for
-    velocity_before_W: FloatArray  # (3,), m/s, of the contact, relative to what it touches
+    velocity_before_W: (
+        FloatArray  # (3,), m/s, of the contact, relative to what it touches; 0: within tolerance
+    )
     velocity_after_W: FloatArray  # (3,), m/s, of the contact, relative to what it touches
     inverse_inertia_W: FloatArray  # (3, 3), 1/kg, the contact's change of velocity per impulse
     other_state: BodyState | None = None  # of the second body afterwards; None: the fixed world

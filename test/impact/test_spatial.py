@@ -99,6 +99,35 @@ def test_agrees_with_keller_integrated_in_the_normal_impulse(seed: int) -> None:
     assert answer.state.w_WB_W == pytest.approx(after[3:], abs=tolerance)
 
 
+@pytest.mark.parametrize("across", [-2.0, -1.05, 0.3, 1.0, 1.5, 4.0])
+def test_a_central_impact_of_an_uneven_body_swerves_too(across: float) -> None:
+    """The contact is right below the centre: the normal does not couple, but friction turns the slide.
+
+    Both components of the sliding velocity are exponentials then, with no singularity; its length has one.
+    """
+    body = MassProperties(mass=1.0, I_B=np.diag([1.0, 0.05, 1.0]))
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[1.0, across, -0.3], w_WB_W=np.zeros(3))
+    answer = spatial_impact(body, state, p_WC_W=-UP, n_W=UP, friction=0.3, restitution=0.5)
+    # Uncoupled, the normal impulse is that of a point.
+    assert answer.impulse_W @ UP == pytest.approx(0.45, rel=1e-13)
+    assert np.linalg.norm(answer.impulse_W[:2]) <= 0.3 * 0.45
+    if answer.outcome is ImpactOutcome.SLIDES:
+        after, _ = impact_keller.body_velocity_after(
+            mass=1.0,
+            inertia=body.I_B,
+            v=state.v_WB_W,
+            w=state.w_WB_W,
+            arm=-UP,
+            normal=UP,
+            mu=0.3,
+            normal_impulse=0.45,
+        )
+        assert answer.state.v_WB_W == pytest.approx(after[:3], abs=1e-11)
+        assert answer.state.w_WB_W == pytest.approx(after[3:], abs=1e-10)
+    else:
+        assert across == 0.3
+
+
 @pytest.mark.parametrize("law", RestitutionLaw)
 @pytest.mark.parametrize(
     ("seed", "outcome"),
