@@ -173,10 +173,11 @@ def _integral(series: list[Number]) -> list[Number]:
 def _reach(speed: Number, terms: tuple[Number, Number, Number], n: int) -> Number:
     """Return the length at which the largest of the ``terms`` of degree ``n`` is `TRUNCATION` of ``speed``.
 
-    Those of u and of |u|, which has singularities of its own where the normal does not couple with u.
+    Those of u and of |u|, which has singularities of its own where the normal does not couple with u; what
+    matters of |u| is its integral.
     """
     x, y, q = terms
-    term = larger(larger(abs(x), abs(y)), abs(q))
+    term = larger(larger(abs(x), abs(y)), _SHARES[n] * abs(q))
     if isinstance(term, float):
         return min(power(TRUNCATION * speed / term, 1.0 / n), LONGEST) if term > 0.0 else SURE
     some = term > 0.0
