@@ -22,7 +22,7 @@ from contact_dynamics.impact.table import (
     check_unit_rows,
     common_length,
 )
-from contact_dynamics.tolerances import VELOCITY_TOLERANCE
+from contact_dynamics.tolerances import ENERGY_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_not_negative
 
 if TYPE_CHECKING:
@@ -65,6 +65,14 @@ class PlanarImpacts:
         i, v_0, v_1 = self.impulses_C, self.velocities_before_C, self.velocities_after_C
         changes: FloatArray = 0.5 * (i[:, 0] * (v_0[:, 0] + v_1[:, 0]) + i[:, 1] * (v_0[:, 1] + v_1[:, 1]))
         return changes
+
+    @property
+    def creates_energy(self) -> NDArray[np.bool_]:
+        """Return which of them the law gave energy, (N,), beyond rounding. Only Newton's can."""
+        speeds = abs(self.velocities_before_C) + abs(self.velocities_after_C)
+        exchanged = np.einsum("ij,ij->i", abs(self.impulses_C), speeds)
+        created: NDArray[np.bool_] = self.energy_changes > ENERGY_TOLERANCE * exchanged
+        return created
 
 
 def planar_impacts(

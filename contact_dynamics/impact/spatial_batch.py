@@ -26,7 +26,12 @@ from contact_dynamics.impact.table import (
     check_unit_rows,
     common_length,
 )
-from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, TRIANGLE_TOLERANCE, VELOCITY_TOLERANCE
+from contact_dynamics.tolerances import (
+    ENERGY_TOLERANCE,
+    SYMMETRY_TOLERANCE,
+    TRIANGLE_TOLERANCE,
+    VELOCITY_TOLERANCE,
+)
 from contact_dynamics.validation import FloatArray, check_not_negative
 
 if TYPE_CHECKING:
@@ -97,6 +102,14 @@ class SpatialImpacts:
         speeds = self.velocities_before_W + self.velocities_after_W
         changes: FloatArray = 0.5 * np.einsum("ij,ij->i", self.impulses_W, speeds)
         return changes
+
+    @property
+    def creates_energy(self) -> NDArray[np.bool_]:
+        """Return which of them the law gave energy, (N,), beyond rounding. Only Newton's can."""
+        speeds = abs(self.velocities_before_W) + abs(self.velocities_after_W)
+        exchanged = np.einsum("ij,ij->i", abs(self.impulses_W), speeds)
+        created: NDArray[np.bool_] = self.energy_changes > ENERGY_TOLERANCE * exchanged
+        return created
 
 
 def spatial_impacts(

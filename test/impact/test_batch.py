@@ -65,6 +65,8 @@ def test_equals_the_scalar_call_to_the_last_bit(law: RestitutionLaw) -> None:
     cases = random_cases(5000)
     batch = planar_impacts(**cases, law=law)
     assert set(batch.outcomes.tolist()) == set(ImpactOutcome)
+    creates_energy = batch.creates_energy
+    assert creates_energy.any() == (law is RestitutionLaw.NEWTON)
     for i in range(5000):
         answer = scalar(cases, i, law)
         assert batch.outcomes[i] == answer.outcome
@@ -75,6 +77,7 @@ def test_equals_the_scalar_call_to_the_last_bit(law: RestitutionLaw) -> None:
         assert tuple(batch.velocities_before_C[i]) == answer.velocity_before_C
         assert tuple(batch.velocities_after_C[i]) == answer.velocity_after_C
         assert batch.energy_changes[i] == answer.energy_change
+        assert creates_energy[i] == answer.creates_energy
 
 
 def test_single_values_stand_for_all_rows() -> None:

@@ -115,8 +115,12 @@ def test_equals_the_scalar_call_to_the_last_bit(law: RestitutionLaw) -> None:
     cases = drawn(800)
     batch = spatial_impacts(stacked(cases), **contacts(cases), laws=law)
     assert set(batch.outcomes.tolist()) == set(ImpactOutcome)
+    creates_energy = batch.creates_energy
+    assert creates_energy.any() == (law is RestitutionLaw.NEWTON)
     for i, case in enumerate(cases):
-        check_row(batch, i, single(case, law))
+        answer = single(case, law)
+        check_row(batch, i, answer)
+        assert creates_energy[i] == answer.creates_energy
 
 
 @pytest.mark.parametrize("chunk", [1, 7, 200])
