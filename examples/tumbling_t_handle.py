@@ -26,6 +26,4 @@ for seconds in (0.0, 0.25 * picture.polhode_period, 0.5 * picture.polhode_period
     print(
         f"t = {seconds:9.3f} s: spin in the body {np.round(w_B, 3)}, its axis has turned by {tilt:6.1f} deg"
     )
-print(
-    f"an error of 1e-9 of the spin grows to {1e-9 * picture.sensitivity:.1e} rad of attitude a rad turned"
-)
+print(f"an error of 1e-9 of the spin grows to {1e-9 * picture.sensitivity:.1e} rad of attitude a rad turned")
