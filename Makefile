@@ -32,8 +32,9 @@ test: lint types $(MADE)/test ## lint, types and the tests
 test-slow: $(MADE)/test ## the sweeps that are too slow for `make test`
 	@HYPOTHESIS_PROFILE=explore $(BIN)/python -m pytest -m slow
 
-lint: $(MADE)/test ## ruff
+lint: $(MADE)/test ## ruff: rules and format
 	@$(BIN)/ruff check
+	@$(BIN)/ruff format --check --quiet || { $(BIN)/ruff format --diff --quiet; echo 'ruff format puts this right.'; exit 1; }
 
 types: $(MADE)/test ## mypy
 	@$(BIN)/mypy

@@ -16,7 +16,7 @@ from contact_dynamics.command_line import VERBS
 
 ROOT = Path(__file__).parents[2]
 MANIFESTS = (ROOT / "package.xml", ROOT / "contact_dynamics_interfaces" / "package.xml")
-OWN = {"contact_dynamics", "msg_adapters", *(path.stem for path in (ROOT / "test").iterdir())}
+OWN = {"contact_dynamics", "msg_adapters", "benchmarks", *(path.stem for path in (ROOT / "test").iterdir())}
 
 # Where a rosdep key is not called what is imported; None: there is no key, and pip installs it.
 KEYS = {
