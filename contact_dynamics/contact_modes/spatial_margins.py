@@ -22,7 +22,7 @@ from contact_dynamics.contact_modes.spatial_case import SpatialCase, search_of, 
 from contact_dynamics.contact_modes.spatial_cone import cone_of
 from contact_dynamics.contact_modes.spatial_dynamics import evidenced, spatial_contact_modes
 from contact_dynamics.contact_modes.spatial_statics import MOST_EDGES
-from contact_dynamics.contact_modes.spatial_wrenches import wrench_generators
+from contact_dynamics.contact_modes.spatial_wrenches import Way, wrench_generators
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import ROW_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_not_negative, check_positive
@@ -146,8 +146,8 @@ def _nearest(
         return math.nan, np.zeros(6)
     motion = case.motion
     unit = motion.mass * motion.scale  # N; wrenches are divided by it, and torques by the length
-    letters = "".join(one.letter for one in found.letters)
-    generators = wrench_generators(case, search, letters, search.acting(found), metric)
+    ways = [Way(one.letter, one.item) for one in found.letters]
+    generators = wrench_generators(case, search, ways, metric)
     target = np.append(motion.wrench / metric / unit, 1.0)
     sizes = np.linalg.norm(generators, axis=1)
     rows = generators[sizes > ROW_TOLERANCE] / sizes[sizes > ROW_TOLERANCE, None]

@@ -75,7 +75,7 @@ def spatial_sliding_modes(contacts: ContactSet, *, planes: int = 2) -> tuple[str
         leave = [i for i in range(n) if not face >> i & 1]
         free = null_space(unit[stay])
         cut = np.vstack([np.zeros((0, 6)), *(across[i] for i in stay)]) @ free
-        for signs in _open_faces(unit[leave] @ free, cut):
+        for signs in open_faces(unit[leave] @ free, cut):
             letters = ["s"] * n
             for position, i in enumerate(stay):
                 letters[i] = _letter(signs[position * planes : (position + 1) * planes])
@@ -99,7 +99,7 @@ def _letter(signs: list[int]) -> str:
     return _WAYS[2 * k + around[k]]
 
 
-def _open_faces(above: FloatArray, cut: FloatArray) -> list[list[int]]:
+def open_faces(above: FloatArray, cut: FloatArray) -> list[list[int]]:
     """Return the signs of ``cut`` on every face of their arrangement where all of ``above`` are positive."""
     rows = np.vstack([above, cut])
     sizes = np.linalg.norm(rows, axis=1)

@@ -6,7 +6,8 @@ the height one. A wrench is (force, torque / length) / mass, in the units of a c
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,41 +18,76 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.contact_modes.spatial_case import SpatialCase
-    from contact_dynamics.contact_modes.spatial_search import Search
+    from contact_dynamics.contact_modes.spatial_letters import Pyramid
+    from contact_dynamics.contact_modes.spatial_search import Search, Touching
     from contact_dynamics.validation import FloatArray
 
 
+class Way(NamedTuple):
+    """What one touching contact does."""
+
+    letter: str  # s (separates), f (sticks) or c (stays)
+    item: int  # of sliding (`spatial_letters`); -1: none is asked for
+
+
+class _Conditions(NamedTuple):
+    """What a contact asks of the motion, rows (k, 7), and the force edges, (j, 3), that it lets act."""
+
+    zero: FloatArray
+    positive: FloatArray
+    acting: FloatArray
+
+
 def wrench_generators(
-    case: SpatialCase, search: Search, letters: str, acting: Sequence[FloatArray], metric: FloatArray
+    case: SpatialCase, search: Search, ways: Sequence[Way], metric: FloatArray
 ) -> FloatArray:
-    """Return generators, (k, 7), of the wrenches that letters allow.
+    """Return generators, (k, 7), of the wrenches under which touching contacts can do as stated.
 
     Args:
         case: The body with its contacts.
         search: Of that case.
-        letters: For each touching contact s (separates), f (sticks) or c (stays).
-        acting: The force edges, (j, 3), of each touching contact.
+        ways: Of each touching contact.
         metric: (6,), m, by which a wrench is divided: ones, then the length that torques are divided by.
     """
     motion = case.motion
-    zero, positive = [np.zeros((0, 7))], [np.zeros((0, 7))]
-    for contact, letter in zip(search.touching, letters, strict=True):
-        rows = contact.point if letter == "f" else (contact.normal @ contact.point)[None, :]
-        (positive if letter == "s" else zero).append(rows)
-    free = null_space(_unit(np.vstack(zero)))  # (7, k)
-    inside = cone_of(_unit(np.vstack([*positive, np.eye(1, 7, 6)]) @ free))
+    asked = [_conditions(*of) for of in zip(search.touching, search.pyramids, ways, strict=True)]
+    free = null_space(_unit(np.vstack([np.zeros((0, 7)), *(one.zero for one in asked)])))  # (7, k)
+    positive = np.vstack([*(one.positive for one in asked), np.eye(1, 7, 6)])
+    inside = cone_of(_unit(positive @ free))
     motions = np.vstack([inside.rays, inside.lines, -inside.lines]) @ free.T
     inertia = np.zeros((6, 6))
     inertia[:3, :3] = np.eye(3) * motion.mass
     inertia[3:, 3:] = motion.inertia
     needs = motions[:, :6] / motion.lengths @ inertia / metric / motion.mass
     given = [np.zeros((0, 6))]
-    for i, edges in zip(case.touching.tolist(), acting, strict=True):
-        given.append(-(edges @ motion.points[3 * i : 3 * i + 3]) / metric)
+    for i, one in zip(case.touching.tolist(), asked, strict=True):
+        given.append(-(one.acting @ motion.points[3 * i : 3 * i + 3]) / metric)
     forces = np.vstack(given)
     return np.vstack(
         [np.column_stack([needs, motions[:, 6]]), np.column_stack([forces, np.zeros(len(forces))])]
     )
+
+
+def _conditions(contact: Touching, pyramid: Pyramid, way: Way) -> _Conditions:
+    nothing = np.zeros((0, 7))
+    normal = (contact.normal @ contact.point)[None, :]
+    if way.letter == "s":
+        return _Conditions(nothing, normal, np.zeros((0, 3)))
+    if way.letter == "f":
+        return _Conditions(contact.point, nothing, pyramid.edges)
+    if way.item < 0 or pyramid.frame is None:
+        return _Conditions(normal, nothing, pyramid.edges)
+    # The edge that opposes the sliding most has the least product with it, alone or with its neighbour.
+    count = len(pyramid.edges)
+    j, k = way.item // 2, (way.item + 1) // 2 % count
+    angles = 2.0 * math.pi / count * np.array([j - 1, j, k, k + 1])
+    before, one, other, after = (
+        np.column_stack([np.cos(angles), np.sin(angles)]) @ np.array(pyramid.frame) @ contact.point
+    )
+    sides = np.array([before - one, after - other])
+    if j == k:
+        return _Conditions(normal, sides, pyramid.edges[[j]])
+    return _Conditions(np.vstack([normal, one - other]), sides, pyramid.edges[[j, k]])
 
 
 def _unit(rows: FloatArray) -> FloatArray:
