@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.convex_shape import ConvexShape
-from contact_dynamics.motion_bounds import Bound, bounds_of, free_for
+from contact_dynamics.motion_bounds import Bound, all_free_for, bounds_of, free_for
 from contact_dynamics.rim_descent import RimAbove, radii_of
 from contact_dynamics.tolerances import GRAZING_DEPTH
 from contact_dynamics.tumbling.quaternions import conjugate, rotated
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from contact_dynamics.motion_bounds import Motion
+    from contact_dynamics.tumbling.motion import Sample
     from contact_dynamics.tumbling.quaternions import Vector
 
 _MOST_ROOT_STEPS: Final = 100
@@ -91,6 +92,7 @@ class Above(NamedTuple):
     rims: list[RimAbove]
     centre: float  # m, of the centre of mass
     centre_rate: float  # m/s
+    sample: Sample  # the motion then
 
 
 class Descent:
@@ -105,6 +107,7 @@ class Descent:
         self.bound_from = bounds_of(motion, normal_W)
         self.arms = np.sqrt(np.einsum("ij,ij->i", shape.vertices, shape.vertices))  # (k,), m
         self.reach = max([float(self.arms.max(initial=0.0)), *(rim.reach for rim in self.rims)])  # m
+        self.newest: tuple[float, Above] | None = None  # what `at` has last returned, and its time
 
     def run(self, horizon: float) -> FirstContact | None:
         """Return the first contact within a horizon, s, or None."""
@@ -129,16 +132,20 @@ class Descent:
         """Return for how long, s, no part can arrive while a bound holds."""
         corners = len(self.arms)
         pulls = bound.fall + self.arms * bound.turning
-        step = float(free_for(at.heights[:corners], at.rates[:corners], pulls).min(initial=math.inf))
+        step = all_free_for(at.heights[:corners], at.rates[:corners], pulls)
         for radii, rim in zip(self.rims, at.rims, strict=True):
             step = min(step, rim.free_for(bound.fall + radii.reach * bound.turning))
         if at.centre > self.reach:
-            alone = np.array([[at.centre - self.reach], [at.centre_rate], [bound.fall]])
-            step = max(step, float(free_for(*alone)[0]))
+            step = max(step, free_for(at.centre - self.reach, at.centre_rate, bound.fall))
         return step
 
     def at(self, seconds: float) -> Above:
-        """Return how the shape is above the plane at one time."""
+        """Return how the shape is above the plane at one time; the last of them is remembered."""
+        if self.newest is None or self.newest[0] != seconds:
+            self.newest = seconds, self._at(seconds)
+        return self.newest[1]
+
+    def _at(self, seconds: float) -> Above:
         sample = self.motion.sample(seconds)
         a, b, c = self.normal_W
         x, y, z = sample.w_WB_W
@@ -152,7 +159,7 @@ class Descent:
         heights = self.shape.vertices @ normal_B + centre
         rates = self.shape.vertices @ turning_B + centre_rate
         if not self.rims:
-            return Above(heights, rates, [], centre, centre_rate)
+            return Above(heights, rates, [], centre, centre_rate, sample)
         rims = [
             RimAbove(
                 centre + _dot(normal_B, rim.center),
@@ -164,7 +171,12 @@ class Descent:
         ]
         lowest = np.array([rim.lowest()[:2] for rim in rims])
         return Above(
-            np.append(heights, lowest[:, 0]), np.append(rates, lowest[:, 1]), rims, centre, centre_rate
+            np.append(heights, lowest[:, 0]),
+            np.append(rates, lowest[:, 1]),
+            rims,
+            centre,
+            centre_rate,
+            sample,
         )
 
     def crossing(self, low: float, high: float, above: FloatArray, below: FloatArray) -> tuple[float, int]:
@@ -185,10 +197,12 @@ class Descent:
             at = self.at(now)
             height, rate = float(at.heights[part]), float(at.rates[part])
             low, high = (now, high) if height > 0.0 else (low, now)
+            if abs(height) <= -rate * math.ulp(now) or height == 0.0:
+                break  # Newton's next step is within rounding
             following = now - height / rate if rate < 0.0 else low
             if not low < following < high:
                 following = 0.5 * (low + high)
-            if height == 0.0 or abs(following - now) <= math.ulp(now):
+            if abs(following - now) <= math.ulp(now):
                 break
             now = following
         return now
@@ -196,7 +210,7 @@ class Descent:
     def found(self, seconds: float, part: int) -> FirstContact:
         """Gather the evidence of a contact."""
         at = self.at(seconds)
-        sample = self.motion.sample(seconds)
+        sample = at.sample
         corners = len(self.arms)
         if part < corners:
             arm_B = self.shape.vertices[part]

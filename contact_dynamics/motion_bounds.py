@@ -37,6 +37,9 @@ if TYPE_CHECKING:
 _GYROSCOPIC: Final = 1.0 / math.sqrt(3.0)
 _DEGREE: Final = 7
 
+_FEW: Final = 24
+"""Points for which NumPy's calls cost more than floats do."""
+
 
 class Bound(NamedTuple):
     """What holds from the time asked for until another."""
@@ -56,21 +59,32 @@ def bounds_of(motion: Motion, normal_W: FloatArray) -> Callable[[float], Bound]:
     return _Along(motion, normal_W)
 
 
-def free_for(heights: FloatArray, rates: FloatArray, pulls: FloatArray) -> FloatArray:
-    """Return for how long, (k,), s, points above a plane, pulled to it at most so hard, cannot arrive.
+def free_for(height: float, rate: float, pull: float) -> float:
+    """Return for how long, s, a point above a plane, pulled to it at most so hard, cannot arrive.
 
-    Arrays are (k,), m, m/s, m/s^2. A dip of less than `GRAZING_DEPTH` is no arrival.
+    Arguments are in m, m/s, m/s^2. A dip of less than `GRAZING_DEPTH` is no arrival.
     """
+    if height <= 0.0:  # below the plane and rising: as long as it rises, and not less than a graze takes
+        return max(rate, math.sqrt(2.0 * GRAZING_DEPTH * pull)) / pull if pull > 0.0 else math.inf
+    allowed = height + GRAZING_DEPTH
+    stop = rate * rate + 2.0 * pull * allowed
+    if rate < 0.0:
+        return 2.0 * allowed / (math.sqrt(stop) - rate) if stop >= 0.0 else math.inf
+    return (rate + math.sqrt(stop)) / pull if pull > 0.0 else math.inf
+
+
+def all_free_for(heights: FloatArray, rates: FloatArray, pulls: FloatArray) -> float:
+    """Return for how long, s, none of many points can arrive: the least `free_for` of arrays (k,)."""
+    if len(heights) <= _FEW:
+        return min(map(free_for, heights.tolist(), rates.tolist(), pulls.tolist()), default=math.inf)
     with np.errstate(divide="ignore", invalid="ignore"):  # where nothing pulls, or nothing falls
         allowed = heights + GRAZING_DEPTH
         stop = rates * rates + 2.0 * pulls * allowed
         root = np.sqrt(np.maximum(stop, 0.0))
         falling = np.where(stop >= 0.0, 2.0 * allowed / (root - rates), np.inf)
         rising = np.where(pulls > 0.0, (rates + root) / pulls, np.inf)
-        # Below the plane and rising: as long as it rises, and not less than a graze takes.
         below = np.where(pulls > 0.0, np.maximum(rates, np.sqrt(2.0 * GRAZING_DEPTH * pulls)) / pulls, np.inf)
-    free: FloatArray = np.where(heights > 0.0, np.where(rates < 0.0, falling, rising), below)
-    return free
+    return float(np.where(heights > 0.0, np.where(rates < 0.0, falling, rising), below).min())
 
 
 class _Along:

@@ -152,7 +152,7 @@ def test_a_user_s_wrench_beside_brute_force_steps() -> None:
         steps=1000,
     )
     lowest = p + R @ CUBE_B[found.vertices[0]]
-    assert (p + CUBE_B @ R.T)[:, 2].min() == lowest[2]
+    assert (p + CUBE_B @ R.T)[:, 2].argmin() == found.vertices[0]
     assert lowest[2] == pytest.approx(0.0, abs=1e-9)  # Runge-Kutta's error at 0.5 ms and 20 rad/s
     assert found.p_WC_W == pytest.approx(lowest, abs=1e-9)
 
