@@ -15,7 +15,7 @@ Flats are treated here; obstacles, which have edges and corners, in `obstacle_co
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -88,12 +88,20 @@ def _sides(sides: list[Side]) -> Curvatures:
 
 
 def _corners(points: FloatArray, surfaces: Sequence[Surface], distance_tolerance: float) -> ContactSet:
-    touching = [np.flatnonzero(surface.gaps(points) <= distance_tolerance) for surface in surfaces]
-    counts = [len(indices) for indices in touching]
+    touching = [points[surface.gaps(points) <= distance_tolerance] for surface in surfaces]
+    owners = [surface for surface, found in zip(surfaces, touching, strict=True) for _ in range(len(found))]
+    if not owners:
+        return NO_CONTACTS
     return ContactSet(
-        p_WC_W=np.concatenate([np.zeros((0, 3)), *(points[indices] for indices in touching)]),
-        normals_W=np.repeat(np.array([s.normal_W for s in surfaces]).reshape(-1, 3), counts, axis=0),
-        frictions=np.repeat(np.array([s.friction for s in surfaces]), counts),
-        restitutions=np.repeat(np.array([s.restitution for s in surfaces]), counts),
-        surfaces=tuple(s.name for s, count in zip(surfaces, counts, strict=True) for _ in range(count)),
+        p_WC_W=touching[0] if len(surfaces) == 1 else np.concatenate(touching),
+        normals_W=np.array([owner.normal_W for owner in owners]),
+        frictions=np.array([owner.friction for owner in owners]),
+        restitutions=np.array([owner.restitution for owner in owners]),
+        surfaces=tuple([owner.name for owner in owners]),
     )
+
+
+NO_CONTACTS: Final = ContactSet(
+    p_WC_W=np.zeros((0, 3)), normals_W=np.zeros((0, 3)), frictions=np.zeros(0), restitutions=np.zeros(0)
+)
+"""Of a body that touches nothing."""

@@ -213,19 +213,20 @@ class Descent:
         sample = at.sample
         corners = len(self.arms)
         if part < corners:
-            arm_B = self.shape.vertices[part]
+            arm_B = self.shape.vertices[part].tolist()
         else:
             rim, (_, _, (cosine, sine)) = self.rims[part - corners], at.rims[part - corners].lowest()
-            arm_B = np.add(rim.center, np.multiply(cosine, rim.first) + np.multiply(sine, rim.second))
-        arm_W = np.array(rotated(sample.q_WB, arm_B.tolist()))
-        if self.shape.rounding > 0.0:
-            arm_W -= self.shape.rounding * np.array(self.normal_W)
+            ends = zip(rim.center, rim.first, rim.second, strict=True)
+            arm_B = [middle + (cosine * first + sine * second) for middle, first, second in ends]
+        arm = zip(rotated(sample.q_WB, arm_B), self.normal_W, strict=True)
+        x, y, z = (along - self.shape.rounding * up for along, up in arm)
+        a, b, c = sample.w_WB_W
         others = np.flatnonzero(np.abs(at.heights) <= GRAZING_DEPTH).tolist()
         return FirstContact(
             seconds=seconds,
             vertices=(part, *(i for i in others if i != part)),
-            p_WC_W=np.add(sample.p_WB_W, arm_W),
-            v_WC_W=np.add(sample.v_WB_W, np.cross(sample.w_WB_W, arm_W)),
+            p_WC_W=np.add(sample.p_WB_W, (x, y, z)),
+            v_WC_W=np.add(sample.v_WB_W, (b * z - c * y, c * x - a * z, a * y - b * x)),
         )
 
 

@@ -22,6 +22,7 @@ from contact_dynamics.rigid_body import angular_momentum, rotation_matrix
 from contact_dynamics.tumbling.arithmetic import ARRAYS, DOUBLES
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
 from contact_dynamics.tumbling.polhode import Rotation, Spin, Tumble, largest_rate
+from contact_dynamics.tumbling.quaternions import rotated
 from contact_dynamics.tumbling.regime import Regime
 from contact_dynamics.validation import FloatArray, check_array
 
@@ -108,7 +109,7 @@ def sensitivity(motion: FreeMotion) -> float:
         return math.inf
     # In units in which I_3 and L are 1.
     unit, rate_unit = float(rotation.moments[2]), float(rotation.L) / float(rotation.moments[2])
-    moments = np.array([float(moment) / unit for moment in rotation.moments])
+    moments = [float(moment) / unit for moment in rotation.moments]
     gap21, gap32, gap31 = (float(gap) / unit for gap in rotation.gaps)
     P, T2, c2 = float(rotation.precession) / rate_unit, motion.w_along / rate_unit, float(rotation.c2)
     excess = c2 * gap31  # L^2 - 2 T I_1
@@ -120,13 +121,18 @@ def sensitivity(motion: FreeMotion) -> float:
     P_L = P - T2 * P_T
     # d P z + (d nu / nu) (w - P z) = (dP - P d nu / nu) z + (d nu / nu) w
     along_T, along_L = P_T - P * nu_T, P_L - P * nu_L
-    axes = np.array([[float(x) for x in axis] for axis in rotation.axes_B])
-    T_w = moments * (axes @ (motion.state.R_WB.T @ motion.state.w_WB_W)) / rate_unit
-    L_w = moments * T_w  # gradients over w in P
-    a, b = along_T * T_w + along_L * L_w, nu_T * T_w + nu_L * L_w
+    axes = [[float(x) for x in axis] for axis in rotation.axes_B]
+    x, y, z, w = motion.state.q_WB.tolist()
+    w_1, w_2, w_3 = rotated((-x, -y, -z, w), motion.state.w_WB_W.tolist())  # body axes
+    aa = ab = bb = 0.0  # of the gradients over w in P, of the phases' rates
+    for moment, (x, y, z) in zip(moments, axes, strict=True):
+        T_w = moment * (x * w_1 + y * w_2 + z * w_3) / rate_unit
+        L_w = moment * T_w
+        a, b = along_T * T_w + along_L * L_w, nu_T * T_w + nu_L * L_w
+        aa, ab, bb = aa + a * a, ab + a * b, bb + b * b
     w2 = (largest_rate(rotation) / rate_unit) ** 2
-    trace = float(a @ a + 2.0 * T2 * (a @ b) + w2 * (b @ b))
-    determinant = float((a @ a) * (b @ b) - (a @ b) ** 2) * (w2 - T2 * T2)
+    trace = aa + 2.0 * T2 * ab + w2 * bb
+    determinant = (aa * bb - ab**2) * (w2 - T2 * T2)
     return math.sqrt(0.5 * (trace + math.sqrt(max(trace * trace - 4.0 * determinant, 0.0))))
 
 
