@@ -19,10 +19,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact_modes.spatial_case import SpatialCase, search_of, spatial_case
-from contact_dynamics.contact_modes.spatial_cone import cone_of
 from contact_dynamics.contact_modes.spatial_dynamics import evidenced, spatial_contact_modes
 from contact_dynamics.contact_modes.spatial_statics import MOST_EDGES
-from contact_dynamics.contact_modes.spatial_wrenches import Way, wrench_generators
+from contact_dynamics.contact_modes.spatial_wrenches import Way, supports, wrench_generators
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import ROW_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_not_negative, check_positive
@@ -138,31 +137,24 @@ def spatial_mode_margins(
     return tuple(margins)
 
 
-def _nearest(
-    case: SpatialCase, search: Search, found: Found, metric: FloatArray
-) -> tuple[float, FloatArray]:
+def _nearest(case: SpatialCase, search: Search, found: Found, metric: FloatArray) -> tuple[float, FloatArray]:
     """Return the distance, N, from the mode's nearest boundary and the way there, (6,), in the metric."""
     if any(letters.item >= 0 for letters in found.letters):
         return math.nan, np.zeros(6)
     motion = case.motion
     unit = motion.mass * motion.scale  # N; wrenches are divided by it, and torques by the length
     ways = [Way(one.letter, one.item) for one in found.letters]
-    generators = wrench_generators(case, search, ways, metric)
+    positive, zero = supports(wrench_generators(case, search, ways, metric))
     target = np.append(motion.wrench / metric / unit, 1.0)
-    sizes = np.linalg.norm(generators, axis=1)
-    rows = generators[sizes > ROW_TOLERANCE] / sizes[sizes > ROW_TOLERANCE, None]
-    if len(rows) == 0:
-        return 0.0, np.eye(6)[0]
-    dual = cone_of(rows)  # its rays and lines say what all wrenches of the mode satisfy
-    for line in dual.lines:
-        across = float(np.linalg.norm(line[:6]))
+    for row in zero:
+        across = float(np.linalg.norm(row[:6]))
         if across > ROW_TOLERANCE:
-            return 0.0, line[:6] / across
+            return 0.0, row[:6] / across
     margin, way = math.inf, np.zeros(6)
-    for ray in dual.rays:
-        across = float(np.linalg.norm(ray[:6]))
+    for row in positive:
+        across = float(np.linalg.norm(row[:6]))
         if across > ROW_TOLERANCE:
-            depth = max(0.0, float(ray @ target)) / across
+            depth = max(0.0, float(row @ target)) / across
             if depth < margin:
-                margin, way = depth, -ray[:6] / across
+                margin, way = depth, -row[:6] / across
     return margin * unit, way

@@ -1,7 +1,7 @@
 """The applied wrenches in space that can bring letters about: what motions need, less what contacts give.
 
-They are the positive sums of generators. Centripetal terms add a seventh coordinate, in which a wrench has
-the height one. A wrench is (force, torque / length) / mass, in the units of a case's accelerations.
+They are the positive sums of rays, plus sums of lines. Centripetal terms add a seventh coordinate, in which a
+wrench has the height one. A wrench is (force, torque / length) / mass, in the units of accelerations.
 """
 
 from __future__ import annotations
@@ -30,6 +30,13 @@ class Way(NamedTuple):
     item: int  # of sliding (`spatial_letters`); -1: none is asked for
 
 
+class Generators(NamedTuple):
+    """Wrenches that bring something about, with their heights: positive sums of rays, plus sums of lines."""
+
+    rays: FloatArray  # (k, 7), unit
+    lines: FloatArray  # (l, 7), unit
+
+
 class _Conditions(NamedTuple):
     """What a contact asks of the motion, rows (k, 7), and the force edges, (j, 3), that it lets act."""
 
@@ -40,8 +47,8 @@ class _Conditions(NamedTuple):
 
 def wrench_generators(
     case: SpatialCase, search: Search, ways: Sequence[Way], metric: FloatArray
-) -> FloatArray:
-    """Return generators, (k, 7), of the wrenches under which touching contacts can do as stated.
+) -> Generators:
+    """Return the wrenches under which touching contacts can do as stated.
 
     Args:
         case: The body with its contacts.
@@ -54,18 +61,31 @@ def wrench_generators(
     free = null_space(_unit(np.vstack([np.zeros((0, 7)), *(one.zero for one in asked)])))  # (7, k)
     positive = np.vstack([*(one.positive for one in asked), np.eye(1, 7, 6)])
     inside = cone_of(_unit(positive @ free))
-    motions = np.vstack([inside.rays, inside.lines, -inside.lines]) @ free.T
     inertia = np.zeros((6, 6))
     inertia[:3, :3] = np.eye(3) * motion.mass
     inertia[3:, 3:] = motion.inertia
-    needs = motions[:, :6] / motion.lengths @ inertia / metric / motion.mass
+
+    def needed(motions: FloatArray) -> FloatArray:
+        accelerations = motions @ free.T
+        wrenches = accelerations[:, :6] / motion.lengths @ inertia / metric / motion.mass
+        return np.column_stack([wrenches, accelerations[:, 6]])
+
     given = [np.zeros((0, 6))]
     for i, one in zip(case.touching.tolist(), asked, strict=True):
         given.append(-(one.acting @ motion.points[3 * i : 3 * i + 3]) / metric)
     forces = np.vstack(given)
-    return np.vstack(
-        [np.column_stack([needs, motions[:, 6]]), np.column_stack([forces, np.zeros(len(forces))])]
-    )
+    rays = np.vstack([needed(inside.rays), np.column_stack([forces, np.zeros(len(forces))])])
+    return Generators(_unit(rays), _unit(needed(inside.lines)))
+
+
+def supports(generators: Generators) -> tuple[FloatArray, FloatArray]:
+    """Return what all generated wrenches satisfy: rows, (k, 7), that are not negative, and that are zero."""
+    across = null_space(generators.lines)
+    rows = _unit(generators.rays @ across)
+    if len(rows) == 0:
+        return np.zeros((0, 7)), across.T
+    dual = cone_of(rows)
+    return dual.rays @ across.T, dual.lines @ across.T
 
 
 def _conditions(contact: Touching, pyramid: Pyramid, way: Way) -> _Conditions:
