@@ -56,15 +56,14 @@ def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
     )
 
 
-def contacts_to_msg(contacts: ContactSet) -> ContactSetMsg:
-    """Return the contacts as a message."""
-    msg = ContactSetMsg(
-        positions=flat(contacts.p_WC_W),
-        normals=flat(contacts.normals_W),
-        frictions=flat(contacts.frictions),
-        restitutions=flat(contacts.restitutions),
-        surface_names=list(contacts.surfaces),
-    )
+def contacts_to_msg(contacts: ContactSet, *, into: ContactSetMsg | None = None) -> ContactSetMsg:
+    """Return the contacts as a message: a new one, or the empty one to fill."""
+    msg = ContactSetMsg() if into is None else into
+    msg.positions = flat(contacts.p_WC_W)
+    msg.normals = flat(contacts.normals_W)
+    msg.frictions = flat(contacts.frictions)
+    msg.restitutions = flat(contacts.restitutions)
+    msg.surface_names = list(contacts.surfaces)
     if contacts.body_curvatures is None and contacts.surface_curvatures is None:
         return msg
     n = len(contacts)

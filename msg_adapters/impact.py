@@ -1,9 +1,13 @@
-"""Impacts, in space and in a plane of motion, at one contact and at several, to messages."""
+"""Impacts, in space and in a plane of motion, at one contact and at several, to messages.
+
+To new messages, or, for ``into``, to the empty ones that a response has already: they cost more to build than
+to fill.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -15,7 +19,7 @@ from contact_dynamics_interfaces.srv import PredictImpact
 from msg_adapters.contacts import flat
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from geometry_msgs.msg import Point, Quaternion
 
@@ -35,34 +39,42 @@ if TYPE_CHECKING:
     from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 
 
+class StateToMsg(Protocol):
+    """Makes a message of a state of a body whose names and frames it knows."""
+
+    def __call__(self, state: BodyState, *, into: BodyStateMsg | None = None) -> BodyStateMsg:
+        """Return the state as a message: a new one, or the one to fill."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Before:
     """A body just before an impact."""
 
     body: MassProperties
     state: BodyState
-    state_to_msg: Callable[[BodyState], BodyStateMsg]  # any state of this body as a message
+    state_to_msg: StateToMsg  # any state of this body as a message
 
 
-def spatial_impact_to_msg(impact: SpatialImpact, before: Before, other: Before | None = None) -> ImpactMsg:
+def spatial_impact_to_msg(
+    impact: SpatialImpact, before: Before, other: Before | None = None, *, into: ImpactMsg | None = None
+) -> ImpactMsg:
     """Return an impact at one contact in space, of a body with the world or with another body."""
-    msg = ImpactMsg(
-        restitution_law=int(impact.law),
-        outcome=int(impact.outcome),
-        jams=impact.jams,
-        converged=True,
-        state_after=before.state_to_msg(impact.state),
-        impulses=flat(impact.impulse_W),
-        compression_impulses=flat(impact.compression_W),
-        contact_velocities_before=flat(impact.velocity_before_W),
-        contact_velocities_after=flat(impact.velocity_after_W),
-        path=flat(impact.path_W),
-        path_events=[int(event) for event in impact.path_events],
-        path_contacts=[0] * len(impact.path_events),
-        kinetic_energy_before=kinetic_energy(before.body, before.state),
-        kinetic_energy_after=kinetic_energy(before.body, impact.state),
-        creates_energy=impact.creates_energy,
-    )
+    msg = ImpactMsg() if into is None else into
+    msg.restitution_law = int(impact.law)
+    msg.outcome = int(impact.outcome)
+    msg.jams = impact.jams
+    msg.converged = True
+    before.state_to_msg(impact.state, into=msg.state_after)
+    msg.impulses = flat(impact.impulse_W)
+    msg.compression_impulses = flat(impact.compression_W)
+    msg.contact_velocities_before = flat(impact.velocity_before_W)
+    msg.contact_velocities_after = flat(impact.velocity_after_W)
+    msg.path = flat(impact.path_W)
+    msg.path_events = [int(event) for event in impact.path_events]
+    msg.path_contacts = [0] * len(impact.path_events)
+    msg.kinetic_energy_before = kinetic_energy(before.body, before.state)
+    msg.kinetic_energy_after = kinetic_energy(before.body, impact.state)
+    msg.creates_energy = impact.creates_energy
     if other is not None and impact.other_state is not None:
         msg.other_state_after = [other.state_to_msg(impact.other_state)]
         msg.kinetic_energy_before += kinetic_energy(other.body, other.state)
@@ -70,43 +82,49 @@ def spatial_impact_to_msg(impact: SpatialImpact, before: Before, other: Before |
     return msg
 
 
-def several_impact_to_msg(impact: SeveralImpact, before: Before) -> ImpactMsg:
+def several_impact_to_msg(
+    impact: SeveralImpact, before: Before, *, into: ImpactMsg | None = None
+) -> ImpactMsg:
     """Return an impact at several contacts in space, of a body with the world."""
-    return _several_to_msg(impact, [before], [impact.state])
+    return _several_to_msg(impact, [before], [impact.state], into)
 
 
-def pair_impact_to_msg(impact: BodiesImpact, before: Before, other: Before) -> ImpactMsg:
+def pair_impact_to_msg(
+    impact: BodiesImpact, before: Before, other: Before, *, into: ImpactMsg | None = None
+) -> ImpactMsg:
     """Return an impact of two bodies at several contacts in space."""
     state, other_state = impact.states
-    msg = _several_to_msg(impact, [before, other], [state, other_state])
+    msg = _several_to_msg(impact, [before, other], [state, other_state], into)
     msg.other_state_after = [other.state_to_msg(other_state)]
     return msg
 
 
 def _several_to_msg(
-    impact: SeveralImpact | BodiesImpact, before: Sequence[Before], after: Sequence[BodyState]
+    impact: SeveralImpact | BodiesImpact,
+    before: Sequence[Before],
+    after: Sequence[BodyState],
+    into: ImpactMsg | None,
 ) -> ImpactMsg:
     energy_before = sum(kinetic_energy(one.body, one.state) for one in before)
     energy_after = sum(kinetic_energy(one.body, state) for one, state in zip(before, after, strict=True))
-    msg = ImpactMsg(
-        restitution_law=int(impact.restitution_law),
-        several_contacts_law=int(impact.law),
-        outcome=ImpactMsg.NOT_TOLD,
-        converged=impact.verdict == SeveralVerdict.RESOLVED,
-        state_after=before[0].state_to_msg(after[0]),
-        impulses=flat(impact.impulses_W),
-        contact_velocities_before=flat(impact.velocities_before_W),
-        contact_velocities_after=flat(impact.velocities_after_W),
-        kinetic_energy_before=energy_before,
-        kinetic_energy_after=energy_after,
-        creates_energy=energy_after - energy_before > ENERGY_TOLERANCE * energy_before,
-    )
+    msg = ImpactMsg() if into is None else into
+    msg.restitution_law = int(impact.restitution_law)
+    msg.several_contacts_law = int(impact.law)
+    msg.outcome = ImpactMsg.NOT_TOLD
+    msg.converged = impact.verdict == SeveralVerdict.RESOLVED
+    before[0].state_to_msg(after[0], into=msg.state_after)
+    msg.impulses = flat(impact.impulses_W)
+    msg.contact_velocities_before = flat(impact.velocities_before_W)
+    msg.contact_velocities_after = flat(impact.velocities_after_W)
+    msg.kinetic_energy_before = energy_before
+    msg.kinetic_energy_after = energy_after
+    msg.creates_energy = energy_after - energy_before > ENERGY_TOLERANCE * energy_before
     if impact.strikes:
         _add_strikes(msg, impact.strikes, len(impact.impulses_W))
     return msg
 
 
-def sequence_to_msg(impact: ImpactSequence, before: Before) -> ImpactMsg:
+def sequence_to_msg(impact: ImpactSequence, before: Before, *, into: ImpactMsg | None = None) -> ImpactMsg:
     """Return strikes in time; there is at least one, and ``before`` is the body just before the first."""
     first = impact.strikes[0].seconds
     impulses = np.zeros((len(impact.contacts), 3))
@@ -117,30 +135,31 @@ def sequence_to_msg(impact: ImpactSequence, before: Before) -> ImpactMsg:
         impulses[strike.contact] += strike.impact.impulse_W
         velocities_after[strike.contact] = strike.impact.velocity_after_W
     poses = [before.state_to_msg(strike.state_before).pose for strike in impact.strikes]
-    msg = ImpactMsg(
-        restitution_law=int(impact.restitution_law),
-        several_contacts_law=PredictImpact.Request.SEQUENTIAL_IN_TIME,
-        converged=impact.end != SequenceEnd.MOST_STRIKES,
-        state_after=before.state_to_msg(impact.state),
-        impulses=flat(impulses),
-        contact_velocities_before=flat(velocities_before),
-        contact_velocities_after=flat(velocities_after),
-        kinetic_energy_before=kinetic_energy(before.body, before.state),
-        kinetic_energy_after=kinetic_energy(before.body, impact.state),
-        creates_energy=impact.creates_energy,
-        strike_times=[strike.seconds - first for strike in impact.strikes],
-        strike_contacts=list(impact.order),
-        strike_outcomes=[int(strike.impact.outcome) for strike in impact.strikes],
-        strike_positions=flat(np.array([strike.p_WC_W for strike in impact.strikes])),
-        strike_impulses=flat(np.array([strike.impact.impulse_W for strike in impact.strikes])),
-        strike_body_positions=[x for pose in poses for x in _xyz(pose.position)],
-        strike_body_orientations=[x for pose in poses for x in (*_xyz(pose.orientation), pose.orientation.w)],
-        strike_velocities_before=flat(_twists([strike.state_before for strike in impact.strikes])),
-        strike_velocities_after=flat(_twists([strike.impact.state for strike in impact.strikes])),
-        sequence_end=int(impact.end),
-        staying_contacts=list(impact.staying),
-        limit_time=0.0 if impact.limit_seconds is None else impact.limit_seconds - first,
-    )
+    msg = ImpactMsg() if into is None else into
+    msg.restitution_law = int(impact.restitution_law)
+    msg.several_contacts_law = PredictImpact.Request.SEQUENTIAL_IN_TIME
+    msg.converged = impact.end != SequenceEnd.MOST_STRIKES
+    before.state_to_msg(impact.state, into=msg.state_after)
+    msg.impulses = flat(impulses)
+    msg.contact_velocities_before = flat(velocities_before)
+    msg.contact_velocities_after = flat(velocities_after)
+    msg.kinetic_energy_before = kinetic_energy(before.body, before.state)
+    msg.kinetic_energy_after = kinetic_energy(before.body, impact.state)
+    msg.creates_energy = impact.creates_energy
+    msg.strike_times = [strike.seconds - first for strike in impact.strikes]
+    msg.strike_contacts = list(impact.order)
+    msg.strike_outcomes = [int(strike.impact.outcome) for strike in impact.strikes]
+    msg.strike_positions = flat(np.array([strike.p_WC_W for strike in impact.strikes]))
+    msg.strike_impulses = flat(np.array([strike.impact.impulse_W for strike in impact.strikes]))
+    msg.strike_body_positions = [x for pose in poses for x in _xyz(pose.position)]
+    msg.strike_body_orientations = [
+        x for pose in poses for x in (*_xyz(pose.orientation), pose.orientation.w)
+    ]
+    msg.strike_velocities_before = flat(_twists([strike.state_before for strike in impact.strikes]))
+    msg.strike_velocities_after = flat(_twists([strike.impact.state for strike in impact.strikes]))
+    msg.sequence_end = int(impact.end)
+    msg.staying_contacts = list(impact.staying)
+    msg.limit_time = 0.0 if impact.limit_seconds is None else impact.limit_seconds - first
     strikes = tuple((strike.contact, strike.impact) for strike in impact.strikes)
     _add_strikes(msg, strikes, len(impact.contacts))
     return msg
@@ -187,7 +206,9 @@ def _add_strikes(msg: ImpactMsg, strikes: Sequence[tuple[int, SpatialImpact]], c
     msg.path_contacts = contacts
 
 
-def planar_impact_to_msg(impact: PlanarImpact, problem: PlanarProblem, before: Before) -> ImpactMsg:
+def planar_impact_to_msg(
+    impact: PlanarImpact, problem: PlanarProblem, before: Before, *, into: ImpactMsg | None = None
+) -> ImpactMsg:
     """Return an impact at the one contact of a plane of motion, in world axes.
 
     What is out of the plane stays as it was.
@@ -205,20 +226,20 @@ def planar_impact_to_msg(impact: PlanarImpact, problem: PlanarProblem, before: B
         v_WB_W=before.state.v_WB_W + plane.lift((v_x - before_x, v_y - before_y)),
         w_WB_W=before.state.w_WB_W + (impact.velocity.w - problem.velocity.w) * plane.normal_W,
     )
-    return ImpactMsg(
-        restitution_law=int(impact.law),
-        outcome=int(impact.outcome),
-        jams=impact.jams,
-        converged=True,
-        state_after=before.state_to_msg(after),
-        impulses=flat(lift(impact.impulse_C)),
-        compression_impulses=flat(lift(impact.compression_C)),
-        contact_velocities_before=flat(lift(impact.velocity_before_C)),
-        contact_velocities_after=flat(lift(impact.velocity_after_C)),
-        path=flat(np.array([lift(vertex) for _, vertex in impact.path])),
-        path_events=[int(event) for event, _ in impact.path],
-        path_contacts=[0] * len(impact.path),
-        kinetic_energy_before=kinetic_energy(before.body, before.state),
-        kinetic_energy_after=kinetic_energy(before.body, after),
-        creates_energy=impact.creates_energy,
-    )
+    msg = ImpactMsg() if into is None else into
+    msg.restitution_law = int(impact.law)
+    msg.outcome = int(impact.outcome)
+    msg.jams = impact.jams
+    msg.converged = True
+    before.state_to_msg(after, into=msg.state_after)
+    msg.impulses = flat(lift(impact.impulse_C))
+    msg.compression_impulses = flat(lift(impact.compression_C))
+    msg.contact_velocities_before = flat(lift(impact.velocity_before_C))
+    msg.contact_velocities_after = flat(lift(impact.velocity_after_C))
+    msg.path = flat(np.array([lift(vertex) for _, vertex in impact.path]))
+    msg.path_events = [int(event) for event, _ in impact.path]
+    msg.path_contacts = [0] * len(impact.path)
+    msg.kinetic_energy_before = kinetic_energy(before.body, before.state)
+    msg.kinetic_energy_after = kinetic_energy(before.body, after)
+    msg.creates_energy = impact.creates_energy
+    return msg

@@ -23,10 +23,18 @@ if TYPE_CHECKING:
 
 
 def trajectory_to_msg(
-    trajectory: Trajectory, *, stamp_ns: int, world_frame: str, p_FB_F: FloatArray
+    trajectory: Trajectory,
+    *,
+    stamp_ns: int,
+    world_frame: str,
+    p_FB_F: FloatArray,
+    into: TrajectoryMsg | None = None,
 ) -> TrajectoryMsg:
-    """Return a trajectory, whose times count from ``stamp_ns``, with positions of the published frame F."""
-    msg = TrajectoryMsg()
+    """Return a trajectory, whose times count from ``stamp_ns``, with positions of the published frame F.
+
+    It is a new message, or the empty one to fill.
+    """
+    msg = TrajectoryMsg() if into is None else into
     msg.header.stamp = stamp_to_msg(stamp_ns)
     msg.header.frame_id = world_frame
     msg.times = flat(trajectory.seconds)
@@ -51,21 +59,25 @@ def write_fit(response: Any, fit: FitResult | None) -> None:
         response.fit_orientation_residual = fit.orientation_residual
 
 
-def poinsot_to_msg(picture: Poinsot, flips: Flips, curves: RollingCurves | None) -> PoinsotMsg:
-    """Return Poinsot's picture of a motion, with the next flips of its middle axis, and curves if any."""
-    msg = PoinsotMsg(
-        regime=int(picture.regime),
-        rotational_energy=picture.rotational_energy,
-        angular_momentum=picture.L_W,
-        invariable_plane_distance=picture.invariable_plane_distance,
-        polhode_period=picture.polhode_period,
-        precession_per_period=picture.precession_per_period,
-        principal_moments=picture.principal_moments,
-        principal_axes=picture.principal_axes_B.ravel(),
-        sensitivity=picture.sensitivity,
-        flip_times=flat(flips.seconds),
-        flip_time_deviations=flat(flips.deviations),
-    )
+def poinsot_to_msg(
+    picture: Poinsot, flips: Flips, curves: RollingCurves | None, *, into: PoinsotMsg | None = None
+) -> PoinsotMsg:
+    """Return Poinsot's picture of a motion, with the next flips of its middle axis, and curves if any.
+
+    It is a new message, or the empty one to fill.
+    """
+    msg = PoinsotMsg() if into is None else into
+    msg.regime = int(picture.regime)
+    msg.rotational_energy = picture.rotational_energy
+    msg.angular_momentum = picture.L_W
+    msg.invariable_plane_distance = picture.invariable_plane_distance
+    msg.polhode_period = picture.polhode_period
+    msg.precession_per_period = picture.precession_per_period
+    msg.principal_moments = picture.principal_moments
+    msg.principal_axes = picture.principal_axes_B.ravel()
+    msg.sensitivity = picture.sensitivity
+    msg.flip_times = flat(flips.seconds)
+    msg.flip_time_deviations = flat(flips.deviations)
     if curves is not None:
         msg.curve_times = flat(curves.seconds)
         msg.polhode = flat(curves.polhode_B)

@@ -74,23 +74,23 @@ def predict_impact(request: Any, response: Any, knowledge: Knowledge) -> None:
         sequence = _in_time(request, strike, knowledge)
         strike = _from_first(sequence, strike)
         response.problem = request.SPATIAL
-        response.impact = sequence_to_msg(sequence, strike.before)
+        sequence_to_msg(sequence, strike.before, into=response.impact)
     elif request.problem == request.PLANAR:
         response.problem = request.PLANAR
-        response.impact = _in_plane(request, response, strike, knowledge)
+        _in_plane(request, response, strike, knowledge)
     else:  # space contains the plane
         response.problem = request.SPATIAL
-        response.impact = _in_space(strike)
+        _in_space(strike, response.impact)
         if request.want_orders:
             write_orders(response.impact, _orders(strike, strike.before.body, strike.state, strike.contacts))
     if request.want_covariance:
         write_distribution(response.impact, _distribution(strike))
     write_fit(response, strike.subject.fit)
     response.time_to_contact = strike.seconds
-    response.state_before = strike.subject.state_to_msg(strike.state)
+    strike.subject.state_to_msg(strike.state, into=response.state_before)
     if strike.other is not None:
         response.other_state_before = [strike.other.state_to_msg(strike.other.state)]
-    response.contacts = contacts_to_msg(strike.contacts)
+    contacts_to_msg(strike.contacts, into=response.contacts)
     response.velocity_tolerance = strike.velocity_tolerance
     response.distance_tolerance = distance_tolerance_of(request, knowledge)
 
@@ -133,13 +133,15 @@ def _from_first(sequence: ImpactSequence, strike: Strike) -> Strike:
     )
 
 
-def _in_space(strike: Strike) -> ImpactMsg:
+def _in_space(strike: Strike, msg: ImpactMsg) -> None:
     before, other = strike.before, strike.other
     if other is not None:
-        return _of_two(strike, other)
+        _of_two(strike, other, msg)
+        return
     if len(strike.contacts) == 1:
         impact = spatial_impact(before.body, strike.state, **strike.one_contact())
-        return spatial_impact_to_msg(impact, before)
+        spatial_impact_to_msg(impact, before, into=msg)
+        return
     several = several_impact(
         before.body,
         strike.state,
@@ -148,17 +150,18 @@ def _in_space(strike: Strike) -> ImpactMsg:
         restitution_law=strike.law,
         velocity_tolerance=strike.velocity_tolerance,
     )
-    return several_impact_to_msg(several, before)
+    several_impact_to_msg(several, before, into=msg)
 
 
-def _of_two(strike: Strike, other: Subject) -> ImpactMsg:
+def _of_two(strike: Strike, other: Subject, msg: ImpactMsg) -> None:
     before = strike.before
     other_before = Before(body=other.body.mass_properties, state=other.state, state_to_msg=other.state_to_msg)
     if len(strike.contacts) == 1:
         impact = spatial_pair_impact(
             before.body, strike.state, other_before.body, other.state, **strike.one_contact()
         )
-        return spatial_impact_to_msg(impact, before, other_before)
+        spatial_impact_to_msg(impact, before, other_before, into=msg)
+        return
     several = bodies_impact(
         [before.body, other_before.body],
         [strike.state, other.state],
@@ -168,10 +171,10 @@ def _of_two(strike: Strike, other: Subject) -> ImpactMsg:
         restitution_law=strike.law,
         velocity_tolerance=strike.velocity_tolerance,
     )
-    return pair_impact_to_msg(several, before, other_before)
+    pair_impact_to_msg(several, before, other_before, into=msg)
 
 
-def _in_plane(request: Any, response: Any, strike: Strike, knowledge: Knowledge) -> ImpactMsg:
+def _in_plane(request: Any, response: Any, strike: Strike, knowledge: Knowledge) -> None:
     problem = planar_problem_of(
         request,
         strike.subject.body,
@@ -191,7 +194,8 @@ def _in_plane(request: Any, response: Any, strike: Strike, knowledge: Knowledge)
             distance_tolerance=distance_tolerance_of(request, knowledge),
         )
         check_mirrored(problem.plane, strike.state, strike.contacts, partners)
-        return _several_in_plane(request, strike, problem)
+        _several_in_plane(request, strike, problem, response.impact)
+        return
     impact = planar_impact(
         problem.body,
         problem.velocity,
@@ -199,13 +203,13 @@ def _in_plane(request: Any, response: Any, strike: Strike, knowledge: Knowledge)
         law=strike.law,
         velocity_tolerance=strike.velocity_tolerance,
     )
-    msg = planar_impact_to_msg(impact, problem, strike.before)
+    planar_impact_to_msg(impact, problem, strike.before, into=response.impact)
     if request.want_orders:
-        write_orders(msg, _orders(strike, strike.before.body, strike.state, strike.contacts))
-    return msg
+        orders = _orders(strike, strike.before.body, strike.state, strike.contacts)
+        write_orders(response.impact, orders)
 
 
-def _several_in_plane(request: Any, strike: Strike, problem: PlanarProblem) -> ImpactMsg:
+def _several_in_plane(request: Any, strike: Strike, problem: PlanarProblem, msg: ImpactMsg) -> None:
     flat = planar_in_space(problem.body, problem.velocity, problem.contacts, axes_W=problem.plane.axes_W)
     several = several_impact(
         *flat,
@@ -215,10 +219,9 @@ def _several_in_plane(request: Any, strike: Strike, problem: PlanarProblem) -> I
     )
     velocity = planar_velocity(problem.plane, several.state)
     after = with_planar_velocity(problem, strike.state, velocity)
-    msg = several_impact_to_msg(replace(several, state=after), strike.before)
+    several_impact_to_msg(replace(several, state=after), strike.before, into=msg)
     if request.want_orders:
         write_orders(msg, _orders(strike, *flat))
-    return msg
 
 
 def _orders(strike: Strike, body: MassProperties, state: BodyState, contacts: ContactSet) -> OrderedOutcomes:

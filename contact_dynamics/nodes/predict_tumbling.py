@@ -55,12 +55,13 @@ def predict_tumbling(request: Any, response: Any, knowledge: Knowledge) -> None:
     subject = subject_of(request, knowledge, fit=partial(fit_motion, **forces))
     motion, method = motion_of(subject.body.mass_properties, subject.state, **forces)
     times, event = times_of(request, response, subject, motion, knowledge)
-    response.poinsot = _poinsot(request, subject, motion)
-    response.trajectory = trajectory_to_msg(
+    response.poinsot = _poinsot(request, subject, motion, response.poinsot)
+    trajectory_to_msg(
         motion.at(times),
         stamp_ns=subject.state.stamp_ns,
         world_frame=subject.world_frame,
         p_FB_F=subject.body.p_FB_F,
+        into=response.trajectory,
     )
     if request.want_covariance:
         write_covariances(response.trajectory, _covariances(subject, motion, times))
@@ -73,10 +74,12 @@ def predict_tumbling(request: Any, response: Any, knowledge: Knowledge) -> None:
         response.event_point = point_to_msg(event.point_W)
         response.event_velocity = vector_to_msg(event.velocity_W)
         response.event_surface = event.surface
-    response.state = subject.state_to_msg(subject.state)
+    subject.state_to_msg(subject.state, into=response.state)
 
 
-def _poinsot(request: Any, subject: Subject, motion: FreeMotion | ForcedMotion) -> PoinsotMsg:
+def _poinsot(
+    request: Any, subject: Subject, motion: FreeMotion | ForcedMotion, msg: PoinsotMsg
+) -> PoinsotMsg:
     if isinstance(motion, ForcedMotion):
         if not motion.rotates_freely:
             return torque_acts()
@@ -88,6 +91,7 @@ def _poinsot(request: Any, subject: Subject, motion: FreeMotion | ForcedMotion) 
         poinsot(motion),
         next_flips(motion, FLIPS, covariance=subject.covariance),
         rolling_curves(motion, count) if count else None,
+        into=msg,
     )
 
 

@@ -61,10 +61,14 @@ class Subject:
     covariance: FloatArray | None = None  # (12, 12), of the state; None: not known
     fit: FitResult | None = None  # where the state is a fit to several
 
-    def state_to_msg(self, state: BodyState) -> BodyStateMsg:
-        """Return a state of this body as a message."""
+    def state_to_msg(self, state: BodyState, *, into: BodyStateMsg | None = None) -> BodyStateMsg:
+        """Return a state of this body as a message: a new one, or the one to fill."""
         return body_state_to_msg(
-            state, body_name=self.body.name, world_frame=self.world_frame, p_FB_F=self.body.p_FB_F
+            state,
+            body_name=self.body.name,
+            world_frame=self.world_frame,
+            p_FB_F=self.body.p_FB_F,
+            into=into,
         )
 
 
