@@ -133,15 +133,16 @@ def search_of(case: SpatialCase, facets: int) -> Search:
                 free=motion.points_free[i],
             )
         )
-    power = motion.wrench / motion.lengths
-    size = float(np.linalg.norm(power))
-    at_rest = motion.at_rest and size > 0.0 and not np.any(sliding[touching])
+    mass = np.zeros((6, 6))
+    mass[:3, :3] = motion.mass * np.eye(3)
+    mass[3:, 3:] = motion.inertia / motion.lengths[3] ** 2
     forces = (3 * touching[:, None] + np.arange(3)).ravel()
     return Search(
         stated,
         of_forces=motion.lengths[:, None] * motion.of_forces[:, forces],
         free=motion.free * motion.lengths / motion.scale,
-        power=power / size if at_rest else None,
+        mass=mass,
+        at_rest=motion.at_rest and not np.any(sliding[touching]),
         facets=facets,
     )
 

@@ -40,7 +40,7 @@ FRICTION_FACETS: Final = 8
 """Edges of a friction pyramid where nothing else is asked for: it holds at least 92 % of the round cone's."""
 
 _SAME: Final = 1e-6
-"""Relative: how far the ends of what a mode allows may lie apart where it counts as unique."""
+"""Relative: how far the motions of two modes may lie apart where they count as the same."""
 
 
 def spatial_contact_modes(
@@ -65,8 +65,8 @@ def spatial_contact_modes(
         friction_facets: Edges of the pyramid that stands for a friction cone at rest, >= 3.
         sharpen: Whether the pyramids' sectors are left behind: friction is turned exactly against the
             sliding, in modes of unique motion where that has a solution (`spatial_sharpening`), and modes
-            with the same letters are one if their motion is the same, or not unique in any of them. Otherwise
-            each sector counts.
+            with the same letters are one if their motion is the same, or where some of them has none that is
+            unique. Otherwise each sector counts, hundreds where the motion under many feet is not unique.
         velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero, and so
             does an angular velocity that moves no contact relative to the centre of mass by more than that.
 
@@ -102,20 +102,24 @@ def spatial_contact_modes(
 def evidenced(case: SpatialCase, search: Search, *, sharpen: bool) -> list[tuple[SpatialMode, Found]]:
     """Return the modes of a case with what the search found of them; of twins, if sharpened, the first.
 
-    Twins have the same letters, and either the same unique motion or both one that is not unique.
+    Twins have the same letters and the same motion. Where the motion with some letters is not unique, all
+    with these letters are twins of that mode.
     """
-    found: list[tuple[SpatialMode, Found]] = []
-    for one in search.run():
-        mode = _evidence(case, search, one, sharpen=sharpen)
-        if not (sharpen and any(_are_twins(mode, other) for other, _ in found)):
-            found.append((mode, one))
-    return found
+    every = search.run(grouped=sharpen)
+    found = [(_evidence(case, search, one, sharpen=sharpen), one) for one in every]
+    if not sharpen:
+        return found
+    kept: list[tuple[SpatialMode, Found]] = []
+    for mode, one in sorted(found, key=lambda pair: pair[0].motion_unique):
+        if not any(_are_twins(mode, other) for other, _ in kept):
+            kept.append((mode, one))
+    return kept
 
 
 def _are_twins(mode: SpatialMode, other: SpatialMode) -> bool:
-    if (mode.mode, mode.motion_unique) != (other.mode, other.motion_unique):
+    if mode.mode != other.mode:
         return False
-    if not mode.motion_unique:
+    if not (mode.motion_unique and other.motion_unique):
         return True
     one = np.concatenate([mode.acceleration_W, mode.angular_acceleration_W])
     two = np.concatenate([other.acceleration_W, other.angular_acceleration_W])
@@ -127,11 +131,11 @@ def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool)
     motion, contacts, sliding, touching = case
     count = search.edges.shape[1]
     shares = found.program.shares(count)
-    mixture = np.random.default_rng(26).normal(size=(1, 6 + len(search.edges)))
-    motion_unique, low, high = _ends(found, mixture[0, :6] @ search.motion[:, :-1])
+    motion_unique, low, high = search.ends_of_motion(found)
     if not motion_unique and low is not None and high is not None:
         shares = 0.5 * (low + high)  # away from the borders of the mode
-    forces_unique = _ends(found, mixture[0, 6:] @ search.edges)[0]
+    mixture = np.random.default_rng(26).normal(size=len(search.edges))
+    forces_unique = found.program.ends(mixture @ search.edges).unique
     own, acting = (search.edges @ shares).reshape(-1, 3), search.acting(found)
     if sharpen and motion_unique:
         own, acting = _sharpened(search, found, own, acting)
@@ -175,14 +179,3 @@ def _sharpened(
     mode = Sliding(search.touching, search.pyramids, letters, search.of_forces, search.motion[:, -1])
     exact = sharpened(mode, forces)
     return (forces, acting) if exact is None else (exact.forces, exact.edges)
-
-
-def _ends(found: Found, weights: FloatArray) -> tuple[bool, FloatArray | None, FloatArray | None]:
-    """Return whether a combination of edge forces is the same for all that the mode allows, and its ends."""
-    largest = float(np.abs(weights).max(initial=0.0))
-    weights = weights / largest if largest > 0.0 else weights  # whatever the units of force
-    ends = found.program.spread(weights)
-    if ends is None:
-        return False, None, None
-    low, high = float(weights @ ends[0]), float(weights @ ends[1])
-    return high - low <= _SAME * (1.0 + abs(low)), ends[0], ends[1]

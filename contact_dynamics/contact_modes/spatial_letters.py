@@ -17,6 +17,8 @@ import numpy as np
 from contact_dynamics.friction import linearised_cone, tangents
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from contact_dynamics.validation import FloatArray
 
 STRICT: Final = 1e-8
@@ -48,6 +50,11 @@ class Pyramid(NamedTuple):
     edges: FloatArray  # (K, 3), of unit normal force
     frame: tuple[FloatArray, FloatArray] | None  # unit tangents, edge 0 along the first; None: one edge
     first: int  # name of the first edge force; the others follow
+
+    def tangential(self) -> FloatArray:
+        """Return the edges' parts along the frame, (K, 2)."""
+        along: FloatArray = self.edges @ np.array(self.frame).T
+        return along
 
 
 def pyramid_of(
@@ -142,33 +149,38 @@ def _slides(arc: list[int], first_name: int, along: FloatArray) -> Letters:
     return Letters("c", first, silent, None, np.array([along[j] - along[k], *sides]), 1, ())
 
 
-def acting_edges(directions: list[tuple[float, float]], count: int) -> set[int] | None:
-    """Return the edges, of ``count``, that oppose some sliding among positive sums of directions.
+def acting_edges(directions: FloatArray, count: int) -> NDArray[np.bool_]:
+    """Return which edges, (m, count), of each contact's pyramid oppose some sliding among positive sums.
 
     Args:
-        directions: In the pyramid's frame.
-        count: Edges of the pyramid.
-
-    None: any may act, because the sum can vanish.
+        directions: (m, 2, p), whose sums are meant, in each pyramid's frame; where they can vanish, any edge
+            may act.
+        count: Edges of a pyramid.
     """
-    angles = []
-    for x, y in directions:
-        if math.hypot(x, y) <= _AT_BORDER:
-            return None
-        angles.append(math.atan2(y, x))
-    angles.sort()
-    gaps = [b - a for a, b in zip(angles, [*angles[1:], angles[0] + 2.0 * math.pi], strict=True)]
-    widest = max(range(len(gaps)), key=gaps.__getitem__)
-    if gaps[widest] <= math.pi + _AT_BORDER:
-        return None
-    low = angles[(widest + 1) % len(angles)]
+    x, y = directions[:, 0], directions[:, 1]
+    angles = np.sort(np.arctan2(y, x), axis=1)
+    gaps = np.diff(angles, axis=1, append=angles[:, :1] + 2.0 * math.pi)
+    widest = gaps.argmax(axis=1)
+    each = np.arange(len(angles))
+    gap = gaps[each, widest]
     sector = 2.0 * math.pi / count
-    start = (low - math.pi) / sector + 0.5
-    end = start + (2.0 * math.pi - gaps[widest]) / sector
-    return {j % count for j in range(math.floor(start - _AT_BORDER), math.floor(end + _AT_BORDER) + 1)}
+    start = (angles[each, (widest + 1) % angles.shape[1]] - math.pi) / sector + 0.5
+    first = np.floor(start - _AT_BORDER)
+    more = np.floor(start + (2.0 * math.pi - gap) / sector + _AT_BORDER) - first
+    acting: NDArray[np.bool_] = (np.arange(count) - first[:, None]) % count <= more[:, None]
+    acting[(gap <= math.pi + _AT_BORDER) | (np.hypot(x, y).min(axis=1) <= _AT_BORDER)] = True
+    return acting
 
 
-def with_acting(letters: Letters, silent: frozenset[int], own: frozenset[int]) -> Letters:
-    """Return a group without the slides whose ``own`` edges are all ``silent``."""
-    parts = tuple(with_acting(part, silent, own) for part in letters.parts if own - part.zeroed - silent)
+def with_acting(letters: Letters, silent: frozenset[int], own: frozenset[int]) -> Letters | None:
+    """Return a group without the slides any of whose edges, among ``own``, is ``silent``; None: all are.
+
+    A group of one letter becomes that letter.
+    """
+    if not letters.parts:
+        return None if silent & own - letters.zeroed else letters
+    fewer = [with_acting(part, silent, own) for part in letters.parts]
+    parts = tuple(part for part in fewer if part is not None)
+    if len(parts) < 2:
+        return parts[0] if parts else None
     return letters._replace(parts=parts)

@@ -9,7 +9,7 @@ ties are rare.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -37,6 +37,18 @@ _GOLDEN: Final = 0.6180339887498949
 
 _MOST_STEPS: Final = 500
 """Of the primal simplex; Bland's rule, which cannot cycle, holds from a fifth of it."""
+
+
+_SAME: Final = 1e-6
+"""Relative: how far the ends of what a mode allows may lie apart where it counts as unique."""
+
+
+class Ends(NamedTuple):
+    """What a weighted sum of edge forces ranges over."""
+
+    unique: bool  # it is one number
+    low: FloatArray | None  # (K,), edge forces where it is least; None: it has no bound
+    high: FloatArray | None  # (K,), and largest
 
 
 class Program:
@@ -72,7 +84,7 @@ class Program:
         self,
         *,
         zeroed: Collection[int] = (),
-        raised: int | None = None,
+        raised: Collection[int] = (),
         least: float = 0.0,
         rows: FloatArray | None = None,
         equalities: int = 0,
@@ -82,7 +94,7 @@ class Program:
 
         Args:
             zeroed: Names of variables that are zero.
-            raised: Name of a variable that is at least ``least``.
+            raised: Names of variables that are at least ``least``.
             least: See ``raised``.
             rows: (k, 7), combinations of motion and a constant; the first ``equalities`` of them are zero,
                 the others not negative.
@@ -104,11 +116,11 @@ class Program:
         for k, name in enumerate(names):
             if name in zeroed:
                 fixed[k] = 1.0
-        if raised is not None:
-            if raised in names:
-                table[_HEAD + names.index(raised), -1] -= least
+        for name in raised:
+            if name in names:
+                table[_HEAD + names.index(name), -1] -= least
             else:
-                table[:, -1] += least * table[:, columns.index(raised)]
+                table[:, -1] += least * table[:, columns.index(name)]
         if rows is not None and len(rows):
             table = np.concatenate([table, _rows_of(rows, table[1:_HEAD])])
             names += [tag] * len(rows)
@@ -116,6 +128,37 @@ class Program:
             added[:equalities] = 1.0
             fixed = np.concatenate([fixed, added])
         return Program(table, names, columns, fixed)
+
+    def allows_any(self, weights: FloatArray, constants: FloatArray, least: float) -> bool:
+        """Return whether some edge forces satisfy all conditions and one, any one, further condition.
+
+        Args:
+            weights: (k, K), each condition's weights of the edge forces.
+            constants: (k,), added to the weighted sums, which must be at least ``least``.
+            least: See ``constants``.
+        """
+        count = weights.shape[1]
+        rows, columns = np.array(self._rows, dtype=int), np.array(self._columns, dtype=int)
+        ours = np.flatnonzero((rows >= 0) & (rows < count))
+        sums = weights[:, rows[ours]] @ self._table[_HEAD + ours]
+        beside = np.flatnonzero((columns >= 0) & (columns < count))
+        sums[:, beside] += weights[:, columns[beside]]
+        sums[:, -1] += constants - least
+        if sums[:, -1].max() >= 0.0:
+            return True
+        for row in sums:
+            table = np.concatenate([self._table, row[None, :]])
+            fixed = np.append(self._fixed, 0.0)
+            # Only solved, not narrowed again: the name is not asked for.
+            if Program(table, [*self._rows, _DEAD], list(self._columns), fixed).solve():
+                return True
+        return False
+
+    @property
+    def motion(self) -> FloatArray:
+        """The motion, (6,), of the table's edge forces."""
+        found: FloatArray = self._table[1:_HEAD, -1]
+        return found
 
     def solve(self) -> bool:
         """Return whether some edge forces satisfy all conditions, and make the table theirs."""
@@ -176,6 +219,20 @@ class Program:
                 return None
             ends.append(work.shares(len(weights)))
         return ends[0], ends[1]
+
+    def ends(self, weights: FloatArray) -> Ends:
+        """Return whether a weighted sum of edge forces is the same for all that are allowed, and its ends.
+
+        Args:
+            weights: (K,).
+        """
+        largest = float(np.abs(weights).max(initial=0.0))
+        weights = weights / largest if largest > 0.0 else weights  # whatever the units of force
+        found = self.spread(weights)
+        if found is None:
+            return Ends(unique=False, low=None, high=None)
+        low, high = float(weights @ found[0]), float(weights @ found[1])
+        return Ends(high - low <= _SAME * (1.0 + abs(low)), *found)
 
     def _settle_fixed(self) -> None:
         """Exchange what is fixed at zero for columns, as far as those move it."""

@@ -24,14 +24,18 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial_letters import Pyramid
     from contact_dynamics.validation import FloatArray
 
-_NARROW: Final = 0.8
-"""Cosine between any two rays above which a region is not split further: 37 degrees, a sector or so."""
+_NARROW: Final = {2: 0.95, 3: 0.95}
+"""Cosine between any two rays above which a region of so many dimensions is not split further: 18 degrees."""
+
+_NARROW_OF_MORE: Final = 0.8
+"""Where there are more dimensions: 37 degrees, a sector or so."""
 
 
 class Image(NamedTuple):
     """The tangential accelerations of some contacts under the motions in which others stay as well."""
 
     coordinates: FloatArray  # (p, 6), of a motion
+    unseen: FloatArray  # (q, 6), motions without tangential acceleration
     maps: FloatArray  # (m, 2, p), from coordinates to the contacts' accelerations in their pyramids' frames
 
 
@@ -56,7 +60,7 @@ class Region(NamedTuple):
         unit = self.rays / np.linalg.norm(self.rays, axis=1)[:, None]
         cosines = unit @ unit.T
         one, other = divmod(int(cosines.argmin()), len(unit))
-        if cosines[one, other] > _NARROW:
+        if cosines[one, other] > _NARROW.get(len(unit), _NARROW_OF_MORE):
             return None
         near, far = self.rays.copy(), self.rays.copy()
         near[other] = far[one] = 0.5 * (self.rays[one] + self.rays[other])
@@ -64,13 +68,55 @@ class Region(NamedTuple):
 
     def silent_edges(self, image: Image, pyramids: list[Pyramid]) -> frozenset[int]:
         """Return the names of the edges that oppose no sliding in the region."""
-        silent: list[int] = []
-        for directions, pyramid in zip((image.maps @ self.rays.T).tolist(), pyramids, strict=True):
-            count = len(pyramid.edges)
-            acting = acting_edges(list(zip(*directions, strict=True)), count)
-            if acting is not None:
-                silent += [pyramid.first + j for j in range(count) if j not in acting]
-        return frozenset(silent)
+        count = len(pyramids[0].edges)
+        acting = acting_edges(image.maps @ self.rays.T, count)
+        names = np.array([pyramid.first for pyramid in pyramids])[:, None] + np.arange(count)
+        return frozenset(names[~acting].tolist())
+
+    def friction(self, image: Image, pyramids: list[Pyramid]) -> FloatArray:
+        """Return the power, for unit normal force, of one share of friction at each contact, (m, p), on rays.
+
+        The share is that of the edge that opposes most the sliding in the middle of the region.
+        """
+        along = image.maps @ self.rays.T  # (m, 2, p)
+        middles = along.sum(axis=2)
+        found = np.zeros((len(pyramids), len(self.rays)))
+        for i, (pyramid, middle) in enumerate(zip(pyramids, middles.tolist(), strict=True)):
+            tangential = pyramid.tangential()
+            found[i] = tangential[int((tangential @ middle).argmin())] @ along[i]
+        return found
+
+
+class Flat(NamedTuple):
+    """The motions in which some contacts stick."""
+
+    chosen: tuple[int, ...]  # contacts that were asked to
+    stuck: frozenset[int]  # those and all that stick with them
+    rows: FloatArray  # (k, 6), of the motion, zero
+    image: Image  # of the contacts that need not stick
+
+    def parts(self, normals: FloatArray, frames: FloatArray) -> Iterator[Flat]:
+        """Yield the flats in which one contact more sticks, with all that must then."""
+        others = [i for i in range(len(frames)) if i not in self.stuck]
+        if len(self.image.coordinates) == 1:
+            others = others[:1]
+        for i in others:
+            yield flat_of(normals, frames, (*self.chosen, i))
+
+
+def flat_of(normals: FloatArray, frames: FloatArray, chosen: tuple[int, ...]) -> Flat:
+    """Return the motions in which some contacts stick.
+
+    Args:
+        normals: As for `image_of`.
+        frames: As for `image_of`, of all contacts that may stick or slide.
+        chosen: The contacts.
+    """
+    sticking = frames[list(chosen)].reshape(-1, 6)
+    image = image_of(np.vstack([normals, sticking]), frames)
+    moves = np.abs(image.maps).max(axis=(1, 2), initial=0.0) > ROW_TOLERANCE
+    stuck = frozenset(np.flatnonzero(~moves).tolist())
+    return Flat(chosen, stuck, _row_space(sticking)[0], image._replace(maps=image.maps[moves]))
 
 
 def image_of(normals: FloatArray, frames: FloatArray) -> Image:
@@ -82,8 +128,8 @@ def image_of(normals: FloatArray, frames: FloatArray) -> Image:
     """
     free = _row_space(normals)[1]
     along = frames.reshape(-1, 6) @ free.T
-    basis = _row_space(along)[0]
-    return Image(basis @ free, (along @ basis.T).reshape(len(frames), 2, -1))
+    basis, rest = _row_space(along)
+    return Image(basis @ free, rest @ free, (along @ basis.T).reshape(len(frames), 2, -1))
 
 
 def whole(dimensions: int) -> Iterator[Region]:

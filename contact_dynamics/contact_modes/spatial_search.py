@@ -1,13 +1,18 @@
 """Every combination of letters that some contact forces bring about: a search that refuses many at once.
 
-First which contacts stay, one after another. Then, where several frictional contacts at rest stay, which way
-they slide together: nowhere, or within one of few regions of their common motions, split while it is wide and
-may hold (`spatial_regions`). Then the letters of each contact, in groups that are split further and further
-(`spatial_letters`). Whatever is asked is asked of all its parts, and what cannot hold is dropped with all of
-them, so that no consistent mode is missed. Each trial is a few pivots of a dual simplex (`spatial_program`).
+First which contacts stay, one after another. Then, where several frictional contacts at rest stay, which of
+them stick; the motions with given contacts sticking form a flat, and there are few: under a face on a table
+one for each foot, and rest. Within a flat all others slide, in one of few regions of their common motions,
+split while it is wide and may hold (`spatial_regions`). Then the letters of each contact, in groups that are
+split further and further (`spatial_letters`). Whatever is asked is asked of all its parts, and what cannot
+hold is dropped with all of them, so that no consistent mode is missed. Each trial is a few pivots of a dual
+simplex (`spatial_program`).
 
-At rest, the applied wrench must have power >= 0 on the accelerations: they gain kinetic energy, and friction
-takes some. This holds for every mode and refuses much at once.
+At rest, power refuses much at once. Motions gain kinetic energy, so the applied wrench has power >= 0 on
+them, and at least what friction takes. Friction takes the most that it can (maximum dissipation), so that any
+other share of friction, taken for a whole region, must leave some power somewhere in it (`_dissipates`).
+Without this the load could shift to contacts that are not decided yet, and nothing is refused before the last
+few: with many feet, that would be every cell of the arrangement of all their sectors.
 """
 
 from __future__ import annotations
@@ -23,8 +28,8 @@ from contact_dynamics.contact_modes.spatial_letters import (
     ways_of_sliding,
     with_acting,
 )
-from contact_dynamics.contact_modes.spatial_program import Program
-from contact_dynamics.contact_modes.spatial_regions import Image, Region, image_of, whole
+from contact_dynamics.contact_modes.spatial_program import Ends, Program
+from contact_dynamics.contact_modes.spatial_regions import Image, Region, flat_of, whole
 from contact_dynamics.errors import TooLargeError
 
 if TYPE_CHECKING:
@@ -32,8 +37,8 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 MOST_EXAMINED: Final = 30_000
-"""Trials, of some 0.1 ms each, after which a search is given up: where many feet slide along the border of
-two sectors of their pyramids at once, either sector is consistent for each."""
+"""Trials, of some 0.1 ms each, after which a search is given up: where the motion of a body on many feet is
+not unique, hundreds of combinations of their sectors may be consistent, and all are asked for."""
 
 _REGION_TAG = -2
 _CONTACT_TAG = -3
@@ -57,6 +62,15 @@ class Found(NamedTuple):
     program: Program  # solved
 
 
+class Common(NamedTuple):
+    """What regions of common sliding share."""
+
+    image: Image  # their space
+    open_ones: list[int]  # contacts that slide
+    pyramids: list[Pyramid]  # theirs
+    gains: FloatArray | None  # (p,), power of the applied wrench; None: not known, something moves
+
+
 class Search:
     """The modes of touching contacts.
 
@@ -70,7 +84,8 @@ class Search:
         *,
         of_forces: FloatArray,
         free: FloatArray,
-        power: FloatArray | None,
+        mass: FloatArray,
+        at_rest: bool,
         facets: int,
     ) -> None:
         """State the problem.
@@ -79,7 +94,8 @@ class Search:
             touching: The contacts.
             of_forces: (6, 3 n), motion for unit contact forces.
             free: (6,), motion without contact forces.
-            power: (6,), of the motion, that the applied wrench has, if it must be >= 0.
+            mass: (6, 6), forces and torques for unit motion.
+            at_rest: Whether nothing moves, so that the applied wrench has power >= 0.
             facets: Edges of a friction pyramid.
         """
         self.touching = touching
@@ -106,14 +122,17 @@ class Search:
         sizes = np.linalg.norm(motion, axis=0)
         sizes[sizes == 0.0] = 1.0
         self.edges /= sizes
+        self._sizes = sizes
         self.motion = np.column_stack([motion / sizes, free])
         self.examined = 0  # programs solved so far
         self._first_normal = first  # name of contact 0's normal acceleration
         self._normals = np.array([c.normal @ c.point for c in touching]).reshape(-1, 7)
         named = self._normals
         names = [first + i for i in range(len(touching))]
-        if power is not None:
-            named = np.vstack([named, np.append(power, 0.0)])
+        self._mass = mass
+        self._power = mass @ free if at_rest and np.any(free) else None
+        if self._power is not None:
+            named = np.vstack([named, np.append(self._power / np.linalg.norm(self._power), 0.0)])
             names.append(first + len(touching))
         self._root = Program.stated(self.motion, named, names)
         self._trials = [
@@ -121,20 +140,22 @@ class Search:
             for i, (contact, pyramid) in enumerate(zip(touching, self.pyramids, strict=True))
         ]
         self._ways: dict[int, tuple[Letters, ...]] = {}
-        self._found: dict[tuple[tuple[str, int], ...], list[Letters]] = {}
+        self._found: dict[tuple[tuple[str, int], ...], Found] = {}
+        self._grouped = False
+        self._goal = ""  # the letters that are sought, where all are known
+        self._settled: set[str] = set()  # letters that need no further mode
 
-    def run(self) -> list[Found]:
-        """Return all modes."""
+    def run(self, *, grouped: bool = False) -> list[Found]:
+        """Return all modes.
+
+        Args:
+            grouped: Whether one mode stands for all with the same letters, whatever their items, where the
+                motion of one of them is not unique. Otherwise each is found.
+        """
+        self._grouped = grouped
         if self._holds(self._root):
             self._decide_who_stays(self._root, self._trials, 0)
-        found = []
-        for letters in self._found.values():
-            program = self._root
-            for i, letter in enumerate(letters):
-                program = self._narrowed(program, i, letter, staying=letter.letter != "s")
-            if self._holds(program):
-                found.append(Found(letters, program))
-        return found
+        return list(self._found.values())
 
     def acting(self, found: Found) -> list[FloatArray]:
         """Return the edges of each contact's pyramid that its letter allows to act."""
@@ -142,6 +163,11 @@ class Search:
             np.array([e for j, e in enumerate(p.edges) if p.first + j not in letter.zeroed]).reshape(-1, 3)
             for p, letter in zip(self.pyramids, found.letters, strict=True)
         ]
+
+    def ends_of_motion(self, found: Found) -> Ends:
+        """Return whether a mode has one motion, and edge forces at the ends of what it has."""
+        mixture = np.random.default_rng(26).normal(size=6)
+        return found.program.ends(mixture @ self.motion[:, :-1])
 
     def _holds(self, program: Program) -> bool:
         self.examined += 1
@@ -159,7 +185,7 @@ class Search:
             zeroed |= {self._first_normal + at}
         return program.narrowed(
             zeroed=zeroed,
-            raised=letters.raised,
+            raised=() if letters.raised is None else (letters.raised,),
             least=STRICT,
             rows=letters.rows,
             equalities=letters.equalities,
@@ -181,46 +207,107 @@ class Search:
         if len(open_ones) < 2 or np.any(frames[:, :, -1]):
             # One contact's letters are as few as regions; with centripetal terms directions are not cones.
             for i in open_ones:
-                trials = [*trials[:i], self._with_ways(i, trials[i]), *trials[i + 1 :]]
+                any_way = trials[i]._replace(parts=(*trials[i].parts, *self._ways_of(i)))
+                trials = [*trials[:i], any_way, *trials[i + 1 :]]
             self._decide_letters(program, trials, [0] * len(trials))
             return
-        sticking, all_stick = program, list(trials)
-        for i in open_ones:
-            all_stick[i] = trials[i].parts[0]
-            sticking = self._narrowed(sticking, i, all_stick[i])
-        if self._holds(sticking):
-            self._note(all_stick)
         staying = [i for i, letters in enumerate(trials) if letters.letter != "s"]
-        image = image_of(self._normals[staying, :-1], frames[:, :, :-1])
-        for region in whole(len(image.coordinates)):
-            self._decide_within(region, program, trials, image, open_ones)
+        normals, frames = self._normals[staying, :-1], frames[:, :, :-1]
+        flats = [flat_of(normals, frames, ())]
+        seen = {flats[0].stuck}
+        while flats:
+            flat = flats.pop()
+            narrower = program
+            if flat.stuck:
+                rows = np.column_stack([flat.rows, np.zeros(len(flat.rows))])
+                tag = _CONTACT_TAG - len(trials)
+                narrower = program.narrowed(rows=rows, equalities=len(rows), tag=tag)
+                if not self._holds(narrower):
+                    continue
+            decided = list(trials)
+            for k in flat.stuck:
+                decided[open_ones[k]] = trials[open_ones[k]].parts[0]
+            self._decide_flat(narrower, decided, flat.image)
+            for further in flat.parts(normals, frames):
+                if further.stuck not in seen:
+                    seen.add(further.stuck)
+                    flats.append(further)
 
-    def _decide_within(
-        self, region: Region, program: Program, trials: list[Letters], image: Image, open_ones: list[int]
-    ) -> None:
-        silent = region.silent_edges(image, [self.pyramids[i] for i in open_ones])
-        narrower = program.narrowed(zeroed=silent, rows=region.rows(image), tag=_REGION_TAG)
-        if not self._holds(narrower):
+    def _decide_flat(self, program: Program, trials: list[Letters], image: Image) -> None:
+        """Find the modes in which all contacts that are not decided slide."""
+        open_ones = [i for i, letters in enumerate(trials) if letters.parts]
+        if not open_ones:
+            self._note(trials)
+            return
+        trials = list(trials)
+        for i in open_ones:
+            trials[i] = trials[i]._replace(letter="c")
+        self._goal = "".join(letters.letter for letters in trials)
+        common = self._common(image, open_ones)
+        for region in whole(len(image.coordinates)):
+            self._decide_within(region, program, trials, common)
+        self._goal = ""
+
+    def _common(self, image: Image, open_ones: list[int]) -> Common:
+        """Return what the regions of a flat share."""
+        gains = None
+        if self._power is not None:
+            # Seen motions with which unseen ones have no kinetic energy in common: those gain on their own.
+            unseen = image.unseen @ self._mass
+            rest = np.linalg.solve(unseen @ image.unseen.T, image.unseen @ self._power)
+            gains = image.coordinates @ (self._power - rest @ unseen)
+        return Common(image, open_ones, [self.pyramids[i] for i in open_ones], gains)
+
+    def _decide_within(self, region: Region, program: Program, trials: list[Letters], common: Common) -> None:
+        if self._goal in self._settled:
+            return
+        silent = region.silent_edges(common.image, common.pyramids)
+        narrower = program.narrowed(zeroed=silent, rows=region.rows(common.image), tag=_REGION_TAG)
+        if not self._holds(narrower) or not self._dissipates(region, narrower, common):
             return
         halves = region.halves()
         if halves is not None:
             for half in halves:
-                self._decide_within(half, narrower, trials, image, open_ones)
+                self._decide_within(half, narrower, trials, common)
             return
         fewer = list(trials)
-        for i in open_ones:
-            pyramid = self.pyramids[i]
+        for i, pyramid in zip(common.open_ones, common.pyramids, strict=True):
             own = frozenset(range(pyramid.first, pyramid.first + len(pyramid.edges)))
-            fewer[i] = with_acting(self._with_ways(i, trials[i]), silent, own)
+            slides = trials[i]._replace(parts=self._ways_of(i))
+            kept = with_acting(slides, silent, own)
+            if kept is None:
+                return
+            fewer[i] = kept
         self._decide_letters(narrower, fewer, [0] * len(trials))
 
-    def _with_ways(self, at: int, stays: Letters) -> Letters:
-        """Return the letters of a contact that stays, with its ways of sliding."""
+    def _dissipates(self, region: Region, program: Program, common: Common) -> bool:
+        """Return whether friction may take no more power than the applied wrench has.
+
+        Friction takes the most that it can, so at least what the same normal forces would with any fixed
+        share of friction. What then is left is linear in the motion: if it is not negative somewhere in the
+        region, neither is it on all of the region's rays.
+        """
+        if common.gains is None:
+            return True
+        self.examined += 1
+        weights = np.zeros((len(region.rays), self.edges.shape[1]))
+        taken = region.friction(common.image, common.pyramids)
+        for pyramid, of_contact in zip(common.pyramids, taken, strict=True):
+            own = slice(pyramid.first, pyramid.first + len(pyramid.edges))
+            weights[:, own] = of_contact[:, None] / self._sizes[own]
+        gains = region.rays @ common.gains
+        scale = max(float(np.abs(weights).max()), float(np.abs(gains).max()))
+        return program.allows_any(weights / scale, gains / scale, -STRICT)
+
+    def _ways_of(self, at: int) -> tuple[Letters, ...]:
+        """Return the ways of sliding of a contact, laid out once they are asked for."""
         if at not in self._ways:
             self._ways[at] = ways_of_sliding(self.pyramids[at], self.touching[at].point)
-        return stays._replace(parts=(*stays.parts, *self._ways[at]))
+        return self._ways[at]
 
     def _decide_letters(self, program: Program, trials: list[Letters], depths: list[int]) -> None:
+        if self._goal in self._settled:
+            return
         open_ones = [i for i, letters in enumerate(trials) if letters.parts]
         if not open_ones:
             self._note(trials)
@@ -233,4 +320,16 @@ class Search:
                 self._decide_letters(narrower, [*trials[:at], part, *trials[at + 1 :]], deeper)
 
     def _note(self, letters: list[Letters]) -> None:
-        self._found.setdefault(tuple((one.letter, one.item) for one in letters), letters)
+        """Keep the mode, if some forces bring it about."""
+        key = tuple((one.letter, one.item) for one in letters)
+        if key in self._found:
+            return
+        program = self._root
+        for i, letter in enumerate(letters):
+            program = self._narrowed(program, i, letter, staying=letter.letter != "s")
+        if not self._holds(program):
+            return
+        found = Found(letters, program)
+        self._found[key] = found
+        if self._grouped and not self.ends_of_motion(found)[0]:
+            self._settled.add("".join(one.letter for one in letters))
