@@ -81,19 +81,20 @@ class Progress:
             v_end = value(v_n, end)
             if self.compressing:
                 if v_end < 0.0:
-                    return self._curved_step(series, s, end)
-                s = self._curved_step(series, s, crossing(v_n, 0.0, s, end))
+                    return self._curved_step(series, s, end, v_end)
+                s = self._curved_step(series, s, crossing(v_n, 0.0, s, end), 0.0)
                 self._end_compression()
                 continue
-            turn = crossing(v_n, 0.0, s, end) if v_end < 0.0 else end
+            turn, v_turn = (crossing(v_n, 0.0, s, end), 0.0) if v_end < 0.0 else (end, v_end)
             finish = self._curved_finish(series, s, turn)
-            s = self._curved_step(series, s, turn if finish is None else finish)
             if finish is not None:
+                s = self._curved_step(series, s, finish, value(v_n, finish))
                 self._finish()
-            elif v_end < 0.0:
-                self._compress_again()
-            else:
                 break
+            s = self._curved_step(series, s, turn, v_turn)
+            if v_end >= 0.0:
+                break
+            self._compress_again()
         return s
 
     def jump(self, impulse: Impulse, v_n: float, work: float) -> bool:
@@ -144,7 +145,8 @@ class Progress:
             return v_n >= self.final_velocity
         return (p if self.law == RestitutionLaw.POISSON else work) >= self.due
 
-    def _curved_step(self, series: SlidingSeries, begin: float, end: float) -> float:
+    def _curved_step(self, series: SlidingSeries, begin: float, end: float, v_n: float) -> float:
+        """Advance to ``end``, where the normal velocity is ``v_n``; return it."""
         p = gain(series.normal_impulse, begin, end)
         work = gain(series.normal_work, begin, end) if self.law == RestitutionLaw.ENERGETIC else 0.0
         self._account(p, work)
@@ -154,17 +156,19 @@ class Progress:
             i2 + gain(series.t2, begin, end),
             i_n + p,
         )
-        self.v_n = value(series.normal_velocity, end)
+        self.v_n = v_n
         return end
 
     def _curved_finish(self, series: SlidingSeries, begin: float, end: float) -> float | None:
         """Return the parameter in [begin, end] at which restitution is complete, if it is."""
         if self.law == RestitutionLaw.NEWTON:
             meter, level = series.normal_velocity, self.final_velocity
+            first = value(meter, begin)
         else:
             meter = series.normal_impulse if self.law == RestitutionLaw.POISSON else series.normal_work
-            level = value(meter, begin) + self.due
-        if value(meter, begin) >= level:
+            first = value(meter, begin)
+            level = first + self.due
+        if first >= level:
             return begin
         return crossing(meter, level, begin, end) if value(meter, end) >= level else None
 

@@ -15,6 +15,7 @@ are expanded and evaluated by the same lines, with the same bits.
 
 from __future__ import annotations
 
+from operator import mul
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -49,6 +50,11 @@ MOST_ITERATIONS: Final = 100
 
 _SHARES: Final = tuple(1.0 / n for n in range(1, ORDER + 2))
 
+_STEPS: Final = tuple(
+    (n, _SHARES[n - 1], tuple((i, n - i) for i in range(1, (n + 1) // 2))) for n in range(1, ORDER + 1)
+)
+"""For each n: n, 1/n, and the pairs of different numbers from 1 on whose sum it is."""
+
 
 class SlidingSeries:
     """One stretch of the path: polynomials in the parameter s, from 0 to ``length``.
@@ -75,26 +81,25 @@ class SlidingSeries:
         k1, k2, kn, mu = law.k1 * per_scale, law.k2 * per_scale, law.kn * per_scale, law.mu
         m1, m2 = mu * law.l1 * per_scale, mu * law.l2 * per_scale
         x, y = u
-        first = sqrt(x * x + y * y)
-        self.u1, self.u2, speed = u1, u2, q = [x], [y], [first]
-        per_speed = 1.0 / first
-        for n in range(1, ORDER + 1):
-            share = _SHARES[n - 1]
-            x_n = (k1 * q[-1] - m1 * u1[-1]) * share
-            y_n = (k2 * q[-1] - m2 * u2[-1]) * share
+        x_n, y_n, q_n = x, y, sqrt(x * x + y * y)
+        first, per_speed = q_n, 1.0 / q_n
+        self.u1, self.u2 = u1, u2 = [x_n], [y_n]
+        q = [q_n]
+        for n, share, pairs in _STEPS:
+            x_n, y_n = (k1 * q_n - m1 * x_n) * share, (k2 * q_n - m2 * y_n) * share
             u1.append(x_n)
             u2.append(y_n)
             # Half of what u.u has in its n-th coefficient beyond the known part of q's square.
             half = x * x_n + y * y_n
-            for i in range(1, (n + 1) // 2):
-                j = n - i
+            for i, j in pairs:
                 half += u1[i] * u1[j] + u2[i] * u2[j] - q[i] * q[j]
             if n % 2 == 0:
                 i = n // 2
                 half += 0.5 * (u1[i] * u1[i] + u2[i] * u2[i] - q[i] * q[i])
-            q.append(half * per_speed)
+            q_n = half * per_speed
+            q.append(q_n)
         weight = mu * per_scale
-        self.normal_impulse = _integral([per_scale * c for c in speed])  # N s
+        self.normal_impulse = _integral([per_scale * c for c in q])  # N s
         self.t1 = _integral([-(weight * c) for c in u1])  # N s
         self.t2 = _integral([-(weight * c) for c in u2])
         b1, b2 = mu * k1, mu * k2
@@ -166,8 +171,7 @@ def crossing(series: list[float], level: float, begin: float, end: float) -> flo
 
 
 def _integral(series: list[Number]) -> list[Number]:
-    integral = [share * c for share, c in zip(_SHARES, series, strict=True)]
-    return [0.0 * integral[0], *integral]
+    return [0.0 * series[0], *map(mul, _SHARES, series)]
 
 
 def _reach(speed: Number, terms: tuple[Number, Number, Number], n: int) -> Number:
