@@ -23,6 +23,7 @@ if TYPE_CHECKING:
         SpatialMode,
         SpatialModeAnswer,
         SpatialModeMargin,
+        SpatialWrenchSet,
     )
     from contact_dynamics.planar import PlanarWrench, Vector2
     from contact_dynamics.plane_of_motion import PlanarProblem, PlaneOfMotion
@@ -137,6 +138,18 @@ def wrench_set_to_msg(wrenches: ModeWrenchSet, plane: PlaneOfMotion) -> ModeWren
                 ]
             )
         ),
+    )
+
+
+def spatial_wrench_set_to_msg(wrenches: SpatialWrenchSet) -> ModeWrenches:
+    """Return the applied wrenches of one mode in space, with one way of sliding."""
+    return ModeWrenches(
+        mode=wrenches.mode,
+        vertices=flat(wrenches.vertices),
+        generators=flat(wrenches.generators),
+        half_spaces=flat(wrenches.half_spaces),
+        sliding_from=flat(wrenches.sliding_from_W),
+        sliding_to=flat(wrenches.sliding_to_W),
     )
 
 

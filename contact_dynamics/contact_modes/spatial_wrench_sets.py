@@ -129,8 +129,8 @@ def spatial_wrench_sets(
     every = [(_letters(case, ways), ways) for ways in ways_of(search)]
     wanted = sorted(one for one in every if modes is None or one[0] in modes)
     if len(wanted) > MOST_WRENCH_SETS:
-        found = f"{len(wanted)} sets of wrenches"
-        raise TooLargeError("contacts", found, f"at most {MOST_WRENCH_SETS}: fewer modes or friction_facets")
+        allowed = f"at most {MOST_WRENCH_SETS}: fewer contacts, or fewer friction_facets"
+        raise TooLargeError("contacts", f"{len(wanted)} sets of wrenches", allowed)
     gyration = math.sqrt(float(np.trace(body.I_B)) / (3.0 * body.mass))
     metric = np.array([1.0, 1.0, 1.0, gyration, gyration, gyration])
     turning = wrench - case.motion.wrench  # which a body that turns needs besides

@@ -14,11 +14,13 @@ from contact_dynamics.contact_modes import (
     spatial_kinematic_modes,
     spatial_mode_margins,
     spatial_statics,
+    spatial_wrench_sets,
 )
 from contact_dynamics.contact_modes.problem import MOST_CONTACTS
 from contact_dynamics.contact_modes.spatial_dynamics import FRICTION_FACETS
+from contact_dynamics.contact_modes.spatial_wrench_sets import WRENCH_FACETS
 from contact_dynamics.contact_modes.touching import spatial_contact_velocities
-from contact_dynamics.errors import InvalidFieldError, NotSupportedError, OutOfPlaneError, TooLargeError
+from contact_dynamics.errors import InvalidFieldError, OutOfPlaneError, TooLargeError
 from contact_dynamics.nodes.settled_impact import Question, settle_in_plane, settle_in_space
 from contact_dynamics.nodes.subject import (
     contacts_of,
@@ -31,6 +33,7 @@ from contact_dynamics.nodes.subject import (
 from contact_dynamics.plane_to_space import check_mirrored, mirror_partners
 from contact_dynamics.validation import check_array, check_not_negative
 from msg_adapters.contact_mode import (
+    spatial_wrench_set_to_msg,
     wrench_set_to_msg,
     write_planar_answer,
     write_planar_margins,
@@ -156,9 +159,6 @@ def _answer_in_plane(
 
 
 def _answer_in_space(request: Any, response: Any, question: Question) -> None:
-    if request.want_wrenches:
-        why = f" ({response.out_of_plane_reason})" if response.out_of_plane_reason else ""
-        raise NotSupportedError(f"want_wrenches: found true in space, allowed in a plane of motion only{why}")
     subject, contacts = question.subject, question.contacts
     answer = spatial_contact_modes(
         subject.body.mass_properties,
@@ -191,6 +191,18 @@ def _answer_in_space(request: Any, response: Any, question: Question) -> None:
             velocity_tolerance=question.velocity_tolerance,
         )
         write_spatial_margins(response, margins)
+    if request.want_wrenches:
+        response.wrench_facets = int(request.friction_facets) or WRENCH_FACETS
+        sets = spatial_wrench_sets(
+            subject.body.mass_properties,
+            subject.state,
+            contacts,
+            force_W=question.force_W,
+            torque_W=question.torque_W,
+            friction_facets=response.wrench_facets,
+            velocity_tolerance=question.velocity_tolerance,
+        )
+        response.wrench_sets = [spatial_wrench_set_to_msg(wrenches) for wrenches in sets]
     if request.want_statics:
         statics = spatial_statics(
             subject.body.mass_properties,

@@ -124,11 +124,6 @@ def out_of_plane(request: Any) -> None:
     request.state.angular_velocity.x = 0.25
 
 
-def wrenches_in_space(request: Any) -> None:
-    """What only the plane answers."""
-    request.problem, request.want_wrenches = request.SPATIAL, True
-
-
 def margin_length(request: Any) -> None:
     """A metric without sense, where it is used."""
     request.want_margins, request.margin_length = True, -1.0
@@ -160,7 +155,6 @@ CASES = [
         "friction_facets: found 2, allowed is 0",
     ),
     (PredictContactMode, put("friction_facets", 33), "INVALID_FIELD", "friction_facets: found 33"),
-    (PredictContactMode, wrenches_in_space, "NOT_SUPPORTED", "want_wrenches: found true in space"),
     (PredictContactMode, margin_length, "INVALID_FIELD", "margin_length: found -1.0"),
     (PredictContactMode, put("gravity", 5), "INVALID_FIELD", "gravity: found 5"),
     (PredictImpact, put("state.linear_velocity.z", 1.0), "SEPARATING", "v_n = 1 m/s"),

@@ -152,6 +152,50 @@ def test_the_blocks_set_of_holding_wrenches_is_that_of_its_feet(client: Client) 
     assert units == {tuple(np.round(row / np.linalg.norm(row), 9) + 0.0) for row in np.array(expected)}
 
 
+def brick_in_space() -> Any:
+    """The configured brick, flat on the configured floor, pushed askew to its axes so that it slides."""
+    request = PredictContactMode.Request(body_name="brick", want_wrenches=True)
+    request.state_source, request.state.pose.position.z = request.STATE_EXPLICIT, 0.025
+    request.applied_wrench.force.x = request.applied_wrench.force.y = 1.0
+    return request
+
+
+def test_a_brick_pushed_askew_has_a_map_in_space(client: Client) -> None:
+    """The applied wrench is inside a set of the mode that it brings about, which slides along the push."""
+    answer = client.ask(brick_in_space())
+    assert (answer.status, answer.problem) == (answer.OK, PredictContactMode.Request.SPATIAL), answer.message
+    assert (answer.friction_facets, answer.wrench_facets) == (8, 4)
+    weight = 0.4 * G
+    wrench = np.array([1.0, 1.0, -weight, 0.0, 0.0, 0.0])
+    holding = []
+    for one in answer.wrench_sets:
+        sides = np.array(one.half_spaces).reshape(-1, 7)
+        ranges = np.array(one.sliding_from).reshape(-1, 3), np.array(one.sliding_to).reshape(-1, 3)
+        assert ranges[0].shape == ranges[1].shape == (4, 3)
+        made = np.array(one.generators).reshape(-1, 6).sum(axis=0)
+        assert (sides[:, :6] @ made <= sides[:, 6] + 1e-9 * np.abs(made).max()).all()
+        if (sides[:, :6] @ wrench < sides[:, 6] - 1e-6).all():
+            holding.append((one.mode, ranges))
+    assert [mode for mode, _ in holding] == ["cccc"]
+    (low, high) = holding[0][1]
+    push = np.array([math.sqrt(0.5), math.sqrt(0.5), 0.0])
+    turn = math.pi / 4.0  # half a sector of a pyramid of four edges, the first of which opposes the push
+    np.testing.assert_allclose(low @ push, math.cos(turn), atol=1e-9)
+    np.testing.assert_allclose(np.cross(low, high)[:, 2], math.sin(2.0 * turn), atol=1e-9)
+    assert {one.mode for one in answer.wrench_sets} >= {"ssss", "ffff", "cccc", "ssff"}
+
+
+def test_facets_of_a_map_in_space_are_those_asked_for_and_too_many_are_refused(client: Client) -> None:
+    request = brick_in_space()
+    request.friction_facets = 3
+    answer = client.ask(request)
+    assert (answer.status, answer.friction_facets, answer.wrench_facets) == (answer.OK, 3, 3)
+    request.friction_facets = 16
+    answer = client.ask(request)
+    assert answer.status == answer.TOO_LARGE
+    assert "fewer friction_facets" in answer.message
+
+
 # ---------------------------------------------------------------------------------------------- statics
 
 
