@@ -236,36 +236,19 @@ def free_motion(
     """
     gravity = check_array("gravity", gravity_W, (3,))
     check_extent(body, state, gravity)
-    frame, rotation, form = constants_of(
-        body.I_B.tobytes(), state.q_WB.tobytes(), state.w_WB_W.tobytes(), precision
-    )
-    q_WB = normalised(state.q_WB.tolist())
-    if isinstance(rotation, Spin):
-        rate = float(rotation.rate)
-        along, across = rate, (0.0, 0.0)
-        q_WL = from_z_onto((state.w_WB_W / rate).tolist()) if rate else _IDENTITY
-        q_PB = product(conjugate(q_WL), q_WB)
-    else:
-        L, (I1, I2, I3) = float(rotation.L), (float(moment) for moment in rotation.moments)
-        # w . L / |L| = L (l_1^2 / I_1 + l_2^2 / I_2 + l_3^2 / I_3), at u = 0
-        along = L * (float(rotation.a2) / I1 + float(rotation.c2) / I3)
-        across = L / I1 * (float(rotation.gaps[0]) / I2), -L / I3 * (float(rotation.gaps[1]) / I2)
-        q_PB = from_rows([[float(x) for x in axis] for axis in rotation.axes_B])
-        alpha, beta, _, _ = _cayley_klein(form, 0.0)
-        q_LP = (beta.imag, -beta.real, alpha.imag, alpha.real)
-        q_WL = normalised(product(q_WB, conjugate(product(q_LP, q_PB))))
+    constants = constants_of(body.I_B.tobytes(), state.q_WB.tobytes(), state.w_WB_W.tobytes(), precision)
     return FreeMotion(
         body=body,
         state=state,
         gravity_W=gravity,
-        frame=frame,
-        rotation=rotation,
-        form=form,
-        q_WL=q_WL,
-        q_PB=q_PB,
-        w_along=along,
-        w_across=across,
-        farthest=min(MOST_TURNED / max(largest_rate(rotation), 1.0 / LARGEST_NUMBER), LARGEST_NUMBER),
+        frame=constants.frame,
+        rotation=constants.rotation,
+        form=constants.form,
+        q_WL=constants.q_WL,
+        q_PB=constants.q_PB,
+        w_along=constants.w_along,
+        w_across=constants.w_across,
+        farthest=constants.farthest,
     )
 
 
@@ -281,7 +264,7 @@ def check_extent(body: MassProperties, state: BodyState, gravity_W: FloatArray) 
     for field, values in numbers.items():
         if max(map(abs, values.ravel().tolist())) > LARGEST_NUMBER:  # NumPy's calls would cost more
             check_magnitude(field, values)
-    if body.I_B.diagonal().min() * LARGEST_NUMBER < 1.0:
+    if min(body.I_B.diagonal().tolist()) * LARGEST_NUMBER < 1.0:
         raise InvalidFieldError(
             "inertia", body.I_B.diagonal().tolist(), f"moments of at least {1.0 / LARGEST_NUMBER:g} kg m^2"
         )
@@ -299,16 +282,45 @@ def _cayley_klein(form: AttitudeForm, seconds: float) -> tuple[complex, complex,
     return factor * complex(A_re, A_im), factor * complex(B_re, B_im), C / norm2, D / norm2
 
 
+class Constants(NamedTuple):
+    """What does not change along a rotation; the fields of `FreeMotion` say what each is."""
+
+    frame: PrincipalFrame[Decimal]
+    rotation: Rotation
+    form: AttitudeForm
+    q_WL: Quaternion
+    q_PB: Quaternion
+    w_along: float
+    w_across: tuple[float, float]
+    farthest: float
+
+
 @lru_cache(maxsize=REMEMBERED)
-def constants_of(
-    inertia: bytes, attitude: bytes, rate: bytes, precision: Precision
-) -> tuple[PrincipalFrame[Decimal], Rotation, AttitudeForm]:
+def constants_of(inertia: bytes, attitude: bytes, rate: bytes, precision: Precision) -> Constants:
     """Return the constants of a rotation, for the doubles of I_B, q_WB and w_WB_W."""
     I_B, q_WB, w_WB_W = (np.frombuffer(data, dtype=np.float64) for data in (inertia, attitude, rate))
     frame = principal_frame(I_B)
+    q, w = normalised(q_WB.tolist()), w_WB_W.tolist()
+    rotation: Rotation
     if precision is Precision.DOUBLE:
-        return frame, *_rotation(in_doubles(frame), q_WB.tolist(), w_WB_W.tolist(), DOUBLES)
-    return frame, *_rotation(frame, q_WB.tolist(), w_WB_W.tolist(), DECIMALS)
+        rotation, form = _rotation(in_doubles(frame), q_WB.tolist(), w, DOUBLES)
+    else:
+        rotation, form = _rotation(frame, q_WB.tolist(), w, DECIMALS)
+    if isinstance(rotation, Spin):
+        along, across = float(rotation.rate), (0.0, 0.0)
+        q_WL = from_z_onto((w_WB_W / along).tolist()) if along else _IDENTITY
+        q_PB = product(conjugate(q_WL), q)
+    else:
+        L, (I1, I2, I3) = float(rotation.L), (float(moment) for moment in rotation.moments)
+        # w . L / |L| = L (l_1^2 / I_1 + l_2^2 / I_2 + l_3^2 / I_3), at u = 0
+        along = L * (float(rotation.a2) / I1 + float(rotation.c2) / I3)
+        across = L / I1 * (float(rotation.gaps[0]) / I2), -L / I3 * (float(rotation.gaps[1]) / I2)
+        q_PB = from_rows([[float(x) for x in axis] for axis in rotation.axes_B])
+        alpha, beta, _, _ = _cayley_klein(form, 0.0)
+        q_LP = (beta.imag, -beta.real, alpha.imag, alpha.real)
+        q_WL = normalised(product(q, conjugate(product(q_LP, q_PB))))
+    farthest = min(MOST_TURNED / max(largest_rate(rotation), 1.0 / LARGEST_NUMBER), LARGEST_NUMBER)
+    return Constants(frame, rotation, form, q_WL, q_PB, along, across, farthest)
 
 
 def _rotation(
