@@ -6,6 +6,8 @@ from an inner point (Huang, Cheng and Mason, Efficient Contact Mode Enumeration 
 
 from __future__ import annotations
 
+import itertools
+import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -20,6 +22,10 @@ if TYPE_CHECKING:
 _WELL_INSIDE: Final = 0.02
 """Height of a unit point over all unit rows at which it serves as inner point; less is left to a linear
 program."""
+
+_MOST_CHOICES: Final = 300
+"""Choices of d - 1 of the rows that are tried in a millisecond; with more of them a hull is faster, but it
+takes SciPy, whose first import takes tenths of a second."""
 
 _TRIALS: Final = 60
 """Steps, of a few microseconds each, before a linear program, of milliseconds, has to find the inner
@@ -95,6 +101,8 @@ def extreme_rays(rows: FloatArray, inner: FloatArray) -> FloatArray:
     d = rows.shape[1]
     if d == 1:
         return np.sign(inner)[None, :]
+    if math.comb(len(rows), d - 1) <= _MOST_CHOICES:
+        return _rays_by_choice(rows)
     inner = inner / np.linalg.norm(inner)
     across = np.linalg.svd(inner[None, :])[2][1:]
     points = (rows @ across.T) / (rows @ inner)[:, None]
@@ -108,6 +116,17 @@ def extreme_rays(rows: FloatArray, inner: FloatArray) -> FloatArray:
     rays: FloatArray = -sides[:, -1:] * inner - sides[:, :-1] @ across
     rays /= np.linalg.norm(rays, axis=1)[:, None]
     return rays
+
+
+def _rays_by_choice(rows: FloatArray) -> FloatArray:
+    """Return the extreme rays: what d - 1 independent rows leave, where no row forbids it."""
+    d = rows.shape[1]
+    spread, basis = np.linalg.svd(rows[list(itertools.combinations(range(len(rows)), d - 1))])[1:]
+    rays = basis[:, -1][spread[:, -1] > ROW_TOLERANCE * spread[:, 0]]
+    total = (rays @ rows.T).sum(axis=1)  # a ray of the cone is above some row, as the cone holds no line
+    rays = rays[total != 0.0] * np.sign(total[total != 0.0])[:, None]
+    kept: FloatArray = rays[(rays @ rows.T).min(axis=1, initial=0.0) >= -ROW_TOLERANCE]
+    return kept
 
 
 def null_space(rows: FloatArray) -> FloatArray:

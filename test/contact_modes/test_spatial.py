@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import itertools
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -10,7 +12,7 @@ from scipy.optimize import linprog
 
 from contact_dynamics.contact import ContactSet
 from contact_dynamics.contact_curvature import Curvatures
-from contact_dynamics.contact_modes import spatial_kinematic_modes
+from contact_dynamics.contact_modes import spatial_cone, spatial_kinematic_modes
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.rigid_body import BodyState
 
@@ -197,3 +199,43 @@ def test_misuse_is_refused_by_name() -> None:
         spatial_kinematic_modes(state(), contact_set(polygon_on_table(65)))
     with pytest.raises(InvalidFieldError, match="velocity_tolerance"):
         spatial_kinematic_modes(state(), contact_set(TABLE), velocity_tolerance=-1.0)
+
+
+@pytest.mark.parametrize("draw", range(40))
+def test_rays_by_choice_are_those_of_a_hull(draw: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    rng = np.random.default_rng(draw)
+    d, m = int(rng.integers(3, 7)), int(rng.integers(6, 10))
+    inner = rng.standard_normal(d)
+    rows = rng.integers(-2, 3, (m, d)) if draw % 2 else rng.standard_normal((m, d))
+    rows = rows * np.sign(rows @ inner)[:, None]
+    rows = rows[rows @ inner > 0.0]
+    rows /= np.linalg.norm(rows, axis=1)[:, None]
+    if np.linalg.matrix_rank(rows) < d:  # the cone would hold a line
+        rows = np.vstack([rows, np.eye(d) * np.sign(inner)[:, None]])
+    by_choice = spatial_cone.extreme_rays(rows, inner)
+    monkeypatch.setattr(spatial_cone, "_MOST_CHOICES", 0)
+    by_hull = spatial_cone.extreme_rays(rows, inner)
+    vanishing = [{tuple(np.abs(ray @ rows.T) <= 1e-8) for ray in rays} for rays in (by_choice, by_hull)]
+    assert vanishing[0] == vanishing[1]
+
+
+def test_a_few_contacts_do_not_import_scipy() -> None:
+    """Its first import takes longer than a hundred answers."""
+    code = """
+import sys
+import numpy as np
+from contact_dynamics import BodyState, ContactSet, MassProperties
+from contact_dynamics.contact_modes import spatial_contact_modes, spatial_kinematic_modes
+still = np.zeros(3)
+body = MassProperties(mass=1.0, I_B=np.eye(3))
+state = BodyState(p_WB_W=still, q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=still, w_WB_W=still)
+feet = ContactSet(
+    p_WC_W=np.array([[x, y, -1.0] for x in (-1.0, 1.0) for y in (-1.0, 1.0)]),
+    normals_W=np.tile([0.0, 0.0, 1.0], (4, 1)), frictions=np.full(4, 0.3), restitutions=np.zeros(4),
+)
+answer = spatial_contact_modes(body, state, feet, force_W=(0.0, 0.0, -9.8))
+assert [mode.mode for mode in answer.modes] == ["ffff"]
+assert len(spatial_kinematic_modes(state, feet)) == 10
+sys.exit("scipy" in sys.modules)
+"""
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
