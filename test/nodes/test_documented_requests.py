@@ -11,16 +11,19 @@ import pytest
 import yaml
 
 from contact_dynamics.contact_modes import ModeVerdict
-from contact_dynamics_interfaces.srv import PredictContactMode
-from running_server import ROOT, Client, server_and_client
+from contact_dynamics.forced_motion import Method
+from contact_dynamics.impact import ImpactOutcome, SequenceEnd
+from contact_dynamics.tumbling import Regime
+from contact_dynamics_interfaces.msg import Impact
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from running_server import ROOT, SERVICES, Client, server_and_client
 
 README = (ROOT / "contact_dynamics_interfaces" / "README.md").read_text(encoding="utf-8")
 CALL = re.compile(
-    r"^ros2 service call /contact_dynamics/predict_contact_mode contact_dynamics_interfaces/srv/"
-    r'PredictContactMode \\\n  "([^"]*)"\n#> (.*)$',
-    re.MULTILINE,
+    r'^ros2 service call (\S+) contact_dynamics_interfaces/srv/(\w+) \\\n  "([^"]*)"\n#> (.*)$', re.MULTILINE
 )
 EXAMPLES = CALL.findall(README)
+COUNTS = {PredictContactMode: 7, PredictImpact: 6, PredictTumbling: 4}
 
 
 @pytest.fixture(scope="module")
@@ -32,31 +35,30 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
 def fill(msg: Any, fields: dict[str, Any]) -> Any:
     """Set the fields of a message as `ros2 service call` does."""
     for name, value in fields.items():
+        field = getattr(msg, name)
         if isinstance(value, dict):
-            fill(getattr(msg, name), value)
+            fill(field, value)
+        elif name == "other_state":
+            setattr(msg, name, [fill(type(msg.state)(), state) for state in value])
         else:
             setattr(msg, name, value)
     return msg
 
 
-def told(verdict: int, modes: list[Any]) -> str:
+def numbers(values: Any) -> str:
+    return "(" + ", ".join(f"{round(x, 3) + 0.0:.3f}" for x in values) + ")"
+
+
+def vector(msg: Any) -> str:
+    return numbers((msg.x, msg.y, msg.z))
+
+
+def modes_told(verdict: int, modes: list[Any]) -> str:
     letters = " ".join(sorted(mode.mode for mode in modes))
     return f"{ModeVerdict(verdict).name}: {letters}" if modes else ModeVerdict(verdict).name
 
 
-def test_every_example_is_found() -> None:
-    assert len(EXAMPLES) == README.count("ros2 service call /contact_dynamics/predict_contact_mode") == 7
-
-
-@pytest.mark.parametrize(("request_text", "stated"), EXAMPLES)
-def test_each_is_answered_as_stated(client: Client, request_text: str, stated: str) -> None:
-    request = fill(PredictContactMode.Request(), yaml.safe_load(request_text))
-    answer = client.ask(request)
-    assert (answer.status, answer.message) == (answer.OK, "")
-    said = told(answer.verdict, answer.modes)
-    if answer.impact:
-        said += f", after the impact {told(answer.verdict_after_impact, answer.modes_after_impact)}"
-    assert said == stated
+def contact_mode_told(request: Any, answer: Any) -> str:
     asked_for = {
         "want_wrenches": answer.wrench_sets,
         "want_statics": answer.equilibrium,
@@ -65,3 +67,64 @@ def test_each_is_answered_as_stated(client: Client, request_text: str, stated: s
     }
     for field, found in asked_for.items():
         assert bool(found) == getattr(request, field), field
+    said = modes_told(answer.verdict, answer.modes)
+    if answer.impact:
+        after = modes_told(answer.verdict_after_impact, answer.modes_after_impact)
+        said += f", after the impact {after}"
+    return said
+
+
+def impact_told(_request: Any, answer: Any) -> str:
+    impact = answer.impact
+    if impact.strike_times:
+        said = f"{len(impact.strike_times)} strikes, {SequenceEnd(impact.sequence_end).name}"
+    elif impact.outcome == Impact.NOT_TOLD:
+        said = "NOT_TOLD"
+    else:
+        said = ImpactOutcome(impact.outcome).name
+    velocities = "; ".join(
+        f"{vector(state.linear_velocity)}, {vector(state.angular_velocity)}"
+        for state in (impact.state_after, *impact.other_state_after)
+    )
+    return f"{said}: {velocities}"
+
+
+def tumbling_told(request: Any, answer: Any) -> str:
+    """What an answer says of the last sample."""
+    assert len(answer.poinsot.polhode) == 3 * request.curve_points
+    trajectory = answer.trajectory
+    said = f"{Method(answer.method).name}, {Regime(answer.poinsot.regime).name}"
+    said += f"; at {trajectory.times[-1]:.3f}: {numbers(trajectory.positions[-3:])}"
+    said += f", {numbers(trajectory.orientations[-4:])}"
+    event = {answer.CONTACT: "CONTACT", answer.PLANE_REACHED: "PLANE_REACHED"}.get(answer.event)
+    if event:
+        surface = f" {answer.event_surface}".rstrip()
+        said += f"; {event}{surface} {vector(answer.event_point)}"
+    if answer.poinsot.flip_times:
+        said += f"; flips at {numbers(answer.poinsot.flip_times)}"
+    return said
+
+
+TOLD = {
+    PredictContactMode: contact_mode_told,
+    PredictImpact: impact_told,
+    PredictTumbling: tumbling_told,
+}
+
+
+@pytest.mark.parametrize("service", SERVICES)
+def test_every_example_is_found(service: Any) -> None:
+    found = [name for name, *_ in EXAMPLES if name == SERVICES[service]]
+    assert len(found) == README.count(f"ros2 service call {SERVICES[service]}") == COUNTS[service]
+
+
+@pytest.mark.parametrize(("name", "type_name", "request_text", "stated"), EXAMPLES)
+def test_each_is_answered_as_stated(
+    client: Client, name: str, type_name: str, request_text: str, stated: str
+) -> None:
+    (service,) = (service for service in SERVICES if service.__name__ == type_name)
+    assert SERVICES[service] == name
+    request = fill(service.Request(), yaml.safe_load(request_text))
+    answer = client.ask(request)
+    assert (answer.status, answer.message) == (answer.OK, "")
+    assert TOLD[service](request, answer) == stated
