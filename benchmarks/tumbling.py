@@ -21,7 +21,7 @@ from contact_dynamics.flips import next_flips
 from contact_dynamics.poinsot import poinsot
 from contact_dynamics.rigid_body import BodyState, MassProperties
 from contact_dynamics.tumbling import FreeMotion, Precision, free_motion, rotations_of_many, states_of_many
-from contact_dynamics.tumbling.motion import constants_of
+from contact_dynamics.tumbling.constants import constants_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -36,6 +36,14 @@ class AttitudeForm:
         """Return what `theta` says at a time, s."""
         return self.series.values(math, *self.z.fraction(seconds), self.psi.fraction(seconds)[0])
 
+    def cayley_klein(self, seconds: float) -> tuple[complex, complex, float, float]:
+        """Return alpha and i beta of the attitude of P in L, of common norm 1, and L_1 / L and L_3 / L."""
+        A_re, A_im, B_re, B_im, C, D, tangent = self.point(seconds)
+        norm2 = A_re * A_re + A_im * A_im + B_re * B_re + B_im * B_im
+        scale = 1.0 / math.sqrt(norm2 * (1.0 + tangent * tangent))
+        factor = complex(scale, scale * tangent)
+        return factor * complex(A_re, A_im), factor * complex(B_re, B_im), C / norm2, D / norm2
+
     def points(self, seconds: FloatArray) -> Values:
         """Return what `theta` says at times (n,), s."""
         return self.series.values(np, *self.z.fractions(seconds), self.psi.fractions(seconds)[0])

@@ -14,9 +14,7 @@ middle axis it changes much when they do: `contact_dynamics.poinsot` says how mu
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -25,42 +23,33 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body import BodyState, MassProperties
 from contact_dynamics.rotations import make_continuous
 from contact_dynamics.tolerances import LARGEST_NUMBER
-from contact_dynamics.tumbling.arithmetic import DECIMALS, DOUBLES, Arithmetic, Precision, Scalar, within
-from contact_dynamics.tumbling.attitude_form import AttitudeForm, attitude_form
-from contact_dynamics.tumbling.polhode import Rotation, Spin, Tumble, largest_rate, tumble_or_spin
-from contact_dynamics.tumbling.principal_frame import PrincipalFrame, in_doubles, principal_frame
+from contact_dynamics.tumbling.arithmetic import Precision
+from contact_dynamics.tumbling.constants import constants_of
 from contact_dynamics.tumbling.quaternions import (
     Quaternion,
-    conjugate,
-    from_rows,
-    from_z_onto,
     left_matrix,
-    normalised,
+    nearer,
     product,
     right_matrix,
     rotated,
 )
-from contact_dynamics.tumbling.regime import Regime, regime_of
 from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_within
 from contact_dynamics.world import STANDARD_GRAVITY_W
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from decimal import Decimal
 
     from numpy.typing import ArrayLike
+
+    from contact_dynamics.tumbling.attitude_form import AttitudeForm
+    from contact_dynamics.tumbling.polhode import Rotation
+    from contact_dynamics.tumbling.principal_frame import PrincipalFrame
+    from contact_dynamics.tumbling.regime import Regime
 
 NANOSECONDS: Final = 1_000_000_000
 
 CHUNK: Final = 8192
 """Samples at a time: their intermediate arrays stay in the processor's cache."""
-
-MOST_TURNED: Final = 1e16
-"""rad. Later times are refused: they are doubles more than a turn apart, and the phases' double-doubles no
-longer hold the last bits of a turn."""
-
-REMEMBERED: Final = 128
-"""Rotations whose constants are kept, 3 kB each: a state is often asked about more than once."""
 
 FEW: Final = 16
 """Samples that cost less one by one than NumPy's calls do."""
@@ -115,15 +104,11 @@ class FreeMotion:
     w_along: float  # rad/s, component of the angular velocity along L, constant
     w_across: tuple[float, float]  # rad/s, L (1/I_1 - 1/I_2) and L (1/I_3 - 1/I_2)
     farthest: float  # s, how far from now times may be, on either side
-
-    @property
-    def regime(self) -> Regime:
-        """What kind of rotation it is."""
-        return regime_of(self.frame, self.rotation)
+    regime: Regime  # what kind of rotation it is
 
     def sample(self, seconds: float) -> Sample:
         """Return the motion at one time, s after the state's stamp, in plain floats, unchecked."""
-        alpha, beta, l_1, l_3 = _cayley_klein(self.form, seconds)
+        alpha, beta, l_1, l_3 = self.form.cayley_klein(seconds)
         q_LP = (beta.imag, -beta.real, alpha.imag, alpha.real)
         across = self._across(alpha, beta, l_1, l_3)
         w_W = rotated(self.q_WL, (across.real, across.imag, self.w_along))
@@ -151,7 +136,8 @@ class FreeMotion:
         """Return the body's state at one time, s after the state's stamp.
 
         Raises:
-            InvalidFieldError: the time is not finite, or by then the body has turned more than `MOST_TURNED`.
+            InvalidFieldError: the time is not finite, or by then the body has turned more than
+                `constants.MOST_TURNED`.
         """
         check_within("time", seconds, -self.farthest, self.farthest)
         return self.sample(seconds).as_state(self.state.stamp_ns, seconds)
@@ -161,10 +147,12 @@ class FreeMotion:
 
         Raises:
             InvalidFieldError: the times are not a flat list of finite numbers, or by the farthest of them the
-                body has turned more than `MOST_TURNED`.
+                body has turned more than `constants.MOST_TURNED`.
         """
         times = check_magnitude("times", check_array("times", seconds, (None,)), self.farthest)
-        q_WB, w_WB_W = self._one_by_one(times) if len(times) <= FEW else self._in_chunks(times)
+        if len(times) <= FEW:
+            return self._one_by_one(times)
+        q_WB, w_WB_W = self._in_chunks(times)
         make_continuous(q_WB, self.state.q_WB)
         elapsed = times[:, None]
         return Trajectory(
@@ -175,10 +163,18 @@ class FreeMotion:
             w_WB_W=w_WB_W,
         )
 
-    def _one_by_one(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _one_by_one(self, times: FloatArray) -> Trajectory:
         samples = [self.sample(t) for t in times.tolist()]
-        q_WB = np.array([sample.q_WB for sample in samples]).reshape(-1, 4)
-        return q_WB, np.array([sample.w_WB_W for sample in samples]).reshape(-1, 3)
+        x, y, z, w = self.state.q_WB.tolist()
+        before = (x, y, z, w)
+        turns = [before := nearer(sample.q_WB, before) for sample in samples]
+        return Trajectory(
+            seconds=times,
+            p_WB_W=np.array([sample.p_WB_W for sample in samples]).reshape(-1, 3),
+            q_WB=np.array(turns).reshape(-1, 4),
+            v_WB_W=np.array([sample.v_WB_W for sample in samples]).reshape(-1, 3),
+            w_WB_W=np.array([sample.w_WB_W for sample in samples]).reshape(-1, 3),
+        )
 
     def _in_chunks(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         q_WB, w_WB_W = np.empty((len(times), 4)), np.empty((len(times), 3))
@@ -227,8 +223,8 @@ def free_motion(
     """Return the motion of a body without torque, in uniform gravity, from its state at one time.
 
     Gravity is (3,), m/s^2, world axes. The precision is that of the motion's constants: double costs a third
-    of the time, and its errors grow with the angle turned. The constants of the last `REMEMBERED` rotations
-    are kept.
+    of the time, and its errors grow with the angle turned. The constants of the last
+    `constants.REMEMBERED` rotations are kept.
 
     Raises:
         InvalidFieldError: gravity is not three finite numbers; a number is beyond what doubles can square
@@ -249,6 +245,7 @@ def free_motion(
         w_along=constants.w_along,
         w_across=constants.w_across,
         farthest=constants.farthest,
+        regime=constants.regime,
     )
 
 
@@ -268,83 +265,3 @@ def check_extent(body: MassProperties, state: BodyState, gravity_W: FloatArray) 
         raise InvalidFieldError(
             "inertia", body.I_B.diagonal().tolist(), f"moments of at least {1.0 / LARGEST_NUMBER:g} kg m^2"
         )
-
-
-_IDENTITY: Final = (0.0, 0.0, 0.0, 1.0)
-
-
-def _cayley_klein(form: AttitudeForm, seconds: float) -> tuple[complex, complex, float, float]:
-    """Return alpha and i beta of the attitude of P in L, of common norm 1, and L_1 / L and L_3 / L."""
-    A_re, A_im, B_re, B_im, C, D, tangent = form.point(seconds)
-    norm2 = A_re * A_re + A_im * A_im + B_re * B_re + B_im * B_im
-    scale = 1.0 / math.sqrt(norm2 * (1.0 + tangent * tangent))
-    factor = complex(scale, scale * tangent)
-    return factor * complex(A_re, A_im), factor * complex(B_re, B_im), C / norm2, D / norm2
-
-
-class Constants(NamedTuple):
-    """What does not change along a rotation; the fields of `FreeMotion` say what each is."""
-
-    frame: PrincipalFrame[Decimal]
-    rotation: Rotation
-    form: AttitudeForm
-    q_WL: Quaternion
-    q_PB: Quaternion
-    w_along: float
-    w_across: tuple[float, float]
-    farthest: float
-
-
-@lru_cache(maxsize=REMEMBERED)
-def constants_of(inertia: bytes, attitude: bytes, rate: bytes, precision: Precision) -> Constants:
-    """Return the constants of a rotation, for the doubles of I_B, q_WB and w_WB_W."""
-    I_B, q_WB, w_WB_W = (np.frombuffer(data, dtype=np.float64) for data in (inertia, attitude, rate))
-    frame = principal_frame(I_B)
-    q, w = normalised(q_WB.tolist()), w_WB_W.tolist()
-    rotation: Rotation
-    if precision is Precision.DOUBLE:
-        rotation, form = _rotation(in_doubles(frame), q_WB.tolist(), w, DOUBLES)
-    else:
-        rotation, form = _rotation(frame, q_WB.tolist(), w, DECIMALS)
-    if isinstance(rotation, Spin):
-        along, across = float(rotation.rate), (0.0, 0.0)
-        q_WL = from_z_onto((w_WB_W / along).tolist()) if along else _IDENTITY
-        q_PB = product(conjugate(q_WL), q)
-    else:
-        L, (I1, I2, I3) = float(rotation.L), (float(moment) for moment in rotation.moments)
-        # w . L / |L| = L (l_1^2 / I_1 + l_2^2 / I_2 + l_3^2 / I_3), at u = 0
-        along = L * (float(rotation.a2) / I1 + float(rotation.c2) / I3)
-        across = L / I1 * (float(rotation.gaps[0]) / I2), -L / I3 * (float(rotation.gaps[1]) / I2)
-        q_PB = from_rows([[float(x) for x in axis] for axis in rotation.axes_B])
-        alpha, beta, _, _ = _cayley_klein(form, 0.0)
-        q_LP = (beta.imag, -beta.real, alpha.imag, alpha.real)
-        q_WL = normalised(product(q, conjugate(product(q_LP, q_PB))))
-    farthest = min(MOST_TURNED / max(largest_rate(rotation), 1.0 / LARGEST_NUMBER), LARGEST_NUMBER)
-    return Constants(frame, rotation, form, q_WL, q_PB, along, across, farthest)
-
-
-def _rotation(
-    frame: PrincipalFrame[Scalar],
-    q_WB: Sequence[float],
-    w_WB_W: Sequence[float],
-    numbers: Arithmetic[Scalar],
-) -> tuple[Spin[Scalar] | Tumble[Scalar], AttitudeForm]:
-    with within(numbers.sums):
-        at_rest = max(map(abs, w_WB_W)) * LARGEST_NUMBER < 1.0
-        w_B = [numbers.number(0.0)] * 3 if at_rest else _body_rate(q_WB, w_WB_W, numbers)
-        rotation = tumble_or_spin(frame, w_B, numbers)
-        return rotation, attitude_form(rotation, numbers)
-
-
-def _body_rate(q_WB: Sequence[float], w_WB_W: Sequence[float], numbers: Arithmetic[Scalar]) -> list[Scalar]:
-    """Return the angular velocity in body axes, rad/s: R^T w, for a quaternion that is unit to rounding."""
-    x, y, z, s = (numbers.number(i) for i in q_WB)
-    a, b, c = (numbers.number(i) for i in w_WB_W)
-    imaginary2 = x * x + y * y + z * z
-    norm2 = imaginary2 + s * s
-    scale, along, across = s * s - imaginary2, 2 * (x * a + y * b + z * c), 2 * s
-    return [
-        (scale * a + along * x - across * (y * c - z * b)) / norm2,
-        (scale * b + along * y - across * (z * a - x * c)) / norm2,
-        (scale * c + along * z - across * (x * b - y * a)) / norm2,
-    ]

@@ -40,6 +40,12 @@ def normalised(q: Sequence[float]) -> Quaternion:
     return (scale * x, scale * y, scale * z, scale * w)
 
 
+def nearer(q: Quaternion, to: Quaternion) -> Quaternion:
+    """Return of ``q`` and -``q``, one attitude, the one nearer to another quaternion."""
+    x, y, z, w = q
+    return q if x * to[0] + y * to[1] + z * to[2] + w * to[3] >= 0.0 else (-x, -y, -z, -w)
+
+
 def rotated(q: Quaternion, vector: Sequence[float]) -> Vector:
     """Return the vector turned by ``q``."""
     x, y, z, w = q
