@@ -82,12 +82,13 @@ class _Touching:
 
     def landing(self, seconds: float, state: BodyState, velocity_tolerance: float) -> Landing:
         """Return the landing of the contacts that do not leave."""
-        stay = np.flatnonzero(self.approach <= velocity_tolerance)
+        stays = self.approach <= velocity_tolerance
+        contacts = self.contacts if stays.all() else self.contacts.subset(np.flatnonzero(stays).tolist())
         return Landing(
             seconds=seconds,
             state=state,
-            contacts=self.contacts.subset(stay.tolist()),
-            velocities_W=self.velocities_W[stay],
+            contacts=contacts,
+            velocities_W=self.velocities_W[stays],
             strikes=bool((self.approach < -velocity_tolerance).any()),
         )
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.inertia.principal import principal_axes
+from contact_dynamics.inertia.principal import axes_of_bytes
 from contact_dynamics.rigid_body import angular_momentum, rotation_matrix
 from contact_dynamics.tumbling.arithmetic import ARRAYS, DOUBLES
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
@@ -65,7 +65,7 @@ def poinsot(motion: FreeMotion) -> Poinsot:
     rotation = motion.rotation
     L_W = angular_momentum(motion.body, motion.state)
     twice_energy = motion.w_along * math.hypot(*L_W.tolist())
-    axes = principal_axes(motion.body.I_B)
+    axes = axes_of_bytes(motion.body.I_B.tobytes())
     period = math.nan if motion.regime in CONSTANT_RATE else polhode_period(rotation)
     return Poinsot(
         regime=motion.regime,

@@ -77,11 +77,12 @@ def principal_axes(I_B: ArrayLike) -> PrincipalAxes:
     matrix = check_array("inertia", I_B, (3, 3))
     if float(np.abs(matrix - matrix.T).max()) > SYMMETRY_TOLERANCE * float(np.abs(matrix).max()):
         raise InvalidFieldError("inertia", matrix.tolist(), "a symmetric matrix")
-    return _of_bytes(matrix.tobytes())
+    return axes_of_bytes(matrix.tobytes())
 
 
 @lru_cache(maxsize=REMEMBERED)
-def _of_bytes(data: bytes) -> PrincipalAxes:
+def axes_of_bytes(data: bytes) -> PrincipalAxes:
+    """Return `principal_axes` for the bytes of a symmetric matrix of doubles, unchecked; remembered."""
     frame = principal_frame(np.frombuffer(data, dtype=np.float64))
     low, middle, high = frame.moments
     first, second, third = (np.array([float(x) for x in axis]) for axis in frame.axes_B)

@@ -6,7 +6,7 @@ import math
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from contact_dynamics.applied_wrench import ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.applied_wrench import NO_WRENCH, ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.flips import next_flips
 from contact_dynamics.forced_motion import ForcedMotion, motion_of
@@ -105,9 +105,12 @@ def _covariances(subject: Subject, motion: FreeMotion | ForcedMotion, times: Flo
 
 def _wrench_of(request: Any) -> ConstantWrench:
     wrench = request.applied_wrench
+    force, torque = wrench.force, wrench.torque
+    if not any((force.x, force.y, force.z, torque.x, torque.y, torque.z)):
+        return NO_WRENCH
     return ConstantWrench(
-        force=check_array("applied_wrench.force", vector_from_msg(wrench.force), (3,)),
-        torque=check_array("applied_wrench.torque", vector_from_msg(wrench.torque), (3,)),
+        force=check_array("applied_wrench.force", vector_from_msg(force), (3,)),
+        torque=check_array("applied_wrench.torque", vector_from_msg(torque), (3,)),
         axes=WrenchAxes.BODY if request.wrench_in_body_axes else WrenchAxes.WORLD,
     )
 
