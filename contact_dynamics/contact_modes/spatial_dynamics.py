@@ -131,7 +131,7 @@ def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool)
     motion, contacts, sliding, touching = case
     count = search.edges.shape[1]
     shares = found.program.shares(count)
-    motion_unique, low, high = search.ends_of_motion(found)
+    motion_unique, low, high = found.motion
     if not motion_unique and low is not None and high is not None:
         shares = 0.5 * (low + high)  # away from the borders of the mode
     mixture = np.random.default_rng(26).normal(size=len(search.edges))

@@ -159,7 +159,7 @@ def acting_edges(directions: FloatArray, count: int) -> NDArray[np.bool_]:
     """
     x, y = directions[:, 0], directions[:, 1]
     angles = np.sort(np.arctan2(y, x), axis=1)
-    gaps = np.diff(angles, axis=1, append=angles[:, :1] + 2.0 * math.pi)
+    gaps = np.hstack([angles[:, 1:], angles[:, :1] + 2.0 * math.pi]) - angles
     widest = gaps.argmax(axis=1)
     each = np.arange(len(angles))
     gap = gaps[each, widest]
@@ -168,7 +168,8 @@ def acting_edges(directions: FloatArray, count: int) -> NDArray[np.bool_]:
     first = np.floor(start - _AT_BORDER)
     more = np.floor(start + (2.0 * math.pi - gap) / sector + _AT_BORDER) - first
     acting: NDArray[np.bool_] = (np.arange(count) - first[:, None]) % count <= more[:, None]
-    acting[(gap <= math.pi + _AT_BORDER) | (np.hypot(x, y).min(axis=1) <= _AT_BORDER)] = True
+    least = (x * x + y * y).min(axis=1)
+    acting[(gap <= math.pi + _AT_BORDER) | (least <= _AT_BORDER**2)] = True
     return acting
 
 

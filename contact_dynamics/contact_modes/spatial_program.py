@@ -139,9 +139,9 @@ class Program:
         """
         count = weights.shape[1]
         rows, columns = np.array(self._rows, dtype=int), np.array(self._columns, dtype=int)
-        ours = np.flatnonzero((rows >= 0) & (rows < count))
+        ours = ((rows >= 0) & (rows < count)).nonzero()[0]
         sums = weights[:, rows[ours]] @ self._table[_HEAD + ours]
-        beside = np.flatnonzero((columns >= 0) & (columns < count))
+        beside = ((columns >= 0) & (columns < count)).nonzero()[0]
         sums[:, beside] += weights[:, columns[beside]]
         sums[:, -1] += constants - least
         if sums[:, -1].max() >= 0.0:
@@ -173,7 +173,7 @@ class Program:
                 return True
             row = table[_HEAD + worst, :-1]
             helps = row if values[worst] < 0.0 else -row
-            able = np.flatnonzero(helps > ROW_TOLERANCE)
+            able = (helps > ROW_TOLERANCE).nonzero()[0]
             if able.size == 0:
                 return False
             enters = able[(table[0, able] / helps[able]).argmin()]
@@ -252,11 +252,11 @@ class Program:
             if 0 <= name < len(weights):
                 table[0, k] += weights[name]
         for step in range(_MOST_STEPS):
-            gains = np.flatnonzero(table[0, :-1] < -ROW_TOLERANCE)
+            gains = (table[0, :-1] < -ROW_TOLERANCE).nonzero()[0]
             if gains.size == 0:
                 return True
             enters = int(gains[0] if 5 * step > _MOST_STEPS else gains[table[0, gains].argmin()])
-            falls = np.flatnonzero(table[_HEAD:, enters] < -ROW_TOLERANCE)
+            falls = (table[_HEAD:, enters] < -ROW_TOLERANCE).nonzero()[0]
             if falls.size == 0:
                 return False
             steps = np.maximum(table[_HEAD + falls, -1], 0.0) / -table[_HEAD + falls, enters]

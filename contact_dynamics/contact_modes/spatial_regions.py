@@ -48,8 +48,9 @@ class Region(NamedTuple):
     def rows(self, image: Image) -> FloatArray:
         """Return the conditions on the motion, (p + 1, 7): within the region, and not without sliding."""
         inside = np.vstack([np.linalg.inv(self.rays.T), self.height])
-        inside /= np.linalg.norm(inside, axis=1)[:, None]
-        found = np.column_stack([inside @ image.coordinates, np.zeros(len(inside))])
+        inside /= np.sqrt((inside * inside).sum(axis=1))[:, None]
+        found = np.zeros((len(inside), 7))
+        found[:, :-1] = inside @ image.coordinates
         found[-1, -1] = -MILDER * STRICT
         return found
 
@@ -96,12 +97,11 @@ class Flat(NamedTuple):
     image: Image  # of the contacts that need not stick
 
     def parts(self, normals: FloatArray, frames: FloatArray) -> Iterator[Flat]:
-        """Yield the flats in which one contact more sticks, with all that must then."""
-        others = [i for i in range(len(frames)) if i not in self.stuck]
-        if len(self.image.coordinates) == 1:
-            others = others[:1]
-        for i in others:
-            yield flat_of(normals, frames, (*self.chosen, i))
+        """Yield the flats in which one contact more sticks, with all that must then; none within a line."""
+        if len(self.image.coordinates) > 1:
+            for i in range(len(frames)):
+                if i not in self.stuck:
+                    yield flat_of(normals, frames, (*self.chosen, i))
 
 
 def flat_of(normals: FloatArray, frames: FloatArray, chosen: tuple[int, ...]) -> Flat:
@@ -140,6 +140,8 @@ def whole(dimensions: int) -> Iterator[Region]:
 
 def _row_space(rows: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return orthonormal bases of what the rows see and of what they do not."""
+    if len(rows) > rows.shape[1]:
+        rows = np.asarray(np.linalg.qr(rows, mode="r"))
     sizes, basis = np.linalg.svd(rows)[1:]
     seen = int((sizes > ROW_TOLERANCE * max(1.0, sizes.max(initial=0.0))).sum())
     return basis[:seen], basis[seen:]

@@ -34,6 +34,7 @@ from contact_dynamics.errors import TooLargeError
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial_letters import Letters, Pyramid
+    from contact_dynamics.contact_modes.spatial_regions import Flat
     from contact_dynamics.validation import FloatArray
 
 MOST_EXAMINED: Final = 30_000
@@ -60,6 +61,7 @@ class Found(NamedTuple):
 
     letters: list[Letters]  # of each touching contact
     program: Program  # solved
+    motion: Ends  # of a mixture of the motion's components: whether it is unique
 
 
 class Common(NamedTuple):
@@ -164,11 +166,6 @@ class Search:
             for p, letter in zip(self.pyramids, found.letters, strict=True)
         ]
 
-    def ends_of_motion(self, found: Found) -> Ends:
-        """Return whether a mode has one motion, and edge forces at the ends of what it has."""
-        mixture = np.random.default_rng(26).normal(size=6)
-        return found.program.ends(mixture @ self.motion[:, :-1])
-
     def _holds(self, program: Program) -> bool:
         self.examined += 1
         if self.examined > MOST_EXAMINED:
@@ -213,40 +210,42 @@ class Search:
             return
         staying = [i for i, letters in enumerate(trials) if letters.letter != "s"]
         normals, frames = self._normals[staying, :-1], frames[:, :, :-1]
+        at_rest = flat_of(normals, frames, tuple(range(len(open_ones))))
+        if self._holds(self._within(program, at_rest)):
+            self._note([letters.parts[0] if letters.parts else letters for letters in trials])
         flats = [flat_of(normals, frames, ())]
-        seen = {flats[0].stuck}
+        seen = {at_rest.stuck, flats[0].stuck}
         while flats:
             flat = flats.pop()
-            narrower = program
-            if flat.stuck:
-                rows = np.column_stack([flat.rows, np.zeros(len(flat.rows))])
-                tag = _CONTACT_TAG - len(trials)
-                narrower = program.narrowed(rows=rows, equalities=len(rows), tag=tag)
-                if not self._holds(narrower):
-                    continue
             decided = list(trials)
             for k in flat.stuck:
                 decided[open_ones[k]] = trials[open_ones[k]].parts[0]
-            self._decide_flat(narrower, decided, flat.image)
-            for further in flat.parts(normals, frames):
-                if further.stuck not in seen:
-                    seen.add(further.stuck)
-                    flats.append(further)
+            if self._decide_flat(self._within(program, flat), decided, flat.image):
+                for further in flat.parts(normals, frames):
+                    if further.stuck not in seen:
+                        seen.add(further.stuck)
+                        flats.append(further)
 
-    def _decide_flat(self, program: Program, trials: list[Letters], image: Image) -> None:
-        """Find the modes in which all contacts that are not decided slide."""
+    def _within(self, program: Program, flat: Flat) -> Program:
+        rows = np.column_stack([flat.rows, np.zeros(len(flat.rows))])
+        return program.narrowed(rows=rows, equalities=len(rows), tag=_CONTACT_TAG - len(self.touching))
+
+    def _decide_flat(self, program: Program, trials: list[Letters], image: Image) -> bool:
+        """Find the modes in which all contacts that are not decided slide; False: nor if some of them stick.
+
+        But for all of them, at rest.
+        """
         open_ones = [i for i, letters in enumerate(trials) if letters.parts]
         if not open_ones:
-            self._note(trials)
-            return
-        trials = list(trials)
-        for i in open_ones:
-            trials[i] = trials[i]._replace(letter="c")
+            return False
+        trials = [letters._replace(letter="c") if letters.parts else letters for letters in trials]
         self._goal = "".join(letters.letter for letters in trials)
         common = self._common(image, open_ones)
+        may_hold = False
         for region in whole(len(image.coordinates)):
-            self._decide_within(region, program, trials, common)
+            may_hold |= self._decide_within(region, program, trials, common)
         self._goal = ""
+        return may_hold
 
     def _common(self, image: Image, open_ones: list[int]) -> Common:
         """Return what the regions of a flat share."""
@@ -258,27 +257,28 @@ class Search:
             gains = image.coordinates @ (self._power - rest @ unseen)
         return Common(image, open_ones, [self.pyramids[i] for i in open_ones], gains)
 
-    def _decide_within(self, region: Region, program: Program, trials: list[Letters], common: Common) -> None:
+    def _decide_within(self, region: Region, program: Program, trials: list[Letters], common: Common) -> bool:
+        """Find the modes within a region; False: there is none, whichever of the contacts slide."""
         if self._goal in self._settled:
-            return
+            return True
         silent = region.silent_edges(common.image, common.pyramids)
         narrower = program.narrowed(zeroed=silent, rows=region.rows(common.image), tag=_REGION_TAG)
         if not self._holds(narrower) or not self._dissipates(region, narrower, common):
-            return
+            return False
         halves = region.halves()
         if halves is not None:
-            for half in halves:
-                self._decide_within(half, narrower, trials, common)
-            return
+            near, far = (self._decide_within(half, narrower, trials, common) for half in halves)
+            return near or far
         fewer = list(trials)
         for i, pyramid in zip(common.open_ones, common.pyramids, strict=True):
             own = frozenset(range(pyramid.first, pyramid.first + len(pyramid.edges)))
             slides = trials[i]._replace(parts=self._ways_of(i))
             kept = with_acting(slides, silent, own)
             if kept is None:
-                return
+                return True
             fewer[i] = kept
         self._decide_letters(narrower, fewer, [0] * len(trials))
+        return True
 
     def _dissipates(self, region: Region, program: Program, common: Common) -> bool:
         """Return whether friction may take no more power than the applied wrench has.
@@ -329,7 +329,8 @@ class Search:
             program = self._narrowed(program, i, letter, staying=letter.letter != "s")
         if not self._holds(program):
             return
-        found = Found(letters, program)
+        mixture = np.random.default_rng(26).normal(size=6)
+        found = Found(letters, program, program.ends(mixture @ self.motion[:, :-1]))
         self._found[key] = found
-        if self._grouped and not self.ends_of_motion(found)[0]:
+        if self._grouped and not found.motion.unique:
             self._settled.add("".join(one.letter for one in letters))
