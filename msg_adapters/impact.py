@@ -6,6 +6,7 @@ to fill.
 
 from __future__ import annotations
 
+from array import array
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol
 
@@ -19,7 +20,7 @@ from contact_dynamics_interfaces.srv import PredictImpact
 from msg_adapters.contacts import flat
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from geometry_msgs.msg import Point, Quaternion
 
@@ -214,11 +215,16 @@ def planar_impact_to_msg(
     What is out of the plane stays as it was.
     """
     plane = problem.plane
-    tangent, normal = problem.contacts[0].tangent, problem.contacts[0].normal
+    (t_x, t_y), (n_x, n_y) = problem.contacts[0].tangent, problem.contacts[0].normal
+    (x_1, x_2, x_3), (y_1, y_2, y_3) = plane.axes_W.tolist()
 
-    def lift(vector_C: Vector2) -> FloatArray:
-        t, n = vector_C
-        return plane.lift((t * tangent[0] + n * normal[0], t * tangent[1] + n * normal[1]))
+    def lift(vectors_C: Iterable[Vector2]) -> array[float]:
+        """Return vectors in contact axes as the world's."""
+        lifted = array("d")
+        for t, n in vectors_C:
+            x, y = t * t_x + n * n_x, t * t_y + n * n_y
+            lifted.extend((x * x_1 + y * y_1, x * x_2 + y * y_2, x * x_3 + y * y_3))
+        return lifted
 
     (v_x, v_y), (before_x, before_y) = impact.velocity.v, problem.velocity.v
     after = replace(
@@ -232,13 +238,14 @@ def planar_impact_to_msg(
     msg.jams = impact.jams
     msg.converged = True
     before.state_to_msg(after, into=msg.state_after)
-    msg.impulses = flat(lift(impact.impulse_C))
-    msg.compression_impulses = flat(lift(impact.compression_C))
-    msg.contact_velocities_before = flat(lift(impact.velocity_before_C))
-    msg.contact_velocities_after = flat(lift(impact.velocity_after_C))
-    msg.path = flat(np.array([lift(vertex) for _, vertex in impact.path]))
-    msg.path_events = [int(event) for event, _ in impact.path]
-    msg.path_contacts = [0] * len(impact.path)
+    msg.impulses = lift([impact.impulse_C])
+    msg.compression_impulses = lift([impact.compression_C])
+    msg.contact_velocities_before = lift([impact.velocity_before_C])
+    msg.contact_velocities_after = lift([impact.velocity_after_C])
+    path = impact.path
+    msg.path = lift(vertex for _, vertex in path)
+    msg.path_events = [int(event) for event, _ in path]
+    msg.path_contacts = [0] * len(path)
     msg.kinetic_energy_before = kinetic_energy(before.body, before.state)
     msg.kinetic_energy_after = kinetic_energy(before.body, after)
     msg.creates_energy = impact.creates_energy
