@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     Fitting: TypeAlias = Callable[[MassProperties, Sequence[BodyState]], FitResult]
 
 _LONGEST_NAME = 256
+_REMEMBERED = 16  # bodies that questions describe; who sends an inertia sends it with every question
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -262,6 +264,15 @@ def _body_of(name: str, inertia: Inertia, knowledge: Knowledge) -> Body:
     if configured is not None and inertia.m == 0.0:
         return configured
     mass_properties, p_FB_F = mass_properties_from_msg(inertia)
+    return _changed_body(name, mass_properties, tuple(p_FB_F.tolist()), configured)
+
+
+@lru_cache(maxsize=_REMEMBERED)
+def _changed_body(
+    name: str, mass_properties: MassProperties, com: tuple[float, ...], configured: Body | None
+) -> Body:
+    """Return a body of other mass properties than the configured one's, and its shape, if there is one."""
+    p_FB_F = np.array(com)
     shape = NO_SHAPE if configured is None else configured.shape.moved(configured.p_FB_F - p_FB_F)
     return Body(name=name, mass_properties=mass_properties, p_FB_F=p_FB_F, shape=shape)
 
