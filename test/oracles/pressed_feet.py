@@ -1,7 +1,7 @@
 """A body on a floor whose feet carry known loads: the one motion that it then begins.
 
-Friction does the most it can, so that what it leaves of the applied wrench, in the metric of kinetic energy, is
-least: one non-negative least-squares problem.
+Friction does the most it can, so that what it leaves of the applied wrench, in the metric of kinetic energy,
+is least: one non-negative least-squares problem.
 """
 
 from __future__ import annotations
