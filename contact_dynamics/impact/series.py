@@ -98,10 +98,10 @@ class SlidingSeries:
                 half += 0.5 * (u1[i] * u1[i] + u2[i] * u2[i] - q[i] * q[i])
             q_n = half * per_speed
             q.append(q_n)
-        weight = mu * per_scale
+        opposing = -(mu * per_scale)
         self.normal_impulse = _integral([per_scale * c for c in q])  # N s
-        self.t1 = _integral([-(weight * c) for c in u1])  # N s
-        self.t2 = _integral([-(weight * c) for c in u2])
+        self.t1 = _integral([opposing * c for c in u1])  # N s
+        self.t2 = _integral([opposing * c for c in u2])
         b1, b2 = mu * k1, mu * k2
         self.lifting = [kn * c - b1 * a - b2 * b for a, b, c in zip(u1, u2, q, strict=True)]  # dv_n/ds
         self.normal_velocity = _integral(self.lifting)  # m/s
@@ -181,9 +181,10 @@ def _reach(speed: Number, terms: tuple[Number, Number, Number], n: int) -> Numbe
     matters of |u| is its integral.
     """
     x, y, q = terms
+    if isinstance(x, float):
+        term = max(abs(x), abs(y), _SHARES[n] * abs(q))
+        return min((TRUNCATION * speed / term) ** (1.0 / n), LONGEST) if term > 0.0 else SURE
     term = larger(larger(abs(x), abs(y)), _SHARES[n] * abs(q))
-    if isinstance(term, float):
-        return min(power(TRUNCATION * speed / term, 1.0 / n), LONGEST) if term > 0.0 else SURE
     some = term > 0.0
     reach = np.full(len(term), SURE)
     reach[some] = np.minimum(power(TRUNCATION * speed[some] / term[some], 1.0 / n), LONGEST)
