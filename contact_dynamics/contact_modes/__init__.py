@@ -9,7 +9,7 @@ sticking and sliding with mechanics (`spatial_dynamics`, `spatial_result`, `spat
 of letters (`spatial_search`, `spatial_letters`, `spatial_regions`, `spatial_program`), shown with exact
 friction (`spatial_sharpening`) and shared forces (`spatial_forces`); applied wrenches of
 each mode (`spatial_wrench_sets`, `spatial_wrenches`) and way of sliding (`spatial_ways`), margins
-(`spatial_margins`); statics (`spatial_statics`). What follows where no mode is consistent though no contact
+(`spatial_margins`, `spatial_union_margins`); statics (`spatial_statics`). What follows where no mode is consistent though no contact
 approaches: `jamming`, by `complementarity`, until it is over (`settling`).
 """
 
@@ -29,6 +29,7 @@ from contact_dynamics.contact_modes.spatial_dynamics import spatial_contact_mode
 from contact_dynamics.contact_modes.spatial_margins import SpatialModeMargin, spatial_mode_margins
 from contact_dynamics.contact_modes.spatial_result import SpatialMode, SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial_sliding import spatial_sliding_modes
+from contact_dynamics.contact_modes.spatial_refusals import spatial_refused_modes
 from contact_dynamics.contact_modes.spatial_statics import spatial_statics
 from contact_dynamics.contact_modes.spatial_wrench_sets import SpatialWrenchSet, spatial_wrench_sets
 from contact_dynamics.contact_modes.statics import BodyStatics, Certainty, planar_statics
@@ -59,6 +60,7 @@ __all__ = [
     "spatial_kinematic_modes",
     "spatial_mode_margins",
     "spatial_sliding_modes",
+    "spatial_refused_modes",
     "spatial_statics",
     "spatial_wrench_sets",
 ]

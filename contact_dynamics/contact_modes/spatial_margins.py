@@ -4,10 +4,9 @@ The applied wrenches of a mode (`spatial_wrenches`) are a polyhedron in R^6 whos
 of the dual cone. The margin is the distance to the nearest facet in a stated metric, as in the plane.
 
 Where contacts stick, pyramids inside the round cones make a margin at most the true one, short by the part
-1 - cos(pi / facets) of friction or less. Where those that stay slide already, it is exact.
-
-Does not cover: modes in which a contact at rest begins to slide. Which way depends on the wrench, so that
-their wrenches are no polyhedron: the margin is NaN.
+1 - cos(pi / facets) of friction or less. Where those that stay slide already, it is exact. Where contacts at
+rest begin to slide, which way depends on the wrench, and the wrenches are a union of polyhedra
+(`spatial_union_margins`): the margin is right to that part of friction, and NaN where it is not known.
 """
 
 from __future__ import annotations
@@ -18,19 +17,22 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.contact_modes.result import ModeVerdict
 from contact_dynamics.contact_modes.spatial_case import SpatialCase, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial_dynamics import evidenced, spatial_contact_modes
 from contact_dynamics.contact_modes.spatial_statics import MOST_EDGES
+from contact_dynamics.contact_modes.spatial_union_margins import union_margin
 from contact_dynamics.contact_modes.spatial_wrenches import Way, supports, wrench_generators
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import ROW_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_not_negative, check_positive
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike
 
     from contact_dynamics.contact import ContactSet
-    from contact_dynamics.contact_modes.result import ModeVerdict
     from contact_dynamics.contact_modes.spatial_result import SpatialModeAnswer
     from contact_dynamics.contact_modes.spatial_search import Found, Search
     from contact_dynamics.rigid_body import BodyState, MassProperties
@@ -49,7 +51,7 @@ class SpatialModeMargin:
     """How far an applied wrench in space is from leaving one of its modes, and where it would go."""
 
     mode: str  # one letter a contact
-    margin: float  # N, length of the least change in |f|^2 + |torque / length|^2; infinite: none does; NaN
+    margin: float  # N, least change, in |f|^2 + |torque / length|^2; infinite: none does it; NaN: unknown
     length: float  # m, of that metric
     change_W: FloatArray  # (6,), N and N m, the least change itself, world axes; zero where there is none
     verdict_beyond: ModeVerdict  # just behind the boundary; the present one where there is none
@@ -113,9 +115,13 @@ def spatial_mode_margins(
     present = ask(wrench)
     margins = []
     for mode, found in evidenced(case, search, sharpen=True):
-        margin, way = _nearest(case, search, found, metric)
+        beyond = None
+        if any(letters.item >= 0 for letters in found.letters):
+            margin, way, beyond = union_margin(case, search, found, metric, friction_facets)
+        else:
+            margin, way = _nearest(case, search, found, metric)
         there = present
-        if math.isfinite(margin):
+        if math.isfinite(margin) and beyond is None:
             size = float(np.linalg.norm(wrench / metric))
             # A pyramid that turns as the wrench changes may hold a little longer: the round cone's part.
             rest = (1.0 / math.cos(math.pi / friction_facets) - 1.0) * size
@@ -124,23 +130,29 @@ def spatial_mode_margins(
                 there = ask(wrench + step * way * metric)
                 if mode.mode not in [one.mode for one in there.modes]:
                     break
+        if beyond is None:
+            beyond = tuple(one.mode for one in there.modes)
         margins.append(
             SpatialModeMargin(
                 mode=mode.mode,
                 margin=margin,
                 length=length,
                 change_W=margin * way * metric if math.isfinite(margin) else np.zeros(6),
-                verdict_beyond=there.verdict,
-                modes_beyond=tuple(dict.fromkeys(one.mode for one in there.modes)),
+                verdict_beyond=_verdict(beyond),
+                modes_beyond=tuple(dict.fromkeys(beyond)),
             )
         )
     return tuple(margins)
 
 
+def _verdict(modes: Sequence[str]) -> ModeVerdict:
+    if not modes:
+        return ModeVerdict.INCONSISTENT
+    return ModeVerdict.UNIQUE if len(modes) == 1 else ModeVerdict.INDETERMINATE
+
+
 def _nearest(case: SpatialCase, search: Search, found: Found, metric: FloatArray) -> tuple[float, FloatArray]:
     """Return the distance, N, from the mode's nearest boundary and the way there, (6,), in the metric."""
-    if any(letters.item >= 0 for letters in found.letters):
-        return math.nan, np.zeros(6)
     motion = case.motion
     unit = motion.mass * motion.scale  # N; wrenches are divided by it, and torques by the length
     ways = [Way(one.letter, one.item) for one in found.letters]

@@ -25,7 +25,7 @@ import numpy as np
 from contact_dynamics.contact_modes.spatial_case import SpatialCase, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial_statics import MOST_EDGES
 from contact_dynamics.contact_modes.spatial_ways import sliding_range, ways_of
-from contact_dynamics.contact_modes.spatial_wrenches import supports, wrench_generators
+from contact_dynamics.contact_modes.spatial_wrenches import distinct, supports, wrench_generators
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.tolerances import ROW_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_not_negative
@@ -48,9 +48,6 @@ cube."""
 MOST_WRENCH_SETS: Final = 2000
 """Most sets of one answer, of a millisecond each. A box on four feet has 340 with pyramids of four edges,
 1300 with eight."""
-
-_ALIKE: Final = 7
-"""Digits to which unit rows of one boundary agree; rounding reaches the eleventh."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -160,8 +157,7 @@ def _wrench_set(
     positive, zero = supports(given)
     sides = np.vstack([positive, zero, -zero])
     sizes = np.linalg.norm(sides[:, :6], axis=1)
-    sides = sides[sizes > ROW_TOLERANCE] / sizes[sizes > ROW_TOLERANCE, None]
-    sides = sides[np.unique(np.round(sides, _ALIKE), axis=0, return_index=True)[1]]
+    sides = distinct(sides[sizes > ROW_TOLERANCE] / sizes[sizes > ROW_TOLERANCE, None])
     high = given.rays[:, 6] > ROW_TOLERANCE
     outward = -sides[:, :6] / metric
     ranges = np.zeros((2, len(mode), 3))

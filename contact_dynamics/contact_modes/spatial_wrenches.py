@@ -7,7 +7,7 @@ wrench has the height one. A wrench is (force, torque / length) / mass, in the u
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial_letters import Pyramid
     from contact_dynamics.contact_modes.spatial_search import Search, Touching
     from contact_dynamics.validation import FloatArray
+
+
+_ALIKE: Final = 7
+"""Digits to which unit rows that are meant to be the same agree; rounding reaches the eleventh."""
 
 
 class Way(NamedTuple):
@@ -75,7 +79,7 @@ def wrench_generators(
         given.append(-(one.acting @ motion.points[3 * i : 3 * i + 3]) / metric)
     forces = np.vstack(given)
     rays = np.vstack([needed(inside.rays), np.column_stack([forces, np.zeros(len(forces))])])
-    return Generators(_unit(rays), _unit(needed(inside.lines)))
+    return Generators(distinct(_unit(rays)), _unit(needed(inside.lines)))
 
 
 def supports(generators: Generators) -> tuple[FloatArray, FloatArray]:
@@ -108,6 +112,11 @@ def _conditions(contact: Touching, pyramid: Pyramid, way: Way) -> _Conditions:
     if j == k:
         return _Conditions(normal, sides, pyramid.edges[[j]])
     return _Conditions(np.vstack([normal, one - other]), sides, pyramid.edges[[j, k]])
+
+
+def distinct(rows: FloatArray) -> FloatArray:
+    """Return unit rows, each once."""
+    return rows[np.sort(np.unique(np.round(rows, _ALIKE), axis=0, return_index=True)[1])]
 
 
 def _unit(rows: FloatArray) -> FloatArray:

@@ -8,7 +8,13 @@ import numpy as np
 import pytest
 
 from contact_dynamics.contact import ContactSet
-from contact_dynamics.contact_modes import ModeVerdict, spatial_contact_modes, spatial_mode_margins
+from contact_dynamics.contact_modes import (
+    ModeVerdict,
+    SpatialWrenchSet,
+    spatial_contact_modes,
+    spatial_mode_margins,
+    spatial_wrench_sets,
+)
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.rigid_body import BodyState, MassProperties
 
@@ -117,10 +123,64 @@ def test_modes_without_a_margin_and_without_an_end() -> None:
     (free,) = spatial_mode_margins(BODY, state(v=(0, 0, 1.0)), feet(0.2, 0.4), force_W=DOWN)
     assert (free.mode, free.margin, free.modes_beyond) == ("ssss", math.inf, ("ssss",))
     np.testing.assert_array_equal(free.change_W, np.zeros(6))
-    (starts,) = spatial_mode_margins(BODY, state(), feet(0.2, 0.4), force_W=(10.0, 0.0, -WEIGHT))
-    assert starts.mode == "cccc"
-    assert math.isnan(starts.margin)
     assert spatial_mode_margins(BODY, state(v=(0, 0, -1.0)), feet(0.2, 0.4), force_W=DOWN) == ()
+
+
+@pytest.mark.parametrize(("push", "facets"), [((9.0, 0.0), 4), ((10.0, 2.0), 8), ((-7.0, 7.0), 8)])
+def test_a_block_that_begins_to_slide_stops_at_the_edge_of_its_cone(
+    push: tuple[float, float], facets: int
+) -> None:
+    # The first edge of each pyramid opposes the push, so that the way back to the cone is exact.
+    (margin,) = spatial_mode_margins(
+        BODY, state(), feet(0.2, 0.4), force_W=(*push, -WEIGHT), margin_length=SHORT, friction_facets=facets
+    )
+    assert margin.mode == "cccc"
+    assert margin.margin == pytest.approx((math.hypot(*push) - 0.4 * WEIGHT) / math.hypot(1.0, 0.4), rel=1e-4)
+    assert margin.modes_beyond == ("ffff",)
+    np.testing.assert_allclose(margin.change_W[2], -0.4 / math.hypot(1.0, 0.4) * margin.margin, rtol=1e-2)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_margins_of_a_foot_that_begins_to_slide_beside_the_whole_map(seed: int) -> None:
+    """Up to the margin, sets of the mode hold the wrench, whichever way it changes; behind it none does."""
+    chance = np.random.default_rng(seed)
+    foot = ContactSet(
+        p_WC_W=chance.normal(size=(1, 3)),
+        normals_W=np.array([[0.0, 0.0, 1.0]]),
+        frictions=np.array([0.3]),
+        restitutions=np.zeros(1),
+    )
+    wrench = np.append(chance.normal(size=3) * 5.0 - [0.0, 0.0, WEIGHT], chance.normal(size=3))
+    asked = {"force_W": wrench[:3], "torque_W": wrench[3:], "friction_facets": 6}
+    length = float(chance.choice([0.1, 0.45, 2.0]))
+    metric = np.array([1.0, 1.0, 1.0, length, length, length])
+    for margin in spatial_mode_margins(BODY, state(), foot, margin_length=length, **asked):
+        assert 0.0 < margin.margin < math.inf
+        assert np.linalg.norm(margin.change_W / metric) == pytest.approx(margin.margin, rel=1e-9)
+        sets = spatial_wrench_sets(BODY, state(), foot, modes=[margin.mode], **asked)
+
+        def depth(change: np.ndarray, sets: tuple[SpatialWrenchSet, ...] = sets) -> float:
+            return max(one.depth(wrench + change, 0.45) for one in sets)
+
+        nearby = 1e-2 * margin.margin * chance.normal(size=(200, 6)) * metric
+        assert min(depth(margin.change_W + change) for change in nearby) < 0.0
+        assert margin.mode not in margin.modes_beyond
+        for way in chance.normal(size=(200, 6)):
+            assert depth(0.999 * margin.margin * way / np.linalg.norm(way) * metric) > -1e-9 * WEIGHT
+
+
+def test_what_is_not_known_of_a_mode_that_begins_to_slide_is_not_told() -> None:
+    angles = np.arange(6) * math.pi / 3.0
+    ring = ContactSet(
+        p_WC_W=np.column_stack([np.cos(angles), np.sin(angles), np.full(6, -0.1)]),
+        normals_W=np.tile([0.0, 0.0, 1.0], (6, 1)),
+        frictions=np.full(6, 0.4),
+        restitutions=np.zeros(6),
+    )
+    (margin,) = spatial_mode_margins(BODY, state(), ring, force_W=(10.0, 0.0, -WEIGHT), friction_facets=4)
+    assert margin.mode == "cccccc"
+    assert math.isnan(margin.margin)
+    assert margin.modes_beyond == ("cccccc",)
 
 
 def test_misuse_is_refused_by_name() -> None:
