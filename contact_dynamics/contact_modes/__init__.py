@@ -7,10 +7,11 @@ judged (`dynamics`, `independent`, `edges`, `wrench_cone`, `least_force`); appli
 contacting and separating modes (`spatial`, `spatial_cone`), and with ways of sliding (`spatial_sliding`);
 sticking and sliding with mechanics (`spatial_dynamics`, `spatial_result`, `spatial_case`): every combination
 of letters (`spatial_search`, `spatial_letters`, `spatial_regions`, `spatial_program`), shown with exact
-friction (`spatial_sharpening`) and shared forces (`spatial_forces`); applied wrenches of
-each mode (`spatial_wrench_sets`, `spatial_wrenches`) and way of sliding (`spatial_ways`), margins
-(`spatial_margins`, `spatial_union_margins`); statics (`spatial_statics`). What follows where no mode is consistent though no contact
-approaches: `jamming`, by `complementarity`, until it is over (`settling`).
+friction (`spatial_sharpening`) and shared forces (`spatial_forces`); why other strings are refused
+(`spatial_refusals`); applied wrenches of each mode (`spatial_wrench_sets`, `spatial_wrenches`) and way of
+sliding (`spatial_ways`), margins (`spatial_margins`, `spatial_union_margins`); statics (`spatial_statics`).
+What follows where no mode is consistent though no contact approaches: `jamming`, by `complementarity`, until
+it is over (`settling`).
 """
 
 from contact_dynamics.contact_modes.jamming import jamming_impact
@@ -27,9 +28,9 @@ from contact_dynamics.contact_modes.settling import settling_impact
 from contact_dynamics.contact_modes.spatial import spatial_kinematic_modes
 from contact_dynamics.contact_modes.spatial_dynamics import spatial_contact_modes
 from contact_dynamics.contact_modes.spatial_margins import SpatialModeMargin, spatial_mode_margins
+from contact_dynamics.contact_modes.spatial_refusals import spatial_refused_modes
 from contact_dynamics.contact_modes.spatial_result import SpatialMode, SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial_sliding import spatial_sliding_modes
-from contact_dynamics.contact_modes.spatial_refusals import spatial_refused_modes
 from contact_dynamics.contact_modes.spatial_statics import spatial_statics
 from contact_dynamics.contact_modes.spatial_wrench_sets import SpatialWrenchSet, spatial_wrench_sets
 from contact_dynamics.contact_modes.statics import BodyStatics, Certainty, planar_statics
@@ -59,8 +60,8 @@ __all__ = [
     "spatial_contact_modes",
     "spatial_kinematic_modes",
     "spatial_mode_margins",
-    "spatial_sliding_modes",
     "spatial_refused_modes",
+    "spatial_sliding_modes",
     "spatial_statics",
     "spatial_wrench_sets",
 ]

@@ -27,7 +27,11 @@ class SpatialMode:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SpatialModeAnswer:
-    """The answer to one question about contact modes in space."""
+    """The answer to one question about contact modes in space.
+
+    Refused letters are not listed: there are as many as cells in the arrangement of all sectors, and groups
+    of them are refused at once. Strings of contacting and separating have their reasons (`spatial_refusals`).
+    """
 
     verdict: ModeVerdict  # on the whole contact set
     modes: tuple[SpatialMode, ...]  # all consistent modes
