@@ -271,15 +271,19 @@ def test_margins_of_a_brick_in_space(client: Client) -> None:
     assert list(mode.margin_modes) == ["cccc"]
 
 
-def test_a_mode_that_begins_to_slide_in_space_has_no_margin(client: Client) -> None:
+def test_margin_of_a_brick_that_begins_to_slide_askew(client: Client) -> None:
+    """Back to the edge of its friction cones, which lean against the push, torques costing nearly all."""
     request = brick_on_floor()
-    request.want_margins = True
+    request.want_margins, request.margin_length = True, 1e-4
     request.applied_wrench.force.x = request.applied_wrench.force.y = 1.0
     answer = client.ask(request)
     assert (answer.status, answer.problem) == (answer.OK, request.SPATIAL)
     (mode,) = answer.modes
     assert mode.mode == "cccc"
-    assert math.isnan(mode.margin)
+    expected = (math.sqrt(2.0) - MU * MASS * G) / math.hypot(1.0, MU)
+    assert mode.margin == pytest.approx(expected, rel=1e-3)
+    assert list(mode.margin_modes) == ["ffff"]
+    assert mode.margin_verdict == answer.UNIQUE
 
 
 def test_sets_beyond_reason_are_refused_by_name_and_not_by_silence(client: Client) -> None:
