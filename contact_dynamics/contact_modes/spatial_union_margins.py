@@ -11,6 +11,7 @@ more than `MOST_BEGINNING` contacts that begin to slide; those of bodies that tu
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import heapq
 import itertools
@@ -22,6 +23,7 @@ import numpy as np
 from contact_dynamics.contact_modes.spatial_case import search_of
 from contact_dynamics.contact_modes.spatial_dynamics import evidenced
 from contact_dynamics.contact_modes.spatial_wrenches import Way, distinct, supports, wrench_generators
+from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
@@ -80,14 +82,18 @@ def union_margin(
         metric: (6,), m, by which a wrench is divided: ones, then the length that torques are divided by.
         facets: Edges of the friction pyramids.
     """
-    unknown = UnionMargin(math.nan, np.zeros(6), None)
-    motion = case.motion
     beginning = sum(one.item >= 0 for one in found.letters)
-    if not motion.at_rest or np.any(motion.turning) or beginning > MOST_BEGINNING:
-        return unknown
-    union = _Union(case, search, "".join(one.letter for one in found.letters), facets)
-    stretch = union.own / metric
-    wrench = motion.wrench / union.own / union.unit
+    if case.motion.at_rest and not np.any(case.motion.turning) and beginning <= MOST_BEGINNING:
+        union = _Union(case, search, "".join(one.letter for one in found.letters), facets)
+        # Here each way of sliding counts, which can be more than the search for modes has to tell apart.
+        with contextlib.suppress(TooLargeError):
+            return _gone_through(union, case.motion.wrench / union.own / union.unit, union.own / metric)
+    return UnionMargin(math.nan, np.zeros(6), None)
+
+
+def _gone_through(union: _Union, wrench: FloatArray, stretch: FloatArray) -> UnionMargin:
+    """Go outwards from a wrench; ``stretch`` makes distances those of the margin's metric."""
+    unknown = UnionMargin(math.nan, np.zeros(6), None)
     numbers = itertools.count()
     cones = union.cones_at(wrench)
     if not cones:

@@ -183,6 +183,15 @@ def test_what_is_not_known_of_a_mode_that_begins_to_slide_is_not_told() -> None:
     assert margin.modes_beyond == ("cccccc",)
 
 
+def test_ways_of_sliding_that_are_too_many_leave_the_margin_unknown(monkeypatch: pytest.MonkeyPatch) -> None:
+    def given_up(*_: object) -> None:
+        raise TooLargeError("contacts", "many", "fewer")
+
+    monkeypatch.setattr("contact_dynamics.contact_modes.spatial_union_margins.search_of", given_up)
+    (margin,) = spatial_mode_margins(BODY, state(), feet(0.2, 0.4), force_W=(10.0, 0.0, -WEIGHT))
+    assert (margin.mode, math.isnan(margin.margin)) == ("cccc", True)
+
+
 def test_misuse_is_refused_by_name() -> None:
     with pytest.raises(InvalidFieldError, match="margin_length"):
         spatial_mode_margins(BODY, state(), feet(0.2, 0.4), force_W=DOWN, margin_length=0.0)
