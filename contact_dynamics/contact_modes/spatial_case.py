@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 MOST_DYNAMIC_CONTACTS: Final = 32
-"""Longest list of touching contacts accepted: a tenth of a second, more where many modes are consistent."""
+"""Longest list of touching contacts accepted: a tenth of a second, two where many modes are consistent."""
 
 
 class SpatialMotion:

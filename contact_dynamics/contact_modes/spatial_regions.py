@@ -24,11 +24,12 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial_letters import Pyramid
     from contact_dynamics.validation import FloatArray
 
-_NARROW: Final = {2: 0.95, 3: 0.95}
-"""Cosine between any two rays above which a region of so many dimensions is not split further: 18 degrees."""
+_NARROW: Final = 0.32
+"""rad, angle between all rays below which a region of three dimensions or less is not split further; of finer
+pyramids the same part of a sector, which is two fifths of the usual one's."""
 
-_NARROW_OF_MORE: Final = 0.8
-"""Where there are more dimensions: 37 degrees, a sector or so."""
+_NARROW_OF_MORE: Final = 0.64
+"""rad, where there are more dimensions, in which regions are many."""
 
 
 class Image(NamedTuple):
@@ -54,14 +55,15 @@ class Region(NamedTuple):
         found[-1, -1] = -MILDER * STRICT
         return found
 
-    def halves(self) -> tuple[Region, Region] | None:
-        """Return the region cut across its widest edge; None: it is narrow."""
+    def halves(self, count: int) -> tuple[Region, Region] | None:
+        """Return the region cut across its widest edge; None: narrow for pyramids of ``count`` edges."""
         if len(self.rays) == 1:
             return None
         unit = self.rays / np.linalg.norm(self.rays, axis=1)[:, None]
         cosines = unit @ unit.T
         one, other = divmod(int(cosines.argmin()), len(unit))
-        if cosines[one, other] > _NARROW.get(len(unit), _NARROW_OF_MORE):
+        narrow = min(_NARROW, 0.8 * math.pi / count) if len(unit) <= 3 else _NARROW_OF_MORE
+        if cosines[one, other] > math.cos(narrow):
             return None
         near, far = self.rays.copy(), self.rays.copy()
         near[other] = far[one] = 0.5 * (self.rays[one] + self.rays[other])

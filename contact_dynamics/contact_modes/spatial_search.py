@@ -265,7 +265,7 @@ class Search:
         narrower = program.narrowed(zeroed=silent, rows=region.rows(common.image), tag=_REGION_TAG)
         if not self._holds(narrower) or not self._dissipates(region, narrower, common):
             return False
-        halves = region.halves()
+        halves = region.halves(len(common.pyramids[0].edges))
         if halves is not None:
             near, far = (self._decide_within(half, narrower, trials, common) for half in halves)
             return near or far
