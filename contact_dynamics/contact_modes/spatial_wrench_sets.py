@@ -46,8 +46,8 @@ WRENCH_FACETS: Final = 4
 cube."""
 
 MOST_WRENCH_SETS: Final = 2000
-"""Most sets of one answer, of a millisecond each. A box on four feet has 340 with pyramids of four edges,
-1300 with eight."""
+"""Most sets of one answer, of a millisecond or two each. A box on four feet has 200 to 350 with pyramids of
+four edges, some 1300 with eight."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
