@@ -3,7 +3,8 @@
 Sets: `drawn`, contacts all over a ball whose normals point upwards, more or less, and `flush`, a face of as
 many corners on a table. The linear programs are SciPy's HiGHS: for contacting and separating modes one for
 each of 2^n strings, for modes with mechanics one for each string of letters and sectors, (2 + 2 k)^n with k
-facets. They must find as many modes.
+facets. They must find as many modes. Last, whole answers for the flush face under loads of every sort, with
+friction turned exactly and all sectors of the same letters as one mode.
 """
 
 from __future__ import annotations
@@ -34,6 +35,14 @@ MOST_STRINGS: Final = 2**8  # more take minutes
 REPEATS: Final = 5
 PUSHES: Final = {"rests": 0.0, "is pushed": 0.3, "slides off": 0.6}  # of the weight; friction holds 0.5
 SLACK: Final = 1e-7
+LOADS: Final = {  # parts of the weight: force along x and y, torque per metre about x, y, z
+    "rests": (0.0, 0.0, 0.0, 0.0, 0.0),
+    "is pushed": (0.45, 0.2, 0.0, 0.0, 0.0),
+    "slides off": (0.6, 0.03, 0.0, 0.0, 0.0),
+    "is twisted": (0.0, 0.0, 0.0, 0.0, 0.8),
+    "is pushed and twisted": (0.45, 0.2, 0.0, 0.0, 0.3),
+    "tips": (0.1, 0.05, 0.1, 1.2, 0.05),
+}
 
 
 def state(speed: float = 0.0) -> BodyState:
@@ -211,7 +220,30 @@ def run_mechanics() -> None:
         print(f"four drawn contacts, friction {how}: {1e3 * seconds:.2f} ms")
 
 
+def run_answers() -> None:
+    """Print times of whole answers under loads of every sort."""
+    print(
+        f"\n{'answers':>12} {'n':>4} {'what':>22} {'modes':>6} {'one motion':>10} {'tried':>6} {'answer':>12}"
+    )
+    for n, (what, (x, y, *torque)) in itertools.product(COUNTS[2:], LOADS.items()):
+        ask = partial(
+            spatial_contact_modes,
+            BODY,
+            state(),
+            flush(n),
+            force_W=WEIGHT * np.array([x, y, -1.0]),
+            torque_W=WEIGHT * np.array(torque),
+        )
+        answer = ask()
+        alone = all(mode.motion_unique for mode in answer.modes)
+        print(
+            f"{'flush':>12} {n:4d} {what:>22} {len(answer.modes):6d} {'yes' if alone else 'no':>10}"
+            f" {answer.examined:6d} {1e3 * best_of(ask):9.2f} ms"
+        )
+
+
 def run() -> None:
     """Print times and counts."""
     run_kinematic()
     run_mechanics()
+    run_answers()
