@@ -105,18 +105,26 @@ def any_letter(pyramid: Pyramid, point: FloatArray, normal_name: int) -> Letters
     return Letters("", -1, frozenset(), None, nothing, 0, (separates, stays))
 
 
-def ways_of_sliding(pyramid: Pyramid, point: FloatArray) -> tuple[Letters, ...]:
-    """Return the letters of a contact that slides, in arcs that together go around the circle.
+def ways_of_sliding(
+    pyramid: Pyramid, point: FloatArray, acting: tuple[int, int] | None = None
+) -> tuple[Letters, ...]:
+    """Return the letters of a contact that slides, in arcs of directions.
 
     Args:
         pyramid: Its force edges, more than one.
         point: (3, 7), its acceleration as a function of the motion.
+        acting: The first of some neighbouring edges and their number: only they oppose the sliding; None:
+            any may, and the arcs together go around the circle.
     """
     count = len(pyramid.edges)
     angles = 2.0 * math.pi * np.arange(count) / count
     along = np.column_stack([np.cos(angles), np.sin(angles)]) @ (np.array(pyramid.frame) @ point)
     # Sectors and borders alternate around the circle; no arc may be wider than a third of it.
-    arcs = np.array_split(np.arange(2 * count), count if count < 6 else 4)
+    if acting is None:
+        arcs = np.array_split(np.arange(2 * count), count if count < 6 else 4)
+    else:
+        items = 2 * acting[0] + np.arange(2 * acting[1] - 1)
+        arcs = np.array_split(items, min(len(items), math.ceil(1.5 * len(items) / count)))
     return tuple(_slides(arc.tolist(), pyramid.first, along) for arc in arcs)
 
 
@@ -131,7 +139,7 @@ def _slides(arc: list[int], first_name: int, along: FloatArray) -> Letters:
     silent = frozenset(first_name + j for j in range(count) if j not in acting)
     if len(arc) > 1:
         low, high = (first - 1) // 2, last // 2
-        middle = -np.mean([along[item // 2] for item in arc if item % 2 == 0], axis=0)
+        middle = -np.mean([along[item // 2 % count] for item in arc if item % 2 == 0], axis=0)
         middle[-1] -= MILDER * STRICT
         sides = [
             along[low % count] - along[(low + 1) % count],
@@ -140,6 +148,7 @@ def _slides(arc: list[int], first_name: int, along: FloatArray) -> Letters:
         halves = (arc[: len(arc) // 2], arc[len(arc) // 2 :])
         parts = tuple(_slides(half, first_name, along) for half in halves)
         return Letters("c", -1, silent, None, np.array([middle, *sides]), 0, parts)
+    first %= 2 * count
     j, k = first // 2, (first + 1) // 2 % count
     sides = [along[(j - 1) % count] - along[j], along[(k + 1) % count] - along[k]]
     for side in sides:
@@ -171,17 +180,3 @@ def acting_edges(directions: FloatArray, count: int) -> NDArray[np.bool_]:
     least = (x * x + y * y).min(axis=1)
     acting[(gap <= math.pi + _AT_BORDER) | (least <= _AT_BORDER**2)] = True
     return acting
-
-
-def with_acting(letters: Letters, silent: frozenset[int], own: frozenset[int]) -> Letters | None:
-    """Return a group without the slides any of whose edges, among ``own``, is ``silent``; None: all are.
-
-    A group of one letter becomes that letter.
-    """
-    if not letters.parts:
-        return None if silent & own - letters.zeroed else letters
-    fewer = [with_acting(part, silent, own) for part in letters.parts]
-    parts = tuple(part for part in fewer if part is not None)
-    if len(parts) < 2:
-        return parts[0] if parts else None
-    return letters._replace(parts=parts)

@@ -21,6 +21,8 @@ from contact_dynamics.tolerances import ROW_TOLERANCE
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from numpy.typing import NDArray
+
     from contact_dynamics.contact_modes.spatial_letters import Pyramid
     from contact_dynamics.validation import FloatArray
 
@@ -69,12 +71,9 @@ class Region(NamedTuple):
         near[other] = far[one] = 0.5 * (self.rays[one] + self.rays[other])
         return Region(near, self.height), Region(far, self.height)
 
-    def silent_edges(self, image: Image, pyramids: list[Pyramid]) -> frozenset[int]:
-        """Return the names of the edges that oppose no sliding in the region."""
-        count = len(pyramids[0].edges)
-        acting = acting_edges(image.maps @ self.rays.T, count)
-        names = np.array([pyramid.first for pyramid in pyramids])[:, None] + np.arange(count)
-        return frozenset(names[~acting].tolist())
+    def acting_edges(self, image: Image, pyramids: list[Pyramid]) -> NDArray[np.bool_]:
+        """Return which edges, (m, K), of each contact's pyramid oppose some sliding in the region."""
+        return acting_edges(image.maps @ self.rays.T, len(pyramids[0].edges))
 
     def friction(self, image: Image, pyramids: list[Pyramid]) -> FloatArray:
         """Return the power, for unit normal force, of one share of friction at each contact, (m, p), on rays.

@@ -26,13 +26,14 @@ from contact_dynamics.contact_modes.spatial_letters import (
     any_letter,
     pyramid_of,
     ways_of_sliding,
-    with_acting,
 )
 from contact_dynamics.contact_modes.spatial_program import Ends, Program
 from contact_dynamics.contact_modes.spatial_regions import Image, Region, flat_of, whole
 from contact_dynamics.errors import TooLargeError
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from contact_dynamics.contact_modes.spatial_letters import Letters, Pyramid
     from contact_dynamics.contact_modes.spatial_regions import Flat
     from contact_dynamics.validation import FloatArray
@@ -70,6 +71,7 @@ class Common(NamedTuple):
     image: Image  # their space
     open_ones: list[int]  # contacts that slide
     pyramids: list[Pyramid]  # theirs
+    names: NDArray[np.intp]  # (m, K), of their edge forces
     gains: FloatArray | None  # (p,), power of the applied wrench; None: not known, something moves
 
 
@@ -141,7 +143,7 @@ class Search:
             any_letter(pyramid, contact.point, first + i)
             for i, (contact, pyramid) in enumerate(zip(touching, self.pyramids, strict=True))
         ]
-        self._ways: dict[int, tuple[Letters, ...]] = {}
+        self._ways: dict[tuple[int, tuple[int, int] | None], tuple[Letters, ...]] = {}
         self._found: dict[tuple[tuple[str, int], ...], Found] = {}
         self._grouped = False
         self._goal = ""  # the letters that are sought, where all are known
@@ -204,7 +206,8 @@ class Search:
         if len(open_ones) < 2 or np.any(frames[:, :, -1]):
             # One contact's letters are as few as regions; with centripetal terms directions are not cones.
             for i in open_ones:
-                any_way = trials[i]._replace(parts=(*trials[i].parts, *self._ways_of(i)))
+                ways = ways_of_sliding(self.pyramids[i], self.touching[i].point)
+                any_way = trials[i]._replace(parts=(*trials[i].parts, *ways))
                 trials = [*trials[:i], any_way, *trials[i + 1 :]]
             self._decide_letters(program, trials, [0] * len(trials))
             return
@@ -255,13 +258,16 @@ class Search:
             unseen = image.unseen @ self._mass
             rest = np.linalg.solve(unseen @ image.unseen.T, image.unseen @ self._power)
             gains = image.coordinates @ (self._power - rest @ unseen)
-        return Common(image, open_ones, [self.pyramids[i] for i in open_ones], gains)
+        pyramids = [self.pyramids[i] for i in open_ones]
+        names = np.array([one.first for one in pyramids])[:, None] + np.arange(len(pyramids[0].edges))
+        return Common(image, open_ones, pyramids, names, gains)
 
     def _decide_within(self, region: Region, program: Program, trials: list[Letters], common: Common) -> bool:
         """Find the modes within a region; False: there is none, whichever of the contacts slide."""
         if self._goal in self._settled:
             return True
-        silent = region.silent_edges(common.image, common.pyramids)
+        acting = region.acting_edges(common.image, common.pyramids)
+        silent = frozenset(common.names[~acting].tolist())
         narrower = program.narrowed(zeroed=silent, rows=region.rows(common.image), tag=_REGION_TAG)
         if not self._holds(narrower) or not self._dissipates(region, narrower, common):
             return False
@@ -270,13 +276,10 @@ class Search:
             near, far = (self._decide_within(half, narrower, trials, common) for half in halves)
             return near or far
         fewer = list(trials)
-        for i, pyramid in zip(common.open_ones, common.pyramids, strict=True):
-            own = frozenset(range(pyramid.first, pyramid.first + len(pyramid.edges)))
-            slides = trials[i]._replace(parts=self._ways_of(i))
-            kept = with_acting(slides, silent, own)
-            if kept is None:
-                return True
-            fewer[i] = kept
+        for i, of_contact in zip(common.open_ones, acting, strict=True):
+            ways = self._ways_of(i, of_contact)
+            alone = len(ways) == 1 and not ways[0].parts
+            fewer[i] = ways[0] if alone else trials[i]._replace(parts=ways)
         self._decide_letters(narrower, fewer, [0] * len(trials))
         return True
 
@@ -299,11 +302,12 @@ class Search:
         scale = max(float(np.abs(weights).max()), float(np.abs(gains).max()))
         return program.allows_any(weights / scale, gains / scale, -STRICT)
 
-    def _ways_of(self, at: int) -> tuple[Letters, ...]:
-        """Return the ways of sliding of a contact, laid out once they are asked for."""
-        if at not in self._ways:
-            self._ways[at] = ways_of_sliding(self.pyramids[at], self.touching[at].point)
-        return self._ways[at]
+    def _ways_of(self, at: int, acting: NDArray[np.bool_]) -> tuple[Letters, ...]:
+        """Return the ways of sliding of a contact against neighbouring edges, laid out once for a range."""
+        arc = None if acting.all() else (int((acting & ~np.roll(acting, 1)).argmax()), int(acting.sum()))
+        if (at, arc) not in self._ways:
+            self._ways[at, arc] = ways_of_sliding(self.pyramids[at], self.touching[at].point, arc)
+        return self._ways[at, arc]
 
     def _decide_letters(self, program: Program, trials: list[Letters], depths: list[int]) -> None:
         if self._goal in self._settled:
