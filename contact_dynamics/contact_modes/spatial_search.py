@@ -287,8 +287,8 @@ class Search:
         """Return whether friction may take no more power than the applied wrench has.
 
         Friction takes the most that it can, so at least what the same normal forces would with any fixed
-        share of friction. What then is left is linear in the motion: if it is not negative somewhere in the
-        region, neither is it on all of the region's rays.
+        share of friction. What that leaves is linear in the motion, so that it is negative in all of the
+        region where it is negative on each of its rays.
         """
         if common.gains is None:
             return True
