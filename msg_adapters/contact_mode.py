@@ -20,6 +20,7 @@ if TYPE_CHECKING:
         ContactModeAnswer,
         ModeMargin,
         ModeWrenchSet,
+        RefusedMode,
         SpatialMode,
         SpatialModeAnswer,
         SpatialModeMargin,
@@ -41,10 +42,7 @@ def write_planar_answer(
     response.modes = planar_modes_to_msgs(answer.modes, problem, partners)
     response.approaching_contacts = list(answer.approaching)
     response.contact_velocities = flat(_lift(answer.contact_velocities, problem))
-    response.refused_modes = [refused.mode for refused in answer.refused]
-    response.refusals = [int(refused.refusal) for refused in answer.refused]
-    response.refused_contacts = [refused.contact for refused in answer.refused]
-    response.refusal_amounts = flat(np.array([refused.amount for refused in answer.refused]))
+    write_refused(response, answer.refused)
     response.kinematic_modes = list(answer.kinematic_modes)
     response.stable_disturbance = float("nan")
     response.velocity_tolerance = answer.velocity_tolerance
@@ -68,6 +66,14 @@ def write_spatial_answer(
     response.velocity_tolerance = answer.velocity_tolerance
     response.acceleration_tolerance = float("nan")
     response.friction_facets = answer.friction_facets
+
+
+def write_refused(response: Any, modes: Sequence[RefusedMode]) -> None:
+    """Write into a response which modes mechanics refuses, and why."""
+    response.refused_modes = [refused.mode for refused in modes]
+    response.refusals = [int(refused.refusal) for refused in modes]
+    response.refused_contacts = [refused.contact for refused in modes]
+    response.refusal_amounts = flat(np.array([refused.amount for refused in modes]))
 
 
 def spatial_modes_to_msgs(modes: Sequence[SpatialMode]) -> list[ContactMode]:

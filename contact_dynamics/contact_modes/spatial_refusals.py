@@ -110,7 +110,7 @@ def _known(case: SpatialCase, search: Search, string: str) -> RefusedMode | None
             return None
         forces = np.linalg.solve(caused[staying], -without[staying])
         if forces.min() < 0.0:
-            amount = -float(forces.min()) * motion.scale
+            amount = float(forces.min()) * motion.scale
             at = touching[staying[int(forces.argmin())]]
             return RefusedMode(mode=string, refusal=Refusal.PULLS, contact=at, amount=amount)
     normal = without + caused @ forces
@@ -118,7 +118,7 @@ def _known(case: SpatialCase, search: Search, string: str) -> RefusedMode | None
     lowest = min(separating, key=lambda k: float(normal[k]), default=None)
     if lowest is None:
         return None
-    amount = max(0.0, -float(normal[lowest]) * motion.scale)
+    amount = min(0.0, float(normal[lowest]) * motion.scale)
     return RefusedMode(mode=string, refusal=Refusal.PENETRATES, contact=touching[lowest], amount=amount)
 
 

@@ -13,6 +13,7 @@ from contact_dynamics.contact_modes import (
     spatial_contact_modes,
     spatial_kinematic_modes,
     spatial_mode_margins,
+    spatial_refused_modes,
     spatial_statics,
     spatial_wrench_sets,
 )
@@ -37,6 +38,7 @@ from msg_adapters.contact_mode import (
     wrench_set_to_msg,
     write_planar_answer,
     write_planar_margins,
+    write_refused,
     write_spatial_answer,
     write_spatial_margins,
     write_statics,
@@ -64,8 +66,8 @@ def predict_contact_mode(request: Any, response: Any, knowledge: Knowledge) -> N
     else:
         response.problem = request.PLANAR
         _answer_in_plane(request, response, question, *view)
-    response.state = question.subject.state_to_msg(question.subject.state)
-    response.contacts = contacts_to_msg(question.contacts)
+    question.subject.state_to_msg(question.subject.state, into=response.state)
+    contacts_to_msg(question.contacts, into=response.contacts)
     response.distance_tolerance = question.distance_tolerance
 
 
@@ -191,6 +193,16 @@ def _answer_in_space(request: Any, response: Any, question: Question) -> None:
             velocity_tolerance=question.velocity_tolerance,
         )
         write_spatial_margins(response, margins)
+        refused = spatial_refused_modes(
+            answer,
+            subject.body.mass_properties,
+            subject.state,
+            contacts,
+            force_W=question.force_W,
+            torque_W=question.torque_W,
+            margin_length=_margin_length(request),
+        )
+        write_refused(response, refused)
     if request.want_wrenches:
         response.wrench_facets = int(request.friction_facets) or WRENCH_FACETS
         sets = spatial_wrench_sets(

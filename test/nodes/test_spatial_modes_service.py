@@ -262,13 +262,20 @@ def test_margins_of_a_brick_in_space(client: Client) -> None:
     request = brick_on_floor()
     request.problem, request.want_margins, request.margin_length = request.SPATIAL, True, 1e-4
     request.friction_facets = 16
-    (mode,) = client.ask(request).modes
+    answer = client.ask(request)
+    (mode,) = answer.modes
     slope = MU * math.cos(math.pi / 16.0)
     low, high = (MASS * G * mu / math.hypot(1.0, mu) for mu in (slope, MU))
     assert low * (1.0 - 1e-3) <= mode.margin <= high * (1.0 + 1e-9)  # torques cost nearly all
     assert mode.margin_length == 1e-4
     assert np.linalg.norm(mode.margin_wrench[:3]) == pytest.approx(mode.margin, rel=1e-3)
     assert list(mode.margin_modes) == ["cccc"]
+    # All that could leave the floor is refused, and what would lift the brick off it penetrates.
+    assert sorted(answer.refused_modes) == sorted(set(answer.kinematic_modes) - {"cccc"})
+    why = dict(zip(answer.refused_modes, answer.refusals, strict=True))
+    off = dict(zip(answer.refused_modes, answer.refusal_amounts, strict=True))
+    assert why["ssss"] == answer.PENETRATES
+    assert off["ssss"] == pytest.approx(-G, rel=1e-9)
 
 
 def test_margin_of_a_brick_that_begins_to_slide_askew(client: Client) -> None:
