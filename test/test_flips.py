@@ -66,7 +66,7 @@ def test_deviations_are_those_of_noisy_states(name: str, w_deviation: float, ang
     flips = next_flips(motion, 2, covariance=noisy_covariance(w_deviation, angle_deviation))
     rng = np.random.default_rng(3)
     samples = []
-    for _ in range(400):
+    for _ in range(1600):
         state = motion.state
         turn = rng.normal(scale=angle_deviation, size=3)
         w_B_change = np.cross(state.w_WB_W, turn)  # seen from the body
@@ -77,8 +77,9 @@ def test_deviations_are_those_of_noisy_states(name: str, w_deviation: float, ang
             w_WB_W=state.w_WB_W + rng.normal(scale=w_deviation, size=3) + w_B_change,
         )
         samples.append(next_flips(free_motion(motion.body, other), 2).seconds)
-    # 400 samples know the deviation of a logarithm, with its long tail, to some 10 %; 1000 to 6 %.
-    assert flips.deviations == pytest.approx(np.std(samples, axis=0), rel=0.3)
+    # The deviation of a logarithm, with its long tail: these samples know it to some 5 %, the 1000 of the
+    # answer to 6 %; three times both together.
+    assert flips.deviations == pytest.approx(np.std(samples, axis=0), rel=0.25)
 
 
 def test_a_covariance_of_another_shape_is_refused() -> None:
