@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from contact_dynamics.contact import ContactSet
+from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.impact import (
     ImpactOutcome,
     RestitutionLaw,
@@ -26,9 +26,9 @@ from contact_dynamics.impact import (
     spatial_impacts,
     spatial_pair_impact,
 )
-from contact_dynamics.impact.routh import impulse_path, inverse_inertia
-from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity
-from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.impact.planar.routh import impulse_path, inverse_inertia
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -20,15 +20,15 @@ from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 import numpy as np
 
 from benchmarks._measured_errors import STEP, engine, print_both, print_head, print_row
-from contact_dynamics.contact_geometry import find_contacts
-from contact_dynamics.demo.cube_tosses import BOARD, CUBE, GRAVITY, read_cube_toss
-from contact_dynamics.demo.flight_fit import FEWEST_FRAMES, fit_flight
-from contact_dynamics.demo.flights import find_flights
-from contact_dynamics.demo.measured_events import FIT_SPAN, corner_heights
+from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact import impact_sequence, several_impact
-from contact_dynamics.landing import next_landing
-from contact_dynamics.rigid_body import BodyState, rotation_matrix
+from contact_dynamics.landing.earliest import next_landing
+from contact_dynamics.measured.cube_tosses import BOARD, CUBE, GRAVITY, read_cube_toss
+from contact_dynamics.measured.events import FIT_SPAN, corner_heights
+from contact_dynamics.measured.flight_fit import FEWEST_FRAMES, fit_flight
+from contact_dynamics.measured.flights import find_flights
+from contact_dynamics.rigid_body.body import BodyState, rotation_matrix
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.world import Body, Surface, World
 
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from contact_dynamics.demo.recorded_toss import Toss
-    from contact_dynamics.rigid_body import MassProperties
+    from contact_dynamics.measured.recorded_toss import Toss
+    from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.validation import FloatArray
 
 Prediction: TypeAlias = "Callable[[MeasuredLanding, float, float], FloatArray]"

@@ -1,6 +1,6 @@
 """How well each law predicts the velocity after measured impacts of a cube, beside "no impact" and MuJoCo.
 
-The recordings are the published cube tosses (`contact_dynamics.demo.cube_tosses`); the environment variable
+The recordings are the published cube tosses (`contact_dynamics.measured.cube_tosses`); the environment variable
 CUBE_TOSSES names their `tosses.npz`. Strikes of a single corner are cut out of them with the states just
 before and after, each fitted over the flight next to it (`measured_events`). mu and e are fitted on the
 strikes of every other toss; the errors are those on the rest.
@@ -23,11 +23,11 @@ import numpy as np
 
 from benchmarks import _impact_landings
 from benchmarks._measured_errors import GYRATION, engine, print_both, print_head, print_row
-from contact_dynamics.demo.cube_tosses import BOARD, CUBE, read_cube_toss
-from contact_dynamics.demo.measured_events import measure_events
 from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact import RestitutionLaw, spatial_impact
-from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.measured.cube_tosses import BOARD, CUBE, read_cube_toss
+from contact_dynamics.measured.events import measure_events
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

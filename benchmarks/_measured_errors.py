@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 import numpy as np
 from scipy.optimize import minimize
 
-from contact_dynamics.demo.cube_tosses import CUBE, HALF_SIDE
+from contact_dynamics.measured.cube_tosses import CUBE, HALF_SIDE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from contact_dynamics.rigid_body import BodyState, MassProperties
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
 
 GYRATION: Final = math.sqrt(float(CUBE.mass_properties.I_B[0, 0]) / CUBE.mass_properties.mass)

@@ -21,17 +21,17 @@ import numpy as np
 from scipy.optimize import linprog
 
 from contact_dynamics.contact_modes import planar_contact_modes
-from contact_dynamics.contact_modes.dynamics import judge_all
-from contact_dynamics.contact_modes.enumeration import kinematic_cells
-from contact_dynamics.contact_modes.problem import planar_problem
-from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
+from contact_dynamics.contact_modes.planar.judgement import judge_all
+from contact_dynamics.contact_modes.planar.problem import planar_problem
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.tolerances import ACCELERATION_TOLERANCE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from contact_dynamics.contact_modes.enumeration import Cell
-    from contact_dynamics.contact_modes.problem import PlanarProblem
+    from contact_dynamics.contact_modes.planar.enumeration import Cell
+    from contact_dynamics.contact_modes.planar.problem import PlanarProblem
 
 BODY: Final = PlanarBody(mass=1.0, inertia=1.0)
 AT_REST: Final = PlanarVelocity(v=(0.0, 0.0), w=0.0)

@@ -23,15 +23,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from contact_dynamics.demo.cube_tosses import read_cube_toss
-from contact_dynamics.demo.flights import find_flights
-from contact_dynamics.demo.recorded_toss import Toss
 from contact_dynamics.demo.rotation_vectors import rotation_vectors_from
-from contact_dynamics.demo.toss import read_toss
-from contact_dynamics.motion_fit import FitResult, fit_free_motion
-from contact_dynamics.rigid_body import BodyState
+from contact_dynamics.measured.cube_tosses import read_cube_toss
+from contact_dynamics.measured.flights import find_flights
+from contact_dynamics.measured.read_toss import read_toss
+from contact_dynamics.measured.recorded_toss import Toss
+from contact_dynamics.motion.covariance import propagate_covariance
+from contact_dynamics.motion.free_fit import FitResult, fit_free_motion
+from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import free_motion
-from contact_dynamics.uncertainty import propagate_covariance
 
 FILE = "tosses.npz"
 BESIDE = Path(__file__).parents[2] / "shared" / "data" / "cube_tosses" / FILE

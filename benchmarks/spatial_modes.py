@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from scipy.optimize import linprog
 
-from contact_dynamics.contact import ContactSet
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes import spatial_contact_modes, spatial_kinematic_modes
-from contact_dynamics.friction import linearised_cone
-from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from contact_dynamics.first_contact import first_contact
-from contact_dynamics.flips import next_flips
-from contact_dynamics.poinsot import poinsot
-from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.landing.plane_arrival import first_contact
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import FreeMotion, Precision, free_motion, rotations_of_many, states_of_many
 from contact_dynamics.tumbling.constants import constants_of
+from contact_dynamics.tumbling.flips import next_flips
+from contact_dynamics.tumbling.poinsot_construction import poinsot
 
 if TYPE_CHECKING:
     from collections.abc import Callable

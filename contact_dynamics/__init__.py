@@ -5,12 +5,12 @@ The table of contents, chapters in reading order; everything here is plain NumPy
 - Lecture 24, 25, rigid bodies: `MassProperties`, `BodyState`, momenta and energies (`rigid_body`).
 - Lecture 24, 25, mass properties from particles, shapes and meshes: `MassDistribution` (`inertia`).
 - Lecture 25, tumbling: `free_motion` and its `FreeMotion` (`tumbling`); Poinsot's picture of it is in
-  `contact_dynamics.poinsot`.
+  `contact_dynamics.tumbling.poinsot_construction`.
 - Motion under wrenches and drag: `motion_of`. A state from several: `fit_free_motion`, and under
   forces `fit_motion`. Its covariance along the way: `propagate_covariance`.
 - Where a flight ends: `first_contact`, `next_landing`, in a `World` of `Body`, `Surface` and `Obstacle`.
-  Shapes of bodies, from spheres to polyhedra: `contact_dynamics.convex_shape`.
-- Contacts: `ContactSet` in space (`contact`), of all kinds (`contact_curvature`), from geometry
+  Shapes of bodies, from spheres to polyhedra: `contact_dynamics.shapes.convex`.
+- Contacts: `ContactSet` in space (`contact`), of all kinds (`contact.curvature`), from geometry
   (`find_contacts`); `PlanarContact` and its kin in the plane (`planar`), reached from space by a
   `PlaneOfMotion`.
 - Lecture 26, contact modes: `planar_contact_modes` (`contact_modes`).
@@ -18,9 +18,9 @@ The table of contents, chapters in reading order; everything here is plain NumPy
 - What is refused, and how: `errors`. What counts as zero: `tolerances`.
 """
 
-from contact_dynamics.contact import ContactSet
-from contact_dynamics.contact_curvature import Curvatures
-from contact_dynamics.contact_geometry import find_contacts
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.curvature import Curvatures
+from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact_modes import (
     ConsistentMode,
     ContactModeAnswer,
@@ -32,11 +32,7 @@ from contact_dynamics.contact_modes import (
     spatial_contact_modes,
     spatial_mode_margins,
 )
-from contact_dynamics.convex_shape import ConvexShape
 from contact_dynamics.errors import ContactDynamicsError
-from contact_dynamics.first_contact import FirstContact, first_contact
-from contact_dynamics.forced_motion import motion_of
-from contact_dynamics.forced_motion_fit import fit_motion
 from contact_dynamics.impact import (
     ImpactOutcome,
     PlanarImpact,
@@ -47,15 +43,25 @@ from contact_dynamics.impact import (
     several_impact,
     spatial_impact,
 )
-from contact_dynamics.inertia import MassDistribution
-from contact_dynamics.landing import Landing, next_landing
-from contact_dynamics.motion_fit import fit_free_motion
-from contact_dynamics.obstacle import Obstacle
-from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
-from contact_dynamics.plane_of_motion import PlanarProblem, PlaneOfMotion, best_plane, project
-from contact_dynamics.rigid_body import BodyState, MassProperties, angular_momentum, kinetic_energy, momentum
+from contact_dynamics.landing.earliest import Landing, next_landing
+from contact_dynamics.landing.plane_arrival import FirstContact, first_contact
+from contact_dynamics.motion.covariance import propagate_covariance
+from contact_dynamics.motion.free_fit import fit_free_motion
+from contact_dynamics.motion.integrated import motion_of
+from contact_dynamics.motion.integrated_fit import fit_motion
+from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, best_plane, project
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.rigid_body.body import (
+    BodyState,
+    MassProperties,
+    angular_momentum,
+    kinetic_energy,
+    momentum,
+)
+from contact_dynamics.rigid_body.inertia import MassDistribution
+from contact_dynamics.shapes.convex import ConvexShape
+from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.tumbling import FreeMotion, Regime, Trajectory, free_motion, states_of_many
-from contact_dynamics.uncertainty import propagate_covariance
 from contact_dynamics.world import Body, Surface, World, box_vertices
 
 __all__ = [

@@ -10,10 +10,10 @@ from typing import Final
 
 import numpy as np
 
-from contact_dynamics.convex_shape import MOST_VERTICES, NO_SHAPE, ConvexShape, box_vertices
 from contact_dynamics.errors import InvalidFieldError, UnknownBodyError
-from contact_dynamics.obstacle import Obstacle
-from contact_dynamics.rigid_body import MassProperties
+from contact_dynamics.rigid_body.body import MassProperties
+from contact_dynamics.shapes.convex import MOST_VERTICES, NO_SHAPE, ConvexShape, box_vertices
+from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.validation import FloatArray, check_array, check_not_negative, check_unit, check_within
 
 __all__ = ["MOST_VERTICES", "STANDARD_GRAVITY_W", "Body", "Surface", "World", "box_vertices"]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contact_dynamics.plane_to_space import equal_shares
+from contact_dynamics.plane.lifting import equal_shares
 from contact_dynamics_interfaces.msg import ContactMode, ModeWrenches
 from msg_adapters.contacts import flat
 
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
         SpatialModeMargin,
         SpatialWrenchSet,
     )
-    from contact_dynamics.planar import PlanarWrench, Vector2
-    from contact_dynamics.plane_of_motion import PlanarProblem, PlaneOfMotion
+    from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion
+    from contact_dynamics.plane.types import PlanarWrench, Vector2
     from contact_dynamics.validation import FloatArray
 
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact import MOST_CONTACTS, ContactSet
-from contact_dynamics.contact_curvature import Curvatures, alike
+from contact_dynamics.contact.contact import MOST_CONTACTS, ContactSet
+from contact_dynamics.contact.curvature import Curvatures, alike
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLargeError
 from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
 

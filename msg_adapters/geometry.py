@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from geometry_msgs.msg import Inertia, Point, Pose, Quaternion, Vector3
 
-from contact_dynamics.rigid_body import MassProperties
+from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.validation import check_array
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from contact_dynamics.numerics.vectors import Vector3 as Vector
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.vector3 import Vector3 as Vector
 
 
 def vector_from_msg(msg: Vector3 | Point) -> FloatArray:

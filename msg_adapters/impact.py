@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from contact_dynamics.impact import SequenceEnd, SeveralVerdict
-from contact_dynamics.rigid_body import kinetic_energy
+from contact_dynamics.rigid_body.body import kinetic_energy
 from contact_dynamics.tolerances import ENERGY_TOLERANCE
 from contact_dynamics_interfaces.msg import Impact as ImpactMsg
 from contact_dynamics_interfaces.srv import PredictImpact
@@ -33,9 +33,9 @@ if TYPE_CHECKING:
         SeveralImpact,
         SpatialImpact,
     )
-    from contact_dynamics.planar import Vector2
-    from contact_dynamics.plane_of_motion import PlanarProblem
-    from contact_dynamics.rigid_body import BodyState, MassProperties
+    from contact_dynamics.plane.projection import PlanarProblem
+    from contact_dynamics.plane.types import Vector2
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
     from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from nav_msgs.msg import Odometry
 
-from contact_dynamics.rigid_body import rotation_matrix
+from contact_dynamics.rigid_body.body import rotation_matrix
 from contact_dynamics.validation import check_unit
 from msg_adapters.frames import (
     check_frame,
@@ -22,7 +22,7 @@ from msg_adapters.geometry import pose_to_msg, quaternion_from_msg, vector_from_
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 
 if TYPE_CHECKING:
-    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
 
 

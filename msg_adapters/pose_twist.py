@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from geometry_msgs.msg import PoseStamped, TwistStamped
 
 from contact_dynamics.errors import FrameMismatchError, InvalidFieldError
-from contact_dynamics.rigid_body import rotation_matrix
+from contact_dynamics.rigid_body.body import rotation_matrix
 from contact_dynamics.validation import check_unit
 from msg_adapters.frames import (
     check_frame,
@@ -23,7 +23,7 @@ from msg_adapters.geometry import pose_to_msg, quaternion_from_msg, vector_from_
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 
 if TYPE_CHECKING:
-    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
 
 

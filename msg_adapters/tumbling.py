@@ -14,11 +14,11 @@ from msg_adapters.frames import origins_of_published_frame
 from msg_adapters.stamps import stamp_to_msg
 
 if TYPE_CHECKING:
-    from contact_dynamics.flips import Flips
-    from contact_dynamics.motion_fit import FitResult
-    from contact_dynamics.poinsot import Poinsot, RollingCurves
+    from contact_dynamics.motion.covariance import CarriedCovariance
+    from contact_dynamics.motion.free_fit import FitResult
     from contact_dynamics.tumbling import Trajectory
-    from contact_dynamics.uncertainty import CarriedCovariance
+    from contact_dynamics.tumbling.flips import Flips
+    from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves
     from contact_dynamics.validation import FloatArray
 
 

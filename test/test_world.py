@@ -10,10 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.contact import MOST_CONTACTS, ContactSet
-from contact_dynamics.contact_geometry import find_contacts
+from contact_dynamics.contact.contact import MOST_CONTACTS, ContactSet
+from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.errors import InvalidFieldError, TooLargeError, UnknownBodyError
-from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.world import MOST_VERTICES, Body, Surface, World, box_vertices
 
 STUFF = MassProperties(mass=1.0, I_B=np.eye(3))

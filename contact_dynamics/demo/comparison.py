@@ -13,9 +13,9 @@ from contact_dynamics_interfaces.msg import Impact
 from msg_adapters.geometry import vector_from_msg
 
 if TYPE_CHECKING:
-    from contact_dynamics.demo.measured_events import MeasuredEvents, MeasuredStrike
     from contact_dynamics.demo.questioner import Asked, Questioner
-    from contact_dynamics.demo.recorded_toss import Toss
+    from contact_dynamics.measured.events import MeasuredEvents, MeasuredStrike
+    from contact_dynamics.measured.recorded_toss import Toss
     from contact_dynamics.validation import FloatArray
 
 SAME_STRIKE: Final = 0.03

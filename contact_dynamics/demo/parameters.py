@@ -10,7 +10,7 @@ from contact_dynamics.demo.toss_publisher import WORLD_FRAME, topic_of
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from contact_dynamics.demo.recorded_toss import Toss
+    from contact_dynamics.measured.recorded_toss import Toss
 
 
 TOUCHING: Final = 0.003

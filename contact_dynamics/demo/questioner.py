@@ -17,7 +17,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
 from contact_dynamics.demo.toss_publisher import QOS, WORLD_FRAME, topic_of
-from contact_dynamics.demo.velocity_estimate import WINDOW
+from contact_dynamics.measured.velocity_estimate import WINDOW
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.odometry import body_state_from_odometry
 from msg_adapters.stamps import NS_PER_S, stamp_to_msg
@@ -25,8 +25,8 @@ from msg_adapters.stamps import NS_PER_S, stamp_to_msg
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from contact_dynamics.demo.recorded_toss import Toss
-    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.measured.recorded_toss import Toss
+    from contact_dynamics.rigid_body.body import BodyState
 
 ANSWER_S: Final = 2.0
 """How long an answer may take. A robot that waits longer has lost the body."""

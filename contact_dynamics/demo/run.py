@@ -19,18 +19,18 @@ import rclpy
 from rclpy.signals import SignalHandlerOptions
 
 from contact_dynamics.demo.comparison import print_table
-from contact_dynamics.demo.measured_events import measure_events
 from contact_dynamics.demo.parameters import write_parameters
 from contact_dynamics.demo.processes import Processes
 from contact_dynamics.demo.questioner import Questioner
-from contact_dynamics.demo.toss import DEFAULT_RECORDING, read_toss
 from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.measured.events import measure_events
+from contact_dynamics.measured.read_toss import DEFAULT_RECORDING, read_toss
 from contact_dynamics.nodes.running import stop_signals
 
 if TYPE_CHECKING:
     import threading
 
-    from contact_dynamics.demo.recorded_toss import Toss
+    from contact_dynamics.measured.recorded_toss import Toss
 
 LISTENERS: Final = 3
 """Subscriptions that the toss waits for: the server's, the visualizer's and this process's."""

@@ -13,9 +13,9 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
-from contact_dynamics.demo.recorded_toss import Toss
-from contact_dynamics.demo.toss import DEFAULT_RECORDING, read_toss
 from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.measured.read_toss import DEFAULT_RECORDING, read_toss
+from contact_dynamics.measured.recorded_toss import Toss
 from msg_adapters.odometry import odometry_from_body_state
 
 WORLD_FRAME: Final = "world"

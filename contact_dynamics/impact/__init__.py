@@ -9,32 +9,32 @@ check is in `table`, the arithmetic that one case and many share in `elementwise
 (`sequence`, `meetings`, `sequence_result`); uncertain states (`uncertain`).
 """
 
-from contact_dynamics.impact.batch import PlanarImpacts, planar_impacts
-from contact_dynamics.impact.bodies import bodies_impact
+from contact_dynamics.impact.distribution import (
+    ImpactDistribution,
+    planar_impact_distribution,
+    spatial_impact_distribution,
+)
+from contact_dynamics.impact.in_time.result import ImpactSequence, SequenceEnd, TimedStrike
+from contact_dynamics.impact.in_time.sequence import impact_sequence, impact_sequence_of
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
-from contact_dynamics.impact.pair import planar_pair_impact
-from contact_dynamics.impact.planar import planar_impact
-from contact_dynamics.impact.result import PlanarImpact
-from contact_dynamics.impact.routh import ImpulsePath, InverseInertia
-from contact_dynamics.impact.sequence import impact_sequence, impact_sequence_of
-from contact_dynamics.impact.sequence_result import ImpactSequence, SequenceEnd, TimedStrike
-from contact_dynamics.impact.several import outcomes_over_orders, several_impact
-from contact_dynamics.impact.several_planar import planar_several_impact
-from contact_dynamics.impact.several_result import (
+from contact_dynamics.impact.planar.batch import PlanarImpacts, planar_impacts
+from contact_dynamics.impact.planar.one_contact import planar_impact
+from contact_dynamics.impact.planar.result import PlanarImpact
+from contact_dynamics.impact.planar.routh import ImpulsePath, InverseInertia
+from contact_dynamics.impact.planar.two_bodies import planar_pair_impact
+from contact_dynamics.impact.several.orders import outcomes_over_orders, several_impact
+from contact_dynamics.impact.several.planar import planar_several_impact
+from contact_dynamics.impact.several.result import (
     BodiesImpact,
     OrderedOutcomes,
     SeveralContactsLaw,
     SeveralImpact,
     SeveralVerdict,
 )
-from contact_dynamics.impact.spatial import spatial_impact, spatial_pair_impact
-from contact_dynamics.impact.spatial_batch import SpatialImpacts, StrikingBodies, spatial_impacts
-from contact_dynamics.impact.spatial_result import SpatialImpact
-from contact_dynamics.impact.uncertain import (
-    ImpactDistribution,
-    planar_impact_distribution,
-    spatial_impact_distribution,
-)
+from contact_dynamics.impact.several.sequential import bodies_impact
+from contact_dynamics.impact.spatial.batch import SpatialImpacts, StrikingBodies, spatial_impacts
+from contact_dynamics.impact.spatial.one_contact import spatial_impact, spatial_pair_impact
+from contact_dynamics.impact.spatial.result import SpatialImpact
 
 __all__ = [
     "BodiesImpact",

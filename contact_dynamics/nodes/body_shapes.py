@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 
-from contact_dynamics import convex_shape, inertia
-from contact_dynamics.convex_shape import NO_SHAPE, ConvexShape
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.rigid_body import inertia
+from contact_dynamics.shapes import convex as convex_shape
+from contact_dynamics.shapes.convex import NO_SHAPE, ConvexShape
 from contact_dynamics.validation import check_array, check_not_negative, check_positive, check_unit
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from contact_dynamics.inertia import MassDistribution
+    from contact_dynamics.rigid_body.inertia import MassDistribution
     from contact_dynamics.validation import FloatArray
 
     ShapeMaker: TypeAlias = Callable[[Any], ConvexShape]

@@ -14,8 +14,8 @@ from rclpy.parameter import Parameter
 
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.nodes.body_shapes import DESCRIPTIONS, ShapeParameters
-from contact_dynamics.obstacle import Obstacle
-from contact_dynamics.rigid_body import MassProperties
+from contact_dynamics.rigid_body.body import MassProperties
+from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, OUT_OF_PLANE_SPEED, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_positive
 from contact_dynamics.world import STANDARD_GRAVITY_W, Body, Surface, World

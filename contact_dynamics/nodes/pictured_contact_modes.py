@@ -9,8 +9,8 @@ import numpy as np
 
 from contact_dynamics.contact_modes import ConsistentMode, ModeVerdict, ModeWrenchSet, WrenchHalfSpace
 from contact_dynamics.nodes.pictured_answers import in_words, numbers, rows, tell
-from contact_dynamics.planar import PlanarContact, PlanarWrench
-from contact_dynamics.plane_of_motion import PlaneOfMotion
+from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.plane.types import PlanarContact, PlanarWrench
 from contact_dynamics.viewing.contact_modes import ContactModesPicture, DrawnMode
 from contact_dynamics.viewing.planar_modes import PlanarModesPicture
 from contact_dynamics_interfaces.srv import PredictContactMode
@@ -22,9 +22,9 @@ from msg_adapters.stamps import stamp_ns_from_msg
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.contact import ContactSet
-    from contact_dynamics.planar import Vector2
-    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.plane.types import Vector2
+    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.picture import Picture
     from contact_dynamics.world import Body

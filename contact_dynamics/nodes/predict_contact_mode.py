@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
+from contact_dynamics.contact.velocities import spatial_contact_velocities
 from contact_dynamics.contact_modes import (
     planar_contact_modes,
     planar_mode_map,
@@ -17,10 +18,9 @@ from contact_dynamics.contact_modes import (
     spatial_statics,
     spatial_wrench_sets,
 )
-from contact_dynamics.contact_modes.problem import MOST_CONTACTS
-from contact_dynamics.contact_modes.spatial_dynamics import FRICTION_FACETS
-from contact_dynamics.contact_modes.spatial_wrench_sets import WRENCH_FACETS
-from contact_dynamics.contact_modes.touching import spatial_contact_velocities
+from contact_dynamics.contact_modes.planar.problem import MOST_CONTACTS
+from contact_dynamics.contact_modes.spatial.answer import FRICTION_FACETS
+from contact_dynamics.contact_modes.spatial.wrench_sets import WRENCH_FACETS
 from contact_dynamics.errors import InvalidFieldError, OutOfPlaneError, TooLargeError
 from contact_dynamics.nodes.settled_impact import Question, settle_in_plane, settle_in_space
 from contact_dynamics.nodes.subject import (
@@ -31,7 +31,7 @@ from contact_dynamics.nodes.subject import (
     subject_of,
     velocity_tolerance_of,
 )
-from contact_dynamics.plane_to_space import check_mirrored, mirror_partners
+from contact_dynamics.plane.lifting import check_mirrored, mirror_partners
 from contact_dynamics.validation import check_array, check_not_negative
 from msg_adapters.contact_mode import (
     spatial_wrench_set_to_msg,
@@ -48,7 +48,7 @@ from msg_adapters.geometry import vector_from_msg, vector_to_msg
 
 if TYPE_CHECKING:
     from contact_dynamics.nodes.subject import Knowledge
-    from contact_dynamics.plane_of_motion import PlanarProblem
+    from contact_dynamics.plane.projection import PlanarProblem
 
 MOST_FRICTION_FACETS: Final = 32
 """More edges of a friction pyramid are refused: 32 hold 99.5 % of the round cone, and more cost more."""

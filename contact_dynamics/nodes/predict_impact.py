@@ -20,8 +20,9 @@ from contact_dynamics.impact import (
     spatial_impact_distribution,
     spatial_pair_impact,
 )
-from contact_dynamics.impact.sequence import MOST_STRIKES, STRIKE_WINDOW
-from contact_dynamics.impact.several_planar import planar_in_space
+from contact_dynamics.impact.in_time.sequence import MOST_STRIKES, STRIKE_WINDOW
+from contact_dynamics.impact.several.planar import planar_in_space
+from contact_dynamics.motion.covariance import propagate_covariance
 from contact_dynamics.nodes.strike import strike_of
 from contact_dynamics.nodes.subject import (
     covariance_of,
@@ -29,13 +30,12 @@ from contact_dynamics.nodes.subject import (
     or_configured,
     planar_problem_of,
 )
-from contact_dynamics.plane_to_space import (
+from contact_dynamics.plane.lifting import (
     check_mirrored,
     mirror_partners,
     planar_velocity,
     with_planar_velocity,
 )
-from contact_dynamics.uncertainty import propagate_covariance
 from msg_adapters.contacts import contacts_to_msg
 from msg_adapters.geometry import vector_to_msg
 from msg_adapters.impact import (
@@ -51,12 +51,12 @@ from msg_adapters.impact import (
 from msg_adapters.tumbling import write_fit
 
 if TYPE_CHECKING:
-    from contact_dynamics.contact import ContactSet
+    from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.impact import ImpactDistribution, ImpactSequence, OrderedOutcomes
     from contact_dynamics.nodes.strike import Strike
     from contact_dynamics.nodes.subject import Knowledge, Subject
-    from contact_dynamics.plane_of_motion import PlanarProblem
-    from contact_dynamics.rigid_body import BodyState, MassProperties
+    from contact_dynamics.plane.projection import PlanarProblem
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics_interfaces.msg import Impact as ImpactMsg
 
 SAMPLES: Final = 2000

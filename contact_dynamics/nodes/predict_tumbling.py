@@ -6,16 +6,16 @@ import math
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from contact_dynamics.applied_wrench import NO_WRENCH, ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.errors import TooLargeError
-from contact_dynamics.flips import next_flips
-from contact_dynamics.forced_motion import ForcedMotion, motion_of
-from contact_dynamics.forced_motion_fit import fit_motion
+from contact_dynamics.motion.covariance import CarriedCovariance, covariance_along
+from contact_dynamics.motion.forces import NO_WRENCH, ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.motion.integrated import ForcedMotion, motion_of
+from contact_dynamics.motion.integrated_fit import fit_motion
 from contact_dynamics.nodes.sampling import MOST_INTEGRATED_STEPS, check_turns, times_of
 from contact_dynamics.nodes.subject import Knowledge, Subject, covariance_of, gravity_of, subject_of
-from contact_dynamics.poinsot import poinsot, rolling_curves
 from contact_dynamics.tumbling import free_motion
-from contact_dynamics.uncertainty import CarriedCovariance, covariance_along
+from contact_dynamics.tumbling.flips import next_flips
+from contact_dynamics.tumbling.poinsot_construction import poinsot, rolling_curves
 from contact_dynamics.validation import check_array
 from msg_adapters.geometry import point_to_msg, vector_from_msg, vector_to_msg
 from msg_adapters.tumbling import (

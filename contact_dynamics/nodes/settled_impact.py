@@ -6,15 +6,15 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.contact_modes import ModeVerdict, planar_contact_modes, spatial_contact_modes
-from contact_dynamics.contact_modes.settling import settling_impact
 from contact_dynamics.impact import (
     outcomes_over_orders,
     planar_impact,
     several_impact,
     spatial_impact,
 )
-from contact_dynamics.impact.several_planar import planar_in_space
-from contact_dynamics.plane_to_space import equal_shares, planar_velocity, with_planar_velocity
+from contact_dynamics.impact.several.planar import planar_in_space
+from contact_dynamics.impact.several.settling import settling_impact
+from contact_dynamics.plane.lifting import equal_shares, planar_velocity, with_planar_velocity
 from msg_adapters.contact_mode import planar_modes_to_msgs, spatial_modes_to_msgs
 from msg_adapters.impact import (
     Before,
@@ -27,13 +27,13 @@ from msg_adapters.impact import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from contact_dynamics.contact import ContactSet
+    from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.contact_modes import ContactModeAnswer, SpatialModeAnswer
     from contact_dynamics.impact import OrderedOutcomes, SeveralImpact
     from contact_dynamics.nodes.subject import Subject
-    from contact_dynamics.planar import PlanarVelocity
-    from contact_dynamics.plane_of_motion import PlanarProblem
-    from contact_dynamics.rigid_body import BodyState, MassProperties
+    from contact_dynamics.plane.projection import PlanarProblem
+    from contact_dynamics.plane.types import PlanarVelocity
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
 
 MOST_CONTACTS_IN_ORDERS: Final = 4

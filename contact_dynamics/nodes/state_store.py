@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from contact_dynamics.errors import NoStateError, StaleStateError
 
 if TYPE_CHECKING:
-    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.rigid_body.body import BodyState
 
 _NS_PER_S = 1e9
 

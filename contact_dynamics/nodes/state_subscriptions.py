@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.nodes.parameters import StateTopics
     from contact_dynamics.nodes.state_store import StateStore
-    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
 
 STATE_QOS = QoSProfile(depth=1000)

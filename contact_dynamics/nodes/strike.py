@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from contact_dynamics.errors import InvalidFieldError, NoContactError, NotSupportedError
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
-from contact_dynamics.landing import next_landing
+from contact_dynamics.landing.earliest import next_landing
 from contact_dynamics.nodes.subject import (
     Knowledge,
     Subject,
@@ -22,8 +22,8 @@ from contact_dynamics.nodes.subject import (
 from msg_adapters.impact import Before
 
 if TYPE_CHECKING:
-    from contact_dynamics.contact import ContactSet
-    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
 
 

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from contact_dynamics.contact_geometry import find_contacts
-from contact_dynamics.convex_shape import NO_SHAPE
+from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.errors import InvalidFieldError, NoContactError, TooLargeError
-from contact_dynamics.motion_fit import FitResult, fit_free_motion
-from contact_dynamics.plane_of_motion import PlanarProblem, PlaneOfMotion, best_plane, project
+from contact_dynamics.motion.free_fit import FitResult, fit_free_motion
+from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, best_plane, project
+from contact_dynamics.shapes.convex import NO_SHAPE
 from contact_dynamics.validation import check_not_negative
 from contact_dynamics.world import Body
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, covariance_from_msg
@@ -31,10 +31,10 @@ if TYPE_CHECKING:
     from builtin_interfaces.msg import Time
     from geometry_msgs.msg import Inertia
 
-    from contact_dynamics.contact import ContactSet
+    from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.nodes.parameters import ServerParameters
     from contact_dynamics.nodes.state_store import StateStore
-    from contact_dynamics.rigid_body import BodyState, MassProperties
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
     from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 

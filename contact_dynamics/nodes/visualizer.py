@@ -50,7 +50,7 @@ if TYPE_CHECKING:
 
     from rclpy.subscription import Subscription
 
-    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.rigid_body.body import BodyState
 
 NODE_NAME: Final = "contact_dynamics_visualizer"
 

@@ -6,7 +6,7 @@ functions (`theta`, set up by `attitude_form`), phases over many turns (`double_
 body (`motion`), what to call it (`regime`), and many bodies at once (`many`).
 """
 
-from contact_dynamics.tumbling.arithmetic import Precision
+from contact_dynamics.numerics.arithmetic import Precision
 from contact_dynamics.tumbling.many import rotations_of_many, states_of_many
 from contact_dynamics.tumbling.motion import FreeMotion, Sample, Trajectory, free_motion
 from contact_dynamics.tumbling.regime import Regime

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from contact_dynamics.tumbling.arithmetic import DOUBLES, Number, Scalar, within
+from contact_dynamics.numerics.arithmetic import DOUBLES, Number, Scalar, within
 from contact_dynamics.tumbling.double_double import linear_phase
 from contact_dynamics.tumbling.elliptic import carlson_rf
 from contact_dynamics.tumbling.polhode import Spin, Tumble
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from types import ModuleType
 
-    from contact_dynamics.tumbling.arithmetic import Arithmetic
+    from contact_dynamics.numerics.arithmetic import Arithmetic
     from contact_dynamics.tumbling.double_double import LinearPhase
     from contact_dynamics.tumbling.theta import Three, Values
     from contact_dynamics.validation import FloatArray

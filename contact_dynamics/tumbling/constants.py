@@ -7,12 +7,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.tolerances import LARGEST_NUMBER
-from contact_dynamics.tumbling.arithmetic import DECIMALS, DOUBLES, Arithmetic, Precision, Scalar, within
-from contact_dynamics.tumbling.attitude_form import AttitudeForm, attitude_form
-from contact_dynamics.tumbling.polhode import Rotation, Spin, Tumble, largest_rate, tumble_or_spin
-from contact_dynamics.tumbling.principal_frame import PrincipalFrame, in_doubles, principal_frame
-from contact_dynamics.tumbling.quaternions import (
+from contact_dynamics.numerics.arithmetic import DECIMALS, DOUBLES, Arithmetic, Precision, Scalar, within
+from contact_dynamics.rigid_body.inertia.principal_frame import PrincipalFrame, in_doubles, principal_frame
+from contact_dynamics.rotations.one import (
     Quaternion,
     conjugate,
     from_rows,
@@ -20,6 +17,9 @@ from contact_dynamics.tumbling.quaternions import (
     normalised,
     product,
 )
+from contact_dynamics.tolerances import LARGEST_NUMBER
+from contact_dynamics.tumbling.attitude_form import AttitudeForm, attitude_form
+from contact_dynamics.tumbling.polhode import Rotation, Spin, Tumble, largest_rate, tumble_or_spin
 from contact_dynamics.tumbling.regime import Regime, regime_of
 
 if TYPE_CHECKING:

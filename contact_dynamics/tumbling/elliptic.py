@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from contact_dynamics.tumbling.arithmetic import Arithmetic, Number
+    from contact_dynamics.numerics.arithmetic import Arithmetic, Number
 
 
 def average_over_period(

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.rotations import matrices_of
+from contact_dynamics.numerics.arithmetic import ARRAYS, FloatArray
+from contact_dynamics.rotations.many import matrices_of
 from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, UNIT_LENGTH_TOLERANCE
-from contact_dynamics.tumbling.arithmetic import ARRAYS, FloatArray
 from contact_dynamics.tumbling.attitude_form import SWITCH, bumps, harmonics, zeros
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
 from contact_dynamics.tumbling.motion import Trajectory

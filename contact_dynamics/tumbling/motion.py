@@ -9,7 +9,7 @@ Frames: W the world, B the body at its centre of mass, P the principal axes in J
 turned so that its z axis lies along the angular momentum.
 
 Not covered: torque, drag, gravity gradients. The answer for given doubles is exact to rounding, but near the
-middle axis it changes much when they do: `contact_dynamics.poinsot` says how much.
+middle axis it changes much when they do: `contact_dynamics.tumbling.poinsot_construction` says how much.
 """
 
 from __future__ import annotations
@@ -20,12 +20,10 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.rigid_body import BodyState, MassProperties
-from contact_dynamics.rotations import make_continuous
-from contact_dynamics.tolerances import LARGEST_NUMBER
-from contact_dynamics.tumbling.arithmetic import Precision
-from contact_dynamics.tumbling.constants import constants_of
-from contact_dynamics.tumbling.quaternions import (
+from contact_dynamics.numerics.arithmetic import Precision
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.rotations.many import make_continuous
+from contact_dynamics.rotations.one import (
     Quaternion,
     left_matrix,
     nearer,
@@ -33,6 +31,8 @@ from contact_dynamics.tumbling.quaternions import (
     right_matrix,
     rotated,
 )
+from contact_dynamics.tolerances import LARGEST_NUMBER
+from contact_dynamics.tumbling.constants import constants_of
 from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_within
 from contact_dynamics.world import STANDARD_GRAVITY_W
 
@@ -41,9 +41,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
+    from contact_dynamics.rigid_body.inertia.principal_frame import PrincipalFrame
     from contact_dynamics.tumbling.attitude_form import AttitudeForm
     from contact_dynamics.tumbling.polhode import Rotation
-    from contact_dynamics.tumbling.principal_frame import PrincipalFrame
     from contact_dynamics.tumbling.regime import Regime
 
 NANOSECONDS: Final = 1_000_000_000

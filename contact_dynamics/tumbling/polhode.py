@@ -19,15 +19,15 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Generic, TypeAlias
 
-from contact_dynamics.tumbling.arithmetic import Scalar, within
+from contact_dynamics.numerics.arithmetic import Scalar, within
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from decimal import Decimal
 
-    from contact_dynamics.tumbling.arithmetic import Arithmetic
-    from contact_dynamics.tumbling.principal_frame import PrincipalFrame
+    from contact_dynamics.numerics.arithmetic import Arithmetic
+    from contact_dynamics.rigid_body.inertia.principal_frame import PrincipalFrame
 
 MOTIONLESS: Final = 1e-60
 """Squared angle between the angular velocity and the major or minor axis, below which the spin is taken as

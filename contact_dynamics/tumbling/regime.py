@@ -11,8 +11,8 @@ from contact_dynamics.tumbling.polhode import Spin
 if TYPE_CHECKING:
     from decimal import Decimal
 
+    from contact_dynamics.rigid_body.inertia.principal_frame import PrincipalFrame
     from contact_dynamics.tumbling.polhode import Rotation
-    from contact_dynamics.tumbling.principal_frame import PrincipalFrame
 
 
 class Regime(enum.IntEnum):

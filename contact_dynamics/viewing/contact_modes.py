@@ -18,7 +18,7 @@ from contact_dynamics.viewing.impact import friction_cones
 from contact_dynamics.viewing.trajectory import outline
 
 if TYPE_CHECKING:
-    from contact_dynamics.contact import ContactSet
+    from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.shape import Shape
 

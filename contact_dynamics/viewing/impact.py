@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from contact_dynamics.contact import ContactSet
-    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.shape import Shape
 

@@ -17,7 +17,7 @@ import numpy as np
 import rerun as rr
 
 from contact_dynamics.impact.law import PathEvent
-from contact_dynamics.impact.spatial import contact_inverse_inertia
+from contact_dynamics.impact.spatial.one_contact import contact_inverse_inertia
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import IMPULSE_SPACE
 from contact_dynamics.viewing.scene import tangents
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from contact_dynamics.planar import Vector2
-    from contact_dynamics.rigid_body import MassProperties
+    from contact_dynamics.plane.types import Vector2
+    from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.impact import ImpactPicture
 

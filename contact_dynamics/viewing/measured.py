@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.validation import FloatArray
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from contact_dynamics.contact_modes import ModeWrenchSet
-    from contact_dynamics.planar import PlanarWrench
+    from contact_dynamics.plane.types import PlanarWrench
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.wrench_chart import WrenchChart
 

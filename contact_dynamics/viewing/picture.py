@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
-from contact_dynamics.convex_shape import NO_SHAPE
+from contact_dynamics.shapes.convex import NO_SHAPE
 from contact_dynamics.viewing.blueprint import WINDOW_S, Eye, eye_on, make_blueprint
 from contact_dynamics.viewing.contact_modes import draw_contact_modes
 from contact_dynamics.viewing.entities import (
@@ -35,7 +35,7 @@ from contact_dynamics.world import Surface
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.rigid_body import BodyState, MassProperties
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.contact_modes import ContactModesPicture

@@ -22,7 +22,7 @@ from contact_dynamics.viewing.wrench_chart import DirectionChart
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes import ConsistentMode, ModeWrenchSet
-    from contact_dynamics.planar import PlanarContact, PlanarWrench
+    from contact_dynamics.plane.types import PlanarContact, PlanarWrench
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.shape import Shape
     from contact_dynamics.viewing.wrench_chart import WrenchChart

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.contact_modes import ConsistentMode
-    from contact_dynamics.planar import PlanarContact
+    from contact_dynamics.plane.types import PlanarContact
     from contact_dynamics.validation import FloatArray
 
 CONE_LENGTH: Final = 0.2

@@ -21,7 +21,7 @@ from contact_dynamics.viewing.scene import tangents
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
 
 _PLANE_MARGIN: Final = 1.25  # how far the plane goes beyond what lies on it

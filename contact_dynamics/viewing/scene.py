@@ -12,7 +12,7 @@ from contact_dynamics.viewing.entities import SCENE, SURFACES, body_entity, enti
 from contact_dynamics.viewing.shape import convex_shape
 
 if TYPE_CHECKING:
-    from contact_dynamics.obstacle import Obstacle
+    from contact_dynamics.shapes.obstacle import Obstacle
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.shape import Shape
     from contact_dynamics.world import Surface

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from contact_dynamics.contact_modes import WrenchHalfSpace
-    from contact_dynamics.planar import Vector2
+    from contact_dynamics.plane.types import Vector2
     from contact_dynamics.validation import FloatArray
 
 ANTICLOCKWISE: Final = 0

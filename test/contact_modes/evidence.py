@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.contact_modes import ConsistentMode, ContactModeAnswer
-    from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+    from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 
 ROUNDING = 1e-9  # relative to the forces at work: internal forces of narrow cones are large
 

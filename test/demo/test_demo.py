@@ -22,9 +22,9 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
 from contact_dynamics.command_line import VERBS, main
-from contact_dynamics.demo.measured_events import measure_events
-from contact_dynamics.demo.recorded_toss import Toss
-from contact_dynamics.demo.toss import DEFAULT_RECORDING, read_toss
+from contact_dynamics.measured.events import measure_events
+from contact_dynamics.measured.read_toss import DEFAULT_RECORDING, read_toss
+from contact_dynamics.measured.recorded_toss import Toss
 from contact_dynamics.recording import BagReader, service_calls
 
 ROOT = Path(__file__).parents[2]

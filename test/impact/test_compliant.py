@@ -18,8 +18,8 @@ from contact_dynamics.impact import (
     spatial_impact,
     spatial_impacts,
 )
-from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity
-from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from oracles import impact_compliant, impact_spring_plane, impact_spring_space
 
 

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from contact_dynamics.contact import ContactSet
+from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact import (
     BodiesImpact,
@@ -26,8 +26,8 @@ from contact_dynamics.impact import (
     several_impact,
     spatial_impact,
 )
-from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity
-from contact_dynamics.rigid_body import BodyState, MassProperties, kinetic_energy
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
+from contact_dynamics.rigid_body.body import BodyState, MassProperties, kinetic_energy
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 UP = (0.0, 1.0)

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact_dynamics.contact import ContactSet
-from contact_dynamics.contact_curvature import Curvatures, alike
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.curvature import Curvatures, alike
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg

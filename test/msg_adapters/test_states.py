@@ -13,7 +13,7 @@ from nav_msgs.msg import Odometry
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.errors import FrameMismatchError, InvalidFieldError
-from contact_dynamics.rigid_body import BodyState
+from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, covariance_from_msg
 from msg_adapters.odometry import body_state_from_odometry, odometry_from_body_state

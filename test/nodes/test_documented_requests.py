@@ -11,8 +11,8 @@ import pytest
 import yaml
 
 from contact_dynamics.contact_modes import ModeVerdict
-from contact_dynamics.forced_motion import Method
 from contact_dynamics.impact import ImpactOutcome, SequenceEnd
+from contact_dynamics.motion.integrated import Method
 from contact_dynamics.tumbling import Regime
 from contact_dynamics_interfaces.msg import Impact
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling

@@ -6,7 +6,7 @@ import math
 import random
 from fractions import Fraction
 
-from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from oracles.contact_modes import ExactCase, ExactContact
 
 STYLES = ("grid", "flush", "random", "turning", "sliding")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import FreeMotion, Regime, free_motion
 
 TURN = Rotation.from_euler("xyz", [0.3, -1.1, 2.0])

@@ -12,7 +12,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import FreeMotion, free_motion
 from contact_dynamics.tumbling.polhode import Tumble
 from oracles.tumbling_draws import BODIES, SPINS, Draw, draw

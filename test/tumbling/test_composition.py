@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import FreeMotion, free_motion
 from oracles.tumbling_draws import draw
 from tumbling.known_motions import MOTIONS, motion_of

@@ -10,12 +10,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.flips import next_flips
-from contact_dynamics.forced_motion import forced_motion
-from contact_dynamics.poinsot import poinsot, rolling_curves
-from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.motion.covariance import covariance_along
+from contact_dynamics.motion.integrated import forced_motion
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import FreeMotion, Regime, free_motion
-from contact_dynamics.uncertainty import covariance_along
+from contact_dynamics.tumbling.flips import next_flips
+from contact_dynamics.tumbling.poinsot_construction import poinsot, rolling_curves
 from oracles.tumbling_exact import ExactMotion
 
 TARGET = 5e-15

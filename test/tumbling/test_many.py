@@ -9,9 +9,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.poinsot import sensitivity
-from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import FreeMotion, free_motion, rotations_of_many, states_of_many
+from contact_dynamics.tumbling.poinsot_construction import sensitivity
 from oracles.tumbling_draws import draw
 
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)

@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.rigid_body import BodyState, MassProperties, angular_momentum, kinetic_energy
+from contact_dynamics.rigid_body.body import BodyState, MassProperties, angular_momentum, kinetic_energy
 from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
 from oracles.tumbling_stepped import stepped
 from tumbling.known_motions import MOTIONS, motion_of

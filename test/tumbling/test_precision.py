@@ -8,9 +8,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.poinsot import sensitivity
-from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
+from contact_dynamics.tumbling.poinsot_construction import sensitivity
 from oracles.tumbling_draws import draw
 from tumbling.known_motions import MOTIONS, motion_of
 

@@ -12,8 +12,8 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore", DeprecationWarning)  # of Python 3.10, at rerun's import
     import rerun as rr
 
-from contact_dynamics.contact import ContactSet
-from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.viewing.measured import set_time
 from contact_dynamics.world import Body, Surface, World, box_vertices

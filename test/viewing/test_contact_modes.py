@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     import rerun as rr
 
-    from contact_dynamics.contact import ContactSet
+    from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body
     from viewing.drawn import Drawn

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
     import rerun as rr
 
-    from contact_dynamics.contact import ContactSet
-    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body
     from viewing.drawn import Drawn

@@ -11,10 +11,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contact_dynamics.contact import ContactSet
+from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.impact.law import ImpactOutcome
-from contact_dynamics.impact.spatial import spatial_pair_impact
-from contact_dynamics.rigid_body import BodyState, MassProperties
+from contact_dynamics.impact.spatial.one_contact import spatial_pair_impact
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.viewing.impact import ImpactPicture, OtherBody
 from contact_dynamics.viewing.impulse_space import Line, contact_axes, draw_impulse_space, line_in_box
 

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.rigid_body import BodyState
+from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.viewing.measured import draw_prediction_at, draw_states, style_series
 from viewing.drawn import STAMP_NS

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from contact_dynamics.rigid_body import BodyState
+from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.viewing.contact_modes import ContactModesPicture
 from contact_dynamics.viewing.impact import ImpactPicture
 from contact_dynamics.viewing.picture import Picture
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     import rerun as rr
 
-    from contact_dynamics.contact import ContactSet
+    from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.tumbling import Trajectory
     from viewing.drawn import Drawn
 

@@ -9,7 +9,7 @@ import pytest
 
 from contact_dynamics.contact_modes import planar_contact_modes, planar_mode_map, planar_mode_margins
 from contact_dynamics.nodes.pictured_contact_modes import applied_wrench
-from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.viewing.planar_modes import (
     MOST_SETS,
     PlanarModesPicture,

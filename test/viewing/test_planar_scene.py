@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics.contact_modes import planar_contact_modes
-from contact_dynamics.planar import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.viewing.planar_scene import cone_edges, draw_planar_scene
 
 if TYPE_CHECKING:

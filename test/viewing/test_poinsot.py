@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from contact_dynamics.poinsot import poinsot, rolling_curves
-from contact_dynamics.rigid_body import rotation_matrix
+from contact_dynamics.rigid_body.body import rotation_matrix
 from contact_dynamics.tumbling import free_motion
+from contact_dynamics.tumbling.poinsot_construction import poinsot, rolling_curves
 from contact_dynamics.viewing.poinsot import PoinsotPicture, draw_poinsot, draw_rolling, ellipsoid_net
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     import rerun as rr
 
-    from contact_dynamics.rigid_body import BodyState
+    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.world import Body
     from viewing.drawn import Drawn
 

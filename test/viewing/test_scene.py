@@ -8,7 +8,7 @@ import rerun as rr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contact_dynamics.obstacle import Obstacle
+from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.scene import (
     MOST_GRID_LINES,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.rigid_body import BodyState
+from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.shape import convex_shape

@@ -3,9 +3,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from contact_dynamics.contact.friction import force_dual
 from contact_dynamics.contact_modes import WrenchHalfSpace
-from contact_dynamics.friction import force_dual
-from contact_dynamics.planar import PlanarBody, PlanarWrench
+from contact_dynamics.plane.types import PlanarBody, PlanarWrench
 from contact_dynamics.viewing.wrench_chart import (
     ANTICLOCKWISE,
     CLOCKWISE,

@@ -1,0 +1,1 @@
+"""Contacts: given, or found from shapes; their curvatures, frames and friction."""

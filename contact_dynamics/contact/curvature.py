@@ -1,0 +1,273 @@
+"""What the shapes at a contact add to its acceleration: the velocity-product terms of each contact kind.
+
+A point of the body on a flat of the world keeps its material point, and the gap's second derivative is that
+point's a_n = n . (a + alpha x r + w x (w x r)). Where the body is curved there, or the world, the point of
+contact moves over both. Let K_B and K_S be the curvatures of body and surface at the contact (2 x 2,
+symmetric, in the tangent plane, convex positive), v the velocity of the body's material point there (tangent,
+as the contact persists), w the angular velocity and m = n x w. A material point at xi from the contact, and
+its height over the surface, are after a short time t
+
+    gap(xi) = xi' K_B xi / 2 + t m . xi + t^2 a_n / 2 + (xi + t v)' K_S (xi + t v) / 2.
+
+The gap of the bodies is the least of these. With xi = t eta,
+
+    gap'' = a_n + min over eta of  eta' K_B eta + 2 m . eta + (eta + v)' K_S (eta + v),
+    (K_B + K_S) eta = -(m + K_S v),
+
+where eta is the velocity of the point of contact over the body, and eta + v that over the surface: Montana's
+equations of contact (The kinematics of contact and grasp, Int. J. of Robotics Research 7(3), 1988). An
+infinite curvature, a corner or an edge, holds eta (of the body) or eta + v (of the surface) at zero in its
+direction. The known kinds follow:
+
+    point on flat      K_B infinite, K_S = 0      eta = 0       nothing
+    flat on point      K_B = 0, K_S infinite      eta = -v      -2 n . (w x v), Coriolis
+    curved on flat     K_S = 0                    K_B eta = -m  -m' K_B^-1 m, a rolling disc's -w^2 R
+    edge on edge       each 0 along itself        along both    2 m . eta
+
+Likewise the velocity of sliding of a contact at rest (v = 0) changes by the acceleration of the material
+point plus w x eta, as another point comes to be the one of contact: its tangential part is w_n n x eta.
+
+Not covered: pairs that touch along a line or a face (give its extreme points), or corner on corner, which has
+no normal of its own; surfaces that move.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.tolerances import ROW_TOLERANCE, UNIT_LENGTH_TOLERANCE
+from contact_dynamics.validation import FloatArray, check_array
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact.contact import ContactSet
+
+Pair: TypeAlias = "tuple[float, float]"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Curvatures:
+    """Principal curvatures of one side, body or surface, of n contacts; convex is positive.
+
+    Raises:
+        InvalidFieldError: arrays of unequal length, NaN, minus infinity.
+    """
+
+    along: FloatArray  # (n,), 1/m, along the direction; inf: a corner or the edge of a blade
+    across: FloatArray  # (n,), 1/m, along the tangent at right angles to it
+    directions_W: FloatArray  # (n, 3), unit, tangent, world axes; zero where both curvatures are equal
+
+    def __post_init__(self) -> None:
+        """Check all three."""
+        n = len(self.along)
+        for name in ("along", "across"):
+            values = np.array(getattr(self, name), dtype=np.float64)
+            if values.shape != (n,) or np.isnan(values).any() or np.isneginf(values).any():
+                raise InvalidFieldError(f"curvatures.{name}", values.tolist(), f"{n} numbers, or infinity")
+            values.flags.writeable = False
+            object.__setattr__(self, name, values)
+        directions = check_array("curvatures.directions", self.directions_W, (n, 3))
+        object.__setattr__(self, "directions_W", directions)
+
+    def __len__(self) -> int:
+        """Return the number of contacts."""
+        return len(self.along)
+
+    def subset(self, indices: Sequence[int]) -> Curvatures:
+        """Return those of some contacts, in their order."""
+        chosen = list(indices)
+        return Curvatures(
+            along=self.along[chosen], across=self.across[chosen], directions_W=self.directions_W[chosen]
+        )
+
+    def in_direction(self, i: int, t_W: FloatArray) -> float | None:
+        """Return the curvature of contact ``i`` along a unit tangent, 1/m; None: not a principal direction.
+
+        Principal is what is within `UNIT_LENGTH_TOLERANCE` rad of one.
+        """
+        along, across = float(self.along[i]), float(self.across[i])
+        if along == across:
+            return along
+        cosine = abs(float(self.directions_W[i] @ t_W))
+        if 1.0 - cosine <= 0.5 * UNIT_LENGTH_TOLERANCE**2:
+            return along
+        return across if cosine <= UNIT_LENGTH_TOLERANCE else None
+
+
+def alike(n: int, curvature: float) -> Curvatures:
+    """Return one curvature, 1/m, in all directions at n contacts: infinity for points, 0 for flats."""
+    same = np.full(n, curvature)
+    return Curvatures(along=same, across=same, directions_W=np.zeros((n, 3)))
+
+
+def checked_curvatures(field: str, curvatures: Curvatures | None, normals_W: FloatArray) -> Curvatures | None:
+    """Return curvatures with directions made unit and tangent to rounding, or raise `InvalidFieldError`."""
+    if curvatures is None:
+        return None
+    if len(curvatures) != len(normals_W):
+        raise InvalidFieldError(field, f"{len(curvatures)} contacts", f"{len(normals_W)}, or none")
+    directions = curvatures.directions_W
+    out = np.einsum("ij,ij->i", directions, normals_W)
+    lengths = np.linalg.norm(directions, axis=1)
+    needed = curvatures.along != curvatures.across
+    wrong = (np.abs(lengths - 1.0) > UNIT_LENGTH_TOLERANCE) | (np.abs(out) > UNIT_LENGTH_TOLERANCE)
+    for i in np.flatnonzero(needed & wrong)[:1]:
+        raise InvalidFieldError(
+            f"{field}.directions[{i}]", directions[i].tolist(), "a unit vector at right angles to the normal"
+        )
+    tangents = directions - out[:, None] * normals_W
+    sizes = np.linalg.norm(tangents, axis=1, keepdims=True)
+    tangents = np.divide(tangents, sizes, out=np.zeros_like(tangents), where=needed[:, None])
+    return Curvatures(along=curvatures.along, across=curvatures.across, directions_W=tangents)
+
+
+def check_pairs(
+    normals_W: FloatArray, body_curvatures: Curvatures | None, surface_curvatures: Curvatures | None
+) -> None:
+    """Raise `InvalidFieldError` for the first contact that is not one at a point with a normal of its own."""
+    n = len(normals_W)
+    mine, theirs = _least_and_most(body_curvatures, n, math.inf), _least_and_most(surface_curvatures, n, 0.0)
+    # Quick: one side convex in all directions and the other flat.
+    clear = ((mine[0] > 0.0) & (theirs == 0.0).all(axis=0)) | ((theirs[0] > 0.0) & (mine == 0.0).all(axis=0))
+    for i in np.flatnonzero(~clear).tolist():
+        frame = _frame(normals_W[i])
+        body, surface = _side(body_curvatures, i, frame, math.inf), _side(surface_curvatures, i, frame, 0.0)
+        if _rolling(body, surface, (0.0, 0.0), (0.0, 0.0)) is None:
+            raise InvalidFieldError(
+                f"contacts.curvatures[{i}]",
+                f"{[k for k, _ in body]} of the body, {[k for k, _ in surface]} of the surface, 1/m",
+                "a sum > 0 in all directions, and no corner on a corner",
+            )
+
+
+def _least_and_most(curvatures: Curvatures | None, n: int, default: float) -> FloatArray:
+    """Return the smaller and the larger curvature of each contact, (2, n), 1/m."""
+    if curvatures is None:
+        return np.full((2, n), default)
+    return np.sort([curvatures.along, curvatures.across], axis=0)
+
+
+def velocity_accelerations(contacts: ContactSet, velocities_W: FloatArray, w_W: FloatArray) -> FloatArray:
+    """Return what velocities add to the accelerations of the body's points at contacts, (n, 3), m/s^2.
+
+    In the normal direction the sum is the gap's second derivative; in tangential ones, at a contact at rest,
+    the rate of its velocity of sliding.
+
+    Args:
+        contacts: n contacts.
+        velocities_W: (n, 3), m/s, of the body's points there, world axes; normal parts are not used.
+        w_W: (3,), rad/s, angular velocity of the body, world axes.
+    """
+    added = np.zeros((len(contacts), 3))
+    if contacts.body_curvatures is None and contacts.surface_curvatures is None:
+        return added
+    n = len(contacts)
+    mine = _least_and_most(contacts.body_curvatures, n, math.inf)
+    theirs = _least_and_most(contacts.surface_curvatures, n, 0.0)
+    for i in np.flatnonzero(np.isfinite(mine[0]) | (theirs != 0.0).any(axis=0)).tolist():  # not point on flat
+        normal = contacts.normals_W[i]
+        frame = _frame(normal)
+        m = frame @ np.cross(normal, w_W)
+        v = frame @ velocities_W[i]
+        found = _rolling(
+            _side(contacts.body_curvatures, i, frame, math.inf),
+            _side(contacts.surface_curvatures, i, frame, 0.0),
+            (float(m[0]), float(m[1])),
+            (float(v[0]), float(v[1])),
+        )
+        if found is not None:  # as `check_pairs` saw to
+            eta_W = np.array(found.eta) @ frame
+            added[i] = found.gap * normal + float(normal @ w_W) * np.cross(normal, eta_W)
+    return added
+
+
+def planar_gap_acceleration(
+    body_curvature: float, surface_curvature: float, *, v_t: float, w: float
+) -> float:
+    """Return what velocities add to a planar contact's a_n, m/s^2: k_S v^2 - (w + k_S v)^2 / (k_B + k_S)."""
+    if math.isinf(surface_curvature):
+        return v_t * (body_curvature * v_t - 2.0 * w)
+    slip = surface_curvature * v_t
+    return slip * v_t - (w + slip) ** 2 / (body_curvature + surface_curvature)
+
+
+class _Rolling(NamedTuple):
+    eta: Pair  # m/s, of the point of contact over the body
+    gap: float  # m/s^2, what the gap's second derivative has besides a_n
+
+
+Side: TypeAlias = "list[tuple[float, Pair]]"
+"""Two curvatures, 1/m, with their directions in the tangent plane."""
+
+
+def _frame(normal_W: FloatArray) -> FloatArray:
+    """Return two tangents, (2, 3)."""
+    least = np.eye(3)[int(np.abs(normal_W).argmin())]
+    first = np.cross(normal_W, least)
+    first = first / math.sqrt(first @ first)
+    return np.array([first, np.cross(normal_W, first)])
+
+
+def _side(curvatures: Curvatures | None, i: int, frame: FloatArray, default: float) -> Side:
+    along, across, x, y = default, default, 1.0, 0.0
+    if curvatures is not None:
+        along, across = float(curvatures.along[i]), float(curvatures.across[i])
+        if along != across:
+            x, y = (frame @ curvatures.directions_W[i]).tolist()
+    return [(along, (x, y)), (across, (-y, x))]
+
+
+def _rolling(body: Side, surface: Side, m: Pair, v: Pair) -> _Rolling | None:
+    """Return how the contact moves, or None where it is not one point: the minimum over eta above."""
+    held = [(u, 0.0) for k, u in body if math.isinf(k)]
+    held += [(u, -_dot(u, v)) for k, u in surface if math.isinf(k)]
+    if len(held) > 2:
+        return None
+    if len(held) == 2:
+        (one, c_1), (two, c_2) = held
+        apart = one[0] * two[1] - one[1] * two[0]
+        if abs(apart) <= ROW_TOLERANCE:
+            return None
+        eta = ((c_1 * two[1] - c_2 * one[1]) / apart, (one[0] * c_2 - two[0] * c_1) / apart)
+    else:
+        ways: list[Pair] = [(1.0, 0.0), (0.0, 1.0)]
+        eta = (0.0, 0.0)
+        if held:
+            ((x, y), c) = held[0]
+            eta, ways = (c * x, c * y), [(-y, x)]
+        over = (eta[0] + v[0], eta[1] + v[1])
+        slope = [_dot(m, u) + _form(body, eta, u) + _form(surface, over, u) for u in ways]
+        bend = [[_form(body, u, w) + _form(surface, u, w) for w in ways] for u in ways]
+        size = sum(abs(k) for k, _ in [*body, *surface] if not math.isinf(k))
+        steps = _least(bend, slope, ROW_TOLERANCE * size)
+        if steps is None:
+            return None
+        for step, u in zip(steps, ways, strict=True):
+            eta = (eta[0] + step * u[0], eta[1] + step * u[1])
+    over = (eta[0] + v[0], eta[1] + v[1])
+    return _Rolling(eta, _form(body, eta, eta) + 2.0 * _dot(m, eta) + _form(surface, over, over))
+
+
+def _least(bend: list[list[float]], slope: list[float], smallest: float) -> list[float] | None:
+    """Return where a quadratic form of one or two variables is least; None: it bends too little."""
+    if len(slope) == 1:
+        return [-slope[0] / bend[0][0]] if bend[0][0] > smallest else None
+    (a, b), (_, c) = bend
+    determinant = a * c - b * b
+    if a + c <= 0.0 or determinant <= smallest * (a + c):
+        return None
+    return [(b * slope[1] - c * slope[0]) / determinant, (b * slope[0] - a * slope[1]) / determinant]
+
+
+def _form(side: Side, a: Pair, b: Pair) -> float:
+    """Return a' K b of the finite curvatures."""
+    return sum(k * _dot(u, a) * _dot(u, b) for k, u in side if not math.isinf(k))
+
+
+def _dot(a: Pair, b: Pair) -> float:
+    return a[0] * b[0] + a[1] * b[1]

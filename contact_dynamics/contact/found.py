@@ -1,0 +1,107 @@
+"""Contacts found from geometry: the points of a convex body that touch the world's surfaces at a pose.
+
+A face or an edge that lies flush gives its extreme points, which carry every force that the whole face or
+edge can: the corners of a face, the two ends of a cylinder's or a capsule's line. A ball touches in one
+point. A rim touches in its lowest point, and one that lies flush as a whole in eight points
+(`flat_contact.RIM_POINTS`) evenly spaced, the first towards the body's x axis (for a rim about x: its y
+axis): their wrenches are a cone inscribed in that of the whole rim, with at least 92 % of its tipping moments
+(the cosine of 22.5 degrees).
+
+Where a body is round its curvature comes with the contact (`contact.curvature`): that of the ball that rolls
+over the shape, and along a rim of radius R whose plane is tilted by theta, sin(theta) / R.
+
+Flats are treated here; obstacles, which have edges and corners, in `obstacle_contact`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.curvature import Curvatures
+from contact_dynamics.contact.on_flats import flat_touches
+from contact_dynamics.contact.on_obstacles import touches_of
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE
+from contact_dynamics.world import Surface
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.contact.on_flats import Side, Touch
+    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.shapes.obstacle import Obstacle
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import Body
+
+
+def find_contacts(
+    body: Body,
+    state: BodyState,
+    surfaces: Sequence[Surface | Obstacle],
+    *,
+    distance_tolerance: float = DISTANCE_TOLERANCE,
+) -> ContactSet:
+    """Return the contacts of a body with the surfaces, in their order; of a flat, corners first, then rims.
+
+    A point touches where its height above the surface is at most ``distance_tolerance`` (m); one below the
+    surface touches, since measured poses penetrate by their noise. A rim lies flush where all of it touches.
+    The set may be empty.
+
+    Raises:
+        NotSupportedError: a rim of the body at an edge of an obstacle (`obstacle_contact`).
+    """
+    shape, R_WB = body.shape, state.R_WB
+    points = state.p_WB_W + shape.vertices @ R_WB.T
+    flats = [surface for surface in surfaces if isinstance(surface, Surface)]
+    if shape.is_polyhedron and len(flats) == len(surfaces):
+        return _corners(points, flats, distance_tolerance)
+    touches: list[Touch] = []
+    owners: list[Surface | Obstacle] = []
+    for surface in surfaces:
+        if isinstance(surface, Surface):
+            level = float(surface.p_WS_W @ surface.normal_W)
+            touches += flat_touches(
+                shape, state.p_WB_W, R_WB, surface.normal_W, level=level, tolerance=distance_tolerance
+            )
+        elif not shape.is_empty:
+            touches += touches_of(shape, state.p_WB_W, R_WB, surface, distance_tolerance)
+        owners += [surface] * (len(touches) - len(owners))
+    return ContactSet(
+        p_WC_W=np.array([touch.p_WC_W for touch in touches]).reshape(-1, 3),
+        normals_W=np.array([touch.normal_W for touch in touches]).reshape(-1, 3),
+        frictions=np.array([owner.friction for owner in owners]),
+        restitutions=np.array([owner.restitution for owner in owners]),
+        surfaces=tuple(owner.name for owner in owners),
+        body_curvatures=_sides([touch.body for touch in touches]),
+        surface_curvatures=_sides([touch.surface for touch in touches]),
+    )
+
+
+def _sides(sides: list[Side]) -> Curvatures:
+    return Curvatures(
+        along=np.array([along for along, _, _ in sides]),
+        across=np.array([across for _, across, _ in sides]),
+        directions_W=np.array([direction for _, _, direction in sides]).reshape(-1, 3),
+    )
+
+
+def _corners(points: FloatArray, surfaces: Sequence[Surface], distance_tolerance: float) -> ContactSet:
+    touching = [points[surface.gaps(points) <= distance_tolerance] for surface in surfaces]
+    owners = [surface for surface, found in zip(surfaces, touching, strict=True) for _ in range(len(found))]
+    if not owners:
+        return NO_CONTACTS
+    return ContactSet(
+        p_WC_W=touching[0] if len(surfaces) == 1 else np.concatenate(touching),
+        normals_W=np.array([owner.normal_W for owner in owners]),
+        frictions=np.array([owner.friction for owner in owners]),
+        restitutions=np.array([owner.restitution for owner in owners]),
+        surfaces=tuple([owner.name for owner in owners]),
+    )
+
+
+NO_CONTACTS: Final = ContactSet(
+    p_WC_W=np.zeros((0, 3)), normals_W=np.zeros((0, 3)), frictions=np.zeros(0), restitutions=np.zeros(0)
+)
+"""Of a body that touches nothing."""

@@ -1,0 +1,106 @@
+"""Where a convex body touches a plane: extreme points of what does, with the body's curvature there.
+
+See `contact_geometry` for which points a face, a line and a rim have.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
+
+import numpy as np
+
+from contact_dynamics.landing.rim_descent import radii_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from contact_dynamics.landing.rim_descent import Radii
+    from contact_dynamics.shapes.convex import ConvexShape
+    from contact_dynamics.validation import FloatArray
+
+    Side: TypeAlias = tuple[float, float, FloatArray]
+
+RIM_POINTS: Final = 8
+"""Contacts of a rim that lies flush."""
+
+
+class Touch(NamedTuple):
+    """One extreme point of where a body touches, with curvatures of both sides (`contact.curvature`)."""
+
+    p_WC_W: FloatArray  # (3,), m
+    normal_W: FloatArray  # (3,), unit, into the body
+    body: Side  # 1/m along a tangent and across it, and the tangent, (3,), unit
+    surface: Side
+
+
+def flat_touches(
+    shape: ConvexShape,
+    p_WB_W: FloatArray,
+    R_WB: FloatArray,
+    n_W: FloatArray,
+    *,
+    level: float,
+    tolerance: float,
+) -> Iterator[Touch]:
+    """Yield where a body of a pose touches the plane n . p = ``level``, m, of a unit normal, (3,).
+
+    Corners come first, then rims. A point touches where it is at most ``tolerance``, m, above the plane.
+    """
+    points = p_WB_W + shape.vertices @ R_WB.T
+    tangent = any_tangent(n_W)
+    corner = 1.0 / shape.rounding if shape.rounding > 0.0 else math.inf
+    for i in np.flatnonzero(points @ n_W - level - shape.rounding <= tolerance):
+        p_WC_W = points[i] - shape.rounding * n_W
+        yield Touch(p_WC_W, n_W, (corner, corner, tangent), (0.0, 0.0, tangent))
+    for rim in shape.rims:
+        turned = _turned(radii_of(rim), p_WB_W, R_WB)
+        yield from _of_rim(turned, n_W, level, rounding=shape.rounding, tolerance=tolerance)
+
+
+class _RimW(NamedTuple):
+    """A rim in the world."""
+
+    center: FloatArray  # (3,), m
+    first: FloatArray  # (3,), m, a radius
+    second: FloatArray  # (3,), m, one across
+    radius: float  # m
+
+
+def _turned(radii: Radii, p_WB_W: FloatArray, R_WB: FloatArray) -> _RimW:
+    first, second = R_WB @ radii.first, R_WB @ radii.second
+    return _RimW(p_WB_W + R_WB @ radii.center, first, second, math.sqrt(first @ first))
+
+
+def _of_rim(
+    rim: _RimW, n_W: FloatArray, level: float, *, rounding: float, tolerance: float
+) -> Iterator[Touch]:
+    height = float(rim.center @ n_W) - level - rounding
+    a_1, a_2 = float(n_W @ rim.first), float(n_W @ rim.second)
+    size = math.hypot(a_1, a_2)  # m, R sin(theta)
+    if height - size > tolerance:
+        return
+    flush = height + size <= tolerance
+    corner = 1.0 / rounding if rounding > 0.0 else math.inf
+    tangent = any_tangent(n_W)
+    flat = (0.0, 0.0, tangent)
+    if flush:
+        turns = [2.0 * math.pi * i / RIM_POINTS for i in range(RIM_POINTS)]
+        directions = [(math.cos(turn), math.sin(turn)) for turn in turns]
+    else:
+        directions = [(-a_1 / size, -a_2 / size)]
+    for cosine, sine in directions:
+        p_WC_W = rim.center + cosine * rim.first + sine * rim.second - rounding * n_W
+        if flush:
+            yield Touch(p_WC_W, n_W, (corner, corner, tangent), flat)
+        else:
+            around = (cosine * rim.second - sine * rim.first) / rim.radius  # level: along the rim
+            radius = rim.radius * rim.radius / size + rounding
+            yield Touch(p_WC_W, n_W, (1.0 / radius, corner, around), flat)
+
+
+def any_tangent(n_W: FloatArray) -> FloatArray:
+    """Return a unit vector, (3,), at right angles to another."""
+    least = np.eye(3)[int(np.abs(n_W).argmin())]
+    tangent: FloatArray = least - (least @ n_W) * n_W
+    return tangent / math.sqrt(tangent @ tangent)

@@ -1,0 +1,128 @@
+"""Contacts of a convex body with a convex obstacle: corners on faces, faces on corners, edges across edges.
+
+Two convex bodies are apart if and only if a face's normal of one of them, or a cross product of two edges,
+separates them (Gottschalk, Lin and Manocha, OBBTree, SIGGRAPH 1996). The direction of the largest
+separation is the normal; of directions that are as good, an obstacle's face comes first, then a body's, then
+edges. What lies within the tolerance of the touching plane is a polygon, an edge or a corner of each, and
+contact is where the two overlap: its extreme points, which carry every force that the overlap can, are
+corners of the body (point on flat), corners of the obstacle (flat on point) and crossings of edges (edge on
+edge).
+
+Where a ball rolls over a polyhedron (a sphere, a capsule, a rounded box) the directions between nearest
+points of corners and hulls are added, and contact may also be a corner's ball on an edge or on a corner. Rims
+are covered where a face of the obstacle touches them: as on a flat, but within the face.
+
+A sharp corner on an edge, or on a corner, has no normal of its own: it gets one of those above. Bodies that
+penetrate get the direction of the least penetration.
+
+Not covered: rims at an edge or a corner of the obstacle (`NotSupportedError`).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.contact.on_flats import flat_touches
+from contact_dynamics.contact.overlap import Rounded, outline, overlap, tangents_of
+from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.shapes.hull_features import features_of
+from contact_dynamics.shapes.obstacle import closest_points
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact.on_flats import Touch
+    from contact_dynamics.shapes.convex import ConvexShape
+    from contact_dynamics.shapes.hull_features import Features
+    from contact_dynamics.shapes.obstacle import Obstacle
+    from contact_dynamics.validation import FloatArray
+
+_AS_GOOD: Final = 1e-9
+"""m. Directions whose separation is less by no more are as good, and points this close are one: rounding."""
+
+_PARALLEL: Final = 1e-6
+"""Sine of the angle within which edges do not cross; their ends are what touches."""
+
+
+class Site(NamedTuple):
+    """Where a body is nearest to an obstacle, or deepest in it."""
+
+    gap: float  # m, along the normal; negative: penetration
+    normal_W: FloatArray  # (3,), unit, out of the obstacle, into the body
+    level: float  # m, the obstacle's furthest extent along the normal: its points have n . p <= level
+
+
+def site_of(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, obstacle: Obstacle) -> Site:
+    """Return where a body, of a pose, is nearest to an obstacle.
+
+    For polyhedra that are apart the gap is the largest one along the directions above: their distance where
+    a corner faces a face or edges cross, less (never more) where only edges or corners are nearest.
+    """
+    theirs = obstacle.features
+    axes = _axes(shape, p_WB_W, R_WB, theirs)
+    best = Site(-math.inf, theirs.normals[0], 0.0)
+    for group in axes:
+        if len(group) == 0:
+            continue
+        levels = (group @ theirs.corners.T).max(axis=1)
+        gaps = _lowest(shape, p_WB_W, R_WB, group) - levels
+        i = int(gaps.argmax())
+        if gaps[i] > best.gap + _AS_GOOD:
+            best = Site(float(gaps[i]), group[i], float(levels[i]))
+    return best
+
+
+def _axes(
+    shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, theirs: Features
+) -> tuple[FloatArray, ...]:
+    """Return directions, (n, 3) each, of which one separates what is apart; round sides have many more."""
+    mine = features_of(shape)
+    crosses = np.cross((mine.edges @ R_WB.T)[:, None], theirs.edges).reshape(-1, 3)
+    sizes = np.linalg.norm(crosses, axis=1)
+    crosses = crosses[sizes > _PARALLEL] / sizes[sizes > _PARALLEL, None]
+    polyhedral = theirs.normals, -(mine.normals @ R_WB.T), np.concatenate([crosses, -crosses])
+    if shape.rounding == 0.0:
+        return polyhedral
+    # Those between the nearest points of a corner and the other hull, which a ball that rolls over it needs.
+    corners = p_WB_W + mine.corners @ R_WB.T
+    inwards = (theirs.corners - p_WB_W) @ R_WB  # in body axes
+    arms = (closest_points(mine, inwards) - inwards) @ R_WB.T
+    away = np.concatenate([corners - closest_points(theirs, corners), arms])
+    sizes = np.linalg.norm(away, axis=1)
+    return (*polyhedral, away[sizes > _AS_GOOD] / sizes[sizes > _AS_GOOD, None])
+
+
+def _lowest(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, axes: FloatArray) -> FloatArray:
+    """Return how far down, (n,), m, a body reaches along directions, (n, 3): minus its support function."""
+    parts = [(p_WB_W + shape.vertices @ R_WB.T) @ axes.T]
+    for rim in shape.rims:
+        along = axes @ (R_WB @ rim.axis)
+        level = np.sqrt(np.maximum(1.0 - along * along, 0.0))
+        parts.append((axes @ (p_WB_W + R_WB @ rim.center) - rim.radius * level)[None])
+    lowest: FloatArray = np.concatenate(parts).min(axis=0) - shape.rounding
+    return lowest
+
+
+def touches_of(
+    shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, obstacle: Obstacle, tolerance: float
+) -> list[Touch]:
+    """Return the contacts of a body of a pose with an obstacle within a tolerance, m; none where it is apart.
+
+    Raises:
+        NotSupportedError: a rim is at an edge or a corner of the obstacle.
+    """
+    site = site_of(shape, p_WB_W, R_WB, obstacle)
+    if site.gap > tolerance:
+        return []
+    theirs, n_W = obstacle.features, site.normal_W
+    if shape.rims and float((theirs.normals @ n_W).max()) < 1.0 - _AS_GOOD:
+        message = f"shape: found a rim at an edge of obstacle {obstacle.name!r}, allowed is one at a face"
+        raise NotSupportedError(message)
+    frame = tangents_of(n_W)
+    touches = list(flat_touches(shape, p_WB_W, R_WB, n_W, level=site.level, tolerance=tolerance))
+    upper = outline(np.array([touch.p_WC_W for touch in touches]).reshape(-1, 3), frame)
+    lowest = float(_lowest(shape, p_WB_W, R_WB, n_W[None])[0])
+    lower = outline(theirs.corners[theirs.corners @ n_W >= lowest - tolerance], frame)
+    rounded = Rounded(1.0 / shape.rounding, tolerance) if shape.rounding > 0.0 and not shape.rims else None
+    return overlap([touches[i] for i in upper.order], upper, lower, frame, rounded)

@@ -1,0 +1,35 @@
+"""Which contacts of a body in space count as at rest: their velocities with noise taken out."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.tolerances import VELOCITY_TOLERANCE
+from contact_dynamics.validation import check_not_negative
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.validation import FloatArray
+
+
+def spatial_contact_velocities(
+    state: BodyState, contacts: ContactSet, *, velocity_tolerance: float = VELOCITY_TOLERANCE
+) -> FloatArray:
+    """Return the velocities of the body's contact points, (n, 3), m/s, world axes.
+
+    A normal or tangential part within ``velocity_tolerance``, m/s, is an exact 0.
+
+    Raises:
+        InvalidFieldError: the tolerance is negative.
+    """
+    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
+    velocities = state.velocity_of_point(contacts.p_WC_W)
+    along = np.einsum("ij,ij->i", velocities, contacts.normals_W)
+    across = velocities - along[:, None] * contacts.normals_W
+    along[np.abs(along) <= tolerance] = 0.0
+    across[np.linalg.norm(across, axis=1) <= tolerance] = 0.0
+    cleaned: FloatArray = across + along[:, None] * contacts.normals_W
+    return cleaned

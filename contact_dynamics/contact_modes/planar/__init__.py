@@ -1,0 +1,1 @@
+"""Contact modes in the plane."""

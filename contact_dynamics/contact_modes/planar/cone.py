@@ -1,0 +1,296 @@
+"""Polyhedral convex cones in R^3: from half-spaces to extreme rays, with what touches what.
+
+The double description method (Motzkin and others 1953), in three dimensions, where the rays of a pointed cone
+stand in a cycle: half-spaces are cut away one by one, and each ray keeps the set of rows on which it lies, as
+the bits of an integer. Degenerate cones (half-spaces, wedges, planes, sectors, single rays, the origin) come
+out as such, because ties are decided by one tolerance and remembered as bits, never recomputed.
+
+A cone's dual has the rows as generators: the rays found here are then its facets. So this one construction
+serves the faces of the accelerations that do not penetrate, and the cones of wrenches.
+
+Plain floats: the sets are small, and most rows change nothing, which costs three multiplications a ray. Of
+many rows, arrays tell those that change nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.numerics.vectors import Vector3, cross, dot, normalised, opposite
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from contact_dynamics.validation import FloatArray
+
+_AXES: Final[tuple[Vector3, ...]] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+_WIDE: Final = 0.1  # sine: planes that meet at more serve to start with, without a look at the others
+MANY: Final = 24
+"""Rows, from which on arrays are faster."""
+
+
+class Sector(NamedTuple):
+    """A two-dimensional cone spanned by two rays less than 180 degrees apart, all of it on some rows."""
+
+    start: Vector3  # unit
+    end: Vector3  # unit
+    tight: int  # bit set of the rows that vanish on it
+
+
+class PolyhedralCone:
+    """The cone {x : row . x >= 0 for every row} as lineality space plus extreme rays."""
+
+    __slots__ = ("_tolerance", "lineality", "rays", "rows", "tight")
+
+    rows: Sequence[Vector3]  # unit, as given
+    lineality: list[Vector3]  # orthonormal basis of the lines that the cone contains
+    rays: list[Vector3]  # unit extreme rays, orthogonal to the lineality; three or more stand in a cycle
+    tight: list[int]  # for each ray, the bit set of the rows that vanish on it
+
+    def __init__(self, rows: Sequence[Vector3], *, tolerance: float) -> None:
+        """Cut with each of ``rows``, which are unit; below ``tolerance`` a row vanishes on a unit vector."""
+        self.lineality = list(_AXES)
+        self.rays = []
+        self.tight = []
+        self.rows = rows
+        self._tolerance = tolerance
+        first = self._begin() if len(rows) > 1 else ()
+        if first and len(rows) > MANY:
+            self._cut_many(first)
+            return
+        for index, row in enumerate(rows):
+            if index not in first:
+                self._cut(row, index)
+
+    @property
+    def all_rows(self) -> int:
+        """Return the bit set of all rows: those that vanish on the lineality space and at the origin."""
+        return (1 << len(self.rows)) - 1
+
+    @property
+    def has_interior(self) -> bool:
+        """Return whether the cone is three-dimensional."""
+        if len(self.lineality) + len(self.rays) < 3:
+            return False
+        common = self.all_rows
+        for tight in self.tight:
+            common &= tight
+        return common == 0
+
+    def edges(self) -> list[tuple[Vector3, int]]:
+        """Return rays that contain every one-dimensional face, each with its tight rows.
+
+        Lines are given by two opposite rays; a plane by two such lines in it.
+        """
+        lines = [(sign, self.all_rows) for line in self.lineality for sign in (line, opposite(line))]
+        if len(self.lineality) == 3:
+            return []
+        return lines + list(zip(self.rays, self.tight, strict=True))
+
+    def sectors(self) -> list[Sector]:
+        """Return sectors that cover every two-dimensional face. Half-planes and planes come in several."""
+        lines = self.lineality
+        rays = self.rays
+        if not lines:
+            count = len(rays)
+            pairs = [(i, (i + 1) % count) for i in range(count)] if count > 2 else [(0, 1)][: count // 2]
+            return [Sector(rays[i], rays[j], self.tight[i] & self.tight[j]) for i, j in pairs]
+        if len(lines) == 1:
+            line = lines[0]
+            return [
+                Sector(start, ray, tight)
+                for ray, tight in zip(rays, self.tight, strict=True)
+                for start in (line, opposite(line))
+            ]
+        if len(lines) == 2:
+            one, two = lines
+            turn = (one, two, opposite(one), opposite(two), one)
+            return [Sector(turn[i], turn[i + 1], self.all_rows) for i in range(4)]
+        return []
+
+    def _begin(self) -> tuple[int, ...]:
+        """Start from as many independent rows as there are, and return which; none: all are parallel."""
+        rows = self.rows
+        one = rows[0]
+        second, width, normal = 0, self._tolerance, (0.0, 0.0, 0.0)
+        for index in range(1, len(rows)):
+            across = cross(one, rows[index])
+            sine = math.sqrt(dot(across, across))
+            if sine > width:
+                second, width, normal = index, sine, across
+                if sine > _WIDE:
+                    break
+        if second == 0:
+            return ()
+        two = rows[second]
+        third, height = -1, self._tolerance * width
+        for index, row in enumerate(rows):
+            above = dot(normal, row)
+            if abs(above) > abs(height):
+                third, height = index, above
+                if abs(above) > _WIDE * width:
+                    break
+        if third < 0:
+            line = normalised(normal)
+            self.lineality = [line]
+            self.rays = [cross(line, one), cross(two, line)]
+            self.tight = [1, 1 << second]
+            return (0, second)
+        three = rows[third]
+        if height < 0.0:
+            second, third, two, three = third, second, three, two
+        self.lineality = []
+        self.rays = [normalised(cross(a, b)) for a, b in ((two, three), (three, one), (one, two))]
+        self.tight = [1 << second | 1 << third, 1 << third | 1, 1 | 1 << second]
+        return (0, second, third)
+
+    def _cut_many(self, first: tuple[int, ...]) -> None:
+        """Cut with all rows but the ``first``: after the extreme ones most of the others change nothing."""
+        matrix = np.array(self.rows)
+        extreme = {*matrix.argmin(axis=0).tolist(), *matrix.argmax(axis=0).tolist()}.difference(first)
+        for index in extreme:
+            self._cut(self.rows[index], index)
+        waiting = np.delete(np.arange(len(matrix)), [*first, *extreme])
+        at_once = 4
+        while len(waiting) > 0 and self.rays:
+            heights = matrix[waiting] @ np.array(self.rays).T
+            lowest = heights.min(axis=1)
+            self._touch(waiting, heights, lowest)
+            order = np.argsort(lowest)
+            order = order[: np.searchsorted(lowest[order], -self._tolerance)]
+            cutting = waiting[order]
+            for index in cutting[:at_once].tolist():
+                self._cut(self.rows[index], index)
+            waiting = cutting[at_once:]
+            at_once *= 2
+
+    def _touch(self, indices: NDArray[np.int64], heights: FloatArray, lowest: FloatArray) -> None:
+        """Remember the rows that touch the cone and do not cut it."""
+        touching = np.flatnonzero(abs(lowest) <= self._tolerance)
+        if len(touching) == 0:
+            return
+        flags = np.zeros((len(self.rays), len(self.rows)), dtype=bool)
+        flags[:, indices[touching]] = (heights[touching] <= self._tolerance).T
+        for ray, packed in enumerate(np.packbits(flags, axis=1, bitorder="little")):
+            self.tight[ray] |= int.from_bytes(packed.tobytes(), "little")
+
+    def _cut(self, row: Vector3, index: int) -> None:
+        if self.lineality and self._cut_lineality(row, index):
+            return
+        x, y, z = row
+        heights = [x * ray[0] + y * ray[1] + z * ray[2] for ray in self.rays]
+        if not heights:
+            return
+        tolerance = self._tolerance
+        lowest = min(heights)
+        if lowest > tolerance:
+            return
+        bit = 1 << index
+        if lowest >= -tolerance:
+            for i, height in enumerate(heights):
+                if height <= tolerance:
+                    self.tight[i] |= bit
+            return
+        self._cut_rays(heights, index)
+
+    def _cut_lineality(self, row: Vector3, index: int) -> bool:
+        """Cut a row that does not vanish on the lineality space: one line becomes a ray."""
+        parts = [dot(row, line) for line in self.lineality]
+        length = math.sqrt(sum(part * part for part in parts))
+        if length <= self._tolerance:
+            return False
+        ray = normalised(_combination(parts, self.lineality))
+        self.lineality = _complement(self.lineality, ray)
+        rise = dot(row, ray)
+        bit = 1 << index
+        for i, other in enumerate(self.rays):
+            drop = dot(row, other) / rise
+            self.rays[i] = normalised(
+                (other[0] - drop * ray[0], other[1] - drop * ray[1], other[2] - drop * ray[2])
+            )
+            self.tight[i] |= bit
+        self.rays.append(ray)
+        self.tight.append(bit - 1)
+        return True
+
+    def _cut_rays(self, heights: list[float], index: int) -> None:
+        """Drop the run of rays below the row, and put new ones where its edges cross the row."""
+        tolerance = self._tolerance
+        bit = 1 << index
+        top = heights.index(max(heights))
+        heights = heights[top:] + heights[:top]
+        self.rays = rays = self.rays[top:] + self.rays[:top]
+        self.tight = tight = self.tight[top:] + self.tight[:top]
+        for i, height in enumerate(heights):
+            if -tolerance <= height <= tolerance:
+                tight[i] |= bit
+        below = [i for i, height in enumerate(heights) if height < -tolerance]
+        first, last = below[0], below[-1]
+        edges = []
+        if heights[first - 1] > tolerance and first > 0:
+            edges.append((first - 1, first))
+        after = (last + 1) % len(heights)
+        if heights[after] > tolerance and len(heights) > 2:
+            edges.append((last, after))
+        crossings = [self._crossing(a, b, heights, index) for a, b in edges]
+        common = [tight[a] & tight[b] | bit for a, b in edges]
+        self.rays = rays[:first] + crossings + rays[last + 1 :]
+        self.tight = tight[:first] + common + tight[last + 1 :]
+
+    def _crossing(self, i: int, j: int, heights: list[float], index: int) -> Vector3:
+        """Return where the edge between rays i and j meets the row: as a combination, then sharpened."""
+        common = self.tight[i] & self.tight[j]
+        one, two = abs(heights[j]), abs(heights[i])
+        a, b = self.rays[i], self.rays[j]
+        rough = normalised((one * a[0] + two * b[0], one * a[1] + two * b[1], one * a[2] + two * b[2]))
+        if self.lineality:
+            edge = self.lineality[0]
+        elif common:
+            edge = self.rows[(common & -common).bit_length() - 1]
+        else:
+            return rough
+        sharp = cross(edge, self.rows[index])
+        length = math.sqrt(dot(sharp, sharp))
+        along = dot(sharp, rough)
+        if abs(along) < 0.5 * length or length <= self._tolerance:
+            return rough
+        length = math.copysign(length, along)
+        return (sharp[0] / length, sharp[1] / length, sharp[2] / length)
+
+
+def bits(mask: int) -> list[int]:
+    """Return the positions of the bits that are set, in order."""
+    if mask.bit_count() > MANY:
+        return [position for position, bit in enumerate(bin(mask)[:1:-1]) if bit == "1"]
+    found = []
+    while mask:
+        lowest = mask & -mask
+        found.append(lowest.bit_length() - 1)
+        mask ^= lowest
+    return found
+
+
+def _combination(parts: Sequence[float], vectors: Sequence[Vector3]) -> Vector3:
+    x = y = z = 0.0
+    for part, vector in zip(parts, vectors, strict=True):
+        x += part * vector[0]
+        y += part * vector[1]
+        z += part * vector[2]
+    return (x, y, z)
+
+
+def _complement(basis: list[Vector3], unit: Vector3) -> list[Vector3]:
+    """Return an orthonormal basis of what is orthogonal to ``unit`` in the span of ``basis``."""
+    if len(basis) == 1:
+        return []
+    if len(basis) == 2:
+        normal = cross(basis[0], basis[1])
+        return [normalised(cross(normal, unit))]
+    least = min(_AXES, key=lambda axis: abs(dot(axis, unit)))
+    first = normalised(cross(unit, least))
+    return [first, cross(unit, first)]

@@ -1,0 +1,234 @@
+"""Modes with as many independent equations as unknown forces: solved, then judged (lecture 26).
+
+Forces and accelerations are then linear in the applied wrench and, with centripetal terms, in their scale:
+in w+ = (w, m scale), see `problem`. What a letter demands is the sign of such a linear function g . w+, and a
+value within ``accuracy`` |g| |w+| counts as zero: a change of the applied wrench by that part of it turns the
+sign. This is the tolerance that `wrench_cone` applies to the modes whose equations are not independent.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
+
+from contact_dynamics.contact_modes.planar.enumeration import FIXED, LEFT, RIGHT, Letters
+from contact_dynamics.contact_modes.planar.result import Refusal, RefusedMode
+from contact_dynamics.numerics.vectors import Vector3, dot, norm
+from contact_dynamics.tolerances import ROW_TOLERANCE
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact_modes.planar.problem import ContactRow, PlanarProblem
+    from contact_dynamics.plane.types import Vector2
+
+_MOST_EQUATIONS: Final = 3  # that can be independent: a planar body's freedoms
+_ROUNDING: Final = 1e-14  # relative to the terms of a sum: some ten times what they are rounded by
+
+_DIRECTION: Final = {LEFT: -1.0, RIGHT: 1.0}
+
+Vector4: TypeAlias = tuple[float, float, float, float]
+
+
+class _Equation(NamedTuple):
+    """An acceleration that is zero, and the force that sees to it."""
+
+    row: Vector4  # of the acceleration, of unit length in its first three parts
+    wrench: Vector3  # of the force, unit
+    length: float  # N, or N m by rho, per N
+
+
+class _Unknown(NamedTuple):
+    """One unknown force."""
+
+    wrench: Vector3  # unit
+    length: float  # N, or N m by rho, per N
+    response: Vector4  # its size along the unit wrench is -response . w+
+
+
+class IndependentModes:
+    """Solves and judges the modes of one problem."""
+
+    __slots__ = ("_accuracy", "_equations", "_load", "_problem", "_scale", "_wrench")
+
+    def __init__(self, problem: PlanarProblem, accuracy: float) -> None:
+        """Judge with zero as the relative ``accuracy`` has it."""
+        self._problem = problem
+        self._scale = problem.lift.scale if problem.lift else 0.0
+        self._wrench: Vector4 = (*problem.w, problem.mass * self._scale)
+        self._load = _size(self._wrench)
+        self._accuracy = accuracy
+        self._equations: dict[tuple[int, int], tuple[_Equation, ...]] = {}  # of the letters met so far
+
+    def forces(self, mode: str, letters: Letters) -> list[Vector2] | RefusedMode | None:
+        """Return (f_t, f_n) of each contact that stays, or the first reason against the mode.
+
+        None: its equations are not independent.
+        """
+        unknowns = self._unknowns(letters)
+        if unknowns is None:
+            return None
+        sizes = [-_dot4(unknown.response, self._wrench) for unknown in unknowns]
+        forces = self._judged_forces(mode, letters, unknowns, sizes)
+        if isinstance(forces, RefusedMode):
+            return forces
+        return self._motion_refusal(mode, letters, unknowns, sizes) or forces
+
+    def _unknowns(self, letters: Letters) -> list[_Unknown] | None:
+        if len(letters) > _MOST_EQUATIONS:
+            return None
+        equations: list[_Equation] = []
+        for letter in letters:
+            known = self._equations.get(letter)
+            if known is None:
+                known = self._equations[letter] = self._equations_of(*letter)
+            equations += known
+        if len(equations) > _MOST_EQUATIONS:
+            return None
+        responses = _solved(equations)
+        if responses is None:
+            return None
+        return [
+            _Unknown(one.wrench, one.length, response)
+            for one, response in zip(equations, responses, strict=True)
+        ]
+
+    def _equations_of(self, position: int, letter: int) -> tuple[_Equation, ...]:
+        row = self._problem.rows[position]
+        normal: Vector4 = (*row.unit_n, self._offset(row.b_n, row.size_n))
+        if letter == FIXED:
+            tangential: Vector4 = (*row.unit_t, self._offset(row.b_t, row.size_t))
+            return (
+                _Equation(normal, row.unit_n, row.size_n),
+                _Equation(tangential, row.unit_t, row.size_t),
+            )
+        edge = _edge(row, letter)
+        length = norm(edge)
+        return (_Equation(normal, (edge[0] / length, edge[1] / length, edge[2] / length), length),)
+
+    def _judged_forces(
+        self, mode: str, letters: Letters, unknowns: list[_Unknown], sizes: list[float]
+    ) -> list[Vector2] | RefusedMode:
+        tolerance = self._accuracy * self._load
+        forces: list[Vector2] = []
+        at = 0
+        for position, letter in letters:
+            row = self._problem.rows[position]
+            normal, f_n = unknowns[at], sizes[at] / unknowns[at].length
+            if sizes[at] < 0.0 and sizes[at] < -tolerance * _size(normal.response):
+                return RefusedMode(mode=mode, refusal=Refusal.PULLS, contact=row.contact, amount=f_n)
+            if letter != FIXED:
+                forces.append((_slope(row, letter) * f_n, f_n))
+                at += 1
+                continue
+            tangential, f_t = unknowns[at + 1], sizes[at + 1] / unknowns[at + 1].length
+            excess = abs(f_t) - row.friction * f_n
+            if excess > 0.0:
+                one, other = math.copysign(1.0 / tangential.length, f_t), row.friction / normal.length
+                gradient = _combined(one, tangential.response, -other, normal.response)
+                if excess > tolerance * _size(gradient):
+                    return RefusedMode(
+                        mode=mode, refusal=Refusal.OUTSIDE_CONE, contact=row.contact, amount=excess
+                    )
+            forces.append((f_t, f_n))
+            at += 2
+        return forces
+
+    def _motion_refusal(
+        self, mode: str, letters: Letters, unknowns: list[_Unknown], sizes: list[float]
+    ) -> RefusedMode | None:
+        """Return the first contact that does not accelerate as its letter says."""
+        problem = self._problem
+        x, y, z = problem.w
+        for unknown, size in zip(unknowns, sizes, strict=True):
+            x += size * unknown.wrench[0]
+            y += size * unknown.wrench[1]
+            z += size * unknown.wrench[2]
+        clear = (
+            (self._accuracy + _ROUNDING) * self._load * (1.5 + sum(_size(one.response) for one in unknowns))
+        )
+        staying = dict(letters)
+        for position, row in enumerate(problem.rows):
+            letter = staying.get(position)
+            if letter is None:
+                sign, unit, length, offset = 1.0, row.unit_n, row.size_n, row.b_n
+            elif letter != FIXED and row.slides == 0.0:
+                sign, unit, length, offset = _DIRECTION[letter], row.unit_t, row.size_t, row.b_t
+            else:
+                continue
+            value = sign * (unit[0] * x + unit[1] * y + unit[2] * z + problem.mass * offset / length)
+            if value > clear:
+                continue
+            row4 = (*unit, self._offset(offset, length))
+            tolerance = 0.0 if value < -clear else self._tolerance(row4, unknowns)
+            if value <= tolerance:
+                reason = Refusal.PENETRATES if value < -tolerance and letter is None else Refusal.WRONG_MOTION
+                amount = sign * value * length / problem.mass
+                return RefusedMode(mode=mode, refusal=reason, contact=row.contact, amount=amount)
+        return None
+
+    def _tolerance(self, row: Vector4, unknowns: list[_Unknown]) -> float:
+        """Return what counts as zero for the acceleration along a unit row, N."""
+        gradient = row
+        terms = 1.0
+        for unknown in unknowns:
+            part = dot(row[:3], unknown.wrench)
+            gradient = _combined(1.0, gradient, -part, unknown.response)
+            terms += abs(part) * _size(unknown.response)
+        return self._load * (self._accuracy * _size(gradient) + _ROUNDING * terms)
+
+    def _offset(self, offset: float, length: float) -> float:
+        """Return the fourth part of a unit row: what the scale adds to its acceleration."""
+        return offset / (length * self._scale) if self._scale else 0.0
+
+
+def _solved(equations: list[_Equation]) -> list[Vector4] | None:
+    """Return B = (A U)^-1 A+ for the unit rows A+ and the unit wrenches U, row by row; None: no inverse."""
+    count = len(equations)
+    if count == 1:  # most modes
+        row, wrench, _ = equations[0]
+        gain = row[0] * wrench[0] + row[1] * wrench[1] + row[2] * wrench[2]
+        if abs(gain) <= ROW_TOLERANCE:
+            return None
+        return [(row[0] / gain, row[1] / gain, row[2] / gain, row[3] / gain)]
+    wrenches = [wrench for _, wrench, _ in equations]
+    table = [
+        [*(row[0] * x + row[1] * y + row[2] * z for x, y, z in wrenches), *row] for row, _, _ in equations
+    ]
+    for k in range(count):
+        pivot = max(range(k, count), key=lambda i: abs(table[i][k]))
+        if abs(table[pivot][k]) <= ROW_TOLERANCE:
+            return None
+        table[k], table[pivot] = table[pivot], table[k]
+        chosen = table[k]
+        for i in range(count):
+            if i != k:
+                factor = table[i][k] / chosen[k]
+                table[i] = [a - factor * b for a, b in zip(table[i], chosen, strict=True)]
+    responses: list[Vector4] = []
+    for k, line in enumerate(table):
+        x, y, z, height = line[count:]
+        responses.append((x / line[k], y / line[k], z / line[k], height / line[k]))
+    return responses
+
+
+def _slope(row: ContactRow, letter: int) -> float:
+    """Return f_t / f_n of a sliding contact: friction pushes right where it slides left."""
+    return row.friction if letter == LEFT else -row.friction
+
+
+def _edge(row: ContactRow, letter: int) -> Vector3:
+    """Return the wrench of a sliding contact's force of unit normal part."""
+    slope = _slope(row, letter)
+    N, T = row.N, row.T
+    return (N[0] + slope * T[0], N[1] + slope * T[1], N[2] + slope * T[2])
+
+
+def _combined(p: float, a: Vector4, q: float, b: Vector4) -> Vector4:
+    return (p * a[0] + q * b[0], p * a[1] + q * b[1], p * a[2] + q * b[2], p * a[3] + q * b[3])
+
+
+def _dot4(a: Vector4, b: Vector4) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
+
+
+def _size(a: Vector4) -> float:
+    return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2] + a[3] * a[3])

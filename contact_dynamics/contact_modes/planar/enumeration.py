@@ -1,0 +1,154 @@
+"""All modes that a planar body's acceleration can realise without penetration (Mason, lecture 26, "5^n?").
+
+The accelerations that do not penetrate are a polyhedral cone. A contact stays (l, r or f) on its own facet
+only, and there its tangential row cuts the facet in two: a mode is a cell of a face, a piece of it on which
+no letter changes. Faces and cells are a few times the contacts, so that of the 4^n strings about 4 n + 2 at
+most occur; walking the faces finds them all without trying any other.
+
+With centripetal terms the polyhedron misses the origin; it is the section at height one of the cone of
+`problem.lifted`, and the cells below that height do not count.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
+
+from contact_dynamics.contact_modes.planar.cone import PolyhedralCone, Sector, bits
+from contact_dynamics.contact_modes.planar.problem import PlanarProblem, lifted
+from contact_dynamics.numerics.vectors import Vector3, dot, normalised
+from contact_dynamics.tolerances import ROW_TOLERANCE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+SEPARATE = ord("s")
+LEFT = ord("l")
+RIGHT = ord("r")
+FIXED = ord("f")
+
+_SLIDING: Final = {-1.0: LEFT, 0.0: 0, 1.0: RIGHT}
+
+Letters: TypeAlias = tuple[tuple[int, int], ...]
+"""Contacts that stay: position in the problem's rows, letter."""
+
+
+class Cell(NamedTuple):
+    """The accelerations of one mode: positive combinations of rays."""
+
+    letters: Letters
+    rays: list[Vector3]  # unit, in the coordinates of the problem's cone; may repeat; none: the origin
+
+
+class _Tangent(NamedTuple):
+    row: Vector3  # unit
+    letter: int  # of a contact that already slides; 0: the row decides
+
+
+def kinematic_cells(problem: PlanarProblem) -> dict[str, Cell]:
+    """Return the mode strings that can occur, each with its accelerations. At least one contact touches."""
+    lift = problem.lift
+    below = 0
+    if lift is None:
+        normals = [row.unit_n for row in problem.rows]
+        tangents = [_Tangent(row.unit_t, _SLIDING[row.slides]) for row in problem.rows]
+    else:
+        below = 1 << len(problem.rows)
+        normals = [normalised(lifted(lift, row.N, row.b_n)) for row in problem.rows]
+        normals.append((0.0, 0.0, 1.0))
+        tangents = [
+            _Tangent(
+                normalised(lifted(lift, row.T, row.b_t)) if row.slides == 0.0 else row.T,
+                _SLIDING[row.slides],
+            )
+            for row in problem.rows
+        ]
+    cone = PolyhedralCone(normals, tolerance=ROW_TOLERANCE)
+    base = bytearray(b"s" * len(problem.contacts))
+    cells: dict[str, Cell] = {}
+    if cone.has_interior:
+        cells[base.decode()] = Cell((), [ray for ray, _ in cone.edges()])
+    for letters, rays in _all_cells(cone, tangents, below):
+        text = bytearray(base)
+        for position, letter in letters:
+            text[problem.rows[position].contact] = letter
+        mode = text.decode()
+        known = cells.get(mode)
+        if known is None:
+            cells[mode] = Cell(letters, rays)
+        else:
+            known.rays.extend(rays)
+    return cells
+
+
+def _all_cells(
+    cone: PolyhedralCone, tangents: list[_Tangent], below: int
+) -> Iterator[tuple[Letters, list[Vector3]]]:
+    """Yield letters and rays of every cell of every face but the interior; some come more than once."""
+    for sector in cone.sectors():
+        if not sector.tight & below:
+            yield from _sector_cells(sector, tangents)
+    for ray, tight in cone.edges():
+        if not tight & below:
+            yield tuple((i, _letter(tangents[i], dot(tangents[i].row, ray))) for i in bits(tight)), [ray]
+    if not below and tangents:
+        yield tuple((i, tangent.letter or FIXED) for i, tangent in enumerate(tangents)), []
+
+
+def _letter(tangent: _Tangent, height: float) -> int:
+    if tangent.letter:
+        return tangent.letter
+    if height > ROW_TOLERANCE:
+        return RIGHT
+    return LEFT if height < -ROW_TOLERANCE else FIXED
+
+
+class _Staying(NamedTuple):
+    """A contact on the whole of a sector."""
+
+    position: int
+    start: int  # letter on the sector's first ray
+    end: int  # letter on its last
+    crossing: float  # part of the way at which the letter changes from left to right or back; -1: nowhere
+
+
+def _sector_cells(sector: Sector, tangents: list[_Tangent]) -> Iterator[tuple[Letters, list[Vector3]]]:
+    """Yield the pieces of a sector between the tangential rows of the contacts that stay on it."""
+    staying = [_staying(position, tangents[position], sector) for position in bits(sector.tight)]
+    stops = [0.0]
+    for crossing in sorted(contact.crossing for contact in staying):
+        if crossing - stops[-1] > ROW_TOLERANCE:
+            stops.append(crossing)
+    stops.append(1.0)
+    points = [_between(sector, stop) for stop in stops]
+    for k in range(1, len(stops)):
+        yield _letters(staying, 0.5 * (stops[k - 1] + stops[k])), [points[k - 1], points[k]]
+        if k < len(stops) - 1:
+            yield _letters(staying, stops[k]), [points[k]]
+
+
+def _staying(position: int, tangent: _Tangent, sector: Sector) -> _Staying:
+    at_start = dot(tangent.row, sector.start)
+    at_end = dot(tangent.row, sector.end)
+    start, end = _letter(tangent, at_start), _letter(tangent, at_end)
+    crosses = start != end and FIXED not in {start, end}
+    return _Staying(position, start, end, at_start / (at_start - at_end) if crosses else -1.0)
+
+
+def _letters(staying: list[_Staying], at: float) -> Letters:
+    """Return the letters at a point inside the sector."""
+    found = []
+    for position, start, end, crossing in staying:
+        if crossing < 0.0:
+            letter = end if start == FIXED else start
+        elif abs(at - crossing) <= ROW_TOLERANCE:
+            letter = FIXED
+        else:
+            letter = start if at < crossing else end
+        found.append((position, letter))
+    return tuple(found)
+
+
+def _between(sector: Sector, part: float) -> Vector3:
+    a, b = sector.start, sector.end
+    rest = 1.0 - part
+    return normalised((rest * a[0] + part * b[0], rest * a[1] + part * b[1], rest * a[2] + part * b[2]))

@@ -1,0 +1,90 @@
+"""Edges of the friction cones of a mode's contacts, as wrenches: plain floats for a few, arrays for many."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.contact_modes.planar.cone import MANY
+from contact_dynamics.contact_modes.planar.enumeration import FIXED, RIGHT, Letters
+from contact_dynamics.contact_modes.planar.problem import Lift, lifted
+from contact_dynamics.numerics.vectors import Vector3, norm
+from contact_dynamics.tolerances import ROW_TOLERANCE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.contact_modes.planar.problem import ContactRow
+    from contact_dynamics.validation import FloatArray
+
+
+class Edges(NamedTuple):
+    """The contact forces of a mode are positive combinations of these."""
+
+    positions: list[int]  # the row of the problem that each belongs to
+    slopes: list[float]  # f_t / f_n
+    wrenches: list[Vector3]  # of a unit f_n
+
+
+class Reactions(NamedTuple):
+    """Edges turned round, as the cone of applied wrenches sees them."""
+
+    edges: list[int]  # those that act across the line of symmetry
+    lengths: list[float]  # there, per unit f_n
+    units: list[Vector3]
+
+
+def friction_edges(rows: Sequence[ContactRow], letters: Letters) -> Edges:
+    """Return the edges of the forces that the letters of a mode allow."""
+    positions: list[int] = []
+    slopes: list[float] = []
+    for position, letter in letters:
+        friction = rows[position].friction
+        if letter != RIGHT:
+            positions.append(position)
+            slopes.append(friction)
+        if letter == RIGHT or (letter == FIXED and friction > 0.0):
+            positions.append(position)
+            slopes.append(-friction)
+    if len(positions) > MANY:
+        both = np.array([rows[position].N + rows[position].T for position in positions])
+        return Edges(positions, slopes, _rows(both[:, :3] + np.array(slopes)[:, None] * both[:, 3:]))
+    wrenches = []
+    for position, slope in zip(positions, slopes, strict=True):
+        N, T = rows[position].N, rows[position].T
+        wrenches.append((N[0] + slope * T[0], N[1] + slope * T[1], N[2] + slope * T[2]))
+    return Edges(positions, slopes, wrenches)
+
+
+def reactions(lift: Lift | None, wrenches: Sequence[Vector3]) -> Reactions:
+    """Return the reactions to some wrenches, without those along the line of symmetry."""
+    if len(wrenches) > MANY:
+        return _many_reactions(lift, wrenches)
+    edges, lengths, units = [], [], []
+    for edge, wrench in enumerate(wrenches):
+        x, y, z = lifted(lift, wrench, 0.0)
+        length = math.sqrt(x * x + y * y + z * z)
+        if lift is None or length > ROW_TOLERANCE * norm(wrench):
+            edges.append(edge)
+            lengths.append(length)
+            units.append((-x / length, -y / length, -z / length))
+    return Reactions(edges, lengths, units)
+
+
+def _many_reactions(lift: Lift | None, wrenches: Sequence[Vector3]) -> Reactions:
+    rows = np.array(wrenches)
+    across = rows if lift is None else np.column_stack([rows @ np.array(lift.across).T, np.zeros(len(rows))])
+    lengths = _lengths(across)
+    seen = np.flatnonzero(lengths > ROW_TOLERANCE * _lengths(rows))
+    return Reactions(seen.tolist(), lengths[seen].tolist(), _rows(across[seen] / -lengths[seen, None]))
+
+
+def _lengths(rows: FloatArray) -> FloatArray:
+    lengths: FloatArray = np.sqrt(np.einsum("ij,ij->i", rows, rows))
+    return lengths
+
+
+def _rows(array: FloatArray) -> list[Vector3]:
+    return [(x, y, z) for x, y, z in array.tolist()]

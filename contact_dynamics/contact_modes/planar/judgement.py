@@ -1,0 +1,115 @@
+"""The mechanics of one planar contact mode: accelerations and forces that realise it, or why there are none.
+
+Each letter of a mode brings as many equations as unknown forces (lecture 26): `l` and `r` the normal
+acceleration and the force along the edge of the friction cone, `f` both accelerations and both forces. Where
+these few equations are independent they are solved, and the letters' inequalities decide (`independent`).
+Where they are not (more contacts stay than a body has freedoms, or friction cancels the response, as for
+Painleve's rod), what matters is whether the applied wrench lies in the cone of those that can bring the mode
+about (`wrench_cone`), and the forces are some of many.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from contact_dynamics.contact_modes.planar.determined import IndependentModes
+from contact_dynamics.contact_modes.planar.enumeration import FIXED, Cell
+from contact_dynamics.contact_modes.planar.result import ConsistentMode, Refusal, RefusedMode
+from contact_dynamics.contact_modes.planar.wrench_cone import ModeWrenches
+from contact_dynamics.numerics.vectors import Vector3
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from contact_dynamics.contact_modes.planar.problem import PlanarProblem
+    from contact_dynamics.plane.types import Vector2
+
+
+def judge_all(
+    problem: PlanarProblem, cells: Mapping[str, Cell], accuracy: float
+) -> tuple[list[ConsistentMode], list[RefusedMode]]:
+    """Return the consistent and the refused modes among ``cells``, in alphabetical order."""
+    consistent: list[ConsistentMode] = []
+    refused: list[RefusedMode] = []
+    independent = IndependentModes(problem, accuracy)
+    for mode, cell in sorted(cells.items()):
+        forces = independent.forces(mode, cell.letters)
+        outcome: ConsistentMode | RefusedMode
+        if forces is None:
+            outcome = _from_cone(problem, mode, cell, accuracy)
+        elif isinstance(forces, RefusedMode):
+            outcome = forces
+        else:
+            outcome = _consistent(problem, mode, cell, forces, unique=(True, True))
+        if isinstance(outcome, ConsistentMode):
+            consistent.append(outcome)
+        else:
+            refused.append(outcome)
+    return consistent, refused
+
+
+def _from_cone(
+    problem: PlanarProblem, mode: str, cell: Cell, accuracy: float
+) -> ConsistentMode | RefusedMode:
+    """Decide a mode whose equations are not independent by the cone of its wrenches."""
+    wrenches = ModeWrenches(problem, cell)
+    shortfall = wrenches.shortfall(accuracy)
+    if shortfall is not None:
+        return RefusedMode(mode=mode, refusal=Refusal.NO_SOLUTION, contact=-1, amount=shortfall)
+    shares, unique = wrenches.solution(accuracy)
+    sums = dict.fromkeys(wrenches.edges.positions, (0.0, 0.0))
+    for position, slope, share in zip(wrenches.edges.positions, wrenches.edges.slopes, shares, strict=True):
+        f_t, f_n = sums[position]
+        sums[position] = (f_t + slope * share, f_n + share)
+    forces = [sums[position] for position, _ in cell.letters]
+    return _consistent(problem, mode, cell, forces, unique=unique)
+
+
+def _consistent(
+    problem: PlanarProblem,
+    mode: str,
+    cell: Cell,
+    forces: list[Vector2],
+    *,
+    unique: tuple[bool, bool],
+) -> ConsistentMode:
+    q = _acceleration(problem, cell, forces)
+    alpha = q[2] / problem.rho
+    square = problem.omega * problem.omega
+    accelerations: list[Vector2] = []
+    a_x, a_y, _ = q
+    for contact in problem.contacts:
+        n_x, n_y = contact.normal
+        r_x, r_y = contact.r
+        c_x = a_x - alpha * r_y - square * r_x
+        c_y = a_y + alpha * r_x - square * r_y
+        accelerations.append((c_x * n_y - c_y * n_x, c_x * n_x + c_y * n_y))
+    all_forces: list[Vector2] = [(0.0, 0.0)] * len(problem.contacts)
+    for (position, letter), (f_t, f_n) in zip(cell.letters, forces, strict=True):
+        row = problem.rows[position]
+        index = row.contact
+        edge = row.friction * f_n
+        if f_n > 0.0:  # rounding at the cone's apex and edges is taken out
+            all_forces[index] = (max(-edge, min(edge, f_t)), f_n)
+        # What the mode says is zero is zero, without rounding.
+        accelerations[index] = (0.0 if letter == FIXED else accelerations[index][0], 0.0)
+    forces_unique, motion_unique = unique
+    return ConsistentMode(
+        mode=mode,
+        acceleration=(a_x, a_y),
+        angular_acceleration=alpha,
+        contact_forces=tuple(all_forces),
+        contact_accelerations=tuple(accelerations),
+        forces_unique=forces_unique,
+        motion_unique=motion_unique,
+    )
+
+
+def _acceleration(problem: PlanarProblem, cell: Cell, forces: list[Vector2]) -> Vector3:
+    x, y, z = problem.w
+    for (position, _), (f_t, f_n) in zip(cell.letters, forces, strict=True):
+        row = problem.rows[position]
+        x += f_n * row.N[0] + f_t * row.T[0]
+        y += f_n * row.N[1] + f_t * row.T[1]
+        z += f_n * row.N[2] + f_t * row.T[2]
+    return (x / problem.mass, y / problem.mass, z / problem.mass)

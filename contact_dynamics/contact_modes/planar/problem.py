@@ -1,0 +1,194 @@
+"""The planar contact problem in coordinates where accelerations and wrenches live in one space (lecture 26).
+
+With the radius of gyration rho as the unit of length of rotations, an acceleration is q = (a_x, a_y, rho
+alpha) and a wrench is w = (f_x, f_y, moment / rho), so that Newton's law is m q = w, contact forces included.
+The accelerations of a contact's point along its normal and its tangent are
+
+    a_n = N . q + b_n,  a_t = T . q + b_t,  N = (n, r x n / rho),  T = (t, r x t / rho),  b = -w^2 r . (n, t),
+
+to b_n of which a contact of curved sides adds its own (`PlanarContact.gap_acceleration`). The same rows are
+the wrenches of a unit normal and a unit tangential force.
+
+A moving body: velocities within tolerance count as zero, and the motion that remains is the velocity's part
+that moves no contact along its normal, nor one at rest along its tangent. Where that part turns, all rows of
+touching contacts are orthogonal to it (their normals meet at the centre of rotation), so that the affine
+problem has a line of symmetry, and what is left is a cone in three dimensions again: two of acceleration and
+one that stands for the centripetal terms.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from contact_dynamics.errors import TooLargeError
+from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, without
+from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, LARGEST_NUMBER, ROW_TOLERANCE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, Vector2
+
+
+MOST_CONTACTS: Final = 1000
+"""Longest list of contacts accepted: the mode strings of n contacts are about 4 n^2 letters."""
+
+
+class ContactRow(NamedTuple):
+    """One touching contact."""
+
+    contact: int  # in the caller's order
+    N: Vector3  # normal row, not unit
+    T: Vector3  # tangent row, not unit
+    unit_n: Vector3  # along N
+    unit_t: Vector3  # along T
+    size_n: float  # |N|
+    size_t: float  # |T|
+    b_n: float  # m/s^2
+    b_t: float  # m/s^2
+    slides: float  # -1 moves left, +1 right, 0 at rest
+    friction: float
+
+
+class Lift(NamedTuple):
+    """The line of symmetry of a body that turns about its contacts, and coordinates across it."""
+
+    line: Vector3  # unit, the velocity
+    across: tuple[Vector3, Vector3]  # unit, orthogonal to it and to each other
+    scale: float  # m/s^2, the largest |b|: the third coordinate's unit
+
+
+class PlanarProblem(NamedTuple):
+    """Everything the enumeration and the dynamics of modes need."""
+
+    contacts: Sequence[PlanarContact]  # touching or not
+    mass: float  # kg
+    rho: float  # m, radius of gyration
+    w: Vector3  # N, applied wrench
+    rows: list[ContactRow]  # the touching contacts
+    omega: float  # rad/s, angular velocity that the contacts allow
+    lift: Lift | None  # None: centripetal terms vanish, the problem is a cone as it stands
+
+    @property
+    def load(self) -> float:
+        """Return what forces are compared with, N: the applied wrench plus the centripetal terms."""
+        return norm(self.w) + (self.mass * self.lift.scale if self.lift else 0.0)
+
+
+def contact_velocities(
+    velocity: PlanarVelocity, contacts: Sequence[PlanarContact], tolerance: float
+) -> tuple[Vector2, ...]:
+    """Return (v_t, v_n), m/s, of each contact, with values within ``tolerance`` as an exact 0.
+
+    Raises:
+        TooLargeError: more than `MOST_CONTACTS` contacts.
+    """
+    if len(contacts) > MOST_CONTACTS:
+        raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MOST_CONTACTS}")
+    (v_x, v_y), w = velocity.v, velocity.w
+    found = []
+    for contact in contacts:
+        n_x, n_y = contact.normal
+        c_x = v_x - w * contact.r[1]
+        c_y = v_y + w * contact.r[0]
+        v_t = c_x * n_y - c_y * n_x
+        v_n = c_x * n_x + c_y * n_y
+        found.append((0.0 if abs(v_t) <= tolerance else v_t, 0.0 if abs(v_n) <= tolerance else v_n))
+    return tuple(found)
+
+
+def planar_problem(
+    body: PlanarBody,
+    velocity: PlanarVelocity,
+    contacts: Sequence[PlanarContact],
+    contact_velocities: Sequence[Vector2],
+    wrench: PlanarWrench,
+    *,
+    velocity_tolerance: float,
+) -> PlanarProblem:
+    """Return the problem of the contacts whose normal velocity in ``contact_velocities`` is an exact 0.
+
+    An angular velocity that moves no contact relative to the centre of mass by more than
+    ``velocity_tolerance``, m/s, counts as zero.
+    """
+    rho = body.radius_of_gyration
+    touching: list[tuple[int, float, Vector3, Vector3]] = []
+    resting: list[Vector3] = []
+    for index, (contact, (v_t, v_n)) in enumerate(zip(contacts, contact_velocities, strict=True)):
+        if v_n != 0.0:
+            continue
+        n_x, n_y = contact.normal
+        r_x, r_y = contact.r
+        N = (n_x, n_y, (r_x * n_y - r_y * n_x) / rho)
+        T = (n_y, -n_x, -(r_x * n_x + r_y * n_y) / rho)
+        touching.append((index, v_t, N, T))
+        resting.append(N)
+        if v_t == 0.0:
+            resting.append(T)
+    twist = (velocity.v[0], velocity.v[1], rho * velocity.w)
+    if twist != (0.0, 0.0, 0.0):
+        twist = _unhindered(twist, [normalised(row) for row in resting])
+    omega = 0.0
+    if abs(twist[2]) > ROW_TOLERANCE * norm(twist):
+        reach = max(contact.reach(rho) for contact in contacts)
+        if abs(twist[2]) * reach > velocity_tolerance * rho:
+            omega = twist[2] / rho
+    square = omega * omega
+    rows = []
+    largest = 0.0
+    for index, v_t, N, T in touching:
+        contact = contacts[index]
+        b_n = square * T[2] * rho  # T's moment arm is -r.n, N's is r.t
+        rolling = contact.gap_acceleration(dot(T, twist), omega)
+        cancels = abs(b_n + rolling) <= ACCELERATION_TOLERANCE * abs(rolling)  # as where a disc rolls
+        b_n = 0.0 if cancels else b_n + rolling
+        b_t = -square * N[2] * rho
+        largest = max(largest, abs(b_n), abs(b_t))
+        size_n, size_t = norm(N), norm(T)
+        unit_n, unit_t = _divided(N, size_n), _divided(T, size_t)
+        slides = float((v_t > 0.0) - (v_t < 0.0))
+        friction = min(contact.friction, LARGEST_NUMBER)
+        rows.append(ContactRow(index, N, T, unit_n, unit_t, size_n, size_t, b_n, b_t, slides, friction))
+    return PlanarProblem(
+        contacts=contacts,
+        mass=body.mass,
+        rho=rho,
+        w=(wrench.f[0], wrench.f[1], wrench.moment / rho),
+        rows=rows,
+        omega=omega,
+        lift=_lift(twist, largest) if largest > 0.0 else None,
+    )
+
+
+def _unhindered(twist: Vector3, resting: list[Vector3]) -> Vector3:
+    """Return the part of ``twist`` orthogonal to all ``resting`` rows."""
+    if not resting:
+        return twist
+    first = resting[0]
+    apart = max((cross(first, row) for row in resting), key=lambda normal: dot(normal, normal))
+    if dot(apart, apart) <= ROW_TOLERANCE * ROW_TOLERANCE:
+        return without(twist, first)
+    line = normalised(apart)
+    if any(abs(dot(line, row)) > ROW_TOLERANCE for row in resting):
+        return (0.0, 0.0, 0.0)
+    along = dot(twist, line)
+    return (along * line[0], along * line[1], along * line[2])
+
+
+def _lift(twist: Vector3, scale: float) -> Lift:
+    line = normalised(twist)
+    least = min(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), key=lambda axis: abs(dot(axis, line)))
+    one = normalised(cross(line, least))
+    return Lift(line, (one, cross(line, one)), scale)
+
+
+def _divided(a: Vector3, by: float) -> Vector3:
+    return (a[0] / by, a[1] / by, a[2] / by)
+
+
+def lifted(lift: Lift | None, row: Vector3, offset: float) -> Vector3:
+    """Return the row of ``row . q + offset`` in the coordinates of the problem's cone."""
+    if lift is None:
+        return row
+    one, two = lift.across
+    return (dot(row, one), dot(row, two), offset / lift.scale)

@@ -1,0 +1,129 @@
+"""Static questions about a planar body at rest: equilibrium, disturbances, jamming, wedging.
+
+Model: as for `planar_contact_modes`, with the body at rest. Equilibrium is possible where the contact forces
+can cancel the applied wrench, that is, where the wrench lies in the cone of negated contact wrenches; it is
+certain where besides no other motion is consistent. Rigid bodies may be free to do either.
+
+Jammed (after Whitney 1982): friction alone holds the body, which without friction would move under the same
+wrench. Wedged: the contacts can press against each other without any applied wrench, so that how hard they
+hold is not known from the wrench. How the body came to be pressed is outside the model.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from enum import IntEnum
+from typing import TYPE_CHECKING, Final
+
+from contact_dynamics.contact.friction import friction_cone
+from contact_dynamics.contact_modes.planar.answer import planar_contact_modes
+from contact_dynamics.contact_modes.planar.cone import PolyhedralCone
+from contact_dynamics.contact_modes.planar.result import ModeVerdict
+from contact_dynamics.numerics.vectors import Vector3, dot, normalised
+from contact_dynamics.plane.types import PlanarVelocity
+from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, ROW_TOLERANCE
+from contact_dynamics.validation import check_not_negative, check_positive
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench
+
+_AT_REST: Final = PlanarVelocity(v=(0.0, 0.0), w=0.0)
+
+
+class Certainty(IntEnum):
+    """How far rigid-body mechanics answers yes."""
+
+    NO = 1
+    POSSIBLE = 2
+    """Consistent, and so is something else."""
+    CERTAIN = 3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BodyStatics:
+    """What holds a body at rest, and how well."""
+
+    equilibrium: Certainty  # whether it stays at rest
+    jammed: Certainty  # whether friction alone keeps it at rest
+    wedged: bool  # whether the contacts can press against each other without an applied wrench
+    stable_disturbance: float  # N: equilibrium is possible under every change of the wrench up to this size;
+    # infinite: under every change at all (force closure); NaN: no equilibrium
+    margin_length: float  # m, of the metric |f|^2 + (moment / length)^2 of that size
+
+    def is_stable_against(self, disturbance: float) -> bool:
+        """Return whether equilibrium stays possible under every change of the wrench up to this size, N."""
+        return self.stable_disturbance >= disturbance  # NaN compares as false
+
+
+def planar_statics(
+    body: PlanarBody,
+    contacts: Sequence[PlanarContact],
+    wrench: PlanarWrench,
+    *,
+    margin_length: float | None = None,
+    acceleration_tolerance: float = ACCELERATION_TOLERANCE,
+) -> BodyStatics:
+    """Return whether and how well a body at rest stays at rest.
+
+    Args:
+        body: Mass and angular inertia.
+        contacts: All that touch.
+        wrench: Applied to the body besides its contact forces, gravity included.
+        margin_length: m, > 0, makes a moment comparable with a force; None: the radius of gyration.
+        acceleration_tolerance: Relative to the wrench, >= 0: what counts as zero.
+
+    Raises:
+        InvalidFieldError: the tolerance is negative, or the length is not > 0.
+        TooLargeError: more contacts than `planar_contact_modes` accepts.
+
+    Source: Mason 5.5 to 6.5 and lecture 26; D. E. Whitney, J. Dyn. Sys. Meas. Control 104 (1982), jamming and
+    wedging.
+    """
+    accuracy = check_not_negative("acceleration_tolerance", acceleration_tolerance)
+    length = (
+        body.radius_of_gyration if margin_length is None else check_positive("margin_length", margin_length)
+    )
+    answer = planar_contact_modes(body, _AT_REST, contacts, wrench, acceleration_tolerance=accuracy)
+    target = (wrench.f[0], wrench.f[1], wrench.moment / length)
+    balance = _balance((edge for contact in contacts for edge in friction_cone(contact)), length)
+    smooth = _balance((friction_cone(replace(contact, friction=0.0))[0] for contact in contacts), length)
+    room = _room(balance, target, accuracy)
+    equilibrium = Certainty.NO
+    if room >= 0.0:
+        alone = answer.verdict == ModeVerdict.UNIQUE and answer.modes[0].motion_unique
+        equilibrium = Certainty.CERTAIN if alone else Certainty.POSSIBLE
+    held_without = _room(smooth, target, accuracy) >= 0.0
+    return BodyStatics(
+        equilibrium=equilibrium,
+        jammed=Certainty.NO if held_without else equilibrium,
+        wedged=_press_on_each_other(balance),
+        stable_disturbance=room if room >= 0.0 else math.nan,
+        margin_length=length,
+    )
+
+
+def _balance(edges: Iterable[PlanarWrench], length: float) -> PolyhedralCone:
+    """Return the dual of the cone of wrenches that contact forces along ``edges`` can balance."""
+    reactions = [normalised((-edge.f[0], -edge.f[1], -edge.moment / length)) for edge in edges]
+    return PolyhedralCone(reactions, tolerance=ROW_TOLERANCE)
+
+
+def _room(balance: PolyhedralCone, target: Vector3, accuracy: float) -> float:
+    """Return how far inside the cone that is dual to ``balance`` the wrench lies, N; < 0: outside."""
+    tolerance = accuracy * math.sqrt(dot(target, target))
+    heights = [dot(facet, target) for facet in balance.rays]
+    if any(abs(dot(line, target)) > tolerance for line in balance.lineality):
+        return -1.0
+    if heights and min(heights) < -tolerance:
+        return -1.0
+    if balance.lineality:
+        return 0.0
+    return max(0.0, min(heights, default=math.inf))
+
+
+def _press_on_each_other(balance: PolyhedralCone) -> bool:
+    """Return whether some contact forces, not all zero, cancel: no half-space holds all of them strictly."""
+    return bool(balance.rows) and not balance.has_interior

@@ -1,0 +1,77 @@
+"""Which applied wrenches bring about which mode, and how far a given one is from another mode (lecture 26).
+
+For every mode of a planar contact set the applied wrenches that can bring it about are a convex set, a cone
+where no centripetal terms act. All sets together are the map of modes over applied wrenches: they overlap
+where the outcome is indeterminate, and leave gaps where it is inconsistent.
+
+The margin of a wrench in a mode is the length of the least change that takes it out of the mode's set, in the
+metric |f|^2 + (moment / length)^2.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+from contact_dynamics.contact_modes.planar.wrench_cone import ModeWrenches
+from contact_dynamics.plane.types import PlanarWrench
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact_modes.planar.enumeration import Cell
+    from contact_dynamics.contact_modes.planar.problem import PlanarProblem
+    from contact_dynamics.numerics.vectors import Vector3
+
+
+class WrenchHalfSpace(NamedTuple):
+    """Applied wrenches with a . (f_x, f_y, moment) <= b."""
+
+    a: Vector3  # (1, 1, 1/m); of unit length once its third part is multiplied by the radius of gyration
+    b: float  # N
+
+    def depth(self, wrench: PlanarWrench, length: float) -> float:
+        """Return how far inside the wrench lies, N, in the metric of ``length``, m; < 0: outside."""
+        room = self.b - self.a[0] * wrench.f[0] - self.a[1] * wrench.f[1] - self.a[2] * wrench.moment
+        return room / math.sqrt(self._square(length))
+
+    def outward(self, length: float) -> PlanarWrench:
+        """Return the change of unit size, in the metric of ``length``, that leads out the shortest way."""
+        size = math.sqrt(self._square(length))
+        return PlanarWrench(f=(self.a[0] / size, self.a[1] / size), moment=self.a[2] * length * length / size)
+
+    def _square(self, length: float) -> float:
+        return self.a[0] ** 2 + self.a[1] ** 2 + (self.a[2] * length) ** 2
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModeWrenchSet:
+    """The applied wrenches that can bring one mode about, as the closure of their set in two forms."""
+
+    mode: str  # one letter a contact
+    vertices: tuple[PlanarWrench, ...]  # the set is all averages of these plus
+    generators: tuple[PlanarWrench, ...]  # all positive combinations of these, any scale
+    half_spaces: tuple[WrenchHalfSpace, ...]  # the same set; empty: every wrench
+
+    def depth(self, wrench: PlanarWrench, length: float) -> float:
+        """Return how far inside the set a wrench lies, N, in the metric of ``length``, m.
+
+        Infinite: every wrench does; < 0: outside (then a lower bound of the distance).
+        """
+        return min((side.depth(wrench, length) for side in self.half_spaces), default=math.inf)
+
+
+def mode_wrench_set(problem: PlanarProblem, mode: str, cell: Cell) -> ModeWrenchSet:
+    """Return the wrenches of one mode; the problem's own wrench plays no part."""
+    wrenches = ModeWrenches(problem, cell)
+    rho = problem.rho
+    vertices, generators = wrenches.generated_by()
+    return ModeWrenchSet(
+        mode=mode,
+        vertices=tuple(_in_units(vertex, rho) for vertex in vertices),
+        generators=tuple(_in_units(generator, rho) for generator in generators),
+        half_spaces=tuple(WrenchHalfSpace((a[0], a[1], a[2] / rho), b) for a, b in wrenches.half_spaces()),
+    )
+
+
+def _in_units(w: Vector3, rho: float) -> PlanarWrench:
+    return PlanarWrench(f=(w[0], w[1]), moment=w[2] * rho)

@@ -1,0 +1,173 @@
+"""Exact friction for a mode in space that was found with friction pyramids.
+
+Contacts at rest that come to slide have, on a pyramid, friction up to half a sector away from the way against
+their sliding. Here each has one edge, in a direction that is sought by Newton's method such that it is
+straight against the sliding that the forces bring about. Where that settles in the same letters, the mode
+obeys Coulomb's round cone at every contact that slides. Contacts that stick keep their pyramids, which lie
+inside the round cones.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.contact_modes.spatial.dual_simplex import Program
+from contact_dynamics.contact_modes.spatial.options import STRICT
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.contact_modes.spatial.options import Pyramid
+    from contact_dynamics.contact_modes.spatial.search import Touching
+    from contact_dynamics.validation import FloatArray
+
+_MOST_STEPS: Final = 12
+"""Each solves as many times, 0.1 ms each, as there are sliding contacts. Four suffice where there is a
+solution nearby."""
+
+_TRIAL: Final = 1e-6
+"""rad, by which a direction is turned to see how the sliding turns; about the root of what rounding is."""
+
+_LONGEST_STEP: Final = 0.3
+"""rad. Half a sector of the usual pyramid is 0.39."""
+
+_FAST: Final = 0.1
+"""Share of its error that a step may leave where sliding is followed without asking how it would turn."""
+
+_SETTLED: Final = 1e-11
+"""rad. Directions that are as close as that are those of the rounded forces."""
+
+
+class Sharpened(NamedTuple):
+    """Forces with exact friction at the contacts that slide."""
+
+    forces: FloatArray  # (n, 3), in the units of the motion
+    edges: list[FloatArray]  # (k, 3) for each contact, those that may act
+
+
+class Sliding(NamedTuple):
+    """A mode whose friction is to be turned."""
+
+    touching: Sequence[Touching]  # the n contacts
+    pyramids: Sequence[Pyramid]  # their force edges
+    letters: str  # s, c or f for each contact
+    of_forces: FloatArray  # (6, 3 n), motion for unit forces
+    free: FloatArray  # (6,), motion without forces
+
+
+def sharpened(mode: Sliding, forces: FloatArray) -> Sharpened | None:
+    """Return forces with exact friction; None: the directions do not settle, or not in these letters.
+
+    Args:
+        mode: As it was found.
+        forces: (n, 3), those of the mode.
+    """
+    turning = [i for i, one in enumerate(mode.pyramids) if mode.letters[i] == "c" and one.frame is not None]
+    angles: FloatArray = np.asarray([_against(mode.pyramids[i], forces[i]) for i in turning])
+    return _followed(mode, turning, angles) or _by_newton(mode, turning, angles)
+
+
+def _followed(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpened | None:
+    """Turn friction against the sliding while that settles fast, as where all contacts slide one way."""
+    last = math.inf
+    while True:
+        found = _solved(mode, turning, angles)
+        if found is None:
+            return None
+        errors = _errors(mode, turning, angles, found)
+        error = float(np.abs(errors).max())
+        if error <= _SETTLED:
+            return found
+        if not error <= _FAST * last:
+            return None
+        angles, last = angles + errors, error
+
+
+def _by_newton(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpened | None:
+    step: FloatArray = np.zeros(len(turning))
+    for _ in range(_MOST_STEPS):
+        found = _solved(mode, turning, angles + step)
+        if found is None:
+            step = 0.5 * step  # back towards directions that gave the mode
+            continue
+        angles = angles + step
+        errors = _errors(mode, turning, angles, found)
+        if np.abs(errors).max() <= _SETTLED:
+            return found
+        slopes = _slopes(mode, turning, angles, errors)
+        if slopes is None:
+            return None
+        step = np.asarray(np.linalg.lstsq(slopes, -errors, rcond=None)[0], dtype=float)
+        step *= min(1.0, _LONGEST_STEP / max(float(np.abs(step).max()), _SETTLED))
+    return None
+
+
+def _slopes(mode: Sliding, turning: list[int], angles: FloatArray, errors: FloatArray) -> FloatArray | None:
+    """Return how the errors change with the directions, (k, k); None: the mode ends there."""
+    found = np.zeros((len(turning), len(turning)))
+    for k, trial in enumerate(_TRIAL * np.eye(len(turning))):
+        beside = _solved(mode, turning, angles + trial)
+        if beside is None:
+            return None
+        found[:, k] = (_errors(mode, turning, angles + trial, beside) - errors) / _TRIAL
+    return None if np.isnan(found).any() else found
+
+
+def _against(pyramid: Pyramid, force: FloatArray) -> float:
+    """Return the angle in a pyramid's frame against the tangential part of a force."""
+    one, two = pyramid.frame or (np.zeros(3), np.zeros(3))
+    return math.atan2(-float(two @ force), -float(one @ force))
+
+
+def _solved(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpened | None:
+    """Return forces of a mode whose contacts have friction against given directions."""
+    edges = [one.edges if mode.letters[i] != "s" else one.edges[:0] for i, one in enumerate(mode.pyramids)]
+    for i, angle in zip(turning, angles.tolist(), strict=True):
+        one, two = mode.pyramids[i].frame or (np.zeros(3), np.zeros(3))
+        way = math.cos(angle) * one + math.sin(angle) * two
+        edges[i] = (mode.touching[i].normal - mode.touching[i].friction * way)[None, :]
+    found = _forces(mode, edges)
+    return None if found is None else Sharpened(found, edges)
+
+
+def _errors(mode: Sliding, turning: list[int], angles: FloatArray, found: Sharpened) -> FloatArray:
+    """Return by how much sliding turns away from given directions, (k,), in (-pi, pi]; NaN: it stops."""
+    motion = np.append(mode.free + mode.of_forces @ found.forces.ravel(), 1.0)
+    actual = []
+    for i in turning:
+        x, y = np.array(mode.pyramids[i].frame) @ (mode.touching[i].point @ motion)
+        actual.append(math.atan2(y, x) if math.hypot(x, y) > STRICT else math.nan)
+    turned: FloatArray = (np.array(actual) - angles + math.pi) % (2.0 * math.pi) - math.pi
+    return turned
+
+
+def _forces(mode: Sliding, edges: list[FloatArray]) -> FloatArray | None:
+    """Return forces, (n, 3), on the edges that give the letters; None: there are none."""
+    starts = np.cumsum([0, *(len(one) for one in edges)])
+    spread = np.zeros((3 * len(edges), int(starts[-1])))
+    for i, one in enumerate(edges):
+        spread[3 * i : 3 * i + 3, starts[i] : starts[i + 1]] = one.T
+    of_edges = mode.of_forces @ spread
+    sizes = np.linalg.norm(of_edges, axis=0)
+    sizes[sizes == 0.0] = 1.0
+    zero, positive = [np.zeros((0, 7))], [np.zeros((0, 7))]
+    for contact, letter in zip(mode.touching, mode.letters, strict=True):
+        if letter == "s":
+            positive.append((contact.normal @ contact.point)[None, :])
+        elif letter == "f":
+            zero.append(contact.point)
+        else:
+            zero.append((contact.normal @ contact.point)[None, :])
+    leaving = np.vstack(positive)
+    leaving[:, -1] -= STRICT
+    rows = np.vstack([*zero, leaving])
+    program = Program.stated(np.column_stack([of_edges / sizes, mode.free]), rows[:0], []).narrowed(
+        rows=rows, equalities=len(rows) - len(leaving), tag=-2
+    )
+    if not program.solve():
+        return None
+    found: FloatArray = (spread @ (program.shares(len(sizes)) / sizes)).reshape(-1, 3)
+    return found

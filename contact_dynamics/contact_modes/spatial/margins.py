@@ -1,0 +1,172 @@
+"""How far an applied wrench in space is from leaving its contact modes, and into which ones it would.
+
+The applied wrenches of a mode (`wrenches`) are a polyhedron in R^6 whose facets are the extreme rays
+of the dual cone. The margin is the distance to the nearest facet in a stated metric, as in the plane.
+
+Where contacts stick, pyramids inside the round cones make a margin at most the true one, short by the part
+1 - cos(pi / facets) of friction or less. Where those that stay slide already, it is exact. Where contacts at
+rest begin to slide, which way depends on the wrench, and the wrenches are a union of polyhedra
+(`margins_of_sliding`): the margin is right to that part of friction, and NaN where it is not known.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.contact_modes.planar.result import ModeVerdict
+from contact_dynamics.contact_modes.spatial.answer import evidenced, spatial_contact_modes
+from contact_dynamics.contact_modes.spatial.margins_of_sliding import union_margin
+from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
+from contact_dynamics.contact_modes.spatial.statics import MOST_EDGES
+from contact_dynamics.contact_modes.spatial.wrenches import Way, supports, wrench_generators
+from contact_dynamics.errors import TooLargeError
+from contact_dynamics.tolerances import ROW_TOLERANCE, VELOCITY_TOLERANCE
+from contact_dynamics.validation import check_array, check_not_negative, check_positive
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.contact_modes.spatial.result import SpatialModeAnswer
+    from contact_dynamics.contact_modes.spatial.search import Found, Search
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.validation import FloatArray
+
+MARGIN_FACETS: Final = 16
+"""Edges of a friction pyramid in margins where nothing else is asked for: 2 % of friction are left out."""
+
+_BEYOND: Final = 1e-5
+"""Part of a margin (or of the wrench, where the margin is less) by which the boundary is passed to see what
+lies behind: far more than the tolerances that make the boundary, far less than the way to the next one."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SpatialModeMargin:
+    """How far an applied wrench in space is from leaving one of its modes, and where it would go."""
+
+    mode: str  # one letter a contact
+    margin: float  # N, least change, in |f|^2 + |torque / length|^2; infinite: none does it; NaN: unknown
+    length: float  # m, of that metric
+    change_W: FloatArray  # (6,), N and N m, the least change itself, world axes; zero where there is none
+    verdict_beyond: ModeVerdict  # just behind the boundary; the present one where there is none
+    modes_beyond: tuple[str, ...]  # the letters of the consistent modes there, each once
+
+
+def spatial_mode_margins(
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    *,
+    force_W: ArrayLike,
+    torque_W: ArrayLike = (0.0, 0.0, 0.0),
+    friction_facets: int = MARGIN_FACETS,
+    margin_length: float | None = None,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+) -> tuple[SpatialModeMargin, ...]:
+    """Return the margin of a wrench in each of its consistent modes, in the order of their answer.
+
+    Empty where a contact approaches.
+
+    Args:
+        body: As for `spatial_contact_modes`.
+        state: As for `spatial_contact_modes`.
+        contacts: As for `spatial_contact_modes`.
+        force_W: As for `spatial_contact_modes`.
+        torque_W: As for `spatial_contact_modes`.
+        friction_facets: Edges of a friction pyramid, >= 3. The more, the nearer is a margin of sticking.
+        margin_length: m, > 0, makes a torque comparable with a force; None: the radius of gyration, root mean
+            square over the axes.
+        velocity_tolerance: As for `spatial_contact_modes`.
+
+    Raises:
+        InvalidFieldError: as for `spatial_contact_modes`, or the length is not > 0.
+        TooLargeError: as for `spatial_contact_modes`, or more than `MOST_EDGES` edges of all pyramids.
+    """
+    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
+    wrench = np.concatenate([check_array("force", force_W, (3,)), check_array("torque", torque_W, (3,))])
+    gyration = math.sqrt(float(np.trace(body.I_B)) / (3.0 * body.mass))
+    length = gyration if margin_length is None else check_positive("margin_length", margin_length)
+    case = spatial_case(body, state, contacts, wrench, tolerance)
+    if not isinstance(case, SpatialCase):
+        return ()
+
+    def ask(changed: FloatArray) -> SpatialModeAnswer:
+        return spatial_contact_modes(
+            body,
+            state,
+            contacts,
+            force_W=changed[:3],
+            torque_W=changed[3:],
+            friction_facets=friction_facets,
+            velocity_tolerance=tolerance,
+        )
+
+    search = search_of(case, friction_facets)
+    edges = sum(len(pyramid.edges) for pyramid in search.pyramids)
+    if edges > MOST_EDGES:
+        raise TooLargeError("contacts", f"{edges} edges of friction pyramids", f"at most {MOST_EDGES}")
+    metric = np.array([1.0, 1.0, 1.0, length, length, length])
+    present = ask(wrench)
+    margins = []
+    for mode, found in evidenced(case, search, sharpen=True):
+        beyond = None
+        if any(letters.item >= 0 for letters in found.letters):
+            margin, way, beyond = union_margin(case, search, found, metric, friction_facets)
+        else:
+            margin, way = _nearest(case, search, found, metric)
+        there = present
+        if math.isfinite(margin) and beyond is None:
+            size = float(np.linalg.norm(wrench / metric))
+            # A pyramid that turns as the wrench changes may hold a little longer: the round cone's part.
+            rest = (1.0 / math.cos(math.pi / friction_facets) - 1.0) * size
+            for further in (0.0, rest):
+                step = margin + further + _BEYOND * max(margin, size)
+                there = ask(wrench + step * way * metric)
+                if mode.mode not in [one.mode for one in there.modes]:
+                    break
+        if beyond is None:
+            beyond = tuple(one.mode for one in there.modes)
+        margins.append(
+            SpatialModeMargin(
+                mode=mode.mode,
+                margin=margin,
+                length=length,
+                change_W=margin * way * metric if math.isfinite(margin) else np.zeros(6),
+                verdict_beyond=_verdict(beyond),
+                modes_beyond=tuple(dict.fromkeys(beyond)),
+            )
+        )
+    return tuple(margins)
+
+
+def _verdict(modes: Sequence[str]) -> ModeVerdict:
+    if not modes:
+        return ModeVerdict.INCONSISTENT
+    return ModeVerdict.UNIQUE if len(modes) == 1 else ModeVerdict.INDETERMINATE
+
+
+def _nearest(case: SpatialCase, search: Search, found: Found, metric: FloatArray) -> tuple[float, FloatArray]:
+    """Return the distance, N, from the mode's nearest boundary and the way there, (6,), in the metric."""
+    motion = case.motion
+    unit = motion.mass * motion.scale  # N; wrenches are divided by it, and torques by the length
+    ways = [Way(one.letter, one.item) for one in found.letters]
+    positive, zero = supports(wrench_generators(case, search, ways, metric))
+    target = np.append(motion.wrench / metric / unit, 1.0)
+    for row in zero:
+        across = float(np.linalg.norm(row[:6]))
+        if across > ROW_TOLERANCE:
+            return 0.0, row[:6] / across
+    margin, way = math.inf, np.zeros(6)
+    for row in positive:
+        across = float(np.linalg.norm(row[:6]))
+        if across > ROW_TOLERANCE:
+            depth = max(0.0, float(row @ target)) / across
+            if depth < margin:
+                margin, way = depth, -row[:6] / across
+    return margin * unit, way

@@ -1,0 +1,200 @@
+"""How far an applied wrench is from leaving a mode in which contacts at rest begin to slide.
+
+Each way in which they slide together has a convex cone of wrenches (`spatial_wrench_sets`), and those of the
+mode are the union. The cones are gone through outwards from one that holds the wrench, boundary by boundary
+in the order of their distances. What lies just behind a boundary says whether the mode ends there, or goes on
+in a cone that the whole boundary belongs to. Friction pyramids stay where they are meanwhile.
+
+Does not cover: boundaries behind which the mode goes on in parts, as where loads are shared in many ways;
+more than `MOST_BEGINNING` contacts that begin to slide; those of bodies that turn. There the margin is NaN.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import copy
+import heapq
+import itertools
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.contact_modes.spatial.answer import evidenced
+from contact_dynamics.contact_modes.spatial.problem import search_of
+from contact_dynamics.contact_modes.spatial.wrenches import Way, distinct, supports, wrench_generators
+from contact_dynamics.errors import TooLargeError
+from contact_dynamics.tolerances import ROW_TOLERANCE
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact_modes.spatial.problem import SpatialCase
+    from contact_dynamics.contact_modes.spatial.search import Found, Search
+    from contact_dynamics.validation import FloatArray
+
+MOST_PROBES: Final = 64
+"""Boundaries that are looked behind before the margin is given up: a search for modes each, some 10 ms."""
+
+MOST_BEGINNING: Final = 4
+"""Contacts that begin to slide: the ways in which more do that are too many to go through."""
+
+_BEHIND: Final = 1e-5
+"""Relative to the wrench: how far behind a boundary is looked, a thousand times the strictness of letters."""
+
+_ALONG: Final = 1e-3
+"""Relative to the wrench: how far from the boundary's own borders that is done."""
+
+_HELD: Final = 10.0 * ROW_TOLERANCE
+"""On unit rows: how far outside of a cone still counts as on its boundary."""
+
+
+class UnionMargin(NamedTuple):
+    """How far a wrench is from leaving a mode, and where it would."""
+
+    margin: float  # N, in the metric; infinite: nowhere; NaN: unknown
+    way: FloatArray  # (6,), unit, there, in the metric
+    beyond: tuple[str, ...] | None  # the consistent modes just behind; None: there is none, or it is unknown
+
+
+class _Cone(NamedTuple):
+    """The wrenches of some ways of sliding."""
+
+    spans: FloatArray  # (k, 6), unit, whose positive sums they are
+    sides: FloatArray  # (m, 6), unit, with which they have products >= 0
+
+
+class _Boundary(NamedTuple):
+    distance: float  # in the margin's metric; a lower bound until the nearest point is known
+    number: int  # for order among equals
+    outward: FloatArray  # (6,), unit
+    spans: FloatArray  # (k, 6), whose positive sums it is
+    nearest: FloatArray | None  # (6,)
+
+
+def union_margin(
+    case: SpatialCase, search: Search, found: Found, metric: FloatArray, facets: int
+) -> UnionMargin:
+    """Return the distance to the nearest wrench outside a mode.
+
+    Args:
+        case: The body with its contacts.
+        search: Of that case.
+        found: By that search, with contacts at rest that begin to slide.
+        metric: (6,), m, by which a wrench is divided: ones, then the length that torques are divided by.
+        facets: Edges of the friction pyramids.
+    """
+    beginning = sum(one.item >= 0 for one in found.letters)
+    if case.motion.at_rest and not np.any(case.motion.turning) and beginning <= MOST_BEGINNING:
+        union = _Union(case, search, "".join(one.letter for one in found.letters), facets)
+        # Here each way of sliding counts, which can be more than the search for modes has to tell apart.
+        with contextlib.suppress(TooLargeError):
+            return _gone_through(union, case.motion.wrench / union.own / union.unit, union.own / metric)
+    return UnionMargin(math.nan, np.zeros(6), None)
+
+
+def _gone_through(union: _Union, wrench: FloatArray, stretch: FloatArray) -> UnionMargin:
+    """Go outwards from a wrench; ``stretch`` makes distances those of the margin's metric."""
+    unknown = UnionMargin(math.nan, np.zeros(6), None)
+    numbers = itertools.count()
+    cones = union.cones_at(wrench)
+    if not cones:
+        return unknown
+    ways, cone = cones[0]
+    seen = {ways}
+    heap = _boundaries(cone, wrench, stretch, numbers)
+    heapq.heapify(heap)
+    for _ in range(MOST_PROBES):
+        side = _next(heap, wrench, stretch)
+        if side is None or side.nearest is None:
+            return UnionMargin(math.inf, np.zeros(6), None)
+        inner = side.spans.mean(axis=0)
+        inner = inner / max(float(np.linalg.norm(inner)), ROW_TOLERANCE)
+        way = _ALONG * inner + _BEHIND * side.outward
+        behind = side.nearest + float(np.linalg.norm(wrench)) * way
+        cones = union.cones_at(behind)
+        if cones is None:
+            there = (side.nearest if side.distance > ROW_TOLERANCE else behind) - wrench
+            there = there * stretch / float(np.linalg.norm(there * stretch))
+            return UnionMargin(side.distance * union.unit, there, union.modes_at(behind))
+        whole = [(ways, cone) for ways, cone in cones if float((cone.sides @ side.spans.T).min()) >= -_HELD]
+        if not whole:
+            break
+        ways, cone = whole[0]
+        if ways not in seen:
+            seen.add(ways)
+            for further in _boundaries(cone, wrench, stretch, numbers):
+                heapq.heappush(heap, further)
+    return unknown
+
+
+class _Union:
+    """The wrenches of a mode in which contacts begin to slide, under friction pyramids that stay."""
+
+    def __init__(self, case: SpatialCase, search: Search, mode: str, facets: int) -> None:
+        motion = case.motion
+        gyration = math.sqrt(float(np.trace(motion.inertia)) / (3.0 * motion.mass))
+        # Cones are stated in the body's own metric, whichever margins are asked for in.
+        self.own = np.array([1.0, 1.0, 1.0, gyration, gyration, gyration])
+        self.unit = motion.mass * motion.scale  # N; wrenches are divided by it, and by the metric
+        self._case, self._search, self._mode, self._facets = case, search, mode, facets
+
+    def cones_at(self, wrench: FloatArray) -> list[tuple[tuple[Way, ...], _Cone]] | None:
+        """Return the cones of the mode, with an inside, that hold a wrench; None: the mode is not there."""
+        there = search_of(self._under(wrench), self._facets).run()
+        same = [one for one in there if "".join(of.letter for of in one.letters) == self._mode]
+        if not same:
+            return None
+        ways = [tuple(Way(of.letter, of.item) for of in one.letters) for one in same]
+        cones = [(of, self._cone(of)) for of in ways]
+        return [(of, cone) for of, cone in cones if cone is not None]
+
+    def modes_at(self, wrench: FloatArray) -> tuple[str, ...]:
+        """Return the letters of all modes that a wrench brings about."""
+        case = self._under(wrench)
+        return tuple(mode.mode for mode, _ in evidenced(case, search_of(case, self._facets), sharpen=True))
+
+    def _under(self, wrench: FloatArray) -> SpatialCase:
+        """Return the case under another wrench, with the friction pyramids that it has."""
+        motion = copy.copy(self._case.motion)
+        motion.wrench = wrench * self.own * self.unit
+        force, torque = motion.wrench[:3], motion.wrench[3:]
+        motion.free = np.concatenate([force / motion.mass, np.linalg.solve(motion.inertia, torque)])
+        return self._case._replace(motion=motion)
+
+    def _cone(self, ways: tuple[Way, ...]) -> _Cone | None:
+        generators = wrench_generators(self._case, self._search, ways, self.own)
+        positive, zero = (_unit(of[:, :6]) for of in supports(generators))
+        if len(zero):
+            return None
+        rays, lines = _unit(generators.rays[:, :6]), generators.lines[:, :6]
+        return _Cone(np.vstack([rays, lines, -lines]), distinct(positive))
+
+
+def _next(heap: list[_Boundary], wrench: FloatArray, stretch: FloatArray) -> _Boundary | None:
+    """Take the nearest boundary, with its nearest point; None: there are no more."""
+    from scipy.optimize import nnls
+
+    while heap:
+        side = heapq.heappop(heap)
+        if side.nearest is not None:
+            return side
+        nearest = nnls((side.spans * stretch).T, wrench * stretch)[0] @ side.spans
+        distance = float(np.linalg.norm((nearest - wrench) * stretch))
+        heapq.heappush(heap, side._replace(distance=distance, nearest=nearest))
+    return None
+
+
+def _boundaries(
+    cone: _Cone, wrench: FloatArray, stretch: FloatArray, numbers: itertools.count[int]
+) -> list[_Boundary]:
+    found = []
+    for inward in cone.sides:
+        tight = cone.spans[np.abs(cone.spans @ inward) <= _HELD]
+        distance = abs(float(inward @ wrench)) / float(np.linalg.norm(inward / stretch))
+        found.append(_Boundary(distance, next(numbers), -inward, tight, None))
+    return found
+
+
+def _unit(rows: FloatArray) -> FloatArray:
+    sizes = np.linalg.norm(rows, axis=1)
+    found: FloatArray = rows[sizes > ROW_TOLERANCE] / sizes[sizes > ROW_TOLERANCE, None]
+    return found

@@ -1,0 +1,182 @@
+"""What the letters of one contact in space ask for: separate, stick, or slide within which sector.
+
+Letters come in groups, a tree whose leaves are letters and whose groups ask for no more than each of their
+letters does, so that a group which cannot hold ends the trial of all its letters (`search`).
+
+The edges of a contact's friction pyramid are numbered around it, and items of sliding with them: 2 j is the
+sector of directions opposite to edge j, 2 j + 1 its border with the next sector.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.contact.friction import linearised_cone, tangents
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from contact_dynamics.validation import FloatArray
+
+STRICT: Final = 1e-8
+"""Relative to the largest acceleration: what an inequality must have to hold strictly. A thousand times what
+a condition may miss (`dual_simplex`)."""
+
+MILDER: Final = 0.1
+"""How much less an arc must hold than its letters, whose rows are differences of unit ones."""
+
+_AT_BORDER: Final = 1e-9
+"""In sectors: how far beyond its border a sector's edge still counts as acting."""
+
+
+class Letters(NamedTuple):
+    """A letter of one contact, or several together; rows are (motion, constant), 7 numbers."""
+
+    letter: str  # s, f, c; c also for an arc of sliding directions; empty: several
+    item: int  # of sliding; -1: none, or several
+    zeroed: frozenset[int]  # edge forces, and normal acceleration, that are zero
+    raised: int | None  # the normal acceleration's name, where that is positive
+    rows: FloatArray  # (k, 7), zero or not negative
+    equalities: int  # how many rows are zero; the first ones
+    parts: tuple[Letters, ...]  # what it stands for, in groups; empty where it is a letter
+
+
+class Pyramid(NamedTuple):
+    """The edges of a contact's force: a friction pyramid, or one edge where friction or sliding is known."""
+
+    edges: FloatArray  # (K, 3), of unit normal force
+    frame: tuple[FloatArray, FloatArray] | None  # unit tangents, edge 0 along the first; None: one edge
+    first: int  # name of the first edge force; the others follow
+
+    def tangential(self) -> FloatArray:
+        """Return the edges' parts along the frame, (K, 2)."""
+        along: FloatArray = self.edges @ np.array(self.frame).T
+        return along
+
+
+def pyramid_of(
+    normal: FloatArray,
+    friction: float,
+    *,
+    sliding: FloatArray,
+    free: FloatArray,
+    facets: int,
+    first: int,
+) -> Pyramid:
+    """Return the force edges of a touching contact.
+
+    Args:
+        normal: (3,), unit.
+        friction: Coulomb's mu.
+        sliding: (3,), its tangential velocity; zero: it is at rest.
+        free: (3,), its acceleration without contact forces: edge 0 opposes it.
+        facets: Edges of the pyramid.
+        first: Name of the first edge force.
+    """
+    speed = float(np.linalg.norm(sliding))
+    if friction == 0.0:
+        return Pyramid(normal[None, :], None, first)
+    if speed > 0.0:
+        return Pyramid((normal - friction * sliding / speed)[None, :], None, first)
+    edges = linearised_cone(normal, friction, facets, towards=-free)
+    return Pyramid(edges, tangents(normal, -free), first)
+
+
+def any_letter(pyramid: Pyramid, point: FloatArray, normal_name: int) -> Letters:
+    """Return all letters of one touching contact, but for its ways of sliding (`ways_of_sliding`).
+
+    Args:
+        pyramid: Its force edges.
+        point: (3, 7), its acceleration as a function of the motion.
+        normal_name: The name of its normal acceleration.
+    """
+    own = range(pyramid.first, pyramid.first + len(pyramid.edges))
+    nothing = np.zeros((0, 7))
+    separates = Letters("s", -1, frozenset(own), normal_name, nothing, 0, ())
+    zeroed = frozenset([normal_name])
+    if pyramid.frame is None:
+        stays = Letters("c", -1, zeroed, None, nothing, 0, ())
+    else:
+        sticks = Letters("f", -1, frozenset(), None, np.array(pyramid.frame) @ point, 2, ())
+        stays = Letters("", -1, zeroed, None, nothing, 0, (sticks,))
+    return Letters("", -1, frozenset(), None, nothing, 0, (separates, stays))
+
+
+def ways_of_sliding(
+    pyramid: Pyramid, point: FloatArray, acting: tuple[int, int] | None = None
+) -> tuple[Letters, ...]:
+    """Return the letters of a contact that slides, in arcs of directions.
+
+    Args:
+        pyramid: Its force edges, more than one.
+        point: (3, 7), its acceleration as a function of the motion.
+        acting: The first of some neighbouring edges and their number: only they oppose the sliding; None:
+            any may, and the arcs together go around the circle.
+    """
+    count = len(pyramid.edges)
+    angles = 2.0 * math.pi * np.arange(count) / count
+    along = np.column_stack([np.cos(angles), np.sin(angles)]) @ (np.array(pyramid.frame) @ point)
+    # Sectors and borders alternate around the circle; no arc may be wider than a third of it.
+    if acting is None:
+        arcs = np.array_split(np.arange(2 * count), count if count < 6 else 4)
+    else:
+        items = 2 * acting[0] + np.arange(2 * acting[1] - 1)
+        arcs = np.array_split(items, min(len(items), math.ceil(1.5 * len(items) / count)))
+    return tuple(_slides(arc.tolist(), pyramid.first, along) for arc in arcs)
+
+
+def _slides(arc: list[int], first_name: int, along: FloatArray) -> Letters:
+    """Return the letters of sliding within an arc of items.
+
+    The edge that opposes the sliding most has the least product with it, alone or with its neighbour.
+    """
+    count = len(along)
+    first, last = arc[0], arc[-1]
+    acting = {(item + side) // 2 % count for item in arc for side in (0, 1)}
+    silent = frozenset(first_name + j for j in range(count) if j not in acting)
+    if len(arc) > 1:
+        low, high = (first - 1) // 2, last // 2
+        middle = -np.mean([along[item // 2 % count] for item in arc if item % 2 == 0], axis=0)
+        middle[-1] -= MILDER * STRICT
+        sides = [
+            along[low % count] - along[(low + 1) % count],
+            along[(high + 1) % count] - along[high % count],
+        ]
+        halves = (arc[: len(arc) // 2], arc[len(arc) // 2 :])
+        parts = tuple(_slides(half, first_name, along) for half in halves)
+        return Letters("c", -1, silent, None, np.array([middle, *sides]), 0, parts)
+    first %= 2 * count
+    j, k = first // 2, (first + 1) // 2 % count
+    sides = [along[(j - 1) % count] - along[j], along[(k + 1) % count] - along[k]]
+    for side in sides:
+        side[-1] -= STRICT
+    if j == k:
+        return Letters("c", first, silent, None, np.array(sides), 0, ())
+    return Letters("c", first, silent, None, np.array([along[j] - along[k], *sides]), 1, ())
+
+
+def acting_edges(directions: FloatArray, count: int) -> NDArray[np.bool_]:
+    """Return which edges, (m, count), of each contact's pyramid oppose some sliding among positive sums.
+
+    Args:
+        directions: (m, 2, p), whose sums are meant, in each pyramid's frame; where they can vanish, any edge
+            may act.
+        count: Edges of a pyramid.
+    """
+    x, y = directions[:, 0], directions[:, 1]
+    angles = np.sort(np.arctan2(y, x), axis=1)
+    gaps = np.hstack([angles[:, 1:], angles[:, :1] + 2.0 * math.pi]) - angles
+    widest = gaps.argmax(axis=1)
+    each = np.arange(len(angles))
+    gap = gaps[each, widest]
+    sector = 2.0 * math.pi / count
+    start = (angles[each, (widest + 1) % angles.shape[1]] - math.pi) / sector + 0.5
+    first = np.floor(start - _AT_BORDER)
+    more = np.floor(start + (2.0 * math.pi - gap) / sector + _AT_BORDER) - first
+    acting: NDArray[np.bool_] = (np.arange(count) - first[:, None]) % count <= more[:, None]
+    least = (x * x + y * y).min(axis=1)
+    acting[(gap <= math.pi + _AT_BORDER) | (least <= _AT_BORDER**2)] = True
+    return acting

@@ -1,0 +1,137 @@
+"""Why mechanics refuses contacting and separating strings of a body in space that kinematics allows.
+
+A string of letters s (separates) and c (stays, sticking or sliding) is refused if no mode of it is
+consistent. Where nothing that stays has friction to choose, the forces that it needs are known, and so is
+what contradicts it: a contact pulls, or one that should separate penetrates. Otherwise the reason is how far
+the applied wrench is from those under which some forces inside the friction pyramids let the contacts stay
+and separate like that: the least change in |f|^2 + |torque / length|^2. Which way friction acts is left open,
+so that no smaller change brings the string about, and a larger one may be needed.
+
+Does not cover: why single letters, sticking or sliding one way, are refused of a string that is consistent;
+where loads are shared, that differs from one sharing to the next.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.contact_modes.planar.result import Refusal, RefusedMode
+from contact_dynamics.contact_modes.spatial.kinematic import spatial_kinematic_modes
+from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
+from contact_dynamics.contact_modes.spatial.wrenches import Way, wrench_generators
+from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.validation import check_array, check_positive
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.contact_modes.spatial.result import SpatialModeAnswer
+    from contact_dynamics.contact_modes.spatial.search import Search
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.validation import FloatArray
+
+_EXACT: Final = 1e4
+"""How much the height of a wrench (`wrenches`), which must be met, counts beside its distance."""
+
+_NOTHING: Final = 1e-7
+"""Relative to the applied wrench: a distance that counts as none, ten times what `_EXACT` leaves."""
+
+
+def spatial_refused_modes(
+    answer: SpatialModeAnswer,
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    *,
+    force_W: ArrayLike,
+    torque_W: ArrayLike = (0.0, 0.0, 0.0),
+    margin_length: float | None = None,
+) -> tuple[RefusedMode, ...]:
+    """Return each contacting and separating string without a consistent mode, in alphabetical order, and why.
+
+    Refusals are `PENETRATES` and `PULLS` of a contact, where forces are known; `NO_SOLUTION`, with the
+    distance, N, of the applied wrench from those that can bring the string about; or `WRONG_MOTION` with
+    amount 0: forces in the friction pyramids would do, but against no sliding that they bring about.
+
+    Empty where a contact approaches. A millisecond for each string.
+
+    Args:
+        answer: Of `spatial_contact_modes` to the same question, whose facets and tolerance are used.
+        body: As for `spatial_contact_modes`.
+        state: As for `spatial_contact_modes`.
+        contacts: As for `spatial_contact_modes`.
+        force_W: As for `spatial_contact_modes`.
+        torque_W: As for `spatial_contact_modes`.
+        margin_length: m, > 0, makes a torque comparable with a force; None: the radius of gyration, root mean
+            square over the axes.
+
+    Raises:
+        InvalidFieldError: a wrench that is not finite, or the length is not > 0.
+        TooLargeError: more contacts than `spatial_contact_modes` accepts.
+    """
+    wrench = np.concatenate([check_array("force", force_W, (3,)), check_array("torque", torque_W, (3,))])
+    gyration = math.sqrt(float(np.trace(body.I_B)) / (3.0 * body.mass))
+    length = gyration if margin_length is None else check_positive("margin_length", margin_length)
+    tolerance = answer.velocity_tolerance
+    case = spatial_case(body, state, contacts, wrench, tolerance)
+    if not isinstance(case, SpatialCase):
+        return ()
+    search = search_of(case, answer.friction_facets)
+    consistent = {mode.mode.replace("f", "c") for mode in answer.modes}
+    metric = np.array([1.0, 1.0, 1.0, length, length, length])
+    return tuple(
+        _known(case, search, string) or _short(case, search, string, metric)
+        for string in spatial_kinematic_modes(state, contacts, velocity_tolerance=tolerance)
+        if string not in consistent
+    )
+
+
+def _known(case: SpatialCase, search: Search, string: str) -> RefusedMode | None:
+    """Return the refusal where the forces are known; None: they are not."""
+    motion, touching = case.motion, case.touching.tolist()
+    staying = [k for k, i in enumerate(touching) if string[i] == "c"]
+    if any(len(search.pyramids[k].edges) > 1 for k in staying):
+        return None
+    normals = np.array([one.normal @ one.point for one in search.touching]).reshape(-1, 7)
+    edges = np.zeros((3 * len(touching), len(staying)))
+    for column, k in enumerate(staying):
+        edges[3 * k : 3 * k + 3, column] = search.pyramids[k].edges[0]
+    # Normal accelerations of those that stay, for unit normal forces, and without any.
+    caused = normals[:, :6] @ search.of_forces @ edges
+    without = normals[:, :6] @ search.motion[:, -1] + normals[:, 6]
+    forces = np.zeros(0)
+    if staying:
+        sizes = np.linalg.svd(caused[staying], compute_uv=False)
+        if sizes[-1] <= ROW_TOLERANCE * sizes[0]:
+            return None
+        forces = np.linalg.solve(caused[staying], -without[staying])
+        if forces.min() < 0.0:
+            amount = float(forces.min()) * motion.scale
+            at = touching[staying[int(forces.argmin())]]
+            return RefusedMode(mode=string, refusal=Refusal.PULLS, contact=at, amount=amount)
+    normal = without + caused @ forces
+    separating = [k for k in range(len(touching)) if k not in staying]
+    lowest = min(separating, key=lambda k: float(normal[k]), default=None)
+    if lowest is None:
+        return None
+    amount = min(0.0, float(normal[lowest]) * motion.scale)
+    return RefusedMode(mode=string, refusal=Refusal.PENETRATES, contact=touching[lowest], amount=amount)
+
+
+def _short(case: SpatialCase, search: Search, string: str, metric: FloatArray) -> RefusedMode:
+    from scipy.optimize import nnls
+
+    ways = [Way(string[i], -1) for i in case.touching.tolist()]
+    generators = wrench_generators(case, search, ways, metric)
+    unit = case.motion.mass * case.motion.scale  # N; wrenches are divided by it
+    target = np.append(case.motion.wrench / metric / unit, 1.0)
+    columns = np.vstack([generators.rays, generators.lines, -generators.lines]).T
+    heights = np.append(np.ones(6), _EXACT)
+    left = float(nnls(heights[:, None] * columns, heights * target)[1])
+    if left <= _NOTHING * float(np.linalg.norm(target[:6])):
+        return RefusedMode(mode=string, refusal=Refusal.WRONG_MOTION, contact=-1, amount=0.0)
+    return RefusedMode(mode=string, refusal=Refusal.NO_SOLUTION, contact=-1, amount=left * unit)

@@ -1,0 +1,148 @@
+"""Directions in which contacts that stay can move together along their surfaces, and simplices of them.
+
+The tangential accelerations of all contacts that stay lie in a space of few dimensions: two for one contact,
+three for a body flush on a face however many contacts that has, never above six. A region is a simplicial
+cone there, the positive sums of as many rays as there are dimensions. Across a region each contact slides
+within an angle, so that only few edges of its pyramid can act: where the whole region can be refused, no
+sector of any contact in it need be tried.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.contact_modes.spatial.options import MILDER, STRICT, acting_edges
+from contact_dynamics.tolerances import ROW_TOLERANCE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from contact_dynamics.contact_modes.spatial.options import Pyramid
+    from contact_dynamics.validation import FloatArray
+
+_NARROW: Final = 0.32
+"""rad, angle between all rays below which a region of three dimensions or less is not split further; of finer
+pyramids the same part of a sector, which is two fifths of the usual one's."""
+
+_NARROW_OF_MORE: Final = 0.64
+"""rad, where there are more dimensions, in which regions are many."""
+
+
+class Image(NamedTuple):
+    """The tangential accelerations of some contacts under the motions in which others stay as well."""
+
+    coordinates: FloatArray  # (p, 6), of a motion
+    unseen: FloatArray  # (q, 6), motions without tangential acceleration
+    maps: FloatArray  # (m, 2, p), from coordinates to the contacts' accelerations in their pyramids' frames
+
+
+class Region(NamedTuple):
+    """The positive sums of some rays."""
+
+    rays: FloatArray  # (p, p), one a row
+    height: FloatArray  # (p,), a combination of coordinates that is positive in the region
+
+    def rows(self, image: Image) -> FloatArray:
+        """Return the conditions on the motion, (p + 1, 7): within the region, and not without sliding."""
+        inside = np.vstack([np.linalg.inv(self.rays.T), self.height])
+        inside /= np.sqrt((inside * inside).sum(axis=1))[:, None]
+        found = np.zeros((len(inside), 7))
+        found[:, :-1] = inside @ image.coordinates
+        found[-1, -1] = -MILDER * STRICT
+        return found
+
+    def halves(self, count: int) -> tuple[Region, Region] | None:
+        """Return the region cut across its widest edge; None: narrow for pyramids of ``count`` edges."""
+        if len(self.rays) == 1:
+            return None
+        unit = self.rays / np.linalg.norm(self.rays, axis=1)[:, None]
+        cosines = unit @ unit.T
+        one, other = divmod(int(cosines.argmin()), len(unit))
+        narrow = min(_NARROW, 0.8 * math.pi / count) if len(unit) <= 3 else _NARROW_OF_MORE
+        if cosines[one, other] > math.cos(narrow):
+            return None
+        near, far = self.rays.copy(), self.rays.copy()
+        near[other] = far[one] = 0.5 * (self.rays[one] + self.rays[other])
+        return Region(near, self.height), Region(far, self.height)
+
+    def acting_edges(self, image: Image, pyramids: list[Pyramid]) -> NDArray[np.bool_]:
+        """Return which edges, (m, K), of each contact's pyramid oppose some sliding in the region."""
+        return acting_edges(image.maps @ self.rays.T, len(pyramids[0].edges))
+
+    def friction(self, image: Image, pyramids: list[Pyramid]) -> FloatArray:
+        """Return the power, for unit normal force, of one share of friction at each contact, (m, p), on rays.
+
+        The share is that of the edge that opposes most the sliding in the middle of the region.
+        """
+        along = image.maps @ self.rays.T  # (m, 2, p)
+        middles = along.sum(axis=2)
+        found = np.zeros((len(pyramids), len(self.rays)))
+        for i, (pyramid, middle) in enumerate(zip(pyramids, middles.tolist(), strict=True)):
+            tangential = pyramid.tangential()
+            found[i] = tangential[int((tangential @ middle).argmin())] @ along[i]
+        return found
+
+
+class Flat(NamedTuple):
+    """The motions in which some contacts stick."""
+
+    chosen: tuple[int, ...]  # contacts that were asked to
+    stuck: frozenset[int]  # those and all that stick with them
+    rows: FloatArray  # (k, 6), of the motion, zero
+    image: Image  # of the contacts that need not stick
+
+    def parts(self, normals: FloatArray, frames: FloatArray) -> Iterator[Flat]:
+        """Yield the flats in which one contact more sticks, with all that must then; none within a line."""
+        if len(self.image.coordinates) > 1:
+            for i in range(len(frames)):
+                if i not in self.stuck:
+                    yield flat_of(normals, frames, (*self.chosen, i))
+
+
+def flat_of(normals: FloatArray, frames: FloatArray, chosen: tuple[int, ...]) -> Flat:
+    """Return the motions in which some contacts stick.
+
+    Args:
+        normals: As for `image_of`.
+        frames: As for `image_of`, of all contacts that may stick or slide.
+        chosen: The contacts.
+    """
+    sticking = frames[list(chosen)].reshape(-1, 6)
+    image = image_of(np.vstack([normals, sticking]), frames)
+    moves = np.abs(image.maps).max(axis=(1, 2), initial=0.0) > ROW_TOLERANCE
+    stuck = frozenset(np.flatnonzero(~moves).tolist())
+    return Flat(chosen, stuck, _row_space(sticking)[0], image._replace(maps=image.maps[moves]))
+
+
+def image_of(normals: FloatArray, frames: FloatArray) -> Image:
+    """Return the space of common tangential accelerations.
+
+    Args:
+        normals: (k, 6), normal accelerations of the contacts that stay, as functions of the motion.
+        frames: (m, 2, 6), tangential ones, of those whose sliding is asked for.
+    """
+    free = _row_space(normals)[1]
+    along = frames.reshape(-1, 6) @ free.T
+    basis, rest = _row_space(along)
+    return Image(basis @ free, rest @ free, (along @ basis.T).reshape(len(frames), 2, -1))
+
+
+def whole(dimensions: int) -> Iterator[Region]:
+    """Yield regions that together cover every direction; none where there is no dimension."""
+    for signs in itertools.product((1.0, -1.0), repeat=dimensions) if dimensions else ():
+        yield Region(np.diag(signs), np.array(signs) / math.sqrt(dimensions))
+
+
+def _row_space(rows: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return orthonormal bases of what the rows see and of what they do not."""
+    if len(rows) > rows.shape[1]:
+        rows = np.asarray(np.linalg.qr(rows, mode="r"))
+    sizes, basis = np.linalg.svd(rows)[1:]
+    seen = int((sizes > ROW_TOLERANCE * max(1.0, sizes.max(initial=0.0))).sum())
+    return basis[:seen], basis[seen:]

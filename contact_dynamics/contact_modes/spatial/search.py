@@ -1,0 +1,340 @@
+"""Every combination of letters that some contact forces bring about: a search that refuses many at once.
+
+First which contacts stay, one after another. Then, where several frictional contacts at rest stay, which of
+them stick; the motions with given contacts sticking form a flat, and there are few: under a face on a table
+one for each foot, and rest. Within a flat all others slide, in one of few regions of their common motions,
+split while it is wide and may hold (`regions`). Then the letters of each contact, in groups that are
+split further and further (`options`). Whatever is asked is asked of all its parts, and what cannot
+hold is dropped with all of them, so that no consistent mode is missed. Each trial is a few pivots of a dual
+simplex (`dual_simplex`).
+
+At rest, power refuses much at once. Motions gain kinetic energy, so the applied wrench has power >= 0 on
+them, and at least what friction takes. Friction takes the most that it can (maximum dissipation), so that any
+other share of friction, taken for a whole region, must leave some power somewhere in it (`_dissipates`).
+Without this the load could shift to contacts that are not decided yet, and nothing is refused before the last
+few: with many feet, that would be every cell of the arrangement of all their sectors.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.contact_modes.spatial.dual_simplex import Ends, Program
+from contact_dynamics.contact_modes.spatial.options import (
+    STRICT,
+    any_letter,
+    pyramid_of,
+    ways_of_sliding,
+)
+from contact_dynamics.contact_modes.spatial.regions import Image, Region, flat_of, whole
+from contact_dynamics.errors import TooLargeError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from contact_dynamics.contact_modes.spatial.options import Letters, Pyramid
+    from contact_dynamics.contact_modes.spatial.regions import Flat
+    from contact_dynamics.validation import FloatArray
+
+MOST_EXAMINED: Final = 30_000
+"""Trials, of some 0.1 ms each, after which a search is given up: where the motion of a body on many feet is
+not unique, hundreds of combinations of their sectors may be consistent, and all are asked for."""
+
+_REGION_TAG = -2
+_CONTACT_TAG = -3
+"""Of contact 0; each further one is one less."""
+
+
+class Touching(NamedTuple):
+    """A contact that neither approaches nor leaves."""
+
+    normal: FloatArray  # (3,), unit
+    friction: float  # Coulomb's mu
+    sliding: FloatArray  # (3,), m/s, tangential velocity; zero: it is at rest
+    point: FloatArray  # (3, 7), its acceleration as a function of the motion
+    free: FloatArray  # (3,), its acceleration without contact forces
+
+
+class Found(NamedTuple):
+    """A mode that some forces bring about."""
+
+    letters: list[Letters]  # of each touching contact
+    program: Program  # solved
+    motion: Ends  # of a mixture of the motion's components: whether it is unique
+
+
+class Common(NamedTuple):
+    """What regions of common sliding share."""
+
+    image: Image  # their space
+    open_ones: list[int]  # contacts that slide
+    pyramids: list[Pyramid]  # theirs
+    names: NDArray[np.intp]  # (m, K), of their edge forces
+    gains: FloatArray | None  # (p,), power of the applied wrench; None: not known, something moves
+
+
+class Search:
+    """The modes of touching contacts.
+
+    Motions, (a, alpha) in units that the caller chooses so that contact points' accelerations are about 1,
+    are affine functions of the edge forces.
+    """
+
+    def __init__(
+        self,
+        touching: list[Touching],
+        *,
+        of_forces: FloatArray,
+        free: FloatArray,
+        mass: FloatArray,
+        at_rest: bool,
+        facets: int,
+    ) -> None:
+        """State the problem.
+
+        Args:
+            touching: The contacts.
+            of_forces: (6, 3 n), motion for unit contact forces.
+            free: (6,), motion without contact forces.
+            mass: (6, 6), forces and torques for unit motion.
+            at_rest: Whether nothing moves, so that the applied wrench has power >= 0.
+            facets: Edges of a friction pyramid.
+        """
+        self.touching = touching
+        self.pyramids: list[Pyramid] = []
+        first = 0
+        for contact in touching:
+            self.pyramids.append(
+                pyramid_of(
+                    contact.normal,
+                    contact.friction,
+                    sliding=contact.sliding,
+                    free=contact.free,
+                    facets=facets,
+                    first=first,
+                )
+            )
+            first += len(self.pyramids[-1].edges)
+        self.edges = np.zeros((3 * len(touching), first))  # contact forces of unit edge forces
+        for i, pyramid in enumerate(self.pyramids):
+            last = pyramid.first + len(pyramid.edges)
+            self.edges[3 * i : 3 * i + 3, pyramid.first : last] = pyramid.edges.T
+        self.of_forces = of_forces
+        motion = of_forces @ self.edges
+        sizes = np.linalg.norm(motion, axis=0)
+        sizes[sizes == 0.0] = 1.0
+        self.edges /= sizes
+        self._sizes = sizes
+        self.motion = np.column_stack([motion / sizes, free])
+        self.examined = 0  # programs solved so far
+        self._first_normal = first  # name of contact 0's normal acceleration
+        self._normals = np.array([c.normal @ c.point for c in touching]).reshape(-1, 7)
+        named = self._normals
+        names = [first + i for i in range(len(touching))]
+        self._mass = mass
+        self._power = mass @ free if at_rest and np.any(free) else None
+        if self._power is not None:
+            named = np.vstack([named, np.append(self._power / np.linalg.norm(self._power), 0.0)])
+            names.append(first + len(touching))
+        self._root = Program.stated(self.motion, named, names)
+        self._trials = [
+            any_letter(pyramid, contact.point, first + i)
+            for i, (contact, pyramid) in enumerate(zip(touching, self.pyramids, strict=True))
+        ]
+        self._ways: dict[tuple[int, tuple[int, int] | None], tuple[Letters, ...]] = {}
+        self._found: dict[tuple[tuple[str, int], ...], Found] = {}
+        self._grouped = False
+        self._goal = ""  # the letters that are sought, where all are known
+        self._settled: set[str] = set()  # letters that need no further mode
+
+    def run(self, *, grouped: bool = False) -> list[Found]:
+        """Return all modes.
+
+        Args:
+            grouped: Whether one mode stands for all with the same letters, whatever their items, where the
+                motion of one of them is not unique. Otherwise each is found.
+        """
+        self._grouped = grouped
+        if self._holds(self._root):
+            self._decide_who_stays(self._root, self._trials, 0)
+        return list(self._found.values())
+
+    def acting(self, found: Found) -> list[FloatArray]:
+        """Return the edges of each contact's pyramid that its letter allows to act."""
+        return [
+            np.array([e for j, e in enumerate(p.edges) if p.first + j not in letter.zeroed]).reshape(-1, 3)
+            for p, letter in zip(self.pyramids, found.letters, strict=True)
+        ]
+
+    def _holds(self, program: Program) -> bool:
+        self.examined += 1
+        if self.examined > MOST_EXAMINED:
+            raise TooLargeError(
+                "contacts",
+                f"{len(self.touching)} whose modes take more than {MOST_EXAMINED} trials",
+                "fewer contacts, or other friction_facets",
+            )
+        return program.solve()
+
+    def _narrowed(self, program: Program, at: int, letters: Letters, *, staying: bool = False) -> Program:
+        zeroed = letters.zeroed
+        if staying:
+            zeroed |= {self._first_normal + at}
+        return program.narrowed(
+            zeroed=zeroed,
+            raised=() if letters.raised is None else (letters.raised,),
+            least=STRICT,
+            rows=letters.rows,
+            equalities=letters.equalities,
+            tag=_CONTACT_TAG - at,
+        )
+
+    def _decide_who_stays(self, program: Program, trials: list[Letters], at: int) -> None:
+        if at == len(trials):
+            self._decide_common_motion(program, trials)
+            return
+        for part in trials[at].parts:
+            narrower = self._narrowed(program, at, part)
+            if self._holds(narrower):
+                self._decide_who_stays(narrower, [*trials[:at], part, *trials[at + 1 :]], at + 1)
+
+    def _decide_common_motion(self, program: Program, trials: list[Letters]) -> None:
+        open_ones = [i for i, letters in enumerate(trials) if letters.parts]
+        frames = np.array([trials[i].parts[0].rows for i in open_ones]).reshape(-1, 2, 7)
+        if len(open_ones) < 2 or np.any(frames[:, :, -1]):
+            # One contact's letters are as few as regions; with centripetal terms directions are not cones.
+            for i in open_ones:
+                ways = ways_of_sliding(self.pyramids[i], self.touching[i].point)
+                any_way = trials[i]._replace(parts=(*trials[i].parts, *ways))
+                trials = [*trials[:i], any_way, *trials[i + 1 :]]
+            self._decide_letters(program, trials, [0] * len(trials))
+            return
+        staying = [i for i, letters in enumerate(trials) if letters.letter != "s"]
+        normals, frames = self._normals[staying, :-1], frames[:, :, :-1]
+        at_rest = flat_of(normals, frames, tuple(range(len(open_ones))))
+        if self._holds(self._within(program, at_rest)):
+            self._note([letters.parts[0] if letters.parts else letters for letters in trials])
+        flats = [flat_of(normals, frames, ())]
+        seen = {at_rest.stuck, flats[0].stuck}
+        while flats:
+            flat = flats.pop()
+            decided = list(trials)
+            for k in flat.stuck:
+                decided[open_ones[k]] = trials[open_ones[k]].parts[0]
+            if self._decide_flat(self._within(program, flat), decided, flat.image):
+                for further in flat.parts(normals, frames):
+                    if further.stuck not in seen:
+                        seen.add(further.stuck)
+                        flats.append(further)
+
+    def _within(self, program: Program, flat: Flat) -> Program:
+        rows = np.column_stack([flat.rows, np.zeros(len(flat.rows))])
+        return program.narrowed(rows=rows, equalities=len(rows), tag=_CONTACT_TAG - len(self.touching))
+
+    def _decide_flat(self, program: Program, trials: list[Letters], image: Image) -> bool:
+        """Find the modes in which all contacts that are not decided slide; False: nor if some of them stick.
+
+        But for all of them, at rest.
+        """
+        open_ones = [i for i, letters in enumerate(trials) if letters.parts]
+        if not open_ones:
+            return False
+        trials = [letters._replace(letter="c") if letters.parts else letters for letters in trials]
+        self._goal = "".join(letters.letter for letters in trials)
+        common = self._common(image, open_ones)
+        may_hold = False
+        for region in whole(len(image.coordinates)):
+            may_hold |= self._decide_within(region, program, trials, common)
+        self._goal = ""
+        return may_hold
+
+    def _common(self, image: Image, open_ones: list[int]) -> Common:
+        """Return what the regions of a flat share."""
+        gains = None
+        if self._power is not None:
+            # Seen motions with which unseen ones have no kinetic energy in common: those gain on their own.
+            unseen = image.unseen @ self._mass
+            rest = np.linalg.solve(unseen @ image.unseen.T, image.unseen @ self._power)
+            gains = image.coordinates @ (self._power - rest @ unseen)
+        pyramids = [self.pyramids[i] for i in open_ones]
+        names = np.array([one.first for one in pyramids])[:, None] + np.arange(len(pyramids[0].edges))
+        return Common(image, open_ones, pyramids, names, gains)
+
+    def _decide_within(self, region: Region, program: Program, trials: list[Letters], common: Common) -> bool:
+        """Find the modes within a region; False: there is none, whichever of the contacts slide."""
+        if self._goal in self._settled:
+            return True
+        acting = region.acting_edges(common.image, common.pyramids)
+        silent = frozenset(common.names[~acting].tolist())
+        narrower = program.narrowed(zeroed=silent, rows=region.rows(common.image), tag=_REGION_TAG)
+        if not self._holds(narrower) or not self._dissipates(region, narrower, common):
+            return False
+        halves = region.halves(len(common.pyramids[0].edges))
+        if halves is not None:
+            near, far = (self._decide_within(half, narrower, trials, common) for half in halves)
+            return near or far
+        fewer = list(trials)
+        for i, of_contact in zip(common.open_ones, acting, strict=True):
+            ways = self._ways_of(i, of_contact)
+            alone = len(ways) == 1 and not ways[0].parts
+            fewer[i] = ways[0] if alone else trials[i]._replace(parts=ways)
+        self._decide_letters(narrower, fewer, [0] * len(trials))
+        return True
+
+    def _dissipates(self, region: Region, program: Program, common: Common) -> bool:
+        """Return whether friction may take no more power than the applied wrench has.
+
+        Friction takes the most that it can, so at least what the same normal forces would with any fixed
+        share of friction. What that leaves is linear in the motion, so that it is negative in all of the
+        region where it is negative on each of its rays.
+        """
+        if common.gains is None:
+            return True
+        self.examined += 1
+        weights = np.zeros((len(region.rays), self.edges.shape[1]))
+        taken = region.friction(common.image, common.pyramids)
+        for pyramid, of_contact in zip(common.pyramids, taken, strict=True):
+            own = slice(pyramid.first, pyramid.first + len(pyramid.edges))
+            weights[:, own] = of_contact[:, None] / self._sizes[own]
+        gains = region.rays @ common.gains
+        scale = max(float(np.abs(weights).max()), float(np.abs(gains).max()))
+        return program.allows_any(weights / scale, gains / scale, -STRICT)
+
+    def _ways_of(self, at: int, acting: NDArray[np.bool_]) -> tuple[Letters, ...]:
+        """Return the ways of sliding of a contact against neighbouring edges, laid out once for a range."""
+        arc = None if acting.all() else (int((acting & ~np.roll(acting, 1)).argmax()), int(acting.sum()))
+        if (at, arc) not in self._ways:
+            self._ways[at, arc] = ways_of_sliding(self.pyramids[at], self.touching[at].point, arc)
+        return self._ways[at, arc]
+
+    def _decide_letters(self, program: Program, trials: list[Letters], depths: list[int]) -> None:
+        if self._goal in self._settled:
+            return
+        open_ones = [i for i, letters in enumerate(trials) if letters.parts]
+        if not open_ones:
+            self._note(trials)
+            return
+        at = min(open_ones, key=depths.__getitem__)
+        deeper = [*depths[:at], depths[at] + 1, *depths[at + 1 :]]
+        for part in trials[at].parts:
+            narrower = self._narrowed(program, at, part)
+            if self._holds(narrower):
+                self._decide_letters(narrower, [*trials[:at], part, *trials[at + 1 :]], deeper)
+
+    def _note(self, letters: list[Letters]) -> None:
+        """Keep the mode, if some forces bring it about."""
+        key = tuple((one.letter, one.item) for one in letters)
+        if key in self._found:
+            return
+        program = self._root
+        for i, letter in enumerate(letters):
+            program = self._narrowed(program, i, letter, staying=letter.letter != "s")
+        if not self._holds(program):
+            return
+        mixture = np.random.default_rng(26).normal(size=6)
+        found = Found(letters, program, program.ends(mixture @ self.motion[:, :-1]))
+        self._found[key] = found
+        if self._grouped and not found.motion.unique:
+            self._settled.add("".join(one.letter for one in letters))

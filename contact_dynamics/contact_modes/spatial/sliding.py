@@ -1,0 +1,143 @@
+"""Which ways contacts in space can stick and slide together, whatever the forces.
+
+Each contact's tangent plane is cut by a few lines through the contact, so that a way of sliding is a sector
+between two of them, or along one. With the conditions that no contact penetrates, the lines' planes cut the
+accelerations of a body at rest into faces of a hyperplane arrangement, each a mode (Huang, Cheng and Mason,
+Efficient Contact Mode Enumeration in 3D, 2020). A face is found by its signs: those of the arrangement's
+rays, composed, where the first ray off a plane decides (the covectors of an oriented matroid).
+
+Does not cover: mechanics (`spatial.answer`), bodies that move.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.contact.friction import tangents
+from contact_dynamics.contact_modes.spatial.cone import null_space
+from contact_dynamics.contact_modes.spatial.kinematic import cone_faces
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.tolerances import ROW_TOLERANCE
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.validation import FloatArray
+
+MOST_SLIDING_CONTACTS: Final = 8
+"""Longest list of contacts accepted: eight in general position have tens of thousands of modes."""
+
+MOST_PLANES: Final = 4
+"""Most lines through a contact."""
+
+_WAYS: Final = "0123456789ABCDEF"
+
+
+def spatial_sliding_modes(contacts: ContactSet, *, planes: int = 2) -> tuple[str, ...]:
+    """Return every mode that some acceleration of a body at rest realises, in alphabetical order.
+
+    A mode has one letter a contact: `s` it separates, `f` it sticks, or which way it slides, an upper-case
+    hexadecimal digit. In the frame of `friction.tangents`, the even digit 2 k is at the angle k pi / planes,
+    along a line, and the odd digit 2 k + 1 in the sector between that and the next.
+
+    Args:
+        contacts: At most `MOST_SLIDING_CONTACTS`.
+        planes: Lines through each contact, 2 to `MOST_PLANES`; a friction pyramid of as many pairs of edges
+            has them as its sectors' borders.
+
+    Raises:
+        InvalidFieldError: too few or too many planes.
+        TooLargeError: more than `MOST_SLIDING_CONTACTS` contacts.
+    """
+    n = len(contacts)
+    if not 2 <= planes <= MOST_PLANES:
+        raise InvalidFieldError("planes", planes, f"a whole number from 2 to {MOST_PLANES}")
+    if n > MOST_SLIDING_CONTACTS:
+        raise TooLargeError("contacts", f"{n} contacts", f"at most {MOST_SLIDING_CONTACTS}")
+    if n == 0:
+        return ("",)
+    arms = contacts.p_WC_W - contacts.p_WC_W.mean(axis=0)
+    arms = arms / max(float(np.linalg.norm(arms, axis=1).max()), 1e-300)
+    normals = _rows(contacts.normals_W, arms)
+    across = []  # normals of the planes, within the tangent plane: quarter a turn from each line
+    for normal, arm in zip(contacts.normals_W, arms, strict=True):
+        one, two = tangents(normal)
+        turns = [math.pi * k / planes + 0.5 * math.pi for k in range(planes)]
+        ways = np.array([math.cos(turn) * one + math.sin(turn) * two for turn in turns])
+        across.append(_rows(ways, np.tile(arm, (planes, 1))))
+    found = []
+    unit = normals / np.linalg.norm(normals, axis=1)[:, None]
+    for face in cone_faces(unit):
+        stay = [i for i in range(n) if face >> i & 1]
+        leave = [i for i in range(n) if not face >> i & 1]
+        free = null_space(unit[stay])
+        cut = np.vstack([np.zeros((0, 6)), *(across[i] for i in stay)]) @ free
+        for signs in open_faces(unit[leave] @ free, cut):
+            letters = ["s"] * n
+            for position, i in enumerate(stay):
+                letters[i] = _letter(signs[position * planes : (position + 1) * planes])
+            found.append("".join(letters))
+    return tuple(sorted(found))
+
+
+def _rows(ways: FloatArray, arms: FloatArray) -> FloatArray:
+    """Return accelerations along ``ways`` at ``arms`` as functions of (a, alpha), (k, 6)."""
+    return np.hstack([ways, np.cross(arms, ways)])
+
+
+def _letter(signs: list[int]) -> str:
+    """Return how a contact slides, from the side of each of its lines that it slides to."""
+    count = len(signs)
+    if not any(signs):
+        return "f"
+    # From line k on its side is +, or 0 along it, and the next ones' are -; half a turn on, lines come again.
+    around = [signs[j % count] * (-1) ** (j // count) for j in range(3 * count)]
+    k = next(k for k in range(2 * count) if around[k] >= 0 and max(around[k + 1 : k + count]) < 0)
+    return _WAYS[2 * k + around[k]]
+
+
+def open_faces(above: FloatArray, cut: FloatArray) -> list[list[int]]:
+    """Return the signs of ``cut`` on every face of their arrangement where all of ``above`` are positive."""
+    rows = np.vstack([above, cut])
+    sizes = np.linalg.norm(rows, axis=1)
+    rows = rows / np.where(sizes > ROW_TOLERANCE, sizes, 1.0)[:, None]
+    rows[sizes <= ROW_TOLERANCE] = 0.0
+    spread, basis = np.linalg.svd(rows)[1:] if rows.size else (np.zeros(0), rows)
+    rows = rows @ basis[: int((spread > ROW_TOLERANCE).sum())].T
+    wanted = (1 << len(above)) - 1
+    rays = []
+    for heights in _rays(rows) @ rows.T:
+        plus = sum(1 << int(k) for k in np.flatnonzero(heights > 10.0 * ROW_TOLERANCE))
+        minus = sum(1 << int(k) for k in np.flatnonzero(heights < -10.0 * ROW_TOLERANCE))
+        if not minus & wanted:
+            rays.append((plus, minus))
+    rays = sorted(set(rays))
+    faces = {(0, 0)}
+    newest = [(0, 0)]
+    while newest:
+        composed = {(plus | (p & ~minus), minus | (m & ~plus)) for plus, minus in newest for p, m in rays}
+        newest = list(composed - faces)
+        faces |= composed
+    return [
+        [(plus >> k & 1) - (minus >> k & 1) for k in range(len(above), len(rows))]
+        for plus, minus in faces
+        if plus & wanted == wanted
+    ]
+
+
+def _rays(rows: FloatArray) -> FloatArray:
+    """Return the rays, (k, d), on which some d - 1 independent rows vanish, both ways."""
+    d = rows.shape[1]
+    distinct: list[FloatArray] = []
+    for row in rows:
+        if np.any(row) and all(abs(abs(float(row @ other)) - 1.0) > ROW_TOLERANCE**1.5 for other in distinct):
+            distinct.append(row)
+    if d <= 1:
+        return np.array([[1.0], [-1.0]])[:, :d] if d else np.zeros((0, 0))
+    chosen = np.array(list(itertools.combinations(distinct, d - 1)))
+    spread, basis = np.linalg.svd(chosen)[1:]
+    rays = basis[spread[:, -1] > ROW_TOLERANCE, -1]
+    return np.vstack([rays, -rays])

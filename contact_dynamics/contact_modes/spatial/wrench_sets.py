@@ -1,0 +1,173 @@
+"""Which applied wrenches bring about which contact mode in space: lecture 26's map of modes, in R^6.
+
+For letters s and f, and for contacts that slide already, the wrenches of a mode are one convex polyhedron:
+the inertial wrenches of its accelerations less the contact forces that its letters allow. Which way a contact
+at rest begins to slide depends on the wrench. Its ways are parted by the sectors of its friction pyramid;
+each sector, and each border of two, has a polyhedron of its own, and the wrenches of the mode are the union
+of the sets with its letters. All sets together are the map: the outcome is indeterminate where sets of
+several modes overlap, and inconsistent where none reaches.
+
+A wrench well inside a set brings about its mode in `spatial_contact_modes`, asked for with ``sharpen=False``
+and pyramids that lie alike: with as many facets, and under the wrench for which the sets were made. Pyramids
+turned otherwise differ by the part 1 - cos(pi / facets) of friction at rest. On a set's boundary, which it
+contains here, the strict inequalities of its letters fail. A frictionless contact that stays is `c`, whether
+it slides or not.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
+from contact_dynamics.contact_modes.spatial.statics import MOST_EDGES
+from contact_dynamics.contact_modes.spatial.ways_of_sliding import sliding_range, ways_of
+from contact_dynamics.contact_modes.spatial.wrenches import distinct, supports, wrench_generators
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.tolerances import ROW_TOLERANCE, VELOCITY_TOLERANCE
+from contact_dynamics.validation import check_array, check_not_negative
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.contact_modes.spatial.search import Search
+    from contact_dynamics.contact_modes.spatial.wrenches import Way
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.validation import FloatArray
+
+WRENCH_FACETS: Final = 4
+"""Edges of a friction pyramid where nothing else is asked for: ways of sliding grow as their square or
+cube."""
+
+MOST_WRENCH_SETS: Final = 2000
+"""Most sets of one answer, of a millisecond or two each. A box on four feet has 200 to 350 with pyramids of
+four edges, some 1300 with eight."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SpatialWrenchSet:
+    """The applied wrenches that can bring about one mode with one way of sliding: a closed convex set.
+
+    Wrenches are force, N, then torque about the centre of mass, N m, world axes.
+    """
+
+    mode: str  # one letter a contact: s, f or c
+    sliding_from_W: FloatArray  # (n, 3), unit; a contact that begins to slide does between this direction
+    sliding_to_W: FloatArray  # (n, 3), and this, anticlockwise about its normal; zero: none is asked for
+    vertices: FloatArray  # (k, 6), N and N m: the set is all averages of these plus
+    generators: FloatArray  # (k, 6), all positive combinations of these, any scale
+    half_spaces: FloatArray  # (k, 7), the same set: a . w <= b, a then b; none: every wrench
+
+    def depth(self, wrench_W: ArrayLike, length: float) -> float:
+        """Return how far inside the set a wrench, (6,), lies, N, in |f|^2 + |torque / length|^2.
+
+        Infinite: every wrench does; < 0: outside (then a lower bound of the distance). Zero at most where the
+        set has no inside.
+        """
+        if len(self.half_spaces) == 0:
+            return math.inf
+        a = self.half_spaces[:, :6]
+        sizes = np.linalg.norm(a * [1.0, 1.0, 1.0, length, length, length], axis=1)
+        return float(((self.half_spaces[:, 6] - a @ np.asarray(wrench_W)) / sizes).min())
+
+
+def spatial_wrench_sets(
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    *,
+    modes: Collection[str] | None = None,
+    force_W: ArrayLike = (0.0, 0.0, 0.0),
+    torque_W: ArrayLike = (0.0, 0.0, 0.0),
+    friction_facets: int = WRENCH_FACETS,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+) -> tuple[SpatialWrenchSet, ...]:
+    """Return the applied wrenches of every mode and way of sliding, in alphabetical order of the letters.
+
+    Empty where a contact approaches. Sets of one mode follow each other.
+
+    Args:
+        body: As for `spatial_contact_modes`.
+        state: As for `spatial_contact_modes`.
+        contacts: As for `spatial_contact_modes`.
+        modes: Letters, one a contact, of the modes that are wanted; None: all. What is impossible whatever
+            the wrench has no set.
+        force_W: (3,), N: friction pyramids lie as `spatial_contact_modes` has them under this wrench.
+        torque_W: (3,), N m, of that wrench; it plays no other part.
+        friction_facets: Edges of a friction pyramid, >= 3.
+        velocity_tolerance: As for `spatial_contact_modes`.
+
+    Raises:
+        InvalidFieldError: as for `spatial_contact_modes`, or modes that are not strings of s, f and c.
+        TooLargeError: as for `spatial_contact_modes`; more than `MOST_WRENCH_SETS` sets, more than
+            `spatial_statics.MOST_EDGES` edges of all pyramids, or too many ways of sliding
+            (`ways_of_sliding.MOST_MEETINGS`).
+
+    Source: lecture 26, "Force dual for dynamic contact problem"; Huang, Cheng and Mason 2020 for the ways.
+    """
+    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
+    wrench = np.concatenate([check_array("force", force_W, (3,)), check_array("torque", torque_W, (3,))])
+    for mode in modes or ():
+        if len(mode) != len(contacts) or set(mode) - set("sfc"):
+            raise InvalidFieldError("modes", mode, f"{len(contacts)} letters of s, f and c")
+    case = spatial_case(body, state, contacts, wrench, tolerance)
+    if not isinstance(case, SpatialCase):
+        return ()
+    search = search_of(case, friction_facets)
+    edges = sum(len(pyramid.edges) for pyramid in search.pyramids)
+    if edges > MOST_EDGES:
+        raise TooLargeError("contacts", f"{edges} edges of friction pyramids", f"at most {MOST_EDGES}")
+    every = [(_letters(case, ways), ways) for ways in ways_of(search)]
+    wanted = sorted(one for one in every if modes is None or one[0] in modes)
+    if len(wanted) > MOST_WRENCH_SETS:
+        allowed = f"at most {MOST_WRENCH_SETS}: fewer contacts, or fewer friction_facets"
+        raise TooLargeError("contacts", f"{len(wanted)} sets of wrenches", allowed)
+    gyration = math.sqrt(float(np.trace(body.I_B)) / (3.0 * body.mass))
+    metric = np.array([1.0, 1.0, 1.0, gyration, gyration, gyration])
+    turning = wrench - case.motion.wrench  # which a body that turns needs besides
+    return tuple(
+        _wrench_set(case, search, ways, mode=mode, metric=metric, turning=turning) for mode, ways in wanted
+    )
+
+
+def _letters(case: SpatialCase, ways: Sequence[Way]) -> str:
+    letters = ["s"] * len(case.contacts)
+    for i, way in zip(case.touching.tolist(), ways, strict=True):
+        letters[i] = way.letter
+    return "".join(letters)
+
+
+def _wrench_set(
+    case: SpatialCase,
+    search: Search,
+    ways: Sequence[Way],
+    *,
+    mode: str,
+    metric: FloatArray,
+    turning: FloatArray,
+) -> SpatialWrenchSet:
+    unit = case.motion.mass * case.motion.scale  # N; wrenches are divided by it, and torques by the length
+    given = wrench_generators(case, search, ways, metric)
+    positive, zero = supports(given)
+    sides = np.vstack([positive, zero, -zero])
+    sizes = np.linalg.norm(sides[:, :6], axis=1)
+    sides = distinct(sides[sizes > ROW_TOLERANCE] / sizes[sizes > ROW_TOLERANCE, None])
+    high = given.rays[:, 6] > ROW_TOLERANCE
+    outward = -sides[:, :6] / metric
+    ranges = np.zeros((2, len(mode), 3))
+    for i, pyramid, way in zip(case.touching.tolist(), search.pyramids, ways, strict=True):
+        ranges[:, i] = sliding_range(pyramid, way)
+    return SpatialWrenchSet(
+        mode=mode,
+        sliding_from_W=ranges[0],
+        sliding_to_W=ranges[1],
+        vertices=given.rays[high, :6] / given.rays[high, 6:] * metric * unit + turning,
+        generators=np.vstack([given.rays[~high], given.lines, -given.lines])[:, :6] * metric,
+        half_spaces=np.column_stack([outward, sides[:, 6] * unit + outward @ turning]),
+    )

@@ -1,0 +1,125 @@
+"""The applied wrenches in space that can bring letters about: what motions need, less what contacts give.
+
+They are the positive sums of rays, plus sums of lines. Centripetal terms add a seventh coordinate, in which a
+wrench has the height one. A wrench is (force, torque / length) / mass, in the units of accelerations.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.contact_modes.spatial.cone import cone_of, null_space
+from contact_dynamics.tolerances import ROW_TOLERANCE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.contact_modes.spatial.options import Pyramid
+    from contact_dynamics.contact_modes.spatial.problem import SpatialCase
+    from contact_dynamics.contact_modes.spatial.search import Search, Touching
+    from contact_dynamics.validation import FloatArray
+
+
+_ALIKE: Final = 7
+"""Digits to which unit rows that are meant to be the same agree; rounding reaches the eleventh."""
+
+
+class Way(NamedTuple):
+    """What one touching contact does."""
+
+    letter: str  # s (separates), f (sticks) or c (stays)
+    item: int  # of sliding (`options`); -1: none is asked for
+
+
+class Generators(NamedTuple):
+    """Wrenches that bring something about, with their heights: positive sums of rays, plus sums of lines."""
+
+    rays: FloatArray  # (k, 7), unit
+    lines: FloatArray  # (l, 7), unit
+
+
+class _Conditions(NamedTuple):
+    """What a contact asks of the motion, rows (k, 7), and the force edges, (j, 3), that it lets act."""
+
+    zero: FloatArray
+    positive: FloatArray
+    acting: FloatArray
+
+
+def wrench_generators(
+    case: SpatialCase, search: Search, ways: Sequence[Way], metric: FloatArray
+) -> Generators:
+    """Return the wrenches under which touching contacts can do as stated.
+
+    Args:
+        case: The body with its contacts.
+        search: Of that case.
+        ways: Of each touching contact.
+        metric: (6,), m, by which a wrench is divided: ones, then the length that torques are divided by.
+    """
+    motion = case.motion
+    asked = [_conditions(*of) for of in zip(search.touching, search.pyramids, ways, strict=True)]
+    free = null_space(_unit(np.vstack([np.zeros((0, 7)), *(one.zero for one in asked)])))  # (7, k)
+    positive = np.vstack([*(one.positive for one in asked), np.eye(1, 7, 6)])
+    inside = cone_of(_unit(positive @ free))
+    inertia = np.zeros((6, 6))
+    inertia[:3, :3] = np.eye(3) * motion.mass
+    inertia[3:, 3:] = motion.inertia
+
+    def needed(motions: FloatArray) -> FloatArray:
+        accelerations = motions @ free.T
+        wrenches = accelerations[:, :6] / motion.lengths @ inertia / metric / motion.mass
+        return np.column_stack([wrenches, accelerations[:, 6]])
+
+    given = [np.zeros((0, 6))]
+    for i, one in zip(case.touching.tolist(), asked, strict=True):
+        given.append(-(one.acting @ motion.points[3 * i : 3 * i + 3]) / metric)
+    forces = np.vstack(given)
+    rays = np.vstack([needed(inside.rays), np.column_stack([forces, np.zeros(len(forces))])])
+    return Generators(distinct(_unit(rays)), _unit(needed(inside.lines)))
+
+
+def supports(generators: Generators) -> tuple[FloatArray, FloatArray]:
+    """Return what all generated wrenches satisfy: rows, (k, 7), that are not negative, and that are zero."""
+    across = null_space(generators.lines)
+    rows = _unit(generators.rays @ across)
+    if len(rows) == 0:
+        return np.zeros((0, 7)), across.T
+    dual = cone_of(rows)
+    return dual.rays @ across.T, dual.lines @ across.T
+
+
+def _conditions(contact: Touching, pyramid: Pyramid, way: Way) -> _Conditions:
+    nothing = np.zeros((0, 7))
+    normal = (contact.normal @ contact.point)[None, :]
+    if way.letter == "s":
+        return _Conditions(nothing, normal, np.zeros((0, 3)))
+    if way.letter == "f":
+        return _Conditions(contact.point, nothing, pyramid.edges)
+    if way.item < 0 or pyramid.frame is None:
+        return _Conditions(normal, nothing, pyramid.edges)
+    # The edge that opposes the sliding most has the least product with it, alone or with its neighbour.
+    count = len(pyramid.edges)
+    j, k = way.item // 2, (way.item + 1) // 2 % count
+    angles = 2.0 * math.pi / count * np.array([j - 1, j, k, k + 1])
+    before, one, other, after = (
+        np.column_stack([np.cos(angles), np.sin(angles)]) @ np.array(pyramid.frame) @ contact.point
+    )
+    sides = np.array([before - one, after - other])
+    if j == k:
+        return _Conditions(normal, sides, pyramid.edges[[j]])
+    return _Conditions(np.vstack([normal, one - other]), sides, pyramid.edges[[j, k]])
+
+
+def distinct(rows: FloatArray) -> FloatArray:
+    """Return unit rows, each once."""
+    return rows[np.sort(np.unique(np.round(rows, _ALIKE), axis=0, return_index=True)[1])]
+
+
+def _unit(rows: FloatArray) -> FloatArray:
+    sizes = np.linalg.norm(rows, axis=1)
+    found: FloatArray = rows[sizes > ROW_TOLERANCE] / sizes[sizes > ROW_TOLERANCE, None]
+    return found

@@ -1,0 +1,211 @@
+"""What an impact does to an uncertain state, by sampling: mean, covariance, probability of each outcome.
+
+An impact is not smooth in the state: sliding stops or does not, and turns. So nothing is linearised: states
+are drawn from the normal distribution in opposite pairs (a linear law would keep mean and covariance of the
+draw), each goes through the impact, and the results are counted. The error of a probability P is sqrt(P (1 -
+P) / samples).
+
+Draws whose contact separates do not strike: they keep their velocity, and count as *missed*. Only the state
+is uncertain; body, friction, restitution and normal are taken as known, and the time of the impact as given.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
+from contact_dynamics.impact.planar.batch import planar_impacts
+from contact_dynamics.impact.spatial.batch import StrikingBodies, spatial_impacts
+from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, VELOCITY_TOLERANCE
+from contact_dynamics.validation import FloatArray, check_array, check_unit
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+
+MOST_SAMPLES: Final = 1_000_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ImpactDistribution:
+    """Where the velocities after an impact lie, for a state with a covariance."""
+
+    mean: FloatArray  # (3,) plane: v_x, v_y, w; (6,) space: linear, angular, world axes; m/s and rad/s
+    covariance: FloatArray  # (3, 3) plane, of the same; (12, 12) space: position, rotation vector, velocities
+    probabilities: FloatArray  # (7,), of each ImpactOutcome, by its value; with `missed` they sum to 1
+    missed: float  # probability that the contact separates, so that nothing strikes
+    samples: int  # how many states were drawn
+
+
+def planar_impact_distribution(
+    body: PlanarBody,
+    velocity: PlanarVelocity,
+    contact: PlanarContact,
+    *,
+    covariance: ArrayLike,
+    law: RestitutionLaw = RestitutionLaw.POISSON,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+    samples: int = 10_000,
+    seed: int = 0,
+) -> ImpactDistribution:
+    """Return the distribution of the velocity after a planar impact.
+
+    Args:
+        body: Mass and angular inertia.
+        velocity: Mean of the velocity just before.
+        contact: Where, along which normal, with which friction and restitution.
+        covariance: (3, 3), of v_x, v_y (m/s) and w (rad/s) before.
+        law: What the coefficient of restitution means.
+        velocity_tolerance: m/s, >= 0. A component of the contact's velocity within it counts as zero.
+        samples: How many states to draw, an even number; about 0.2 us each.
+        seed: Of the draw, so that the same question has the same answer.
+
+    Raises:
+        InvalidFieldError: the covariance is not symmetric and positive semidefinite, or the number of samples
+            is odd or outside [2, 1 000 000].
+    """
+    draws = np.array([*velocity.v, velocity.w]) + _draw(covariance, 3, samples, seed)
+    v, w = draws[:, :2], draws[:, 2]
+    arm, normal = np.array(contact.r), np.array(contact.normal)
+    v_n = (v + w[:, None] * np.array([-arm[1], arm[0]])) @ normal
+    # Half, since the approach is judged again by another sum with other rounding.
+    strikes = v_n <= 0.5 * velocity_tolerance
+    after = draws.copy()
+    outcomes = np.zeros(0, dtype=np.int64)
+    if strikes.any():
+        impacts = planar_impacts(
+            masses=body.mass,
+            inertias=body.inertia,
+            v=v[strikes],
+            w=w[strikes],
+            r=arm,
+            normals=normal,
+            frictions=contact.friction,
+            restitutions=contact.restitution,
+            law=law,
+            velocity_tolerance=velocity_tolerance,
+        )
+        after[strikes] = np.column_stack((impacts.v, impacts.w))
+        outcomes = impacts.outcomes
+    return _distribution(after, after, outcomes)
+
+
+def spatial_impact_distribution(
+    body: MassProperties,
+    state: BodyState,
+    *,
+    covariance: ArrayLike,
+    p_WC_W: ArrayLike,
+    n_W: ArrayLike,
+    friction: float,
+    restitution: float,
+    law: RestitutionLaw = RestitutionLaw.POISSON,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+    samples: int = 2000,
+    seed: int = 0,
+) -> ImpactDistribution:
+    """Return the distribution of the velocity after an impact in space.
+
+    The contact is a point of the body: it moves and turns with each drawn pose. The normal stays.
+
+    Args:
+        body: Mass and angular inertia.
+        state: Mean of the state just before.
+        covariance: (12, 12), of the state before: position (m), rotation vector (rad, world axes, applied
+            after the attitude), linear velocity (m/s), angular velocity (rad/s), each x y z.
+        p_WC_W: (3,), m, the contact at the mean pose, world.
+        n_W: (3,), unit normal into the body, world axes.
+        friction: Coulomb's mu, >= 0.
+        restitution: e, in [0, 1].
+        law: What the coefficient of restitution means.
+        velocity_tolerance: m/s, >= 0. A normal or tangential velocity of the contact within it counts as
+            zero.
+        samples: How many states to draw, an even number; 2000 take some 20 ms, 10 000 some 60 ms.
+        seed: Of the draw, so that the same question has the same answer.
+
+    Raises:
+        InvalidFieldError: as `spatial_impact`; or the covariance is not symmetric and positive semidefinite,
+            or the number of samples is odd or outside [2, 1 000 000].
+    """
+    draws = _draw(covariance, 12, samples, seed)
+    turns = _rotation_quaternions(draws[:, 3:6])
+    arm = check_array("contact position", p_WC_W, (3,)) - state.p_WB_W
+    normal = check_unit("contact normal", n_W, 3)
+    arms = _rotated(turns, arm)
+    after = np.concatenate((state.v_WB_W, state.w_WB_W)) + draws[:, 6:]
+    v_n = (after[:, :3] + np.cross(after[:, 3:], arms)) @ normal
+    # Half, as in the plane.
+    strikes = v_n <= 0.5 * velocity_tolerance
+    outcomes = np.zeros(0, dtype=np.int64)
+    if strikes.any():
+        impacts = spatial_impacts(
+            StrikingBodies(
+                masses=np.array(body.mass),
+                inertias_B=body.I_B,
+                q_WB=_quaternion_products(turns[strikes], state.q_WB),
+                v_WB_W=after[strikes, :3],
+                w_WB_W=after[strikes, 3:],
+                r_W=arms[strikes],
+            ),
+            normals_W=normal,
+            frictions=friction,
+            restitutions=restitution,
+            laws=law,
+            velocity_tolerance=velocity_tolerance,
+        )
+        after[strikes] = np.concatenate((impacts.v_WB_W, impacts.w_WB_W), axis=1)
+        outcomes = impacts.outcomes
+    whole = np.concatenate([draws[:, :6], after], axis=1)
+    return _distribution(after, whole, outcomes)
+
+
+def _draw(covariance: ArrayLike, size: int, samples: int, seed: int) -> FloatArray:
+    """Return deviations, (samples, size), in opposite pairs."""
+    matrix = check_array("covariance", covariance, (size, size))
+    if not 2 <= samples <= MOST_SAMPLES or samples % 2:
+        raise InvalidFieldError("samples", samples, f"an even number in [2, {MOST_SAMPLES}]")
+    largest = float(abs(matrix).max())
+    values, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
+    symmetric = float(abs(matrix - matrix.T).max()) <= SYMMETRY_TOLERANCE * largest
+    if not symmetric or values[0] < -SYMMETRY_TOLERANCE * largest:
+        raise InvalidFieldError("covariance", matrix.tolist(), "a symmetric positive semidefinite matrix")
+    half = np.random.default_rng(seed).standard_normal((samples // 2, size))
+    deviations: FloatArray = (half * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
+    return np.concatenate([deviations, -deviations])
+
+
+def _distribution(after: FloatArray, whole: FloatArray, outcomes: np.ndarray) -> ImpactDistribution:
+    samples = len(after)
+    return ImpactDistribution(
+        mean=after.mean(axis=0),
+        covariance=np.cov(whole, rowvar=False),
+        probabilities=np.bincount(outcomes, minlength=len(ImpactOutcome)) / samples,
+        missed=1.0 - len(outcomes) / samples,
+        samples=samples,
+    )
+
+
+def _rotation_quaternions(vectors: FloatArray) -> FloatArray:
+    """Return the quaternions x, y, z, w, (n, 4), of rotation vectors, (n, 3), rad."""
+    angles = np.linalg.norm(vectors, axis=1)
+    halves = 0.5 * np.sinc(angles / (2.0 * np.pi))
+    return np.column_stack((halves[:, None] * vectors, np.cos(0.5 * angles)))
+
+
+def _quaternion_products(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return the rotation ``b``, (4,), followed by each of ``a``, (n, 4), quaternions x, y, z, w."""
+    vectors = a[:, 3:] * b[:3] + b[3] * a[:, :3] + np.cross(a[:, :3], b[:3])
+    return np.column_stack((vectors, a[:, 3] * b[3] - a[:, :3] @ b[:3]))
+
+
+def _rotated(quaternions: FloatArray, vector: FloatArray) -> FloatArray:
+    """Return ``vector``, (3,), turned by each of the quaternions, (n, 4)."""
+    twice = 2.0 * np.cross(quaternions[:, :3], vector)
+    rotated: FloatArray = vector + quaternions[:, 3:] * twice + np.cross(quaternions[:, :3], twice)
+    return rotated

@@ -1,0 +1,1 @@
+"""Strikes one after another in time, with free flight between."""

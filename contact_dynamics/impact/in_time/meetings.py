@@ -1,0 +1,167 @@
+"""Which contacts of a body come next: those found from its shape and the world, or points that were named.
+
+Both answer with a `Landing` and know each contact again when it comes back: a corner, a ball, a named point.
+On a rim each point is a contact of its own.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.landing.earliest import Landing, next_landing
+from contact_dynamics.landing.plane_arrival import first_contact
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE
+from contact_dynamics.tumbling import free_motion
+
+if TYPE_CHECKING:
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import Body, World
+
+
+class Meetings(Protocol):
+    """Where a flight ends, and the contacts that it ended at so far."""
+
+    def next(self, state: BodyState, horizon: float) -> Landing | None:
+        """Return where free flight from a state ends within ``horizon``, s, or None."""
+
+    def index(self, landing: Landing, row: int) -> int:
+        """Return the number of the contact that is row ``row`` of a landing's contacts."""
+
+    @property
+    def contacts(self) -> ContactSet:
+        """All contacts that `index` has numbered, in its order."""
+
+
+class FoundMeetings:
+    """Contacts from a body's shape and the world's surfaces, numbered as they are met."""
+
+    def __init__(
+        self, body: Body, world: World, *, distance_tolerance: float, velocity_tolerance: float
+    ) -> None:
+        self._body, self._world = body, world
+        self._distance_tolerance, self._velocity_tolerance = distance_tolerance, velocity_tolerance
+        self._points_B: list[FloatArray] = []
+        self._met: list[ContactSet] = []
+
+    def next(self, state: BodyState, horizon: float) -> Landing | None:
+        """Return where free flight from a state ends within ``horizon``, s, or None."""
+        return next_landing(
+            self._body,
+            state,
+            self._world,
+            horizon=horizon,
+            distance_tolerance=self._distance_tolerance,
+            velocity_tolerance=self._velocity_tolerance,
+        )
+
+    def index(self, landing: Landing, row: int) -> int:
+        """Return the number of a contact; the first time, it gets the next one."""
+        contact = landing.contacts.subset([row])
+        point_B = landing.state.R_WB.T @ (_feature(contact) - landing.state.p_WB_W)
+        for i, (met, known_B) in enumerate(zip(self._met, self._points_B, strict=True)):
+            if met.surfaces == contact.surfaces and float(abs(known_B - point_B).max()) <= DISTANCE_TOLERANCE:
+                return i
+        self._met.append(contact)
+        self._points_B.append(point_B)
+        return len(self._met) - 1
+
+    @property
+    def contacts(self) -> ContactSet:
+        """All contacts met, each where it was when it was met first."""
+        return ContactSet(
+            p_WC_W=np.concatenate([np.zeros((0, 3)), *(contact.p_WC_W for contact in self._met)]),
+            normals_W=np.concatenate([np.zeros((0, 3)), *(contact.normals_W for contact in self._met)]),
+            frictions=np.array([float(contact.frictions[0]) for contact in self._met]),
+            restitutions=np.array([float(contact.restitutions[0]) for contact in self._met]),
+            surfaces=tuple(name for contact in self._met for name in contact.surfaces),
+        )
+
+
+def _feature(contact: ContactSet) -> FloatArray:
+    """Return by what, (3,), m, a contact of the body is known again: its point, or its ball's centre."""
+    point: FloatArray = contact.p_WC_W[0]
+    round_there = contact.body_curvatures
+    if round_there is not None:
+        along, across = float(round_there.along[0]), float(round_there.across[0])
+        if along == across and 0.0 < along < math.inf:
+            point = point + contact.normals_W[0] / along
+    return point
+
+
+class NamedMeetings:
+    """Points of a body that touch at a state, each with the plane it touches there and no other."""
+
+    def __init__(
+        self,
+        body: MassProperties,
+        state: BodyState,
+        contacts: ContactSet,
+        *,
+        gravity_W: FloatArray,
+        distance_tolerance: float,
+        velocity_tolerance: float,
+    ) -> None:
+        self._body, self._gravity_W = body, gravity_W
+        self._contacts = contacts
+        self._points_B = (contacts.p_WC_W - state.p_WB_W) @ state.R_WB
+        self._distance_tolerance, self._velocity_tolerance = distance_tolerance, velocity_tolerance
+        self._rows: list[int] = []  # of the newest landing
+
+    def next(self, state: BodyState, horizon: float) -> Landing | None:
+        """Return where free flight from a state ends within ``horizon``, s, or None."""
+        now = self._touching(0.0, state, self._distance_tolerance)
+        if now is not None:
+            return now
+        motion = free_motion(self._body, state, gravity_W=self._gravity_W)
+        arrivals = [
+            found.seconds
+            for point_B, plane_W, normal_W in zip(
+                self._points_B, self._contacts.p_WC_W, self._contacts.normals_W, strict=True
+            )
+            if (found := first_contact(motion, point_B[None], plane_W, normal_W, horizon=horizon))
+        ]
+        if not arrivals:
+            return None
+        seconds = min(arrivals)
+        tolerance = max(self._distance_tolerance, DISTANCE_TOLERANCE)
+        return self._touching(seconds, motion.state_at(seconds), tolerance)
+
+    def index(self, landing: Landing, row: int) -> int:  # noqa: ARG002  the newest landing's rows are known
+        """Return the index of a contact in the set that was given."""
+        return self._rows[row]
+
+    @property
+    def contacts(self) -> ContactSet:
+        """The contacts that were given."""
+        return self._contacts
+
+    def _touching(self, seconds: float, state: BodyState, distance_tolerance: float) -> Landing | None:
+        """Return the contacts that touch and do not leave, or None."""
+        normals = self._contacts.normals_W
+        points = state.p_WB_W + self._points_B @ state.R_WB.T
+        gaps = np.einsum("ij,ij->i", points - self._contacts.p_WC_W, normals)
+        velocities = state.velocity_of_point(points)
+        approach = np.einsum("ij,ij->i", velocities, normals)
+        rows = np.flatnonzero((gaps <= distance_tolerance) & (approach <= self._velocity_tolerance)).tolist()
+        if not rows:
+            return None
+        self._rows = rows
+        at_rest = self._contacts.subset(rows)
+        return Landing(
+            seconds=seconds,
+            state=state,
+            contacts=ContactSet(
+                p_WC_W=points[rows],
+                normals_W=at_rest.normals_W,
+                frictions=at_rest.frictions,
+                restitutions=at_rest.restitutions,
+                surfaces=at_rest.surfaces,
+            ),
+            velocities_W=velocities[rows],
+            strikes=bool((approach[rows] < -self._velocity_tolerance).any()),
+        )

@@ -1,0 +1,70 @@
+"""What a landing over several strikes comes to: each strike with its time, and why it ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.spatial.result import SpatialImpact
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.validation import FloatArray
+
+
+class SequenceEnd(IntEnum):
+    """Why a sequence of strikes has no further one."""
+
+    NOTHING_STRIKES = 0
+    """Nothing strikes within the window after the last strike."""
+    STAYS = 1
+    """A contact neither approaches nor leaves, and the free motion would press it in: the flight is over."""
+    CHATTERS = 2
+    """A contact's rebounds shrink by a ratio and have no height any more: infinitely many strikes end at the
+    limit time, from which on the contact stays."""
+    MOST_STRIKES = 3
+    """The bound on the number of strikes was reached."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TimedStrike:
+    """One strike of a sequence."""
+
+    seconds: float  # s after the stamp of the state that the sequence began with
+    contact: int  # index into the sequence's contacts
+    p_WC_W: FloatArray  # (3,), m, where the contact is then, world
+    state_before: BodyState  # just before, stamped with the time of the strike
+    impact: SpatialImpact  # its single-contact impact; `impact.state` is the state just after
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ImpactSequence:
+    """A landing as strikes in time, with free flight between them."""
+
+    restitution_law: RestitutionLaw  # the law of each strike
+    contacts: ContactSet  # those given; from geometry: those that struck or stay, where they first did
+    strikes: tuple[TimedStrike, ...]  # in the order of time; those of one instant in the order of resolution
+    end: SequenceEnd  # why there is no further one
+    state: BodyState  # just after the last strike; without a strike the state that it began with
+    staying: tuple[int, ...]  # contacts that stay, where `end` is STAYS or CHATTERS
+    limit_seconds: float | None  # s after the first state's stamp: from when on they stay
+
+    @property
+    def seconds(self) -> float:
+        """Return the time of the last strike, s after the first state's stamp; without one 0."""
+        return self.strikes[-1].seconds if self.strikes else 0.0
+
+    @property
+    def order(self) -> tuple[int, ...]:
+        """Return the contacts that were struck, in order."""
+        return tuple(strike.contact for strike in self.strikes)
+
+    @property
+    def energy_change(self) -> float:
+        """Return what the strikes changed of the energy, J; flights between them keep it."""
+        return sum(strike.impact.energy_change for strike in self.strikes)
+
+    @property
+    def creates_energy(self) -> bool:
+        """Return whether a strike gave the body energy, beyond rounding. Only Newton's law can."""
+        return any(strike.impact.creates_energy for strike in self.strikes)

@@ -1,0 +1,350 @@
+"""A landing in time: corners that strike some milliseconds apart, with free flight between the strikes.
+
+What looks like several contacts at once is mostly this, in recordings of real bodies: one corner strikes, the
+body flies on, another strikes. Each strike is Routh's impact at one contact (`spatial`), each flight is free
+motion in closed form (`tumbling`), and the next strike is found to rounding (`first_contact`). Nothing is
+stepped. Contacts of one instant are struck one after the other, the fastest approach first, as the sequential
+law does (`several`); there the order is a choice, between instants it is not.
+
+The sequence ends where nothing strikes any more within a window, where a contact stays, or where strikes
+accumulate: rebounds that shrink by a ratio r < 1 have all ended d / (1 - r) after a strike whose rebound
+takes d (Zeno). Then free flight is over, and which contacts stay, slide or roll is a question
+of contact modes, not of impacts.
+
+With a ``hold_step`` it goes on: the body moves freely for that time, an impulse without restitution then
+takes the contact's approach (Moreau's time-stepping, with Coulomb's friction), and so on until it leaves.
+That part alone is an approximation, of first order in the step: times are known to a step, the contact sinks
+by half a step's fall each time, and what approaches by no more than two steps' fall meanwhile is held too.
+
+Not covered: a resting contact that its own sliding jams.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.contact.curvature import velocity_accelerations
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.impact.in_time.meetings import FoundMeetings, NamedMeetings
+from contact_dynamics.impact.in_time.result import ImpactSequence, SequenceEnd, TimedStrike
+from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.spatial.one_contact import spatial_impact
+from contact_dynamics.rigid_body.body import cross_matrix
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE, VELOCITY_TOLERANCE
+from contact_dynamics.tumbling import Precision, free_motion
+from contact_dynamics.validation import check_array, check_not_negative, check_positive
+from contact_dynamics.world import STANDARD_GRAVITY_W
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.impact.in_time.meetings import Meetings
+    from contact_dynamics.impact.spatial.result import SpatialImpact
+    from contact_dynamics.landing.earliest import Landing
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import Body, World
+
+STRIKE_WINDOW: Final = 0.05
+"""s. A cube of 0.1 m whose first corner has struck at 1 m/s lands with the others within it."""
+
+MOST_STRIKES: Final = 200
+"""Strikes after which a sequence ends unfinished: rebounds of e = 0.9 have lost their height by then."""
+
+CHATTER_HEIGHT: Final = 1e-7
+"""m. Rebounds lower than this are not followed: a hundred times what the search for the first contact may
+overlook, and far below the roughness of surfaces."""
+
+HELD: Final = 2.0
+"""Of the speed that a step of free motion gives a contact that is held: above it, something else struck."""
+
+HELD_STILL: Final = 0.01
+"""Of that speed: what may be left of it, where several contacts that are held throw each other back."""
+
+MOST_HELD: Final = 100
+"""Impulses that hold contacts at one instant. Two ends of a rod need four, the corners of a face some ten."""
+
+STILL: Final = 0.1
+"""Of that speed: a body that is held and moves no faster, after a step, rests. One that begins to fall over
+has more by then, unless it is balanced to within some degrees."""
+
+PAUSE: Final = 1e-6
+"""s. When to look again where a contact that leaves, at the height of rounding, was found as arriving."""
+
+
+def impact_sequence(
+    body: Body,
+    state: BodyState,
+    world: World,
+    *,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
+    window: float = STRIKE_WINDOW,
+    most_strikes: int = MOST_STRIKES,
+    distance_tolerance: float = DISTANCE_TOLERANCE,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+    hold_step: float | None = None,
+) -> ImpactSequence:
+    """Return the strikes of a body's corners on the world's surfaces, from a state in contact or in flight.
+
+    Args:
+        body: Mass properties and corners.
+        state: Pose and velocities; the first strike, too, must come within the window.
+        world: Surfaces and gravity.
+        restitution_law: What the coefficients of restitution mean.
+        window: s, > 0. The longest flight after which a strike still belongs to the landing.
+        most_strikes: How many strikes to resolve at most, >= 1.
+        distance_tolerance: m, >= 0. A corner within it of a surface touches.
+        velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
+        hold_step: s, > 0. Where a contact stays, go on in steps of this length. None: end there.
+
+    Raises:
+        InvalidFieldError: a number that is not allowed.
+    """
+    tolerance = check_positive("velocity_tolerance", velocity_tolerance)
+    held = None if hold_step is None else check_positive("hold_step", hold_step)
+    meetings = FoundMeetings(
+        body,
+        world,
+        distance_tolerance=check_not_negative("distance_tolerance", distance_tolerance),
+        velocity_tolerance=tolerance,
+    )
+    sequence = _Sequence(
+        body.mass_properties,
+        world.gravity_W,
+        meetings,
+        restitution_law,
+        tolerance=tolerance,
+        hold_step=held,
+    )
+    return sequence.run(state, check_positive("window", window), most_strikes)
+
+
+def impact_sequence_of(
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    *,
+    gravity_W: ArrayLike = STANDARD_GRAVITY_W,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
+    window: float = STRIKE_WINDOW,
+    most_strikes: int = MOST_STRIKES,
+    distance_tolerance: float = DISTANCE_TOLERANCE,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+    hold_step: float | None = None,
+) -> ImpactSequence:
+    """Return the strikes at contacts that touch now: each a point of the body, and the plane it touches.
+
+    Each point strikes its own plane alone: now if it approaches, and whenever it comes back.
+
+    Args:
+        body: Mass and angular inertia.
+        state: Pose and velocities.
+        contacts: All that touch, approaching or not.
+        gravity_W: (3,), m/s^2, world axes.
+        restitution_law: What the coefficients of restitution mean.
+        window: s, > 0. The longest flight after which a strike still belongs to the landing.
+        most_strikes: How many strikes to resolve at most, >= 1.
+        distance_tolerance: m, >= 0. A point within it of its plane touches.
+        velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
+        hold_step: s, > 0. Where a contact stays, go on in steps of this length. None: end there.
+
+    Raises:
+        InvalidFieldError: a number that is not allowed, or a contact with curvature: it is no fixed point.
+    """
+    tolerance = check_positive("velocity_tolerance", velocity_tolerance)
+    held = None if hold_step is None else check_positive("hold_step", hold_step)
+    if contacts.body_curvatures is not None or contacts.surface_curvatures is not None:
+        raise InvalidFieldError("contacts.curvatures", "some", "none: a point of the body on a plane")
+    gravity = check_array("gravity", gravity_W, (3,))
+    meetings = NamedMeetings(
+        body,
+        state,
+        contacts,
+        gravity_W=gravity,
+        distance_tolerance=check_not_negative("distance_tolerance", distance_tolerance),
+        velocity_tolerance=tolerance,
+    )
+    sequence = _Sequence(body, gravity, meetings, restitution_law, tolerance=tolerance, hold_step=held)
+    return sequence.run(state, check_positive("window", window), most_strikes)
+
+
+class _Sequence:
+    """Strikes so far, and the search for the next one."""
+
+    def __init__(
+        self,
+        body: MassProperties,
+        gravity_W: FloatArray,
+        meetings: Meetings,
+        law: RestitutionLaw,
+        *,
+        tolerance: float,
+        hold_step: float | None,
+    ) -> None:
+        self.body, self.gravity_W, self.meetings = body, gravity_W, meetings
+        self.law, self.tolerance, self.hold_step = law, tolerance, hold_step
+        self.strikes: list[TimedStrike] = []
+        self.chattering: tuple[int, float] | None = None  # the contact struck last, if so, and its limit time
+        self.limit: float | None = None
+        self.staying: tuple[int, ...] = ()
+
+    def run(self, state: BodyState, window: float, most_strikes: int) -> ImpactSequence:
+        most = round(check_positive("most_strikes", most_strikes))
+        end = self._strike_on(state, window, most)
+        stays = end in {SequenceEnd.STAYS, SequenceEnd.CHATTERS}
+        return ImpactSequence(
+            restitution_law=self.law,
+            contacts=self.meetings.contacts,
+            strikes=tuple(self.strikes),
+            end=end,
+            state=self.strikes[-1].impact.state if self.strikes else state,
+            staying=self.staying if stays else (),
+            limit_seconds=self.limit if stays else None,
+        )
+
+    def _strike_on(self, state: BodyState, window: float, most: int) -> SequenceEnd:
+        now, until = 0.0, window  # s since the beginning
+        lifts = held = 0  # since the beginning; at this instant
+        while True:
+            landing = self.meetings.next(state, until - now)
+            if self.chattering is not None and not self._strikes_elsewhere(landing, now):
+                self._stay((self.chattering[0],), self.chattering[1])
+                end, wait = SequenceEnd.CHATTERS, self.hold_step
+            elif landing is None:
+                return SequenceEnd.NOTHING_STRIKES
+            else:
+                if landing.seconds > 0.0:  # it has left all contacts meanwhile
+                    self.staying, self.limit = (), None
+                state = landing.state
+                now += landing.seconds
+                still = HELD_STILL if held < MOST_HELD else HELD
+                if landing.strikes and not self._approaches_by(landing, still):
+                    if self._approaches_by(landing, HELD):
+                        held += 1
+                        state = self._impact(landing, _fastest(landing), restitution=0.0).state
+                        continue
+                    if len(self.strikes) == most:
+                        return SequenceEnd.MOST_STRIKES
+                    state = self._strike(landing, now)
+                    until = now + window
+                    continue
+                lifts += 1
+                end, wait = self._wait(landing, now, may_leave=lifts <= most)
+            now += wait or 0.0
+            if wait is None or now >= until:
+                return end
+            self.chattering, held = None, 0
+            motion = free_motion(self.body, state, gravity_W=self.gravity_W, precision=Precision.DOUBLE)
+            state = motion.state_at(wait)
+
+    def _wait(self, landing: Landing, now: float, *, may_leave: bool) -> tuple[SequenceEnd, float | None]:
+        """Return for how long to wait where nothing strikes, s, None: not at all; and the end after that."""
+        wait = self._time_to_leave(landing)
+        if wait is not None and may_leave:
+            return SequenceEnd.NOTHING_STRIKES, wait
+        lifting = self._lifting(landing)
+        rests = self.limit is not None and self._is_still(landing, float(-lifting.min()))
+        self._stay(
+            tuple(self.meetings.index(landing, int(row)) for row in np.flatnonzero(lifting <= 0.0)), now
+        )
+        return SequenceEnd.STAYS, None if rests else self.hold_step
+
+    def _is_still(self, landing: Landing, pressing: float) -> bool:
+        """Return whether a body that is held has not moved, after a step, by more than holding leaves it."""
+        state = landing.state
+        reach = float(np.linalg.norm(landing.contacts.p_WC_W - state.p_WB_W, axis=1).max())
+        speed = math.hypot(*state.v_WB_W.tolist()) + reach * math.hypot(*state.w_WB_W.tolist())
+        return speed <= STILL * pressing * (self.hold_step or 0.0)
+
+    def _stay(self, contacts: tuple[int, ...], since: float) -> None:
+        """Note that contacts stay; one that stayed before keeps the time."""
+        if self.limit is None:
+            self.limit = since
+        self.staying = contacts
+
+    def _approaches_by(self, landing: Landing, share: float) -> bool:
+        """Return whether a contact stays, and what approaches does so by a share of a step's fall."""
+        if self.hold_step is None or self.limit is None:
+            return False
+        row = _fastest(landing)
+        speed = -float(landing.velocities_W[row] @ landing.contacts.normals_W[row])
+        return speed <= share * self.hold_step * -float(self._lifting(landing)[row])
+
+    def _strike(self, landing: Landing, now: float) -> BodyState:
+        """Resolve the strike at the contact that approaches fastest; return the state after it."""
+        contacts, row = landing.contacts, _fastest(landing)
+        contact = self.meetings.index(landing, row)
+        normal = contacts.normals_W[row]
+        impact = self._impact(landing, row, restitution=float(contacts.restitutions[row]))
+        approach, rebound = float(-impact.velocity_before_W @ normal), float(impact.velocity_after_W @ normal)
+        pressing = -float(self._lifting(landing)[row])
+        self.chattering = None
+        if self.tolerance < rebound < approach and rebound * rebound <= 2.0 * CHATTER_HEIGHT * pressing:
+            flight = 2.0 * rebound / pressing
+            self.chattering = contact, now + flight / (1.0 - rebound / approach)
+        self.strikes.append(
+            TimedStrike(
+                seconds=now,
+                contact=contact,
+                p_WC_W=contacts.p_WC_W[row],
+                state_before=landing.state,
+                impact=impact,
+            )
+        )
+        return impact.state
+
+    def _impact(self, landing: Landing, row: int, *, restitution: float) -> SpatialImpact:
+        contacts = landing.contacts
+        return spatial_impact(
+            self.body,
+            landing.state,
+            p_WC_W=contacts.p_WC_W[row],
+            n_W=contacts.normals_W[row],
+            friction=float(contacts.frictions[row]),
+            restitution=restitution,
+            law=self.law,
+            # Half, since the approach was judged by another sum with other rounding.
+            velocity_tolerance=0.5 * self.tolerance,
+        )
+
+    def _time_to_leave(self, landing: Landing) -> float | None:
+        """Return the time, s, in which the free motion takes resting contacts off, or None if they stay."""
+        approach = _normal_parts(landing.velocities_W, landing.contacts)
+        lifting = self._lifting(landing)
+        if len(lifting) == 0:
+            return PAUSE
+        if not (lifting > 0.0).all():
+            return None
+        return float(((2.0 * self.tolerance - approach) / lifting).max())
+
+    def _strikes_elsewhere(self, landing: Landing | None, now: float) -> bool:
+        """Return whether another contact strikes before the one that chatters has come to rest."""
+        if landing is None or self.chattering is None or not landing.strikes:
+            return False
+        contact, limit = self.chattering
+        return now + landing.seconds < limit and self.meetings.index(landing, _fastest(landing)) != contact
+
+    def _lifting(self, landing: Landing) -> FloatArray:
+        """Return the accelerations, (n,), m/s^2, that the contacts' gaps have in free motion."""
+        state, contacts = landing.state, landing.contacts
+        w = state.w_WB_W
+        inertia, spin = self.body.inertia_in_world(state.R_WB), cross_matrix(w)
+        angular = np.array(np.linalg.solve(inertia, np.cross(inertia @ w, w)), dtype=np.float64)
+        turning = cross_matrix(angular) + spin @ spin
+        accelerations = self.gravity_W + (contacts.p_WC_W - state.p_WB_W) @ turning.T
+        rolling = velocity_accelerations(contacts, landing.velocities_W, w)
+        return _normal_parts(accelerations + rolling, contacts)
+
+
+def _fastest(landing: Landing) -> int:
+    """Return the row of the contact that approaches fastest."""
+    return int(_normal_parts(landing.velocities_W, landing.contacts).argmin())
+
+
+def _normal_parts(vectors: FloatArray, contacts: ContactSet) -> FloatArray:
+    parts: FloatArray = np.einsum("ij,ij->i", vectors, contacts.normals_W)
+    return parts

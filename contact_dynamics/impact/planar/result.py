@@ -1,0 +1,90 @@
+"""What an impact at one planar contact comes to: velocities afterwards, and the impulse path as evidence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
+from contact_dynamics.impact.planar.routh import ImpulsePath, InverseInertia
+from contact_dynamics.plane.types import PlanarVelocity, Vector2
+from contact_dynamics.tolerances import ENERGY_TOLERANCE
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanarImpact:
+    """The answer to one planar impact; contact axes are tangent, normal, and impulses act on the body."""
+
+    law: RestitutionLaw  # the restitution law that was asked for
+    velocity: PlanarVelocity  # m/s, rad/s, of the body afterwards, axes of the plane
+    velocity_before_C: Vector2  # m/s, of the contact before, relative, contact axes; 0: within tolerance
+    inverse_inertia: InverseInertia  # 1/kg, the contact's response to impulse
+    contact_path: ImpulsePath  # impulse path and the contact's velocity afterwards, contact axes
+    impulse: Vector2  # N s, total, on the body, axes of the plane
+    other_velocity: PlanarVelocity | None = None  # of the second body afterwards; None: the fixed world
+
+    @property
+    def outcome(self) -> ImpactOutcome:
+        """Return what the contact did."""
+        return self.contact_path.outcome
+
+    @property
+    def jams(self) -> bool:
+        """Return whether sliding drove the contact into compression (the lecture's sliding rod; Painleve)."""
+        return self.contact_path.jams
+
+    @property
+    def velocity_after_C(self) -> Vector2:
+        """Return the contact's velocity afterwards, m/s, contact axes."""
+        return (self.contact_path.v_t, self.contact_path.v_n)
+
+    @property
+    def impulse_C(self) -> Vector2:
+        """Return the total impulse on the body, N s, contact axes."""
+        return (self.contact_path.t_end, self.contact_path.p_end)
+
+    @property
+    def compression_C(self) -> Vector2:
+        """Return the impulse of compression, N s, contact axes."""
+        return (self.contact_path.t_compression, self.contact_path.p_compression)
+
+    @property
+    def restitution_C(self) -> Vector2:
+        """Return the impulse of restitution, N s, contact axes."""
+        path = self.contact_path
+        return (path.t_end - path.t_compression, path.p_end - path.p_compression)
+
+    @property
+    def path(self) -> tuple[tuple[PathEvent, Vector2], ...]:
+        """Return the vertices of the impulse path in order, each with what it stands for, N s, contact axes.
+
+        Without an impulse the path is its start alone. Vertices that coincide are all listed.
+        """
+        path = self.contact_path
+        vertices: list[tuple[PathEvent, Vector2]] = [(PathEvent.START, (0.0, 0.0))]
+        if path.outcome == ImpactOutcome.NO_IMPULSE:
+            return tuple(vertices)
+        compression = (PathEvent.COMPRESSION_ENDS, (path.t_compression, path.p_compression))
+        stop = (PathEvent.SLIDING_STOPS, (path.t_stop, path.p_stop))
+        if path.outcome in {ImpactOutcome.STICKS_IN_COMPRESSION, ImpactOutcome.REVERSES_IN_COMPRESSION}:
+            vertices += [stop, compression]
+        elif path.outcome in {ImpactOutcome.STICKS_IN_RESTITUTION, ImpactOutcome.REVERSES_IN_RESTITUTION}:
+            vertices += [compression, stop]
+        else:
+            vertices.append(compression)
+        vertices.append((PathEvent.RESTITUTION_ENDS, (path.t_end, path.p_end)))
+        return tuple(vertices)
+
+    @property
+    def energy_change(self) -> float:
+        """Return the change of kinetic energy, J: the impulse times the contact's mean velocity."""
+        path = self.contact_path
+        v_t, v_n = self.velocity_before_C
+        return 0.5 * (path.t_end * (v_t + path.v_t) + path.p_end * (v_n + path.v_n))
+
+    @property
+    def creates_energy(self) -> bool:
+        """Return whether the law gave the body energy, beyond rounding. Only Newton's can."""
+        path = self.contact_path
+        v_t, v_n = self.velocity_before_C
+        exchanged = abs(path.t_end) * (abs(v_t) + abs(path.v_t)) + path.p_end * (abs(v_n) + path.v_n)
+        return self.energy_change > ENERGY_TOLERANCE * exchanged

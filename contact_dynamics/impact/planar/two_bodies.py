@@ -1,0 +1,83 @@
+"""Impact of two moving planar bodies: one relative problem (Routh 1860; Stronge 2000, ch. 3 and 4).
+
+The impulses on the two bodies are opposite, so that the contact's relative velocity responds with the sum of
+the two inverse inertias, and the laws of one body and the fixed world apply as they are. The *first* body is
+the one that the normal points into; velocities and impulses in the answer are its own, relative to the second
+where they are the contact's. Linear and angular momentum of the two together stay as they are, to rounding.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.planar.one_contact import approach
+from contact_dynamics.impact.planar.result import PlanarImpact
+from contact_dynamics.impact.planar.routh import impulse_path, pair_inverse_inertia
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, Vector2, check_vector2
+from contact_dynamics.tolerances import VELOCITY_TOLERANCE
+from contact_dynamics.validation import check_not_negative
+
+
+def planar_pair_impact(
+    body: PlanarBody,
+    velocity: PlanarVelocity,
+    other: PlanarBody,
+    other_velocity: PlanarVelocity,
+    contact: PlanarContact,
+    *,
+    other_r: Vector2,
+    law: RestitutionLaw = RestitutionLaw.POISSON,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+) -> PlanarImpact:
+    """Return what the impact of two planar bodies does.
+
+    Args:
+        body: The first body, which the contact's normal points into.
+        velocity: Of the first body just before.
+        other: The second body.
+        other_velocity: Of the second body just before.
+        contact: Where on the first body (from its centre of mass), normal, friction, restitution.
+        other_r: m, from the second body's centre of mass to the contact.
+        law: What the coefficient of restitution means.
+        velocity_tolerance: m/s, >= 0. A component of the relative velocity within it counts as zero.
+
+    Raises:
+        SeparatingContactError: the contact's relative normal velocity is above the tolerance.
+        InvalidFieldError: a number is not finite, or the tolerance is negative.
+    """
+    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
+    n_x, n_y = contact.normal
+    r_x, r_y = contact.r
+    s_x, s_y = check_vector2("other_r", other_r)
+    (v_x, v_y), w = velocity.v, velocity.w
+    (u_x, u_y), z = other_velocity.v, other_velocity.w
+    c_x = (v_x - u_x) - (w * r_y - z * s_y)
+    c_y = (v_y - u_y) + (w * r_x - z * s_x)
+    v_t, v_n = approach(c_x * n_y - c_y * n_x, c_x * n_x + c_y * n_y, tolerance)
+    response = pair_inverse_inertia(
+        (body.mass, body.inertia, r_x * n_y - r_y * n_x, r_x * n_x + r_y * n_y),
+        (other.mass, other.inertia, s_x * n_y - s_y * n_x, s_x * n_x + s_y * n_y),
+    )
+    path = impulse_path(v_t, v_n, response, contact.friction, contact.restitution, law)
+    i_x = path.t_end * n_y + path.p_end * n_x
+    i_y = path.p_end * n_y - path.t_end * n_x
+    return PlanarImpact(
+        law=law,
+        velocity=_planar_pushed(body, velocity, (r_x, r_y), (i_x, i_y)),
+        velocity_before_C=(v_t, v_n),
+        inverse_inertia=response,
+        contact_path=path,
+        impulse=(i_x, i_y),
+        other_velocity=_planar_pushed(other, other_velocity, (s_x, s_y), (-i_x, -i_y)),
+    )
+
+
+def _planar_pushed(
+    body: PlanarBody, velocity: PlanarVelocity, r: Vector2, impulse: Vector2
+) -> PlanarVelocity:
+    (v_x, v_y), (r_x, r_y), (i_x, i_y) = velocity.v, r, impulse
+    moment = r_x * i_y - r_y * i_x
+    return replace(
+        velocity, v=(v_x + i_x / body.mass, v_y + i_y / body.mass), w=velocity.w + moment / body.inertia
+    )

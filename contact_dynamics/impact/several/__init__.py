@@ -1,0 +1,1 @@
+"""Impacts at several contacts at once."""

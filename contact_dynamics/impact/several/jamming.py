@@ -1,0 +1,281 @@
+"""The impact of contacts that jam: none approaches, and yet no mode is consistent (lecture 26's last remark).
+
+The applied wrench then cannot act for any time, however short, without an impulse. So it acts for a short
+time h, contact impulses p_i keep the body out of the world at its end, and h goes to zero,
+
+    v' = v + h a + impulses,  0 <= p_i,  v_n' + h b_n >= 0,  one of the two zero,
+
+with Coulomb's law for impulses against the sliding at the end (Stewart, Rigid-body dynamics with friction and
+impact, SIAM Review 42, 2000: this limit exists, and settles Painleve's paradox). The centripetal terms b_n
+are those of arms that have turned by h, and of the shapes that meet there (`contact.curvature`). A second
+problem of the same kind gives back Poisson's restitution (Anitescu and Potra, Nonlinear Dynamics 14, 1997).
+
+Does not cover: the way there. Friction acts against the sliding at the end of compression, and of
+restitution, so that a contact which stops before that and slides back is not seen; Routh's path (`impact`)
+sees it at one contact.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.contact.curvature import velocity_accelerations
+from contact_dynamics.contact.friction import tangents
+from contact_dynamics.contact.velocities import spatial_contact_velocities
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw, SeveralImpact, SeveralVerdict
+from contact_dynamics.numerics.lemke import solve_complementarity
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.tolerances import VELOCITY_TOLERANCE
+from contact_dynamics.validation import check_array, check_not_negative
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.validation import FloatArray
+
+MOST_JAMMED_CONTACTS: Final = 64
+"""Longest list of contacts accepted: the pivots of their complementarity problem take a second or so."""
+
+_SHORT: Final = (1e-7, 1e-5, 1e-3)
+"""What the wrench may change of velocities in the time it acts, relative to the largest speed: the first that
+rounding does not keep from an answer is taken."""
+
+_ZERO: Final = 100.0
+"""Velocities relative to that change, and impulses relative to mass times it, that count as zero."""
+
+
+class _Contacts(NamedTuple):
+    """What the contacts see of the body's twist (v, w), (6,), and of impulses."""
+
+    rows: FloatArray  # (n, 3, 6), velocity of each contact
+    normals: FloatArray  # (n, 3), unit
+    directions: FloatArray  # (n, d, 3), unit, in which friction can push
+    frictions: FloatArray  # (n,)
+    mass: float  # kg
+    inverse: FloatArray  # (6, 6), of the mass matrix
+    speed: float  # m/s, the largest
+    zero: float  # m/s, what counts as none
+
+
+class _Impulses(NamedTuple):
+    normal: FloatArray  # (n,), N s
+    friction: FloatArray  # (n, d), N s
+    sliding: FloatArray  # (n,), m/s, 0 where a pressed contact does not slide
+
+
+def jamming_impact(
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    *,
+    force_W: ArrayLike,
+    torque_W: ArrayLike = (0.0, 0.0, 0.0),
+    plane_normal_W: FloatArray | None = None,
+    friction_facets: int = 8,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+) -> SeveralImpact:
+    """Return the impact of contacts of which none approaches and for which no mode is consistent.
+
+    Its verdict is NOT_CONVERGED where no impulses were found that keep the body out of the world.
+
+    Args:
+        body: Mass and angular inertia.
+        state: Pose and velocities just before.
+        contacts: All that touch, at least one.
+        force_W: (3,), N, applied besides contact forces, gravity included, world axes.
+        torque_W: (3,), N m, applied about the centre of mass, world axes.
+        plane_normal_W: (3,), unit: friction acts at right angles to it, and exactly. None: in space, in a
+            number of directions.
+        friction_facets: That number, >= 3; the first opposes the sliding.
+        velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero.
+
+    Raises:
+        InvalidFieldError: no contacts, a wrench that is not finite, a negative tolerance, too few facets.
+        TooLargeError: more than `MOST_JAMMED_CONTACTS` contacts.
+    """
+    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
+    force = check_array("force", force_W, (3,))
+    torque = check_array("torque", torque_W, (3,))
+    if len(contacts) == 0:
+        raise InvalidFieldError("contacts", "none", "at least one contact")
+    if len(contacts) > MOST_JAMMED_CONTACTS:
+        raise TooLargeError(
+            "contacts", f"{len(contacts)} contacts", f"at most {MOST_JAMMED_CONTACTS} that jam"
+        )
+    if friction_facets < 3:
+        raise InvalidFieldError("friction_facets", friction_facets, "a whole number >= 3")
+    w, inertia = state.w_WB_W, body.inertia_in_world(state.R_WB)
+    arms = contacts.p_WC_W - state.p_WB_W
+    inverse = np.zeros((6, 6))
+    inverse[:3, :3] = np.eye(3) / body.mass
+    inverse[3:, 3:] = np.linalg.inv(inertia)
+    free = inverse @ np.concatenate([force, torque - np.cross(w, inertia @ w)])
+    twist = np.concatenate([state.v_WB_W, w])
+    before = _rows(arms) @ twist
+    rolling = velocity_accelerations(contacts, before, w)
+    hurry = _fastest(_rows(arms) @ free + np.cross(w, np.cross(w, arms)) + rolling, free[:3])
+    speed = max(_fastest(before, twist[:3]), tolerance)
+    cleaned = spatial_contact_velocities(state, contacts, velocity_tolerance=tolerance)
+    directions = _directions(contacts, before, plane_normal_W, friction_facets)
+    total, after, resolved = np.zeros_like(before), twist, False
+    for share in _SHORT:
+        short = share * speed / hurry if hurry > 0.0 else 0.0
+        seen = _Contacts(
+            rows=_rows(arms + short * np.cross(w, arms)),
+            normals=contacts.normals_W,
+            directions=directions,
+            frictions=contacts.frictions,
+            mass=body.mass,
+            inverse=inverse,
+            speed=speed,
+            zero=_ZERO * share * speed,
+        )
+        start = cleaned + seen.rows @ (twist + short * free) + short * rolling - before
+        found = _two_phases(seen, start, contacts.restitutions)
+        if found is None:
+            continue
+        impulses, held = found
+        jump = inverse @ np.einsum("ijk,ij->k", _rows(arms), impulses)
+        total, after = _made_exact(_rows(arms), inverse, impulses, twist + jump, held)
+        approach = np.einsum("ij,ij->i", _rows(arms) @ after, contacts.normals_W)
+        resolved = float(approach.min()) >= -max(tolerance, seen.zero)
+        if resolved:
+            break
+    return SeveralImpact(
+        law=SeveralContactsLaw.SIMULTANEOUS,
+        restitution_law=RestitutionLaw.POISSON,
+        verdict=SeveralVerdict.RESOLVED if resolved else SeveralVerdict.NOT_CONVERGED,
+        state=BodyState(
+            p_WB_W=state.p_WB_W,
+            q_WB=state.q_WB,
+            v_WB_W=after[:3],
+            w_WB_W=after[3:],
+            stamp_ns=state.stamp_ns,
+        ),
+        impulses_W=total,
+        velocities_before_W=before,
+        velocities_after_W=_rows(arms) @ after,
+        strikes=(),
+    )
+
+
+def _two_phases(
+    seen: _Contacts, start: FloatArray, restitutions: FloatArray
+) -> tuple[FloatArray, FloatArray] | None:
+    """Return the impulses, (n, 3), and the directions, (k, 3 n), in which contacts are held afterwards.
+
+    None: no impulses keep the body out of the world.
+    """
+    none = np.zeros(len(start))
+    phase = _compress(seen, start, none)
+    if phase is None:
+        return None
+    total = _vectors(seen, phase)
+    least = restitutions * np.where(phase.normal > seen.mass * seen.zero, phase.normal, 0.0)
+    if least.any():
+        change = seen.inverse @ np.einsum("ijk,ij->k", seen.rows, total)
+        phase = _compress(seen, start + seen.rows @ change, least)
+        if phase is None:
+            return None
+        total = total + _vectors(seen, phase)
+    total[np.linalg.norm(total, axis=1) <= seen.mass * seen.zero] = 0.0
+    held = []
+    for i, normal in enumerate(seen.normals):
+        if phase.normal[i] - least[i] > 0.0:
+            held.append(_at(i, normal, len(total)))
+        if phase.normal[i] > seen.mass * seen.zero and phase.sliding[i] <= seen.zero:
+            held += [_at(i, direction, len(total)) for direction in seen.directions[i]]
+    return total, np.array(held).reshape(-1, total.size)
+
+
+def _compress(seen: _Contacts, start: FloatArray, least: FloatArray) -> _Impulses | None:
+    """Return impulses, along normals at least ``least``, that leave no contact approaching."""
+    n, d = seen.directions.shape[:2]
+    normal_rows = np.einsum("ij,ijk->ik", seen.normals, seen.rows)
+    friction_rows = np.einsum("imj,ijk->imk", seen.directions, seen.rows).reshape(n * d, 6)
+    rows = np.vstack([normal_rows, friction_rows])
+    response = seen.mass * rows @ seen.inverse @ rows.T
+    group = np.kron(np.eye(n), np.ones((d, 1)))  # which contact a direction belongs to
+    M = np.zeros((n * (d + 2), n * (d + 2)))
+    M[: n * (d + 1), : n * (d + 1)] = response
+    M[n : n * (d + 1), n * (d + 1) :] = group
+    M[n * (d + 1) :, :n] = np.diag(seen.frictions)
+    M[n * (d + 1) :, n : n * (d + 1)] = -group.T
+    scale = seen.mass * seen.speed  # of impulses, so that all unknowns are of the order of one
+    given = least / scale
+    q = np.concatenate(
+        [
+            np.einsum("ij,ij->i", seen.normals, start) / seen.speed,
+            np.einsum("imj,ij->im", seen.directions, start).ravel() / seen.speed,
+            seen.frictions * given,
+        ]
+    )
+    q[: n * (d + 1)] += response[:, :n] @ given
+    z = solve_complementarity(M, q)
+    if z is None:
+        return None
+    return _Impulses(
+        normal=least + scale * z[:n],
+        friction=scale * z[n : n * (d + 1)].reshape(n, d),
+        sliding=seen.speed * z[n * (d + 1) :],
+    )
+
+
+def _made_exact(
+    rows: FloatArray,
+    inverse: FloatArray,
+    impulses: FloatArray,
+    after: FloatArray,
+    held: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Take what the short time has left out of the velocities of contacts that are held."""
+    if len(held) == 0:
+        return impulses, after
+    held_rows = held @ rows.reshape(-1, 6)
+    missing = np.linalg.lstsq(held_rows @ inverse @ held_rows.T, -held_rows @ after, rcond=1e-9)[0]
+    return impulses + (missing @ held).reshape(-1, 3), after + inverse @ held_rows.T @ missing
+
+
+def _directions(
+    contacts: ContactSet, velocities: FloatArray, plane_normal_W: FloatArray | None, facets: int
+) -> FloatArray:
+    if plane_normal_W is not None:
+        tangent = np.cross(contacts.normals_W, plane_normal_W)
+        return np.stack([tangent, -tangent], axis=1)
+    angles = 2.0 * math.pi * np.arange(facets) / facets
+    found = []
+    for normal, velocity in zip(contacts.normals_W, velocities, strict=True):
+        one, two = tangents(normal, -velocity if velocity.any() else None)
+        found.append(np.outer(np.cos(angles), one) + np.outer(np.sin(angles), two))
+    return np.array(found)
+
+
+def _vectors(seen: _Contacts, phase: _Impulses) -> FloatArray:
+    vectors: FloatArray = phase.normal[:, None] * seen.normals + np.einsum(
+        "im,imj->ij", phase.friction, seen.directions
+    )
+    return vectors
+
+
+def _rows(arms: FloatArray) -> FloatArray:
+    """Return the (3, 6) matrices that give contacts' velocities from (v, w)."""
+    rows = np.zeros((len(arms), 3, 6))
+    rows[:, :, :3] = np.eye(3)
+    for i, (x, y, z) in enumerate(arms.tolist()):
+        rows[i, :, 3:] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
+    return rows
+
+
+def _fastest(of_contacts: FloatArray, of_body: FloatArray) -> float:
+    return float(np.linalg.norm(np.vstack([of_contacts, of_body]), axis=1).max())
+
+
+def _at(contact: int, direction: FloatArray, count: int) -> FloatArray:
+    row = np.zeros((count, 3))
+    row[contact] = direction
+    return row.ravel()

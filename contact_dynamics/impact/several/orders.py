@@ -1,0 +1,131 @@
+"""Several contacts of one body at once: no single law is accepted for them, so laws have names here.
+
+* SEQUENTIAL (Routh 1860; Ivanov 1995; Smith et al. 2012): the single-contact law at one contact after the
+  other, the one that approaches fastest first (the first in the list where they tie), until none approaches.
+* SIMULTANEOUS: complementarity of impulses and velocities over all contacts (`simultaneous`), with Newton's
+  hypothesis (Moreau 1988) or Poisson's (Anitescu and Potra 1997). The energetic law has no such form here: it
+  needs the work at each contact along the path, which complementarity of the ends does not know.
+
+`outcomes_over_orders` gives the set that the sequential law reaches over its admissible orders, and its
+spread: how far the answer is undecided. In the plane: `several_planar`.
+
+Not covered: moments at the contacts, and resting contacts that their own sliding would jam (`spatial` answers
+that for one). Several bodies: `bodies`. Contacts that strike one after the other in time: `sequence`.
+"""
+
+from __future__ import annotations
+
+from itertools import islice, permutations
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.several.result import (
+    OrderedOutcomes,
+    SeveralContactsLaw,
+    SeveralImpact,
+    SeveralVerdict,
+)
+from contact_dynamics.impact.several.sequential import Touching, bodies_impact, check_touching, strike_in_turn
+from contact_dynamics.tolerances import VELOCITY_TOLERANCE
+from contact_dynamics.validation import check_positive
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.validation import FloatArray
+
+MOST_ORDERS: Final = 120
+"""Orders that `outcomes_over_orders` tries: all of them up to five contacts."""
+
+
+def several_impact(
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    *,
+    law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+) -> SeveralImpact:
+    """Return what the impact of ``body`` at all ``contacts`` does, under a named law.
+
+    Args:
+        body: Mass and angular inertia.
+        state: Pose and velocities just before.
+        contacts: All that touch, approaching or not; at least one.
+        law: The law for several contacts.
+        restitution_law: What the coefficients of restitution mean; ENERGETIC only with SEQUENTIAL.
+        velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
+
+    Raises:
+        SeparatingContactError: every contact separates.
+        InvalidFieldError: no contacts, a tolerance that is not > 0, or ENERGETIC with SIMULTANEOUS.
+    """
+    answer = bodies_impact(
+        [body],
+        [state],
+        contacts,
+        [(0, None)] * len(contacts),
+        law=law,
+        restitution_law=restitution_law,
+        velocity_tolerance=velocity_tolerance,
+    )
+    return SeveralImpact(
+        law=law,
+        restitution_law=restitution_law,
+        verdict=answer.verdict,
+        state=answer.states[0],
+        impulses_W=answer.impulses_W,
+        velocities_before_W=answer.velocities_before_W,
+        velocities_after_W=answer.velocities_after_W,
+        strikes=answer.strikes,
+    )
+
+
+def outcomes_over_orders(
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    *,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+    most_orders: int = MOST_ORDERS,
+) -> OrderedOutcomes:
+    """Return the outcomes of the sequential law over its admissible orders.
+
+    An order follows a priority of the contacts: each time, the first in it that approaches is struck.
+    Different priorities can come to the same order, which is listed once.
+
+    Args:
+        body: Mass and angular inertia.
+        state: Pose and velocities just before.
+        contacts: All that touch; at least one.
+        restitution_law: What the coefficients of restitution mean.
+        velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
+        most_orders: How many priorities to try; `complete` says whether that was all of them.
+
+    Raises:
+        SeparatingContactError: every contact separates.
+        InvalidFieldError: no contacts, or a tolerance that is not > 0.
+    """
+    tolerance = check_positive("velocity_tolerance", velocity_tolerance)
+    touching = Touching([body], contacts, [(0, None)] * len(contacts), restitution_law, tolerance)
+    check_touching(touching, [state])
+    found: dict[tuple[int, ...], FloatArray] = {}
+    lost = 0
+    priorities = permutations(range(len(contacts)))
+    for priority in islice(priorities, most_orders):
+        strikes, (after,), verdict = strike_in_turn(touching, [state], priority=priority)
+        if verdict == SeveralVerdict.RESOLVED:
+            order = tuple(contact for contact, _ in strikes)
+            found[order] = np.concatenate([after.v_WB_W, after.w_WB_W])
+        else:
+            lost += 1
+    return OrderedOutcomes(
+        orders=tuple(found),
+        velocities_W=np.array(list(found.values())).reshape(-1, 6),
+        complete=next(priorities, None) is None,
+        not_converged=lost,
+    )

@@ -1,0 +1,238 @@
+"""Several contacts between several bodies, and between them and the fixed world, at once.
+
+The laws are those of one body (`several`): SEQUENTIAL strikes one contact after the other, each as the impact
+of the two bodies that meet there (`pair`, `spatial`); SIMULTANEOUS solves one complementarity problem over
+all contacts and bodies (`simultaneous`). Momentum and angular momentum of bodies that touch no world stay as
+they are, to rounding.
+
+For Newton's cradle of equal balls at e = 1 the two differ, as rigid-body mechanics leaves them free to: the
+sequential law lets the last ball leave, as ball bearings do, the simultaneous one moves all of them.
+
+Not covered: moments at the contacts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
+from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.several.result import BodiesImpact, SeveralContactsLaw, SeveralVerdict
+from contact_dynamics.impact.several.simultaneous import simultaneous_impulses
+from contact_dynamics.impact.spatial.one_contact import spatial_impact, spatial_pair_impact
+from contact_dynamics.tolerances import VELOCITY_TOLERANCE
+from contact_dynamics.validation import check_positive
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.impact.spatial.result import SpatialImpact
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.validation import FloatArray
+
+MOST_STRIKES: Final = 1000
+"""Single impacts after which a sequence counts as not converged. Sequences of body and floor shrink by a
+fixed factor each round, so that they come to rest within a few dozen."""
+
+
+def bodies_impact(
+    bodies: Sequence[MassProperties],
+    states: Sequence[BodyState],
+    contacts: ContactSet,
+    pairs: Sequence[tuple[int, int | None]],
+    *,
+    law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+) -> BodiesImpact:
+    """Return what an impact at all ``contacts`` of several bodies does, under a named law.
+
+    Args:
+        bodies: Mass and angular inertia of each.
+        states: Pose and velocities of each just before.
+        contacts: All that touch, approaching or not; at least one.
+        pairs: For each contact the body that its normal points into, and the other one, None for the world;
+            indices into ``bodies``.
+        law: The law for several contacts.
+        restitution_law: What the coefficients of restitution mean; ENERGETIC only with SEQUENTIAL.
+        velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
+
+    Raises:
+        SeparatingContactError: every contact separates.
+        InvalidFieldError: no contacts, lists of unequal length, an index that is none, a tolerance that is
+            not > 0, or ENERGETIC with SIMULTANEOUS.
+    """
+    tolerance = check_positive("velocity_tolerance", velocity_tolerance)
+    _check_pairs(bodies, states, contacts, pairs)
+    touching = Touching(bodies, contacts, pairs, restitution_law, tolerance)
+    before = check_touching(touching, states)
+    strikes: tuple[tuple[int, SpatialImpact], ...] = ()
+    if law == SeveralContactsLaw.SEQUENTIAL:
+        strikes, after, verdict = strike_in_turn(touching, states)
+        impulses = np.zeros((len(contacts), 3))
+        for contact, impact in strikes:
+            impulses[contact] += impact.impulse_W
+    elif restitution_law == RestitutionLaw.ENERGETIC:
+        raise InvalidFieldError("restitution_law", "ENERGETIC", "POISSON or NEWTON for SIMULTANEOUS")
+    else:
+        impulses, after, verdict = _strike_at_once(touching, states)
+    return BodiesImpact(
+        law=law,
+        restitution_law=restitution_law,
+        verdict=verdict,
+        states=tuple(after),
+        impulses_W=impulses,
+        velocities_before_W=before,
+        velocities_after_W=_relative_velocities(touching, after),
+        strikes=strikes,
+    )
+
+
+class Touching(NamedTuple):
+    """Bodies in contact, and the laws of their strikes."""
+
+    bodies: Sequence[MassProperties]
+    contacts: ContactSet
+    pairs: Sequence[tuple[int, int | None]]  # as in `bodies_impact`
+    restitution_law: RestitutionLaw
+    tolerance: float  # m/s
+
+
+def check_touching(touching: Touching, states: Sequence[BodyState]) -> FloatArray:
+    """Return the contacts' velocities, (n, 3), m/s; refuse a set in which nothing touches or approaches."""
+    contacts, tolerance = touching.contacts, touching.tolerance
+    if len(contacts) == 0:
+        raise InvalidFieldError("contacts", "none", "at least one contact")
+    velocities = _relative_velocities(touching, states)
+    slowest = float(np.einsum("ij,ij->i", velocities, contacts.normals_W).min())
+    if slowest > tolerance:
+        raise SeparatingContactError(
+            "contact normal velocity",
+            f"v_n >= {slowest:.9g} m/s at every contact",
+            f"one of at most {tolerance:g} m/s",
+        )
+    return velocities
+
+
+def strike_in_turn(
+    touching: Touching, states: Sequence[BodyState], *, priority: tuple[int, ...] | None = None
+) -> tuple[tuple[tuple[int, SpatialImpact], ...], list[BodyState], SeveralVerdict]:
+    """Strike one contact after the other: by ``priority``, or the fastest approach first.
+
+    Returns:
+        Each contact struck, in order, with its impact; the states afterwards; whether none approaches then.
+    """
+    now = list(states)
+    strikes: list[tuple[int, SpatialImpact]] = []
+    for _ in range(MOST_STRIKES):
+        approach = np.einsum("ij,ij->i", _relative_velocities(touching, now), touching.contacts.normals_W)
+        contact = _next_contact(approach, touching.tolerance, priority)
+        if contact is None:
+            return tuple(strikes), now, SeveralVerdict.RESOLVED
+        strikes.append((contact, _strike(touching, now, contact)))
+    return tuple(strikes), now, SeveralVerdict.NOT_CONVERGED
+
+
+def _strike(touching: Touching, states: list[BodyState], contact: int) -> SpatialImpact:
+    """Return the impact at one contact, and put the states after it in place."""
+    bodies, contacts = touching.bodies, touching.contacts
+    first, second = touching.pairs[contact]
+    how: dict[str, Any] = {
+        "p_WC_W": contacts.p_WC_W[contact],
+        "n_W": contacts.normals_W[contact],
+        "friction": float(contacts.frictions[contact]),
+        "restitution": float(contacts.restitutions[contact]),
+        "law": touching.restitution_law,
+        # Half, since the approach was judged by another sum with other rounding.
+        "velocity_tolerance": 0.5 * touching.tolerance,
+    }
+    if second is None:
+        impact = spatial_impact(bodies[first], states[first], **how)
+    else:
+        impact = spatial_pair_impact(bodies[first], states[first], bodies[second], states[second], **how)
+        if impact.other_state is not None:
+            states[second] = impact.other_state
+    states[first] = impact.state
+    return impact
+
+
+def _strike_at_once(
+    touching: Touching, states: Sequence[BodyState]
+) -> tuple[FloatArray, list[BodyState], SeveralVerdict]:
+    """Return impulses, (n, 3), N s, and states afterwards, by one complementarity problem."""
+    bodies, contacts, pairs, restitution_law, tolerance = touching
+    size = 6 * len(bodies)
+    jacobian = np.zeros((len(contacts), 3, size))  # contact velocity = jacobian @ (v, w of each body)
+    for i, pair in enumerate(pairs):
+        for index, sign in zip(pair, (1.0, -1.0), strict=True):
+            if index is not None:
+                x, y, z = (contacts.p_WC_W[i] - states[index].p_WB_W).tolist()
+                jacobian[i, :, 6 * index : 6 * index + 6] = sign * np.array(
+                    [[1, 0, 0, 0, z, -y], [0, 1, 0, -z, 0, x], [0, 0, 1, y, -x, 0]]
+                )
+    inverse_mass = np.zeros((size, size))
+    for index, (body, state) in enumerate(zip(bodies, states, strict=True)):
+        at = 6 * index
+        inverse_mass[at : at + 3, at : at + 3] = np.eye(3) / body.mass
+        inverse_mass[at + 3 : at + 6, at + 3 : at + 6] = np.linalg.inv(body.inertia_in_world(state.R_WB))
+    twist = np.concatenate([part for state in states for part in (state.v_WB_W, state.w_WB_W)])
+    impulses, converged = simultaneous_impulses(
+        contacts,
+        restitution_law,
+        jacobian=jacobian,
+        inverse_mass=inverse_mass,
+        twist=twist,
+        tolerance=tolerance,
+    )
+    change = inverse_mass @ np.einsum("ijk,ij->k", jacobian, impulses)
+    after = [
+        replace(
+            state,
+            v_WB_W=state.v_WB_W + change[6 * i : 6 * i + 3],
+            w_WB_W=state.w_WB_W + change[6 * i + 3 : 6 * i + 6],
+        )
+        for i, state in enumerate(states)
+    ]
+    return impulses, after, SeveralVerdict.RESOLVED if converged else SeveralVerdict.NOT_CONVERGED
+
+
+def _relative_velocities(touching: Touching, states: Sequence[BodyState]) -> FloatArray:
+    """Return the velocities, (n, 3), m/s, of the first body of each contact relative to the second."""
+    contacts, pairs = touching.contacts, touching.pairs
+    velocities = np.zeros((len(contacts), 3))
+    for index, state in enumerate(states):
+        for sign, rows in (
+            (1.0, [i for i, (first, _) in enumerate(pairs) if first == index]),
+            (-1.0, [i for i, (_, second) in enumerate(pairs) if second == index]),
+        ):
+            if rows:
+                velocities[rows] += sign * state.velocity_of_point(contacts.p_WC_W[rows])
+    return velocities
+
+
+def _next_contact(approach: FloatArray, tolerance: float, priority: tuple[int, ...] | None) -> int | None:
+    if priority is None:
+        fastest = int(approach.argmin())
+        return fastest if approach[fastest] < -tolerance else None
+    return next((i for i in priority if approach[i] < -tolerance), None)
+
+
+def _check_pairs(
+    bodies: Sequence[MassProperties],
+    states: Sequence[BodyState],
+    contacts: ContactSet,
+    pairs: Sequence[tuple[int, int | None]],
+) -> None:
+    if len(states) != len(bodies):
+        raise InvalidFieldError("states", f"{len(states)} states", f"{len(bodies)}, one for each body")
+    if len(pairs) != len(contacts):
+        raise InvalidFieldError("pairs", f"{len(pairs)} pairs", f"{len(contacts)}, one for each contact")
+    for i, (first, second) in enumerate(pairs):
+        known = 0 <= first < len(bodies) and (second is None or 0 <= second < len(bodies))
+        if not known or first == second:
+            allowed = f"two different indices below {len(bodies)}, or None as the second for the world"
+            raise InvalidFieldError(f"pairs[{i}]", (first, second), allowed)

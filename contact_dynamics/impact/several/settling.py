@@ -1,0 +1,61 @@
+"""What jammed contacts come to in the end: jamming impacts until some mode is consistent.
+
+After one jamming impact (`jamming`) contacts may slide on in another direction, and jam again in that. Each
+takes energy, so that it comes to an end: in hundreds of drawn sets after at most three.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final
+
+from contact_dynamics.impact import SeveralVerdict
+from contact_dynamics.impact.several.jamming import jamming_impact
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.impact import SeveralImpact
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+
+MOST_JAMS: Final = 10
+"""Jamming impacts after which the case counts as not settled."""
+
+
+def settling_impact(
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    *,
+    is_settled: Callable[[BodyState], bool],
+    **how: Any,
+) -> SeveralImpact:
+    """Return the impact of jammed contacts after which ``is_settled`` holds of the state, as one.
+
+    Its impulses are the sums over the impacts. Its verdict is NOT_CONVERGED where it does not come to that.
+
+    Args:
+        body: As for `jamming_impact`.
+        state: As for `jamming_impact`.
+        contacts: As for `jamming_impact`.
+        is_settled: Whether some mode of a state is consistent, or a contact approaches.
+        how: All else that `jamming_impact` takes.
+
+    Raises:
+        InvalidFieldError: as `jamming_impact`.
+        TooLargeError: as `jamming_impact`.
+    """
+    total = jamming_impact(body, state, contacts, **how)
+    for _ in range(MOST_JAMS - 1):
+        if total.verdict != SeveralVerdict.RESOLVED or is_settled(total.state):
+            return total
+        again = jamming_impact(body, total.state, contacts, **how)
+        total = replace(
+            again,
+            impulses_W=total.impulses_W + again.impulses_W,
+            velocities_before_W=total.velocities_before_W,
+        )
+    if is_settled(total.state):
+        return total
+    return replace(total, verdict=SeveralVerdict.NOT_CONVERGED)

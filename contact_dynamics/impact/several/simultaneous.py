@@ -1,0 +1,113 @@
+"""Impulses at several contacts at once, by complementarity of impulses and velocities.
+
+Compression or Newton's whole impact: for every contact, with the velocity v after and v0 before,
+
+    0 <= p,   v_n + e v_n0 >= 0 (e = 0 in compression),   one of the two zero,
+    |I_t| <= mu p, and I_t opposes v_t with mu p where v_t is not zero.
+
+This is Moreau's impact law with e (Newton's hypothesis; Moreau 1988). With Poisson's, a second problem of the
+same kind follows the compression, in which each contact gives back at least e times its normal impulse of
+compression (Anitescu and Potra 1997). Friction acts on the velocity at the end of each problem, so within one
+of them sliding does not reverse.
+
+Method: block Gauss-Seidel over the contacts on the exact (round) friction cones, each block by projection,
+until no impulse changes. Redundant contacts leave the share of each undetermined; the bodies' velocities are
+what converges.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.impact.law import RestitutionLaw
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.validation import FloatArray
+
+MOST_SWEEPS: Final = 5000
+"""Sweeps after which the problem counts as not converged."""
+
+CONVERGED: Final = 1e-13
+"""Relative to the largest approach velocity: what a sweep may still change in the contacts' velocities."""
+
+
+def simultaneous_impulses(
+    contacts: ContactSet,
+    law: RestitutionLaw,
+    *,
+    jacobian: FloatArray,
+    inverse_mass: FloatArray,
+    twist: FloatArray,
+    tolerance: float,
+) -> tuple[FloatArray, bool]:
+    """Return the impulses, (n, 3), N s, world axes, and whether the iteration converged.
+
+    Contacts whose normal velocity is above ``tolerance``, m/s, take part with it: they strike if the others
+    turn the bodies into them.
+
+    Args:
+        contacts: Normals, frictions and restitutions.
+        law: Poisson's or Newton's.
+        jacobian: (n, 3, 6 k), takes the k bodies' velocities, v then w of each, into those of the contacts.
+        inverse_mass: (6 k, 6 k), 1/kg and 1/(kg m^2), takes impulses and their moments into velocities.
+        twist: (6 k,), m/s and rad/s, the bodies' velocities just before.
+        tolerance: m/s. A contact that approaches less fast does not bounce.
+    """
+    normals, frictions = contacts.normals_W, contacts.frictions
+    approach = np.minimum(np.einsum("ij,ij->i", jacobian @ twist, normals), 0.0)
+    approach[approach >= -tolerance] = 0.0
+
+    none = np.zeros(len(contacts))
+    if law == RestitutionLaw.NEWTON:
+        bounce = -contacts.restitutions * approach
+        return _solve(jacobian, inverse_mass, twist, normals, frictions, least=none, bounce=bounce)
+    compression, converged = _solve(
+        jacobian, inverse_mass, twist, normals, frictions, least=none, bounce=none
+    )
+    twist = twist + inverse_mass @ np.einsum("ijk,ij->k", jacobian, compression)
+    least = contacts.restitutions * np.einsum("ij,ij->i", compression, normals)
+    if not least.any():
+        return compression, converged
+    restitution, also = _solve(jacobian, inverse_mass, twist, normals, frictions, least=least, bounce=none)
+    return compression + restitution, converged and also
+
+
+def _solve(
+    jacobian: FloatArray,
+    inverse_mass: FloatArray,
+    twist: FloatArray,
+    normals: FloatArray,
+    frictions: FloatArray,
+    *,
+    least: FloatArray,
+    bounce: FloatArray,
+) -> tuple[FloatArray, bool]:
+    """Return impulses of at least ``least`` that leave velocities of at least ``bounce``, along normals."""
+    response = inverse_mass @ jacobian.transpose(0, 2, 1)  # (n, 6 k, 3)
+    blocks = jacobian @ response  # (n, 3, 3)
+    impulses = least[:, None] * normals
+    twist = twist + np.einsum("ijk,ik->j", response, impulses)
+    scale = float(abs(jacobian @ twist).max())
+    # Projection steps that are safe for each block: 1 over its largest eigenvalue.
+    steps = 1.0 / np.linalg.eigvalsh(blocks)[:, -1]
+    for _ in range(MOST_SWEEPS):
+        change = 0.0
+        for i, n in enumerate(normals):
+            velocity = jacobian[i] @ twist
+            v_n = velocity @ n
+            trial = impulses[i] - steps[i] * velocity
+            p = max(float(impulses[i] @ n - steps[i] * (v_n - bounce[i])), least[i])
+            tangential = trial - (trial @ n) * n
+            size = float(np.linalg.norm(tangential))
+            if size > frictions[i] * p:
+                tangential *= frictions[i] * p / size
+            step = p * n + tangential - impulses[i]
+            impulses[i] += step
+            twist = twist + response[i] @ step
+            change = max(change, float(abs(blocks[i] @ step).max()))
+        if change <= CONVERGED * scale:
+            return impulses, True
+    return impulses, False

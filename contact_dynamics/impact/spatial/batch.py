@@ -1,0 +1,251 @@
+"""Many impacts in space at once: arrays in, arrays out, with the numbers of `spatial` to the last bit.
+
+Contacts slide in lock-step (`lockstep`); those whose direction is invariant (spheres, central impacts, plane
+problems, no friction) are closed forms here as there. What is not kept is the vertices of the impulse paths.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from contact_dynamics.errors import SeparatingContactError
+from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
+from contact_dynamics.impact.spatial.batch_paths import trace_all
+from contact_dynamics.impact.spatial.response import (
+    Responding,
+    contact_axes,
+    pushed,
+    responding,
+    velocity_at_contact,
+)
+from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
+from contact_dynamics.tolerances import (
+    ENERGY_TOLERANCE,
+    SYMMETRY_TOLERANCE,
+    TRIANGLE_TOLERANCE,
+    VELOCITY_TOLERANCE,
+)
+from contact_dynamics.validation import FloatArray, check_not_negative
+from contact_dynamics.validation_batches import (
+    check_law_rows,
+    check_not_negative_rows,
+    check_positive_rows,
+    check_rows,
+    check_share_rows,
+    check_unit_rows,
+    common_length,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+_CHUNK: Final = 8192
+"""Cases that go together. More save little and take 2 kB each while they slide."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class StrikingBodies:
+    """Bodies that strike, at their contacts; each field has a row a case, or one for all cases.
+
+    Raises:
+        InvalidFieldError: a number is not allowed; the message names the field and the first row.
+    """
+
+    masses: FloatArray  # (N,) or (), kg, > 0
+    inertias_B: FloatArray  # (N, 3, 3) or (3, 3), kg m^2, about the centres of mass, body axes
+    q_WB: FloatArray  # (N, 4) or (4,), unit quaternions x, y, z, w: body into world coordinates
+    v_WB_W: FloatArray  # (N, 3) or (3,), m/s, of the centres of mass, world axes
+    w_WB_W: FloatArray  # (N, 3) or (3,), rad/s, world axes
+    r_W: FloatArray  # (N, 3) or (3,), m, from the centres of mass to the contacts, world axes
+
+    def __post_init__(self) -> None:
+        """Check all fields and make arrays with a leading axis of them."""
+        checked = {
+            "masses": check_positive_rows("masses", self.masses),
+            "inertias_B": check_rows(
+                "inertias_B",
+                self.inertias_B,
+                (3, 3),
+                "a symmetric positive definite matrix with I1 + I2 >= I3",
+                _possible_inertias,
+            ),
+            "q_WB": check_unit_rows("q_WB", self.q_WB, 4),
+            "v_WB_W": check_rows("v_WB_W", self.v_WB_W, (3,)),
+            "w_WB_W": check_rows("w_WB_W", self.w_WB_W, (3,)),
+            "r_W": check_rows("r_W", self.r_W, (3,)),
+        }
+        for field, rows in checked.items():
+            object.__setattr__(self, field, rows)
+
+    @property
+    def fields(self) -> dict[str, FloatArray]:
+        """Return the fields by their names."""
+        return {field: getattr(self, field) for field in self.__slots__}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SpatialImpacts:
+    """The answers to N impacts in space; row i belongs to case i. Meanings as in `SpatialImpact`."""
+
+    laws: NDArray[np.int64]  # (N,), values of RestitutionLaw
+    outcomes: NDArray[np.int64]  # (N,), values of ImpactOutcome
+    v_WB_W: FloatArray  # (N, 3), m/s, of the centres of mass afterwards, world axes
+    w_WB_W: FloatArray  # (N, 3), rad/s, afterwards, world axes
+    impulses_W: FloatArray  # (N, 3), N s, total
+    compressions_W: FloatArray  # (N, 3), N s, up to the end of compression
+    velocities_before_W: FloatArray  # (N, 3), m/s, of the contacts, relative to what they touch
+    velocities_after_W: FloatArray  # (N, 3), m/s, of the contacts, relative to what they touch
+    other_v_WB_W: FloatArray | None = None  # (N, 3), m/s, of the second bodies; None: the fixed world
+    other_w_WB_W: FloatArray | None = None  # (N, 3), rad/s, of the second bodies; None: the fixed world
+
+    @property
+    def energy_changes(self) -> FloatArray:
+        """Return the changes of kinetic energy, (N,), J."""
+        speeds = self.velocities_before_W + self.velocities_after_W
+        changes: FloatArray = 0.5 * np.einsum("ij,ij->i", self.impulses_W, speeds)
+        return changes
+
+    @property
+    def creates_energy(self) -> NDArray[np.bool_]:
+        """Return which of them the law gave energy, (N,), beyond rounding. Only Newton's can."""
+        speeds = abs(self.velocities_before_W) + abs(self.velocities_after_W)
+        exchanged = np.einsum("ij,ij->i", abs(self.impulses_W), speeds)
+        created: NDArray[np.bool_] = self.energy_changes > ENERGY_TOLERANCE * exchanged
+        return created
+
+
+def spatial_impacts(
+    bodies: StrikingBodies,
+    *,
+    normals_W: ArrayLike,
+    frictions: ArrayLike,
+    restitutions: ArrayLike,
+    others: StrikingBodies | None = None,
+    laws: ArrayLike = RestitutionLaw.POISSON,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+) -> SpatialImpacts:
+    """Return what N impacts in space do; the same as `spatial_impact`, or `spatial_pair_impact`, of each.
+
+    Args:
+        bodies: The bodies that the normals point into, just before.
+        normals_W: (N, 3) or (3,), unit, world axes.
+        frictions: (N,) or one number, >= 0.
+        restitutions: (N,) or one number, in [0, 1].
+        others: What they strike, where it is not the fixed world.
+        laws: (N,) or one, values of RestitutionLaw.
+        velocity_tolerance: m/s, >= 0. A normal or tangential velocity of a contact within it counts as zero.
+
+    Raises:
+        SeparatingContactError: a contact's normal velocity is above the tolerance; the message names the
+            first.
+        InvalidFieldError: a number is not allowed; the message names the field and the first row.
+    """
+    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
+    fields = {
+        "normals_W": check_unit_rows("normals_W", normals_W, 3),
+        "frictions": check_not_negative_rows("frictions", frictions),
+        "restitutions": check_share_rows("restitutions", restitutions),
+        "laws": check_law_rows("laws", laws),
+        **{f"bodies.{name}": rows for name, rows in bodies.fields.items()},
+    }
+    if others is not None:
+        fields |= {f"others.{name}": rows for name, rows in others.fields.items()}
+    count = common_length(fields)
+    every_law = np.broadcast_to(fields["laws"], count)
+    outcomes = np.empty(count, dtype=np.int64)
+    results = np.empty((18 if others is None else 24, count))
+    # Lanes that a formula is not meant for are computed too, and not used.
+    with np.errstate(all="ignore"):
+        for law in RestitutionLaw:
+            cases = np.flatnonzero(every_law == law)
+            for first in range(0, len(cases), _CHUNK):
+                chunk = cases[first : first + _CHUNK]
+                rows = {name: x[chunk] if len(x) > 1 else x for name, x in fields.items()}
+                outcomes[chunk], components = _strike(rows, chunk, law, tolerance)
+                for result, component in zip(results, components, strict=True):
+                    result[chunk] = component
+    triples = [results[i : i + 3].T for i in range(0, len(results), 3)]
+    return SpatialImpacts(
+        laws=every_law.astype(np.int64),
+        outcomes=outcomes,
+        v_WB_W=triples[0],
+        w_WB_W=triples[1],
+        impulses_W=triples[2],
+        compressions_W=triples[3],
+        velocities_before_W=triples[4],
+        velocities_after_W=triples[5],
+        other_v_WB_W=None if others is None else triples[6],
+        other_w_WB_W=None if others is None else triples[7],
+    )
+
+
+def _strike(
+    rows: dict[str, FloatArray], cases: NDArray[np.intp], law: RestitutionLaw, tolerance: float
+) -> tuple[NDArray[np.int64], list[FloatArray]]:
+    """Repeat `spatial_impact` for some ``cases``; return outcomes, and the answers component by component."""
+    count = len(cases)
+    first = _responding(rows, "bodies", count)
+    second = _responding(rows, "others", count) if "others.masses" in rows else None
+    velocity = velocity_at_contact(first, second)
+    axes = contact_axes(first, second, _columns(rows["normals_W"], count))
+    u1, u2, v_n = axes.components(velocity)
+    for i in np.flatnonzero(~(v_n <= tolerance))[:1]:
+        raise SeparatingContactError(
+            f"contact normal velocity of case {cases[i]}",
+            f"v_n = {v_n[i]:.9g} m/s",
+            f"at most {tolerance:g} m/s, since above it nothing strikes",
+        )
+    still = np.sqrt(u1 * u1 + u2 * u2) <= tolerance
+    rests = v_n >= -tolerance
+    u1[still] = u2[still] = 0.0
+    v_n[rests] = 0.0
+    counted = zip(velocity, axes.in_world((u1, u2, v_n)), strict=True)
+    velocity = tuple(np.where(still | rests, without, whole) for whole, without in counted)
+    mu = np.minimum(np.broadcast_to(rows["frictions"], count), LARGEST_FRICTION)
+    e = np.broadcast_to(rows["restitutions"], count)
+    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, mu)
+    paths = trace_all(sliding, (u1, u2), v_n, restitution=e, law=law)
+    impulse = axes.in_world(paths.impulse)
+    parts = [
+        *pushed(first, impulse),
+        impulse,
+        axes.in_world(paths.compression),
+        velocity,
+        axes.in_world((*paths.u, paths.v_n)),
+    ]
+    if second is not None:
+        parts += pushed(second, (-impulse[0], -impulse[1], -impulse[2]))
+    return paths.outcomes, [component for part in parts for component in part]
+
+
+def _responding(rows: dict[str, FloatArray], which: str, count: int) -> Responding:
+    mass, inertia, q, r, v, w = (
+        rows[f"{which}.{name}"] for name in ("masses", "inertias_B", "q_WB", "r_W", "v_WB_W", "w_WB_W")
+    )
+    return responding(
+        np.broadcast_to(mass, count),
+        [[np.broadcast_to(inertia[:, i, j], count) for j in range(3)] for i in range(3)],
+        _columns(q, count),
+        _columns(r, count),
+        _columns(v, count),
+        _columns(w, count),
+    )
+
+
+def _columns(rows: FloatArray, count: int) -> Any:
+    """Return the columns of ``rows``, each of ``count`` numbers."""
+    return tuple(np.ascontiguousarray(np.broadcast_to(column, count)) for column in rows.T)
+
+
+def _possible_inertias(inertias: FloatArray) -> NDArray[np.bool_]:
+    """Return which inertias a body can have, (N,), as `MassProperties` judges each."""
+    scale = abs(inertias).max(axis=(1, 2))
+    symmetric = abs(inertias - inertias.transpose(0, 2, 1)).max(axis=(1, 2)) <= SYMMETRY_TOLERANCE * scale
+    moments = np.linalg.eigvalsh(inertias)
+    triangle = moments[:, 0] + moments[:, 1] >= moments[:, 2] * (1.0 - TRIANGLE_TOLERANCE)
+    possible: NDArray[np.bool_] = symmetric & (moments[:, 0] > 0.0) & triangle
+    return possible

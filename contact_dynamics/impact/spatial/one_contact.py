@@ -1,0 +1,221 @@
+"""Impact in space of one body at one contact: with the fixed world, or with a second moving body.
+
+Model: as in the plane (`planar`): rigid, without duration, Coulomb friction, the contact's force alone. In
+space the sliding direction swerves while the impulse grows, and the path is an ordinary differential equation
+in the normal impulse (lecture 27 carried to space; Routh 1860; Keller 1986), solved to rounding (`sliding`,
+`series`, `swerve`); where the direction stays, in closed form. Impulses on two bodies are opposite, so that
+only their relative velocity matters and the contact's inverse inertia is the sum of both (`response`).
+
+Not covered: torsional friction and rolling resistance (the contact transmits a force, no moment), several
+contacts (`several`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.errors import SeparatingContactError
+from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
+from contact_dynamics.impact.spatial.path import trace
+from contact_dynamics.impact.spatial.response import (
+    Responding,
+    contact_axes,
+    pushed,
+    responding,
+    response,
+    velocity_at_contact,
+)
+from contact_dynamics.impact.spatial.result import SpatialImpact
+from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
+from contact_dynamics.tolerances import VELOCITY_TOLERANCE
+from contact_dynamics.validation import check_array, check_not_negative, check_unit, check_within
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.validation import FloatArray
+
+
+def spatial_impact(
+    body: MassProperties,
+    state: BodyState,
+    *,
+    p_WC_W: ArrayLike,
+    n_W: ArrayLike,
+    friction: float,
+    restitution: float,
+    law: RestitutionLaw = RestitutionLaw.POISSON,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+) -> SpatialImpact:
+    """Return what the impact of ``body`` does.
+
+    Args:
+        body: Mass and angular inertia.
+        state: Pose and velocities just before.
+        p_WC_W: (3,), m, the contact, world.
+        n_W: (3,), unit normal into the body, world axes.
+        friction: Coulomb's mu, >= 0.
+        restitution: e, in [0, 1].
+        law: What the coefficient of restitution means.
+        velocity_tolerance: m/s, >= 0. A normal or tangential velocity of the contact within it counts as
+            zero.
+
+    Raises:
+        SeparatingContactError: the contact's normal velocity is above the tolerance.
+        InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, or e outside [0, 1].
+    """
+    return _impact(
+        body,
+        state,
+        None,
+        None,
+        p_WC_W=p_WC_W,
+        n_W=n_W,
+        friction=friction,
+        restitution=restitution,
+        law=law,
+        velocity_tolerance=velocity_tolerance,
+    )
+
+
+def spatial_pair_impact(
+    body: MassProperties,
+    state: BodyState,
+    other: MassProperties,
+    other_state: BodyState,
+    *,
+    p_WC_W: ArrayLike,
+    n_W: ArrayLike,
+    friction: float,
+    restitution: float,
+    law: RestitutionLaw = RestitutionLaw.POISSON,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+) -> SpatialImpact:
+    """Return what the impact of two bodies in space does; no moment passes the contact.
+
+    Args:
+        body: The first body, which the normal points into.
+        state: Of the first body just before.
+        other: The second body.
+        other_state: Of the second body just before.
+        p_WC_W: (3,), m, the contact, world.
+        n_W: (3,), unit normal into the first body, world axes.
+        friction: Coulomb's mu, >= 0.
+        restitution: e, in [0, 1].
+        law: What the coefficient of restitution means.
+        velocity_tolerance: m/s, >= 0. A normal or tangential relative velocity within it counts as zero.
+
+    Raises:
+        SeparatingContactError: the contact's relative normal velocity is above the tolerance.
+        InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, or e outside [0, 1].
+    """
+    return _impact(
+        body,
+        state,
+        other,
+        other_state,
+        p_WC_W=p_WC_W,
+        n_W=n_W,
+        friction=friction,
+        restitution=restitution,
+        law=law,
+        velocity_tolerance=velocity_tolerance,
+    )
+
+
+def _impact(
+    body: MassProperties,
+    state: BodyState,
+    other: MassProperties | None,
+    other_state: BodyState | None,
+    *,
+    p_WC_W: ArrayLike,
+    n_W: ArrayLike,
+    friction: float,
+    restitution: float,
+    law: RestitutionLaw,
+    velocity_tolerance: float,
+) -> SpatialImpact:
+    """Return the impact of a body on ``other``; None is the fixed world."""
+    normal = check_unit("contact normal", n_W, 3)
+    point = check_array("contact position", p_WC_W, (3,))
+    mu = check_not_negative("friction", friction)
+    e = check_within("restitution", restitution, 0.0, 1.0)
+    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
+
+    first, second = _responding(body, state, point), None
+    if other is not None and other_state is not None:
+        second = _responding(other, other_state, point)
+    velocity = velocity_at_contact(first, second)
+    axes = contact_axes(first, second, tuple(normal.tolist()))
+    u1, u2, v_n = axes.components(velocity)
+    if not v_n <= tolerance:
+        raise SeparatingContactError(
+            "contact normal velocity",
+            f"v_n = {v_n:.9g} m/s",
+            f"at most {tolerance:g} m/s, since above it nothing strikes",
+        )
+    still, rests = math.sqrt(u1 * u1 + u2 * u2) <= tolerance, v_n >= -tolerance
+    if still:
+        u1 = u2 = 0.0
+    if rests:
+        v_n = 0.0
+    if still or rests:
+        velocity = axes.in_world((u1, u2, v_n))
+    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, min(mu, LARGEST_FRICTION))
+    path = trace(sliding, (u1, u2), v_n, restitution=e, law=law)
+
+    impulse = axes.in_world(path.impulse)
+    v, w = pushed(first, impulse)
+    other_after = None
+    if second is not None and other_state is not None:
+        other_v, other_w = pushed(second, (-impulse[0], -impulse[1], -impulse[2]))
+        other_after = replace(other_state, v_WB_W=np.array(other_v), w_WB_W=np.array(other_w))
+    columns = np.array([axes.t1, axes.t2, axes.n]).T
+    matrix = np.array([[axes.l1, 0.0, axes.k1], [0.0, axes.l2, axes.k2], [axes.k1, axes.k2, axes.kn]])
+    return SpatialImpact(
+        law=law,
+        outcome=path.outcome,
+        jams=path.jams,
+        state=replace(state, v_WB_W=np.array(v), w_WB_W=np.array(w)),
+        impulse_W=np.array(impulse),
+        compression_W=np.array(axes.in_world(path.compression)),
+        path_W=np.array([vertex for _, vertex in path.vertices]) @ columns.T,
+        path_events=tuple(event for event, _ in path.vertices),
+        velocity_before_W=np.array(velocity),
+        velocity_after_W=np.array(axes.in_world((*path.u, path.v_n))),
+        inverse_inertia_W=columns @ matrix @ columns.T,
+        other_state=other_after,
+    )
+
+
+def contact_inverse_inertia(body: MassProperties, state: BodyState, arm: FloatArray) -> FloatArray:
+    """Return the change of a point's velocity per impulse there, (3, 3), 1/kg, world (lecture 27, eq. 7).
+
+    Args:
+        body: Mass and angular inertia.
+        state: Gives the attitude.
+        arm: (3,), m, from the centre of mass to the point, world axes.
+    """
+    axes = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+    whole = response(_responding(body, state, state.p_WB_W + arm), *axes)
+    return np.array(
+        [[whole.aa, whole.ab, whole.an], [whole.ab, whole.bb, whole.bn], [whole.an, whole.bn, whole.nn]]
+    )
+
+
+def _responding(body: MassProperties, state: BodyState, point: FloatArray) -> Responding:
+    return responding(
+        body.mass,
+        body.I_B.tolist(),
+        state.q_WB.tolist(),
+        tuple((point - state.p_WB_W).tolist()),
+        tuple(state.v_WB_W.tolist()),
+        tuple(state.w_WB_W.tolist()),
+    )

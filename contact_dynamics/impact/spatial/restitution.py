@@ -1,0 +1,191 @@
+"""How far an impact has come while the normal impulse grows, for paths that are not known in advance.
+
+Compression is wherever the contact approaches, restitution wherever it leaves. What the restitution law
+compares (Poisson: normal impulse; energetic: work of the normal impulse) is collected in compression and
+given back in restitution; Newton's law only looks at the normal velocity. In space the sliding direction
+swerves, so that a contact can approach once more before its restitution is over: what the second compression
+collects is added to what was left of the first.
+
+One path is followed here, with its vertices; `lockstep` repeats the same operations for many at once.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from contact_dynamics.impact.law import PathEvent, RestitutionLaw
+from contact_dynamics.impact.spatial.taylor import crossing, gain, value
+
+if TYPE_CHECKING:
+    from contact_dynamics.impact.spatial.taylor import SlidingSeries
+
+Impulse = tuple[float, float, float]  # N s: two tangential components and the normal one
+
+
+class Progress:
+    """State of an impact on its way: impulse, normal velocity, and what restitution still owes."""
+
+    def __init__(self, law: RestitutionLaw, restitution: float, v_n: float) -> None:
+        self.law = law
+        self.v_n = v_n  # m/s, <= 0 at first
+        self.impulse: Impulse = (0.0, 0.0, 0.0)
+        self.compression: Impulse = (0.0, 0.0, 0.0)  # at the last end of compression
+        self.compressing = True
+        self.over = False
+        self.path: list[tuple[PathEvent, Impulse]] = [(PathEvent.START, self.impulse)]
+        self.final_velocity = restitution * -v_n  # m/s, Newton's end
+        self.share = restitution * restitution if law == RestitutionLaw.ENERGETIC else restitution
+        self.due = 0.0  # N s or J, what restitution still owes
+
+    def go_straight(self, length: float, rates: Impulse, lifting: float) -> float:
+        """Advance by at most ``length`` of normal impulse at constant ``rates`` of the impulse and of v_n.
+
+        Returns:
+            The normal impulse gone, N s; less than ``length`` where the impact was over before.
+        """
+        gone = 0.0
+        while not self.over:
+            rest = length - gone
+            if self.compressing:
+                turn = -self.v_n / lifting if lifting > 0.0 else math.inf
+                step = min(turn, rest)
+                self._straight_step(step, rates, lifting)
+                gone += step
+                if turn >= rest:
+                    break
+                self._end_compression()
+            else:
+                end = self._distance_to_end(lifting)
+                turn = self.v_n / -lifting if lifting < 0.0 else math.inf
+                step = min(end, turn, rest)
+                self._straight_step(step, rates, lifting)
+                gone += step
+                if step == end:
+                    self._finish()
+                elif step == turn:
+                    self._compress_again()
+                else:
+                    break
+        return gone
+
+    def go_curved(self, series: SlidingSeries, begin: float, end: float) -> float:
+        """Advance along ``series`` from ``begin`` to ``end``, between which v_n rises or falls throughout.
+
+        Returns:
+            The parameter reached; less than ``end`` where the impact was over before.
+        """
+        s = begin
+        v_n = series.normal_velocity
+        while not self.over:
+            v_end = value(v_n, end)
+            if self.compressing:
+                if v_end < 0.0:
+                    return self._curved_step(series, s, end, v_end)
+                s = self._curved_step(series, s, crossing(v_n, 0.0, s, end), 0.0)
+                self._end_compression()
+                continue
+            turn, v_turn = (crossing(v_n, 0.0, s, end), 0.0) if v_end < 0.0 else (end, v_end)
+            finish = self._curved_finish(series, s, turn)
+            if finish is not None:
+                s = self._curved_step(series, s, finish, value(v_n, finish))
+                self._finish()
+                break
+            s = self._curved_step(series, s, turn, v_turn)
+            if v_end >= 0.0:
+                break
+            self._compress_again()
+        return s
+
+    def jump(self, impulse: Impulse, v_n: float, work: float) -> bool:
+        """Advance by ``impulse`` at once, to ``v_n``, unless compression or the impact ends on the way.
+
+        On the way v_n rises or falls throughout.
+
+        Returns:
+            Whether it did.
+        """
+        if self.compressing:
+            if v_n > 0.0:
+                return False
+        elif v_n < 0.0 or self._ends_within(impulse[2], v_n, work):
+            return False
+        self._account(impulse[2], work)
+        i1, i2, p = self.impulse
+        self.impulse = (i1 + impulse[0], i2 + impulse[1], p + impulse[2])
+        self.v_n = v_n
+        return True
+
+    def sample(self, event: PathEvent = PathEvent.SAMPLE) -> None:
+        """Add the present impulse to the path."""
+        self.path.append((event, self.impulse))
+
+    def _straight_step(self, step: float, rates: Impulse, lifting: float) -> None:
+        work = step * (self.v_n + 0.5 * lifting * step)
+        i1, i2, p = self.impulse
+        self.impulse = (i1 + rates[0] * step, i2 + rates[1] * step, p + step)
+        self._account(step, work)
+        self.v_n += lifting * step
+
+    def _distance_to_end(self, lifting: float) -> float:
+        if self.law == RestitutionLaw.POISSON:
+            return self.due
+        if self.law == RestitutionLaw.NEWTON:
+            missing = self.final_velocity - self.v_n
+            if missing <= 0.0:
+                return 0.0
+            return missing / lifting if lifting > 0.0 else math.inf
+        if self.due <= 0.0:
+            return 0.0
+        square = self.v_n * self.v_n + 2.0 * lifting * self.due
+        return 2.0 * self.due / (self.v_n + math.sqrt(square)) if square > 0.0 else math.inf
+
+    def _ends_within(self, p: float, v_n: float, work: float) -> bool:
+        if self.law == RestitutionLaw.NEWTON:
+            return v_n >= self.final_velocity
+        return (p if self.law == RestitutionLaw.POISSON else work) >= self.due
+
+    def _curved_step(self, series: SlidingSeries, begin: float, end: float, v_n: float) -> float:
+        """Advance to ``end``, where the normal velocity is ``v_n``; return it."""
+        p = gain(series.normal_impulse, begin, end)
+        work = gain(series.normal_work, begin, end) if self.law == RestitutionLaw.ENERGETIC else 0.0
+        self._account(p, work)
+        i1, i2, i_n = self.impulse
+        self.impulse = (
+            i1 + gain(series.t1, begin, end),
+            i2 + gain(series.t2, begin, end),
+            i_n + p,
+        )
+        self.v_n = v_n
+        return end
+
+    def _curved_finish(self, series: SlidingSeries, begin: float, end: float) -> float | None:
+        """Return the parameter in [begin, end] at which restitution is complete, if it is."""
+        if self.law == RestitutionLaw.NEWTON:
+            meter, level = series.normal_velocity, self.final_velocity
+            first = value(meter, begin)
+        else:
+            meter = series.normal_impulse if self.law == RestitutionLaw.POISSON else series.normal_work
+            first = value(meter, begin)
+            level = first + self.due
+        if first >= level:
+            return begin
+        return crossing(meter, level, begin, end) if value(meter, end) >= level else None
+
+    def _account(self, p: float, work: float) -> None:
+        amount = work if self.law == RestitutionLaw.ENERGETIC else p
+        self.due += self.share * abs(amount) if self.compressing else -amount
+
+    def _end_compression(self) -> None:
+        self.v_n = 0.0
+        self.compressing = False
+        self.compression = self.impulse
+        self.sample(PathEvent.COMPRESSION_ENDS)
+
+    def _compress_again(self) -> None:
+        self.v_n = 0.0
+        self.compressing = True
+
+    def _finish(self) -> None:
+        self.over = True
+        self.sample(PathEvent.RESTITUTION_ENDS)

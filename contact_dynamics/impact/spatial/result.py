@@ -1,0 +1,47 @@
+"""What an impact at one contact in space comes to: the state afterwards, and the impulse path as evidence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.tolerances import ENERGY_TOLERANCE
+from contact_dynamics.validation import FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SpatialImpact:
+    """The answer to one impact in space. Impulses act on the body; all arrays are in world axes."""
+
+    law: RestitutionLaw  # the restitution law that was asked for
+    outcome: ImpactOutcome  # what the contact did
+    jams: bool  # whether sliding drove the contact into compression at first
+    state: BodyState  # afterwards: the pose of before, new velocities
+    impulse_W: FloatArray  # (3,), N s, total
+    compression_W: FloatArray  # (3,), N s, up to the end of compression
+    path_W: FloatArray  # (k, 3), N s, points of the impulse path; those at a SAMPLE lie on a curve
+    path_events: tuple[PathEvent, ...]  # (k,), what each point stands for
+    velocity_before_W: (
+        FloatArray  # (3,), m/s, of the contact, relative to what it touches; 0: within tolerance
+    )
+    velocity_after_W: FloatArray  # (3,), m/s, of the contact, relative to what it touches
+    inverse_inertia_W: FloatArray  # (3, 3), 1/kg, the contact's change of velocity per impulse
+    other_state: BodyState | None = None  # of the second body afterwards; None: the fixed world
+
+    @property
+    def restitution_W(self) -> FloatArray:
+        """Return the impulse of restitution, (3,), N s."""
+        restitution: FloatArray = self.impulse_W - self.compression_W
+        return restitution
+
+    @property
+    def energy_change(self) -> float:
+        """Return the change of kinetic energy, J: the impulse times the contact's mean velocity."""
+        return 0.5 * float(self.impulse_W @ (self.velocity_before_W + self.velocity_after_W))
+
+    @property
+    def creates_energy(self) -> bool:
+        """Return whether the law gave the body energy, beyond rounding."""
+        speeds = abs(self.velocity_before_W) + abs(self.velocity_after_W)
+        return self.energy_change > ENERGY_TOLERANCE * float(abs(self.impulse_W) @ speeds)

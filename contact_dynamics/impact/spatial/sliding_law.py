@@ -1,0 +1,103 @@
+"""How a contact in space slides under a growing normal impulse (Routh 1860; Keller 1986).
+
+Tangential axes are the principal ones of the tangential block of the contact's inverse inertia, so that with
+the normal impulse p, the tangential velocity u and friction -mu u/|u| per unit of normal impulse
+
+    du/dp = k - mu L u/|u|,     dv_n/dp = k_n - mu k . u/|u|,     L = diag(l_1, l_2).
+
+The sliding direction turns at the rate (its component across u)/|u|. That component is the derivative, along
+the circle of directions, of E = k . d - mu/2 d.L d: so directions climb E, there are two or four directions
+that stay as they are (*invariant* ones), every other maximum of E, and no path circles for ever.
+
+A contact that has stopped stays if friction can hold it, |L^-1 k| <= mu. If not, it leaves in the one
+direction d that it can keep while speeding up, (mu L + g) d = k with g > 0: the length of (mu L + g)^-1 k
+falls from above 1 to 0 as g grows from 0, so there is exactly one. In that phase dv_n/dp > mu g > 0, since
+the inverse inertia is positive definite.
+
+The law's formulas serve one case as well as many at once (`elementwise`).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final, NamedTuple
+
+from contact_dynamics.numerics.elementwise import Number, larger, sqrt
+
+ESCAPE_ROUNDS: Final = 60
+"""Bound on the iterations for the direction in which a contact leaves; they converge quadratically."""
+
+
+class SlidingLaw(NamedTuple):
+    """Coefficients of the equations above, in 1/kg, friction included where named so."""
+
+    l1: Number  # 1/kg, first principal tangential inverse inertia, > 0
+    l2: Number  # 1/kg, second, > 0
+    k1: Number  # 1/kg, coupling of the first tangential direction with the normal
+    k2: Number  # 1/kg, coupling of the second
+    kn: Number  # 1/kg, normal inverse inertia, > 0
+    mu: Number  # Coulomb's coefficient, >= 0
+
+    @property
+    def holds(self) -> Number:
+        """Return whether friction can hold a contact that has stopped."""
+        x, y = self.k1 / self.l1, self.k2 / self.l2
+        return sqrt(x * x + y * y) <= self.mu
+
+    @property
+    def scale(self) -> Number:
+        """Return a bound on the length of du/dp, 1/kg."""
+        coupling = sqrt(self.k1 * self.k1 + self.k2 * self.k2)
+        return coupling + self.mu * larger(self.l1, self.l2)
+
+    def speeding(self, d1: Number, d2: Number) -> Number:
+        """Return d|u|/dp, 1/kg, in the unit direction (d1, d2)."""
+        return self.k1 * d1 + self.k2 * d2 - self.mu * (self.l1 * d1 * d1 + self.l2 * d2 * d2)
+
+    def turning(self, d1: Number, d2: Number) -> Number:
+        """Return |u| times the rate of turning, 1/kg; zero in an invariant direction."""
+        return self.k2 * d1 - self.k1 * d2 + self.mu * (self.l1 - self.l2) * d1 * d2
+
+    def attraction(self, d1: Number, d2: Number) -> Number:
+        """Return the derivative of `turning` in the angle; negative where near-by directions come closer."""
+        return self.mu * (self.l1 - self.l2) * (d1 * d1 - d2 * d2) - self.k1 * d1 - self.k2 * d2
+
+    def lifting(self, d1: Number, d2: Number) -> Number:
+        """Return dv_n/dp, 1/kg, while sliding in the unit direction (d1, d2); negative where sliding jams."""
+        return self.kn - self.mu * (self.k1 * d1 + self.k2 * d2)
+
+    def while_held(self) -> tuple[Number, Number, Number]:
+        """Return d(I_1, I_2)/dp and dv_n/dp of a stopped contact that friction holds."""
+        i1, i2 = -self.k1 / self.l1, -self.k2 / self.l2
+        return i1, i2, self.kn + self.k1 * i1 + self.k2 * i2
+
+    def escape_step(self, g: Number) -> tuple[Number, Number, Number]:
+        """Return (mu L + g)^-1 k, and the step from ``g`` that makes its length 1.
+
+        Newton's method on 1/|d| - 1, concave and rising: it comes from the left and does not overshoot.
+        """
+        m1, m2 = self.mu * self.l1 + g, self.mu * self.l2 + g
+        d1, d2 = self.k1 / m1, self.k2 / m2
+        square = d1 * d1 + d2 * d2
+        step = (sqrt(square) - 1.0) * square / (d1 * d1 / m1 + d2 * d2 / m2)
+        return d1, d2, step
+
+    def least_escape(self) -> Number:
+        """Return a g, 1/kg, to begin `escape_step` with."""
+        g = larger(abs(self.k1) - self.mu * self.l1, abs(self.k2) - self.mu * self.l2)
+        return larger(g, 0.0)
+
+    def after_stop(self) -> tuple[float, float, float, float]:
+        """Return what one stopped contact does: d(I_1, I_2)/dp, dv_n/dp, d|u|/dp (0 if held)."""
+        if self.holds:
+            return (*self.while_held(), 0.0)
+        g = self.least_escape()
+        for _ in range(ESCAPE_ROUNDS):
+            step = self.escape_step(g)[2]
+            g += step
+            if step <= 1e-16 * g:
+                break
+        d1, d2, _ = self.escape_step(g)
+        length = math.sqrt(d1 * d1 + d2 * d2)
+        d1, d2 = d1 / length, d2 / length
+        return -self.mu * d1, -self.mu * d2, self.lifting(d1, d2), g

@@ -1,0 +1,1 @@
+"""Where a flight ends: the first contact with planes and obstacles."""

@@ -1,0 +1,102 @@
+"""When and how a body's flight ends: its first contact with the world, and all contacts there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.contact.found import find_contacts
+from contact_dynamics.landing.obstacle_arrival import first_touch
+from contact_dynamics.landing.plane_arrival import first_contact
+from contact_dynamics.shapes.obstacle import Obstacle
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE, VELOCITY_TOLERANCE
+from contact_dynamics.tumbling import free_motion
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.landing.acceleration_bounds import Motion
+    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import Body, Surface, World
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Landing:
+    """The end of a flight: the body touches."""
+
+    seconds: float  # s after the state's stamp; 0 where it touches already
+    state: BodyState  # just then
+    contacts: ContactSet  # that touch and do not leave; more than one where an edge or a face lands
+    velocities_W: FloatArray  # (n, 3), m/s, of the body's points at the contacts, world axes
+    strikes: bool  # whether one of them approaches faster than the velocity tolerance: an impact
+
+
+def next_landing(
+    body: Body,
+    state: BodyState,
+    world: World,
+    *,
+    horizon: float,
+    distance_tolerance: float = DISTANCE_TOLERANCE,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+    motion: Motion | None = None,
+) -> Landing | None:
+    """Return where a body's flight ends within ``horizon`` (s), or None.
+
+    A point within ``distance_tolerance`` (m) of a surface touches it. A body that touches flies only if each
+    of its contacts leaves faster than ``velocity_tolerance`` (m/s); what counts then is where it comes down.
+    ``motion`` is the flight, in closed form or under forces; None: that of the state in the world's gravity.
+    """
+    now = _touching(body, state, world, distance_tolerance)
+    if now is not None and (now.approach <= velocity_tolerance).any():
+        return now.landing(0.0, state, velocity_tolerance)
+    if motion is None:
+        motion = free_motion(body.mass_properties, state, gravity_W=world.gravity_W)
+    arrivals = [
+        seconds
+        for surface in world.surfaces
+        if (seconds := _arrival(motion, body, surface, horizon)) is not None
+    ]
+    if not arrivals:
+        return None
+    seconds = min(arrivals)
+    then = motion.state_at(seconds)
+    touching = _touching(body, then, world, max(distance_tolerance, DISTANCE_TOLERANCE))
+    return None if touching is None else touching.landing(seconds, then, velocity_tolerance)
+
+
+def _arrival(motion: Motion, body: Body, surface: Surface | Obstacle, horizon: float) -> float | None:
+    if isinstance(surface, Obstacle):
+        return first_touch(motion, body.shape, surface, horizon=horizon)
+    found = first_contact(motion, body.shape, surface.p_WS_W, surface.normal_W, horizon=horizon)
+    return None if found is None else found.seconds
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Touching:
+    contacts: ContactSet
+    velocities_W: FloatArray  # (n, 3), m/s
+    approach: FloatArray  # (n,), m/s, normal velocities, negative towards the surface
+
+    def landing(self, seconds: float, state: BodyState, velocity_tolerance: float) -> Landing:
+        """Return the landing of the contacts that do not leave."""
+        stays = self.approach <= velocity_tolerance
+        contacts = self.contacts if stays.all() else self.contacts.subset(np.flatnonzero(stays).tolist())
+        return Landing(
+            seconds=seconds,
+            state=state,
+            contacts=contacts,
+            velocities_W=self.velocities_W[stays],
+            strikes=bool((self.approach < -velocity_tolerance).any()),
+        )
+
+
+def _touching(body: Body, state: BodyState, world: World, distance_tolerance: float) -> _Touching | None:
+    contacts = find_contacts(body, state, world.surfaces, distance_tolerance=distance_tolerance)
+    if len(contacts) == 0:
+        return None
+    velocities = state.velocity_of_point(contacts.p_WC_W)
+    approach = np.einsum("ni,ni->n", velocities, contacts.normals_W)
+    return _Touching(contacts=contacts, velocities_W=velocities, approach=approach)

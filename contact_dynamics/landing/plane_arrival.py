@@ -1,0 +1,234 @@
+"""The first time at which a moving body reaches a plane: where the flight of lecture 25 ends.
+
+The shape is a convex one (`shapes.convex`), of which corners and rims are what arrives: its parts, corners
+first. The height of a corner, of a ball's centre and of each point of a rim has a second derivative that is
+bounded along the motion (`motion_bounds`): for all time without torque, and for each step of the integrator
+under forces. A height and its rate thus give a time before which it cannot arrive (`rim_descent`: for all
+points of a rim together). The search goes there, and on from there; nothing is stepped over, however short,
+but dips of less than `GRAZING_DEPTH`, and the crossing is then found to rounding. Under forces this holds for
+the motion as it is integrated: to some 1e-12 of its lengths, see `forced_motion`.
+
+Not covered: edges of the plane, curved surfaces, several bodies.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.landing.acceleration_bounds import Bound, all_free_for, bounds_of, free_for
+from contact_dynamics.landing.rim_descent import RimAbove, radii_of
+from contact_dynamics.rotations.one import conjugate, rotated
+from contact_dynamics.shapes.convex import ConvexShape
+from contact_dynamics.tolerances import GRAZING_DEPTH
+from contact_dynamics.validation import FloatArray, check_array, check_not_negative, check_unit
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.landing.acceleration_bounds import Motion
+    from contact_dynamics.rotations.one import Vector
+    from contact_dynamics.tumbling.motion import Sample
+
+_MOST_ROOT_STEPS: Final = 100
+"""Bisection alone needs 60 for the last bit; Newton's steps need four."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FirstContact:
+    """A body's arrival at a plane."""
+
+    seconds: float  # s after the state's stamp, >= 0
+    vertices: tuple[
+        int, ...
+    ]  # the part (corner; after the corners, rim) that arrives, then those within `GRAZING_DEPTH` as well
+    p_WC_W: FloatArray  # (3,), m, the point that arrives, world
+    v_WC_W: FloatArray  # (3,), m/s, its velocity, world axes
+
+
+def first_contact(
+    motion: Motion,
+    shape_B: ConvexShape | ArrayLike,
+    p_WS_W: ArrayLike,
+    normal_W: ArrayLike,
+    *,
+    horizon: float,
+) -> FirstContact | None:
+    """Return the first time in [0, horizon] at which a body is on or below a plane and not rising, or None.
+
+    A part above the plane arrives so when it comes down to it. One on or below the plane at time 0 arrives
+    at once if it sinks or rests; if it rises, when it comes down again.
+
+    Args:
+        motion: the flight, in closed form or integrated (`motion_of`).
+        shape_B: the shape, body axes, from the centre of mass; or (k, 3), m, the corners of a polyhedron, or
+            one point of the body. An empty one never arrives.
+        p_WS_W: (3,), m, a point of the plane, world.
+        normal_W: (3,), unit normal into the free side, world axes.
+        horizon: s after the state's stamp, how far to search.
+
+    Raises:
+        InvalidFieldError: an array of another shape, a number that is not finite, a normal that is not unit,
+            or horizon < 0; an integrated motion that does not get as far as the search has to go.
+    """
+    search = Descent(
+        motion,
+        shape_B if isinstance(shape_B, ConvexShape) else ConvexShape(vertices=np.asarray(shape_B)),
+        check_array("plane_point", p_WS_W, (3,)),
+        check_unit("plane_normal", normal_W, 3),
+    )
+    until = check_not_negative("horizon", horizon)
+    return None if search.shape.is_empty else search.run(until)
+
+
+class Above(NamedTuple):
+    """A shape above a plane at one time."""
+
+    heights: FloatArray  # (k + m,), m, of corners, then of the lowest points of rims
+    rates: FloatArray  # (k + m,), m/s
+    rims: list[RimAbove]
+    centre: float  # m, of the centre of mass
+    centre_rate: float  # m/s
+    sample: Sample  # the motion then
+
+
+class Descent:
+    """Heights of all parts of a shape above one plane, and the way down through time."""
+
+    def __init__(self, motion: Motion, shape: ConvexShape, p_WS_W: FloatArray, normal_W: FloatArray) -> None:
+        self.motion = motion
+        self.shape = shape
+        self.rims = [radii_of(rim) for rim in shape.rims]
+        self.normal_W: Vector = tuple(normal_W.tolist())
+        self.offset = float(p_WS_W @ normal_W) + shape.rounding  # m, a ball's centre is as much higher
+        self.bound_from = bounds_of(motion, normal_W)
+        self.arms = np.sqrt(np.einsum("ij,ij->i", shape.vertices, shape.vertices))  # (k,), m
+        self.reach = max([float(self.arms.max(initial=0.0)), *(rim.reach for rim in self.rims)])  # m
+        self.newest: tuple[float, Above] | None = None  # what `at` has last returned, and its time
+
+    def run(self, horizon: float) -> FirstContact | None:
+        """Return the first contact within a horizon, s, or None."""
+        now, before = 0.0, None
+        while True:
+            at = self.at(now)
+            down = at.heights <= 0.0
+            if down.any():
+                crossed = down & (before[1] > 0.0) if before else np.zeros_like(down)
+                if before and crossed.any():
+                    return self.found(*self.crossing(before[0], now, before[1], at.heights))
+                arrived = np.flatnonzero(down & (at.rates <= 0.0))
+                if len(arrived):
+                    return self.found(now, int(arrived[at.heights[arrived].argmin()]))
+            if now >= horizon:
+                return None
+            bound = self.bound_from(now)
+            before = now, at.heights
+            now = min(now + self.free_for(at, bound), bound.until, horizon)
+
+    def free_for(self, at: Above, bound: Bound) -> float:
+        """Return for how long, s, no part can arrive while a bound holds."""
+        corners = len(self.arms)
+        pulls = bound.fall + self.arms * bound.turning
+        step = all_free_for(at.heights[:corners], at.rates[:corners], pulls)
+        for radii, rim in zip(self.rims, at.rims, strict=True):
+            step = min(step, rim.free_for(bound.fall + radii.reach * bound.turning))
+        if at.centre > self.reach:
+            step = max(step, free_for(at.centre - self.reach, at.centre_rate, bound.fall))
+        return step
+
+    def at(self, seconds: float) -> Above:
+        """Return how the shape is above the plane at one time; the last of them is remembered."""
+        if self.newest is None or self.newest[0] != seconds:
+            self.newest = seconds, self._at(seconds)
+        return self.newest[1]
+
+    def _at(self, seconds: float) -> Above:
+        sample = self.motion.sample(seconds)
+        a, b, c = self.normal_W
+        x, y, z = sample.w_WB_W
+        into_body = conjugate(sample.q_WB)
+        normal_B = rotated(into_body, self.normal_W)
+        turning_B = rotated(
+            into_body, (b * z - c * y, c * x - a * z, a * y - b * x)
+        )  # n . (w x r) = r . (n x w)
+        centre = _dot(self.normal_W, sample.p_WB_W) - self.offset
+        centre_rate = _dot(self.normal_W, sample.v_WB_W)
+        heights = self.shape.vertices @ normal_B + centre
+        rates = self.shape.vertices @ turning_B + centre_rate
+        if not self.rims:
+            return Above(heights, rates, [], centre, centre_rate, sample)
+        rims = [
+            RimAbove(
+                centre + _dot(normal_B, rim.center),
+                centre_rate + _dot(turning_B, rim.center),
+                (_dot(normal_B, rim.first), _dot(normal_B, rim.second)),
+                (_dot(turning_B, rim.first), _dot(turning_B, rim.second)),
+            )
+            for rim in self.rims
+        ]
+        lowest = np.array([rim.lowest()[:2] for rim in rims])
+        return Above(
+            np.append(heights, lowest[:, 0]),
+            np.append(rates, lowest[:, 1]),
+            rims,
+            centre,
+            centre_rate,
+            sample,
+        )
+
+    def crossing(self, low: float, high: float, above: FloatArray, below: FloatArray) -> tuple[float, int]:
+        """Return the first time between two at which a part reaches the plane from above, and which."""
+        waiting = np.flatnonzero((above > 0.0) & (below <= 0.0))
+        while True:
+            part = int(waiting[below[waiting].argmin()])
+            high = self.root(part, low, high)
+            below = self.at(high).heights
+            waiting = waiting[(below[waiting] < 0.0) & (waiting != part)]
+            if len(waiting) == 0:
+                return high, part
+
+    def root(self, part: int, low: float, high: float) -> float:
+        """Return the time at which a part reaches the plane: above it at ``low`` and not at ``high``."""
+        now = high
+        for _ in range(_MOST_ROOT_STEPS):
+            at = self.at(now)
+            height, rate = float(at.heights[part]), float(at.rates[part])
+            low, high = (now, high) if height > 0.0 else (low, now)
+            if abs(height) <= -rate * math.ulp(now) or height == 0.0:
+                break  # Newton's next step is within rounding
+            following = now - height / rate if rate < 0.0 else low
+            if not low < following < high:
+                following = 0.5 * (low + high)
+            if abs(following - now) <= math.ulp(now):
+                break
+            now = following
+        return now
+
+    def found(self, seconds: float, part: int) -> FirstContact:
+        """Gather the evidence of a contact."""
+        at = self.at(seconds)
+        sample = at.sample
+        corners = len(self.arms)
+        if part < corners:
+            arm_B = self.shape.vertices[part].tolist()
+        else:
+            rim, (_, _, (cosine, sine)) = self.rims[part - corners], at.rims[part - corners].lowest()
+            ends = zip(rim.center, rim.first, rim.second, strict=True)
+            arm_B = [middle + (cosine * first + sine * second) for middle, first, second in ends]
+        arm = zip(rotated(sample.q_WB, arm_B), self.normal_W, strict=True)
+        x, y, z = (along - self.shape.rounding * up for along, up in arm)
+        a, b, c = sample.w_WB_W
+        others = np.flatnonzero(np.abs(at.heights) <= GRAZING_DEPTH).tolist()
+        return FirstContact(
+            seconds=seconds,
+            vertices=(part, *(i for i in others if i != part)),
+            p_WC_W=np.add(sample.p_WB_W, (x, y, z)),
+            v_WC_W=np.add(sample.v_WB_W, (b * z - c * y, c * x - a * z, a * y - b * x)),
+        )
+
+
+def _dot(a: Vector, b: Vector) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -1,0 +1,119 @@
+"""A rim above a plane: its lowest point, and for how long none of its points can come down.
+
+The points of a rim at the angle phi have heights h + a . u(phi) and rates h' + b . u(phi), with
+u = (cos phi, sin phi) and a, b the heights and rates of two orthogonal radii. If no point is pulled down by
+more than P, none is below -g before the first root of
+
+    h + g + h' t - P t^2 / 2 - |a + b t|,
+
+which is concave in t, so that Newton's steps from beyond the root come down to it. It is beyond the root
+where any one point of the rim is at -g.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.tolerances import GRAZING_DEPTH
+
+if TYPE_CHECKING:
+    from contact_dynamics.rotations.one import Vector
+    from contact_dynamics.shapes.convex import Rim
+
+_MOST_STEPS: Final = 60
+"""Newton's steps down to a root. Four are usual; where it is all but double, each halves the distance."""
+
+
+class Radii(NamedTuple):
+    """A rim as two orthogonal radii."""
+
+    center: Vector  # m
+    first: Vector  # m
+    second: Vector  # m
+    reach: float  # m, a distance from the origin that no point of the rim exceeds
+
+
+def radii_of(rim: Rim) -> Radii:
+    """Return two orthogonal radii of a rim; the first lies as near to x as can be, or to y for an x axis."""
+    axis = np.array(rim.axis)
+    helper = np.array([1.0, 0.0, 0.0]) if abs(axis[0]) < _ALONG else np.array([0.0, 1.0, 0.0])
+    first = helper - (helper @ axis) * axis
+    first *= rim.radius / math.sqrt(first @ first)
+    second = np.cross(axis, first)
+    reach = math.hypot(*rim.center) + rim.radius
+    return Radii(rim.center, _triple(first), _triple(second), reach)
+
+
+_ALONG: Final = 0.9
+"""Cosine above which an axis counts as along x."""
+
+
+class RimAbove(NamedTuple):
+    """A rim above a plane at one time."""
+
+    height: float  # m, of its centre
+    rate: float  # m/s
+    a: tuple[float, float]  # m, of its radii, above the centre
+    b: tuple[float, float]  # m/s, their rates
+
+    def lowest(self) -> tuple[float, float, tuple[float, float]]:
+        """Return the lowest point's height, m, its rate, m/s, and its direction (cos, sin).
+
+        Where all points are at one height, the one that sinks fastest.
+        """
+        (a_1, a_2), (b_1, b_2) = self.a, self.b
+        size = math.hypot(a_1, a_2)
+        if size > 0.0:
+            u = (-a_1 / size, -a_2 / size)
+        else:
+            fastest = math.hypot(b_1, b_2)
+            u = (-b_1 / fastest, -b_2 / fastest) if fastest > 0.0 else (1.0, 0.0)
+        return self.height - size, self.rate + b_1 * u[0] + b_2 * u[1], u
+
+    def free_for(self, pull: float) -> float:
+        """Return for how long, s, no point can arrive that is pulled down by at most ``pull``, m/s^2."""
+        pull = max(pull, 0.0)
+        (a_1, a_2), (b_1, b_2) = self.a, self.b
+        low, rate, _ = self.lowest()
+        slowest = self.rate - math.hypot(b_1, b_2)
+        if low <= 0.0:  # below the plane and rising: as long as all points rise, and not less than a graze
+            return max(slowest, math.sqrt(2.0 * GRAZING_DEPTH * pull)) / pull if pull > 0.0 else math.inf
+        beyond = _arrival(low + GRAZING_DEPTH, rate, pull)
+        if slowest < 0.0:  # the point that sinks fastest, and it is no higher than the rim's top
+            top = self.height + math.hypot(a_1, a_2)
+            beyond = min(beyond, _arrival(top + GRAZING_DEPTH, slowest, pull))
+        if math.isinf(beyond):
+            return beyond
+        t = beyond
+        for _ in range(_MOST_STEPS):
+            x, y = a_1 + b_1 * t, a_2 + b_2 * t
+            size = math.hypot(x, y)
+            value = self.height + GRAZING_DEPTH + t * (self.rate - 0.5 * pull * t) - size
+            slope = self.rate - pull * t - ((b_1 * x + b_2 * y) / size if size > 0.0 else 0.0)
+            if value >= 0.0 or slope >= 0.0:
+                break
+            before, t = t, max(t - value / slope, 0.0)
+            if before - t <= _ACCURACY * before:
+                break
+        return t
+
+
+_ACCURACY: Final = 1e-9
+"""Relative, of the last of Newton's steps, after which the square of it is left; at an all but double root as
+much again, where the depth is its square."""
+
+
+def _arrival(height: float, rate: float, pull: float) -> float:
+    """Return when a point at a height > 0 that is pulled down all the time comes to zero; inf: never."""
+    root = math.sqrt(rate * rate + 2.0 * pull * height)
+    if rate < 0.0:
+        return 2.0 * height / (root - rate)
+    return (rate + root) / pull if pull > 0.0 else math.inf
+
+
+def _triple(vector: np.ndarray) -> Vector:
+    x, y, z = vector.tolist()
+    return (x, y, z)

@@ -1,0 +1,180 @@
+"""What was measured of a toss, in hindsight: its strikes with the states before and after, and its rest.
+
+A strike lies between two flights with at most one frame between them. Both are fitted over the frames next to
+it, and it happened when their positions and orientations agree best: the pose is continuous while velocities
+jump, so the crossing gives the time far more sharply than the frames are spaced, without using where corners
+or surface are. For a strike of some length it gives the centre of the impulse.
+
+Rest is where the pose no longer leaves the mean of its last `REST_SPAN`.
+
+Each number comes with its standard deviation, so that an error of prediction can be read beside the noise of
+measurement. Not covered: strikes in quick succession, of which `flights` sees no flight between; rocking and
+sliding contact.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.demo.rotation_vectors import rotated, rotation_vectors_from
+from contact_dynamics.measured.flight_fit import FEWEST_FRAMES, FlightFit, MeasuredState, fit_flight
+from contact_dynamics.measured.flights import DEVIATIONS, ORIENTATION_SLACK, POSITION_SLACK, find_flights
+from contact_dynamics.rigid_body.body import BodyState
+
+if TYPE_CHECKING:
+    from contact_dynamics.measured.recorded_toss import Toss
+    from contact_dynamics.validation import FloatArray
+
+FIT_SPAN: Final = 0.08
+"""s. Over this much of a flight next to a strike its velocity is fitted. Longer would cost more by an
+imperfect model, such as gravity off by 2 %, than it would gain in noise."""
+
+MOST_BETWEEN: Final = 1
+"""Frames between two flights that one strike may take: one that caught the body in contact."""
+
+REST_SPAN: Final = 0.05
+"""s. A body that kept its pose for so long is at rest. No longer, because the published recordings of cubes
+stop soon after the cube does."""
+
+REST_SPEED: Final = 0.02
+"""m/s. Mean speed over `REST_SPAN` below which a body rests: friction of 0.2 ends such a slide in 10 ms."""
+
+REST_SPIN: Final = 0.2
+"""rad/s. Likewise of the angular velocity, for a body of a decimetre."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MeasuredStrike:
+    """One strike between two flights."""
+
+    time: float  # s, on the recording's clock
+    time_std: float  # s
+    before: MeasuredState  # at that time, from the flight that ends
+    after: MeasuredState  # at that time, from the flight that begins
+    heights: (
+        FloatArray  # (k,), m, of the body's corners above the surface at that time, from both flights' mean
+    )
+
+    @property
+    def corner(self) -> int:
+        """Index of the lowest corner: the row of the body's vertices that struck."""
+        return int(np.argmin(self.heights))
+
+    @property
+    def margin(self) -> float:
+        """How much higher the next corner was, m: small where an edge or a face struck."""
+        lowest, second = np.sort(self.heights)[:2]
+        return float(second - lowest)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MeasuredRest:
+    """The body at rest at the end of the recording."""
+
+    time: float  # s, of the first frame from which on the pose stayed
+    state: BodyState  # the mean pose from then on, at velocity 0
+    position_std: float  # m, of each coordinate of the mean
+    orientation_std: float  # rad, of each component of the mean
+    heights: FloatArray  # (k,), m, of the body's corners above the surface
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MeasuredEvents:
+    """All that was found in one toss."""
+
+    flights: tuple[slice, ...]  # frames of each free flight
+    strikes: tuple[MeasuredStrike, ...]  # in the order of time
+    rest: MeasuredRest | None  # None: still moving at the end
+
+
+def measure_events(toss: Toss) -> MeasuredEvents:
+    """Return the flights, strikes and rest of a recorded toss."""
+    flights = tuple(find_flights(toss))
+    strikes = tuple(
+        _strike(toss, before, after)
+        for before, after in pairwise(flights)
+        if after.start - before.stop <= MOST_BETWEEN
+    )
+    return MeasuredEvents(flights=flights, strikes=strikes, rest=_rest(toss))
+
+
+def corner_heights(toss: Toss, state: BodyState) -> FloatArray:
+    """Return the heights, (k,), m, of the body's corners above the toss's surface."""
+    return toss.surface.gaps(state.p_WB_W + toss.body.vertices_B @ state.R_WB.T)
+
+
+def _strike(toss: Toss, before: slice, after: slice) -> MeasuredStrike:
+    count = max(FEWEST_FRAMES, round(FIT_SPAN * toss.rate))
+    fit_after = fit_flight(
+        toss, slice(after.start, min(after.stop, after.start + count)), reference=after.start
+    )
+    stop = before.stop
+    while True:
+        fit_before = fit_flight(toss, slice(max(before.start, stop - count), stop))
+        time, time_std = _crossing(fit_before, fit_after)
+        # a frame just past the strike may have passed for flight: then the crossing comes before it
+        if time >= toss.times[stop - 1] - time_std or stop - 1 - before.start < FEWEST_FRAMES:
+            break
+        stop -= 1
+    state_before, state_after = fit_before.at(time), fit_after.at(time)
+    heights = 0.5 * (corner_heights(toss, state_before.state) + corner_heights(toss, state_after.state))
+    return MeasuredStrike(
+        time=time, time_std=time_std, before=state_before, after=state_after, heights=heights
+    )
+
+
+def _crossing(before: FlightFit, after: FlightFit) -> tuple[float, float]:
+    """Return when two flights agree best in position and orientation, s, and its standard deviation."""
+    time, time_std = 0.5 * (before.reference + after.reference), math.inf
+    for _ in range(3):  # Newton's steps; the paths are nearly straight, so that the first is nearly exact
+        a, b = before.at(time), after.at(time)
+        gap = np.concatenate(
+            [b.state.p_WB_W - a.state.p_WB_W, rotation_vectors_from(a.state.q_WB, b.state.q_WB[None])[0]]
+        )
+        rate = np.concatenate([b.state.v_WB_W - a.state.v_WB_W, b.state.w_WB_W - a.state.w_WB_W])
+        p_variance = a.position_std**2 + b.position_std**2
+        q_variance = a.orientation_std**2 + b.orientation_std**2
+        weight = 1.0 / np.concatenate([np.full(3, p_variance), q_variance])
+        information = float(rate @ (weight * rate))
+        time -= float(rate @ (weight * gap)) / information
+        time_std = 1.0 / math.sqrt(information)
+    return time, time_std
+
+
+def _rest(toss: Toss) -> MeasuredRest | None:
+    n = max(FEWEST_FRAMES, round(REST_SPAN * toss.rate))
+    poses = np.hstack([toss.p_WB_W, rotation_vectors_from(toss.q_WB[-1], toss.q_WB)])
+    noise = np.repeat([toss.position_noise, toss.orientation_noise], 3)
+    if n > len(toss) or (_drift(toss.times[-n:], poses[-n:]) > np.repeat([REST_SPEED, REST_SPIN], 3)).any():
+        return None
+    allowed = DEVIATIONS * noise + np.repeat([POSITION_SLACK, ORIENTATION_SLACK], 3)
+    moved = np.flatnonzero((np.abs(poses - poses[-n:].mean(axis=0)) > allowed).any(axis=1))
+    begin = int(moved[-1]) + 1 if len(moved) else 0
+    if len(toss) - begin < n:
+        return None
+    mean, std = poses[begin:].mean(axis=0), noise / math.sqrt(len(toss) - begin)
+    state = BodyState(
+        p_WB_W=mean[:3],
+        q_WB=rotated(mean[None, 3:], toss.q_WB[-1])[0],
+        v_WB_W=np.zeros(3),
+        w_WB_W=np.zeros(3),
+        stamp_ns=round(float(toss.times[begin]) * 1e9),
+    )
+    return MeasuredRest(
+        time=float(toss.times[begin]),
+        state=state,
+        position_std=float(std[0]),
+        orientation_std=float(std[3]),
+        heights=corner_heights(toss, state),
+    )
+
+
+def _drift(times: FloatArray, poses: FloatArray) -> FloatArray:
+    """Return the size of the mean rate of each column of ``poses``, (n, 6)."""
+    centred = times - times.mean()
+    return np.abs(centred @ poses) / (centred @ centred)

@@ -1,0 +1,166 @@
+"""The free flight that fits a stretch of measured poses best: what a tracker's poses say in hindsight.
+
+Model: the centre of mass flies a parabola of known gravity, and the angular momentum L about it is constant
+(lecture 25). The orientations themselves are measured, so the angular inertia in world axes is known at each
+frame and the rotation follows from L linearly: with theta the rotation vector from a reference orientation, d
+theta / dt = J(theta)^-1 I_W^-1 L, where J is the left Jacobian of rotation vectors. Both fits are linear
+least squares, p_0 and v_0 from the positions, theta_0 and L from the orientations, and use no integrator and
+no closed form of tumbling: the physics that is to be tested takes no part in them.
+
+Uncertainties are those of white noise of the toss's stated size, enlarged where the residuals are larger than
+that (Birge's ratio). Not covered: drag, a wrong gravity or inertia, noise that is correlated from frame to
+frame.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.demo.rotation_vectors import rotated, rotation_matrices, rotation_vectors_from
+from contact_dynamics.rigid_body.body import BodyState
+
+if TYPE_CHECKING:
+    from contact_dynamics.measured.recorded_toss import Toss
+    from contact_dynamics.validation import FloatArray
+
+FEWEST_FRAMES: Final = 4
+"""Frames. Positions and orientations have two unknown vectors each; two frames more give residuals."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MeasuredState:
+    """A state found by a fit, with the standard deviation of each of its parts."""
+
+    time: float  # s, on the recording's clock
+    state: BodyState  # of the centre of mass, world axes
+    position_std: float  # m, of each coordinate
+    orientation_std: FloatArray  # (3,), rad, of a rotation vector's components, world axes
+    velocity_std: float  # m/s, of each component
+    angular_velocity_std: FloatArray  # (3,), rad/s, of each component, world axes
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FlightFit:
+    """A fitted free flight: position and rotation vector with their rates' constants at a reference time."""
+
+    reference: float  # s
+    q_reference: FloatArray  # (4,), x, y, z, w: the measured orientation that rotation vectors start from
+    p_W: FloatArray  # (3,), m, at the reference
+    v_W: FloatArray  # (3,), m/s, at the reference
+    theta_W: FloatArray  # (3,), rad, at the reference, world axes
+    L_W: FloatArray  # (3,), kg m^2/s, angular momentum about the centre of mass
+    gravity_W: FloatArray  # (3,), m/s^2
+    I_B: FloatArray  # (3, 3), kg m^2, body axes
+    cov_p: FloatArray  # (2, 2), of a coordinate and its rate: m^2, m^2/s, m^2/s^2
+    cov_rotation: FloatArray  # (6, 6), of theta and L
+
+    def at(self, time: float) -> MeasuredState:
+        """Return the flight's state at ``time``, s.
+
+        From the reference the orientation goes one step of the midpoint rule, whose error is of third order
+        in the angle: ask within a few frames of the reference.
+        """
+        after = time - self.reference
+        q_0 = rotated(self.theta_W[None], self.q_reference)[0]
+        q_half = rotated(0.5 * after * self._w_W(q_0)[None], q_0)[0]
+        q = rotated(after * self._w_W(q_half)[None], q_0)[0]
+        inverse = self._inverse_inertia(q)
+        cov_w = inverse @ self.cov_rotation[3:, 3:] @ inverse.T
+        to_q = np.hstack([np.eye(3), after * inverse])
+        cov_q = to_q @ self.cov_rotation @ to_q.T
+        to_p = np.array([1.0, after])
+        return MeasuredState(
+            time=time,
+            state=BodyState(
+                p_WB_W=self.p_W + after * self.v_W + (0.5 * after * after) * self.gravity_W,
+                q_WB=q,
+                v_WB_W=self.v_W + after * self.gravity_W,
+                w_WB_W=inverse @ self.L_W,
+                stamp_ns=round(time * 1e9),
+            ),
+            position_std=math.sqrt(to_p @ self.cov_p @ to_p),
+            orientation_std=np.sqrt(cov_q.diagonal()),
+            velocity_std=math.sqrt(self.cov_p[1, 1]),
+            angular_velocity_std=np.sqrt(cov_w.diagonal()),
+        )
+
+    def _inverse_inertia(self, q: FloatArray) -> FloatArray:
+        R = rotation_matrices(q[None])[0]
+        inverse: FloatArray = R @ np.linalg.solve(self.I_B, R.T)
+        return inverse
+
+    def _w_W(self, q: FloatArray) -> FloatArray:
+        return self._inverse_inertia(q) @ self.L_W
+
+
+def fit_flight(toss: Toss, frames: slice, *, reference: int | None = None) -> FlightFit:
+    """Return the free flight that fits the poses of ``frames`` (a slice of at least `FEWEST_FRAMES`) best.
+
+    ``reference``: which of the frames the fit refers to in time and orientation; None: the last one.
+    """
+    if reference is None:
+        reference = frames.stop - 1
+    times = toss.times[frames] - toss.times[reference]
+    gravity_W, I_B = toss.gravity_W, toss.body.mass_properties.I_B
+
+    line = np.column_stack([np.ones_like(times), times])
+    straight = toss.p_WB_W[frames] - 0.5 * np.square(times)[:, None] * gravity_W
+    (p_W, v_W), cov_p = _least_squares(line, straight, toss.position_noise)
+
+    theta = rotation_vectors_from(toss.q_WB[reference], toss.q_WB[frames])
+    R = rotation_matrices(toss.q_WB[frames])
+    rates = _inverse_left_jacobians(theta) @ (R @ np.linalg.inv(I_B) @ R.transpose(0, 2, 1))
+    turned = _integral(rates, times)
+    design = np.concatenate([np.broadcast_to(np.eye(3), turned.shape), turned], axis=2).reshape(-1, 6)
+    solution, cov_rotation = _least_squares(design, theta.reshape(-1, 1), toss.orientation_noise)
+    return FlightFit(
+        reference=float(toss.times[reference]),
+        q_reference=toss.q_WB[reference],
+        p_W=p_W,
+        v_W=v_W,
+        theta_W=solution[:3, 0],
+        L_W=solution[3:, 0],
+        gravity_W=gravity_W,
+        I_B=I_B,
+        cov_p=cov_p,
+        cov_rotation=cov_rotation,
+    )
+
+
+def _least_squares(design: FloatArray, values: FloatArray, noise: float) -> tuple[FloatArray, FloatArray]:
+    """Return the solution, (m, k), and the covariance, (m, m), of each of its k columns."""
+    scale = np.abs(design).max(axis=0)
+    scaled = design / scale
+    solution = np.linalg.lstsq(scaled, values, rcond=None)[0]
+    residuals = values - scaled @ solution
+    freedom = residuals.size - solution.size
+    birge = max(1.0, float(np.square(residuals).sum()) / (freedom * noise * noise)) if freedom else 1.0
+    covariance = np.linalg.inv(scaled.T @ scaled) * (birge * noise * noise)
+    return solution / scale[:, None], covariance / np.outer(scale, scale)
+
+
+def _inverse_left_jacobians(theta: FloatArray) -> FloatArray:
+    """Return J^-1 = 1 - [theta] / 2 + c [theta]^2, (n, 3, 3): d theta / dt = J^-1 w of R = Exp(theta) R_0."""
+    square = np.einsum("ij,ij->i", theta, theta)
+    half = 0.5 * np.sqrt(square)
+    # with h half the angle, c = (1 - h cot h) / (4 h^2) cancels towards 0; 1/12 + h^2 / 180 is off by 1e-11
+    small = half < 1e-2
+    h = np.where(small, 1.0, half)
+    c = np.where(small, 1.0 / 12.0 + square / 720.0, (1.0 - h / np.tan(h)) / (4.0 * h * h))
+    cross = np.zeros((len(theta), 3, 3))
+    cross[:, 2, 1], cross[:, 0, 2], cross[:, 1, 0] = theta.T
+    cross -= cross.transpose(0, 2, 1)
+    jacobians: FloatArray = np.eye(3) - 0.5 * cross + c[:, None, None] * (cross @ cross)
+    return jacobians
+
+
+def _integral(rates: FloatArray, times: FloatArray) -> FloatArray:
+    """Return the integrals of ``rates``, (n, 3, 3), by trapezoids, from time 0, one of ``times``, to each."""
+    steps = 0.5 * (rates[1:] + rates[:-1]) * np.diff(times)[:, None, None]
+    total = np.concatenate([np.zeros((1, 3, 3)), np.cumsum(steps, axis=0)])
+    integral: FloatArray = total - total[np.argmin(np.abs(times))]
+    return integral

@@ -1,0 +1,54 @@
+"""Reading a recorded toss by path: the package's own recording, another like it, or a measured cube toss."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.measured.cube_tosses import read_cube_toss
+from contact_dynamics.measured.recorded_toss import Toss
+from contact_dynamics.measured.toss_csv import read_toss_csv
+
+__all__ = ["DEFAULT_RECORDING", "Toss", "read_toss"]
+
+DEFAULT_RECORDING: Final = Path(__file__).parent / "tosses" / "brick.csv"
+"""The recording that comes with the package."""
+
+
+def read_toss(path: str | Path = DEFAULT_RECORDING, *, index: int | None = None) -> Toss:
+    """Return the toss that ``path`` names: a recording in this project's CSV, or a cube toss in an `.npz`.
+
+    ``index`` selects one of the tosses of an `.npz`, as does a path that ends in ``#17`` or ``:17``; without
+    either, `cube_tosses.default_index` does.
+
+    Raises:
+        FileNotFoundError: there is no such file.
+        InvalidFieldError: neither `.csv` nor `.npz`, an index out of range, or a file whose content is not as
+            described.
+    """
+    file, chosen = _split_index(path)
+    if index is not None:
+        chosen = index
+    if not file.is_file():
+        raise FileNotFoundError(
+            f"TOSS: found no file {str(file)!r}, allowed is a toss recording (.csv or .npz)"
+        )
+    if file.suffix == ".npz":
+        return read_cube_toss(file, index=chosen)
+    if file.suffix == ".csv":
+        if chosen is not None:
+            raise InvalidFieldError("TOSS", str(path), "no index: a .csv holds one toss")
+        return read_toss_csv(file)
+    raise InvalidFieldError("TOSS", str(path), "a toss recording (.csv or .npz)")
+
+
+def _split_index(path: str | Path) -> tuple[Path, int | None]:
+    text = str(path)
+    if Path(text).is_file():
+        return Path(text), None
+    for mark in "#:":
+        file, found, index = text.rpartition(mark)
+        if found and index.isdigit():
+            return Path(file), int(index)
+    return Path(text), None

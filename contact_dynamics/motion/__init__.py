@@ -1,0 +1,1 @@
+"""Motion under gravity, wrenches and drag: integrated, differentiated, fitted, with covariances."""

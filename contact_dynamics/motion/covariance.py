@@ -1,0 +1,254 @@
+"""How uncertain a body's future is: its state's covariance, carried along a free or a forced motion.
+
+Covariances are (12, 12), in the order position (m), rotation vector (rad, world axes, a small rotation
+applied after the attitude: R_true = Exp(theta) R), linear velocity (m/s), angular velocity (rad/s, world
+axes). Two methods: the exact derivative J of the motion, C(t) = J C J^T, which is cheap and right as long as
+the body's possible states stay close together; and sampling, the motions of many states drawn from C.
+
+A tumbling body's orientation becomes unpredictable: its deviation grows with time, near the middle axis
+exponentially. Linearisation then goes on growing while a real orientation is merely lost, so both methods say
+from when on not to rely on small rotations: `CarriedCovariance.trusted`.
+
+Sampled deviations are from the motion of the given state, which is what a caller predicts with, so a bias of
+that prediction counts. The draws come in opposite pairs and are scaled to have exactly the covariance asked
+for: where the motion is linear, the samples' answer is that of linearisation to rounding.
+
+Not covered: uncertain mass properties or gravity, noise on the way. How uncertain the times of flips are:
+`contact_dynamics.tumbling.flips`.
+"""
+
+from __future__ import annotations
+
+import enum
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.motion.free_derivative import state_derivatives
+from contact_dynamics.motion.integrated import ForcedMotion
+from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.rotations.many import rotation_vectors, turned
+from contact_dynamics.tolerances import SYMMETRY_TOLERANCE
+from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
+from contact_dynamics.tumbling.poinsot_construction import polhode_period
+from contact_dynamics.validation import FloatArray, check_array
+from contact_dynamics.world import STANDARD_GRAVITY_W
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+TRUSTED_DEVIATION: Final = 0.1
+"""rad. Linearisation leaves out squares of deviations. At this limit they are, against samples, less than
+1 % of the largest deviation, and up to a third of variances in directions in which neighbours hardly part."""
+
+NEGATIVE_VARIANCE_TOLERANCE: Final = 1e-9
+"""Of a correlation matrix, whose entries are at most 1: how negative an eigenvalue may be. Rounding of a
+covariance that has no variance in some direction leaves 1e-15, of one that went through filters some more."""
+
+PROBES: Final = 64
+"""Times at which growth on the way is looked at, over the period of the polhode or as far as is asked for."""
+
+FEWEST_SAMPLES: Final = 50
+"""Draws are scaled by their own covariance, (12, 12), which takes some more than 12 pairs."""
+
+
+class PropagationMethod(enum.Enum):
+    """How a covariance is carried along."""
+
+    LINEARISED = "linearised"
+    SAMPLED = "sampled"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class CarriedCovariance:
+    """The covariance of a body's state at n times."""
+
+    seconds: FloatArray  # (n,), s after the stamp of the state that the motion began with
+    covariances: FloatArray  # (n, 12, 12), in the module's order; NaN where no double holds it
+    orientation_deviations: FloatArray  # (n,), rad, largest standard deviation of orientation about any axis
+    trusted: NDArray[np.bool_]  # (n,), whether it has been below TRUSTED_DEVIATION all the way from time 0
+    method: PropagationMethod
+
+
+def propagate_covariance(
+    body: MassProperties,
+    state: BodyState,
+    covariance: ArrayLike,
+    times: ArrayLike,
+    *,
+    gravity_W: ArrayLike = STANDARD_GRAVITY_W,
+    method: PropagationMethod = PropagationMethod.LINEARISED,
+) -> CarriedCovariance:
+    """Return the covariance, (12, 12) at the state's stamp, at times (n,), s after it, of either sign.
+
+    Raises:
+        InvalidFieldError: the covariance is not one (see `check_covariance`), the times are not a flat list
+            of finite numbers, gravity is not three.
+    """
+    motion = free_motion(body, state, gravity_W=gravity_W)
+    return covariance_along(motion, covariance, times, method=method)
+
+
+def covariance_along(
+    motion: FreeMotion | ForcedMotion,
+    covariance: ArrayLike,
+    times: ArrayLike,
+    *,
+    method: PropagationMethod = PropagationMethod.LINEARISED,
+    samples: int = 400,
+    seed: int = 0,
+) -> CarriedCovariance:
+    """Return the covariance of the state of a motion at hand, as `propagate_covariance`.
+
+    ``samples`` and ``seed`` serve sampling only, which costs so many motions: of free ones the set-up, of
+    forced ones the integration.
+
+    Raises:
+        InvalidFieldError: as `propagate_covariance`; or fewer than `FEWEST_SAMPLES` samples.
+    """
+    start = check_covariance("covariance", covariance)
+    seconds = check_array("times", times, (None,))
+    probes = _probes(motion, seconds)
+    if method is PropagationMethod.LINEARISED:
+        everywhere = _linearised(motion, start, np.concatenate([seconds, probes]))
+        covariances, on_the_way = everywhere[: len(seconds)], _deviations(everywhere[len(seconds) :])
+    else:
+        if samples < FEWEST_SAMPLES:
+            raise InvalidFieldError("samples", samples, f"at least {FEWEST_SAMPLES}")
+        covariances = _sampled(motion, start, seconds, draws=_draws(start, samples, seed))
+        on_the_way = _deviations(_linearised(motion, start, probes))
+    deviations = _deviations(covariances)
+    return CarriedCovariance(
+        seconds=seconds,
+        covariances=covariances,
+        orientation_deviations=deviations,
+        trusted=_trusted(np.concatenate([seconds, probes]), np.concatenate([deviations, on_the_way]))[
+            : len(seconds)
+        ],
+        method=method,
+    )
+
+
+def check_covariance(field: str, value: ArrayLike) -> FloatArray:
+    """Return a covariance, (12, 12), made exactly symmetric.
+
+    Raises:
+        InvalidFieldError: another shape, a number that is not finite, not symmetric, a negative variance, a
+            correlation beyond 1, or any direction in which the variance would be negative.
+    """
+    matrix = check_array(field, value, (12, 12))
+    variances = matrix.diagonal()
+    if (variances < 0.0).any():
+        raise InvalidFieldError(field, f"variances {variances.tolist()}", "variances >= 0")
+    scale = np.sqrt(variances)
+    unit = np.outer(scale, scale)
+    if np.any(matrix[unit == 0.0]):
+        raise InvalidFieldError(
+            field, "a correlation with what has no variance", "zero beside a zero variance"
+        )
+    correlation = np.divide(matrix, unit, out=np.zeros((12, 12)), where=unit > 0.0)
+    asymmetry = float(np.abs(correlation - correlation.T).max())
+    if asymmetry > SYMMETRY_TOLERANCE:
+        raise InvalidFieldError(field, f"correlations that differ by {asymmetry:g}", "a symmetric matrix")
+    lowest = float(np.linalg.eigvalsh(0.5 * (correlation + correlation.T))[0])
+    if lowest < -NEGATIVE_VARIANCE_TOLERANCE:
+        raise InvalidFieldError(
+            field, f"correlations with an eigenvalue of {lowest:g}", "a positive semidefinite matrix"
+        )
+    return _symmetric(matrix)
+
+
+def _linearised(motion: FreeMotion | ForcedMotion, start: FloatArray, seconds: FloatArray) -> FloatArray:
+    if isinstance(motion, ForcedMotion):
+        J = forced_state_derivatives(motion, seconds)
+    else:
+        J = state_derivatives(motion, seconds)
+    return _symmetric(J @ start @ J.transpose(0, 2, 1))
+
+
+def _draws(start: FloatArray, samples: int, seed: int) -> FloatArray:
+    """Return deviations of the state, (m, 12), in opposite pairs, whose mean square is ``start``."""
+    scale = np.sqrt(start.diagonal())
+    scale[scale == 0.0] = 1.0
+    variances, directions = np.linalg.eigh(start / np.outer(scale, scale))
+    matter = variances > NEGATIVE_VARIANCE_TOLERANCE
+    root = scale[:, None] * directions[:, matter] * np.sqrt(variances[matter])
+    normal = np.random.default_rng(seed).standard_normal((samples // 2, int(matter.sum())))
+    lower = np.linalg.cholesky(normal.T @ normal / len(normal))
+    unit = np.linalg.solve(lower, normal.T).T
+    half: FloatArray = unit @ root.T
+    return np.concatenate([half, -half])
+
+
+def _sampled(
+    motion: FreeMotion | ForcedMotion, start: FloatArray, seconds: FloatArray, *, draws: FloatArray
+) -> FloatArray:
+    """Return the mean squares of deviations from ``motion``, (n, 12, 12)."""
+    state, center = motion.state, motion.at(seconds)
+    attitudes = turned(np.tile(state.q_WB, (len(draws), 1)), draws[:, 3:6])
+    covariances = np.zeros((len(seconds), *start.shape))
+    for draw, q_WB in zip(draws, attitudes, strict=True):
+        other = BodyState(
+            p_WB_W=state.p_WB_W + draw[:3],
+            q_WB=q_WB,
+            v_WB_W=state.v_WB_W + draw[6:9],
+            w_WB_W=state.w_WB_W + draw[9:],
+        )
+        then = _from_state(motion, other).at(seconds)
+        deviation = np.hstack(
+            [
+                then.p_WB_W - center.p_WB_W,
+                rotation_vectors(then.q_WB, center.q_WB),
+                then.v_WB_W - center.v_WB_W,
+                then.w_WB_W - center.w_WB_W,
+            ]
+        )
+        covariances += deviation[:, :, None] * deviation[:, None, :]
+    return covariances / len(draws)
+
+
+def _from_state(motion: FreeMotion | ForcedMotion, state: BodyState) -> FreeMotion | ForcedMotion:
+    if isinstance(motion, ForcedMotion):
+        return motion.from_state(state)
+    return free_motion(motion.body, state, gravity_W=motion.gravity_W, precision=Precision.DOUBLE)
+
+
+def _probes(motion: FreeMotion | ForcedMotion, seconds: FloatArray) -> FloatArray:
+    """Return times on the way to ``seconds``: the integrator's own, or in closed form over one period.
+
+    After a period, growth repeats itself and adds.
+    """
+    ends = float(seconds.max(initial=0.0)), float(seconds.min(initial=0.0))
+    if isinstance(motion, ForcedMotion):
+        return np.concatenate([motion.steps_to(end) for end in ends])
+    period = polhode_period(motion.rotation)
+    longest = period if math.isfinite(period) else math.inf
+    ends = min(ends[0], longest), max(ends[1], -longest)
+    return np.concatenate([np.linspace(0.0, end, PROBES) for end in ends])
+
+
+def _deviations(covariances: FloatArray) -> FloatArray:
+    """Return the largest standard deviations of orientation, (n,), rad; inf where no double holds them."""
+    finite = np.isfinite(covariances).all(axis=(1, 2))
+    deviations = np.full(len(covariances), math.inf)
+    variances = np.linalg.eigvalsh(covariances[finite, 3:6, 3:6])[:, 2]
+    deviations[finite] = np.sqrt(np.maximum(variances, 0.0))
+    return deviations
+
+
+def _trusted(seconds: FloatArray, deviations: FloatArray) -> NDArray[np.bool_]:
+    """Return where deviations, (n,), stay below the limit on the whole way from time 0."""
+    lost = deviations > TRUSTED_DEVIATION
+    first = float(seconds[lost & (seconds >= 0.0)].min(initial=math.inf))
+    last = float(seconds[lost & (seconds <= 0.0)].max(initial=-math.inf))
+    trusted: NDArray[np.bool_] = (seconds < first) & (seconds > last)
+    return trusted
+
+
+def _symmetric(matrices: FloatArray) -> FloatArray:
+    halved: FloatArray = 0.5 * (matrices + np.swapaxes(matrices, -1, -2))
+    return halved

@@ -1,0 +1,246 @@
+"""The free motion that fits a short window of published states best: one noisy velocity spoils nothing.
+
+Model: a torque-free body in uniform gravity (`contact_dynamics.tumbling`), seen at n times with white noise
+in position and orientation and, where they are to be used, in the velocities. The centre of mass is a linear
+least-squares problem. The rotation has six unknowns, attitude and angular velocity at the newest stamp, found
+by Gauss's and Newton's method with the exact derivative of the motion (`contact_dynamics.motion.free_derivative`),
+from a start that no single velocity decides: L is constant, so it is averaged over all neighbouring pairs
+(where that fits worse than the last turn alone, as for needles, from that).
+
+Not covered: windows in which something touched the body, drag, outliers, noise that is correlated from state
+to state, unknown mass properties; half a turn or more between neighbouring states.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.motion.free_derivative import rotation_derivatives
+from contact_dynamics.numerics.gauss_newton import gauss_newton
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.rotations.many import matrices_of, rotation_vectors, turned
+from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
+from contact_dynamics.validation import FloatArray, check_array, check_positive
+from contact_dynamics.world import STANDARD_GRAVITY_W
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike
+
+FEWEST_STATES: Final = 3
+"""Two poses and the twelve numbers of a state would fit exactly, noise and all."""
+
+MOST_STATES: Final = 2000
+"""A window of seconds; longer ones are no short windows, and cost."""
+
+SMALL_STEP: Final = 1e-9
+"""rad of attitude, m of position, anywhere in the window: a round that changes less is the last."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StateNoise:
+    """Standard deviations of published states, of each component, white.
+
+    Raises:
+        InvalidFieldError: one is not > 0.
+    """
+
+    position: float  # m, > 0
+    orientation: float  # rad, > 0, of a rotation vector's components
+    linear_velocity: float | None = None  # m/s, > 0; None: published velocities are not used
+    angular_velocity: float | None = None  # rad/s, > 0; None: likewise
+
+    def __post_init__(self) -> None:
+        """Check those that are there."""
+        for name in self.__slots__:
+            value = getattr(self, name)
+            if value is not None:
+                object.__setattr__(self, name, check_positive(f"{name}_noise", value))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FitResult:
+    """The best-fit state at the newest stamp, and how well it fits."""
+
+    state: BodyState
+    covariance: FloatArray  # (12, 12): position, rotation vector (world, after the attitude), both velocities
+    position_residual: float  # m, root mean square distance of the positions
+    orientation_residual: float  # rad, root mean square angle between the orientations
+    count: int  # of states
+    rounds: int  # of Gauss and Newton
+    converged: bool  # whether the last round changed next to nothing
+
+
+def fit_free_motion(
+    body: MassProperties,
+    states: Sequence[BodyState],
+    *,
+    gravity_W: ArrayLike = STANDARD_GRAVITY_W,
+    noise: StateNoise | None = None,
+) -> FitResult:
+    """Return the free motion that fits ``states``, in order of time, best.
+
+    With ``noise`` the covariance follows from it, and velocities are used that it has a deviation for.
+    Without, poses alone are used, and the covariance follows from their residuals.
+
+    Raises:
+        InvalidFieldError: fewer than `FEWEST_STATES` states; stamps that do not ascend, as where two are
+            equal; a window so long that neighbours of the motion part by more than a double holds;
+            gravity is not three finite numbers.
+        TooLargeError: more than `MOST_STATES` states.
+    """
+    if len(states) < FEWEST_STATES:
+        raise InvalidFieldError("fit window", f"{len(states)} states", f"at least {FEWEST_STATES}")
+    if len(states) > MOST_STATES:
+        raise TooLargeError("fit window", f"{len(states)} states", f"at most {MOST_STATES}")
+    newest = states[-1].stamp_ns
+    since_newest = [state.stamp_ns - newest for state in states]
+    for earlier, later in itertools.pairwise(since_newest):
+        if earlier >= later:
+            raise InvalidFieldError("fit window: stamps", f"{later - earlier} ns from one to the next", "> 0")
+    seconds = np.array(since_newest) * 1e-9
+    gravity = check_array("gravity", gravity_W, (3,))
+    place = _fit_place(states, seconds, gravity, noise)
+    spin = _fit_rotation(body, states, seconds, noise)
+    covariance = np.zeros((12, 12))
+    at_place, at_spin = np.r_[0:3, 6:9], np.r_[3:6, 9:12]
+    covariance[np.ix_(at_place, at_place)] = np.kron(place.covariance, np.eye(3))
+    covariance[np.ix_(at_spin, at_spin)] = spin.covariance
+    q_WB, w_WB_W = spin.motion.state.q_WB, spin.motion.state.w_WB_W
+    return FitResult(
+        state=BodyState(p_WB_W=place.p_W, q_WB=q_WB, v_WB_W=place.v_W, w_WB_W=w_WB_W, stamp_ns=newest),
+        covariance=covariance,
+        position_residual=place.residual,
+        orientation_residual=spin.residual,
+        count=len(states),
+        rounds=spin.rounds,
+        converged=spin.converged,
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Place:
+    p_W: FloatArray
+    v_W: FloatArray
+    covariance: FloatArray  # (2, 2), of a coordinate and its rate
+    residual: float
+
+
+def _fit_place(
+    states: Sequence[BodyState], seconds: FloatArray, gravity: FloatArray, noise: StateNoise | None
+) -> _Place:
+    """Fit a parabola: p + v t + g t^2 / 2, in coordinates that start at the newest position."""
+    origin = states[-1].p_WB_W
+    positions = np.array([state.p_WB_W for state in states]) - origin
+    fallen = positions - 0.5 * np.square(seconds)[:, None] * gravity
+    span = -float(seconds[0])
+    design, values = np.column_stack([np.ones_like(seconds), seconds / span]), fallen
+    weight = 1.0 if noise is None else 1.0 / noise.position
+    design, values = weight * design, weight * fallen
+    if noise is not None and noise.linear_velocity is not None:
+        velocities = np.array([state.v_WB_W for state in states]) - seconds[:, None] * gravity
+        slopes = np.column_stack([np.zeros_like(seconds), np.full_like(seconds, 1.0 / span)])
+        design = np.vstack([design, slopes / noise.linear_velocity])
+        values = np.vstack([values, velocities / noise.linear_velocity])
+    orthogonal, triangle = np.linalg.qr(design)
+    inverse = np.linalg.inv(triangle)
+    solution = inverse @ (orthogonal.T @ values)
+    misses = fallen - solution[0] - (seconds / span)[:, None] * solution[1]
+    total = float(np.square(misses).sum())
+    scale = np.diag([1.0, 1.0 / span])
+    variance = total / (3 * len(seconds) - 6) if noise is None else 1.0
+    return _Place(
+        p_W=origin + solution[0],
+        v_W=solution[1] / span,
+        covariance=variance * scale @ inverse @ inverse.T @ scale,
+        residual=math.sqrt(total / len(seconds)),
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Rotation:
+    motion: FreeMotion
+    covariance: FloatArray  # (6, 6)
+    residual: float
+    rounds: int
+    converged: bool
+
+
+def _fit_rotation(
+    body: MassProperties, states: Sequence[BodyState], seconds: FloatArray, noise: StateNoise | None
+) -> _Rotation:
+    measured = np.array([state.q_WB for state in states])
+    rates = np.array([state.w_WB_W for state in states])
+    by_q = 1.0 if noise is None else 1.0 / noise.orientation
+    by_w = 0.0 if noise is None or noise.angular_velocity is None else 1.0 / noise.angular_velocity
+
+    def misses(motion: FreeMotion) -> FloatArray:
+        then = motion.at(seconds)
+        weighted = (by_q * rotation_vectors(measured, then.q_WB)).ravel()
+        return np.concatenate([weighted, (by_w * (rates - then.w_WB_W)).ravel()]) if by_w else weighted
+
+    def derivatives(motion: FreeMotion) -> FloatArray:
+        each = rotation_derivatives(motion, seconds)
+        if not np.isfinite(each).all():
+            raise InvalidFieldError(
+                "fit window", f"{-seconds[0]:g} s", "a window over which the motion is predictable"
+            )
+        design = by_q * each[:, :3].reshape(-1, 6)
+        return np.vstack([design, by_w * each[:, 3:].reshape(-1, 6)]) if by_w else design
+
+    def moved(motion: FreeMotion, step: FloatArray) -> FreeMotion:
+        q_WB = turned(motion.state.q_WB[None], step[None, :3])[0]
+        return _motion_from(body, q_WB, motion.state.w_WB_W + step[3:])
+
+    starts = [
+        _motion_from(body, measured[-1], rate)
+        for rate in (_averaged_rate(body, measured, seconds), _last_rate(measured, seconds))
+    ]
+    start = min(starts, key=lambda motion: float(np.square(misses(motion)).sum()))
+    attitudes = 3 * len(seconds)
+    negligible = np.full(2 * attitudes if by_w else attitudes, math.inf)
+    negligible[:attitudes] = by_q * SMALL_STEP
+    fit = gauss_newton(
+        start, misses_of=misses, derivatives_of=derivatives, moved=moved, negligible=negligible
+    )
+    total = float(np.square(fit.misses[:attitudes]).sum()) / by_q**2
+    variance = total / (attitudes - 6) if noise is None else 1.0
+    covariance = variance * fit.inverse @ fit.inverse.T
+    return _Rotation(fit.model, covariance, math.sqrt(total / len(seconds)), fit.rounds, fit.converged)
+
+
+def _motion_from(body: MassProperties, q_WB: FloatArray, w_WB_W: FloatArray) -> FreeMotion:
+    """Return the rotation alone: what the centre of mass does is fitted by itself."""
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=q_WB, v_WB_W=np.zeros(3), w_WB_W=w_WB_W)
+    return free_motion(body, state, gravity_W=np.zeros(3), precision=Precision.DOUBLE)
+
+
+def _averaged_rate(body: MassProperties, q: FloatArray, seconds: FloatArray) -> FloatArray:
+    """Return the angular velocity, (3,), at the newest state for L averaged over all neighbouring pairs.
+
+    Between neighbours a body turns about almost one axis: w is the turn over the time, at the attitude
+    halfway. The weights, squares of the time, are those of the noise of orientations.
+    """
+    turns = rotation_vectors(q[1:], q[:-1])
+    between = np.diff(seconds)
+    halfway = matrices_of(turned(q[:-1], 0.5 * turns))
+    L = np.einsum("nij,jk,nlk,nl->ni", halfway, body.I_B, halfway, turns * between[:, None])
+    R = matrices_of(q[-1:])[0]
+    rate: FloatArray = R @ np.linalg.solve(body.I_B, R.T @ (L.sum(axis=0) / (between @ between)))
+    return rate
+
+
+def _last_rate(q: FloatArray, seconds: FloatArray) -> FloatArray:
+    """Return the angular velocity, (3,), of the last turn.
+
+    It is noisier than what L says, but for a needle: its spin about its own axis is the smallest part of L.
+    """
+    rate: FloatArray = rotation_vectors(q[-1:], q[-2:-1])[0] / (seconds[-1] - seconds[-2])
+    return rate

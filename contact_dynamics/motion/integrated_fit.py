@@ -1,0 +1,164 @@
+"""The motion under torque and drag that fits a short window of published states best.
+
+Model: a body under gravity, a constant wrench, drag and a user's function (`contact_dynamics.motion.integrated`),
+seen at n times with white noise. All twelve numbers of the newest state are found together, since a force
+that turns with the body ties its path to its attitude: Gauss's and Newton's method with the derivative of the
+integrated motion (`contact_dynamics.motion.integrated_derivative`), from the free motion that fits best.
+
+Not covered: what `contact_dynamics.motion.free_fit` does not; forces that are not known.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag
+from contact_dynamics.motion.free_fit import SMALL_STEP, FitResult, StateNoise, fit_free_motion
+from contact_dynamics.motion.integrated import MOST_STEPS, ForcedMotion, forced_motion, turns_or_drags
+from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
+from contact_dynamics.numerics.gauss_newton import Fit, gauss_newton
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.rotations.many import rotation_vectors, turned
+from contact_dynamics.validation import FloatArray, check_array
+from contact_dynamics.world import STANDARD_GRAVITY_W
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.motion.integrated import WrenchFunction
+
+LEAST_NOISE: Final = 1e-12
+"""m and rad. Residuals of exact states are rounding, which is no measure of how positions weigh beside
+orientations."""
+
+PASSES: Final = 3
+"""With weights from residuals, where noise is not known: those of the free motion are too large where it fits
+badly, those of the first pass nearly right, and the covariance is of those of the second."""
+
+
+def fit_motion(
+    body: MassProperties,
+    states: Sequence[BodyState],
+    *,
+    gravity_W: ArrayLike = STANDARD_GRAVITY_W,
+    wrench: ConstantWrench = NO_WRENCH,
+    drag: Drag = NO_DRAG,
+    wrench_of: WrenchFunction | None = None,
+    noise: StateNoise | None = None,
+    most_steps: int = MOST_STEPS,
+) -> FitResult:
+    """Return the motion that fits ``states``, in order of time, best under the forces that act.
+
+    Where `contact_dynamics.motion_of` would have it in closed form it is `fit_free_motion`'s. Seconds of
+    ``wrench_of`` count from the newest state; ``most_steps`` is `forced_motion`'s. With ``noise`` the
+    covariance follows from it, and velocities are used that it has a deviation for; without, poses alone, and
+    the covariance follows from their residuals.
+
+    Raises:
+        InvalidFieldError, TooLargeError: as `fit_free_motion` and `forced_motion`; or the motion grows
+            without bounds within the window, into the past.
+    """
+    gravity = check_array("gravity", gravity_W, (3,))
+    if not turns_or_drags(wrench, drag, wrench_of):
+        return fit_free_motion(body, states, gravity_W=gravity + wrench.force / body.mass, noise=noise)
+    free = fit_free_motion(body, states, gravity_W=gravity, noise=noise)
+    motion = forced_motion(
+        body,
+        free.state,
+        gravity_W=gravity,
+        wrench=wrench,
+        drag=drag,
+        wrench_of=wrench_of,
+        most_steps=most_steps,
+    )
+    seen = _Seen(states)
+    position, orientation = free.position_residual, free.orientation_residual
+    for _ in range(1 if noise else PASSES):
+        assumed = noise or _noise_of(position, orientation, len(states))
+        fit = seen.fitted(motion, assumed)
+        motion = fit.model
+        position, orientation = seen.residuals(motion)
+    return FitResult(
+        state=motion.state,
+        covariance=fit.inverse @ fit.inverse.T,
+        position_residual=position,
+        orientation_residual=orientation,
+        count=len(states),
+        rounds=fit.rounds,
+        converged=fit.converged,
+    )
+
+
+def _noise_of(position_residual: float, orientation_residual: float, count: int) -> StateNoise:
+    """Return the deviations of components that residuals of so many poses stand for."""
+    share = math.sqrt(
+        count / (3 * count - 6)
+    )  # of a vector's root mean square; six numbers are fitted to each
+    return StateNoise(
+        position=max(share * position_residual, LEAST_NOISE),
+        orientation=max(share * orientation_residual, LEAST_NOISE),
+    )
+
+
+class _Seen:
+    """The published states, as arrays, and their fit."""
+
+    def __init__(self, states: Sequence[BodyState]) -> None:
+        newest = states[-1].stamp_ns
+        self.seconds = np.array([state.stamp_ns - newest for state in states]) * 1e-9
+        self.p = np.array([state.p_WB_W for state in states])
+        self.q = np.array([state.q_WB for state in states])
+        self.v = np.array([state.v_WB_W for state in states])
+        self.w = np.array([state.w_WB_W for state in states])
+
+    def misses(self, motion: ForcedMotion) -> FloatArray:
+        """Return what was seen less what is computed, (n, 12), in the order of states."""
+        then = motion.at(self.seconds)
+        return np.hstack(
+            [
+                self.p - then.p_WB_W,
+                rotation_vectors(self.q, then.q_WB),
+                self.v - then.v_WB_W,
+                self.w - then.w_WB_W,
+            ]
+        )
+
+    def residuals(self, motion: ForcedMotion) -> tuple[float, float]:
+        """Return the root mean square distance, m, and angle, rad."""
+        squares = np.square(self.misses(motion))
+        n = len(self.seconds)
+        return math.sqrt(squares[:, :3].sum() / n), math.sqrt(squares[:, 3:6].sum() / n)
+
+    def fitted(self, motion: ForcedMotion, noise: StateNoise) -> Fit[ForcedMotion]:
+        """Return the fit of what there is a deviation for, from a start."""
+        deviations = (noise.position, noise.orientation, noise.linear_velocity, noise.angular_velocity)
+        used = np.repeat([deviation is not None for deviation in deviations], 3)
+        weights = 1.0 / np.repeat([deviation or 1.0 for deviation in deviations], 3)[used]
+        negligible = np.where(np.arange(12) < 6, SMALL_STEP, math.inf)[used] * weights
+
+        def moved(motion: ForcedMotion, step: FloatArray) -> ForcedMotion:
+            state = motion.state
+            return motion.from_state(
+                BodyState(
+                    p_WB_W=state.p_WB_W + step[:3],
+                    q_WB=turned(state.q_WB[None], step[None, 3:6])[0],
+                    v_WB_W=state.v_WB_W + step[6:9],
+                    w_WB_W=state.w_WB_W + step[9:],
+                    stamp_ns=state.stamp_ns,
+                )
+            )
+
+        return gauss_newton(
+            motion,
+            misses_of=lambda motion: (weights * self.misses(motion)[:, used]).ravel(),
+            derivatives_of=lambda motion: (
+                weights[:, None] * forced_state_derivatives(motion, self.seconds)[:, used]
+            ).reshape(-1, 12),
+            moved=moved,
+            negligible=np.tile(negligible, len(self.seconds)),
+        )

@@ -1,0 +1,1 @@
+"""Known numerical methods that the physics uses; no physics."""

@@ -1,0 +1,67 @@
+"""One choice of contact forces where many balance a wrench.
+
+The choice is the one of least sum of squares where that has no negative force, as under a block on a row of
+feet, and otherwise one that few forces carry, found by the method of Lawson and Hanson (1974, ch. 23).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.numerics.vectors import Vector3
+    from contact_dynamics.validation import FloatArray
+
+_ROUNDING: Final = 1e-13  # relative to the wrench: less is not left over
+_INDEPENDENT: Final = 1e-12  # ratio of singular values below which directions count as the same
+
+
+def least_force(columns: Sequence[Vector3], target: Vector3, absent: Sequence[Vector3]) -> list[float]:
+    """Return an x >= 0 with sum x_i columns_i = target.
+
+    Args:
+        columns: Unit vectors whose positive combinations hold ``target``.
+        target: What to balance.
+        absent: Orthonormal directions orthogonal to all columns; the part of ``target`` there is left out.
+    """
+    if not columns:
+        return []
+    matrix = np.array(columns).T
+    right = np.array(target)
+    for direction in absent:
+        right -= np.dot(direction, right) * np.array(direction)
+    least = np.linalg.lstsq(matrix, right, rcond=_INDEPENDENT)[0]
+    if least.min() >= 0.0:
+        return [float(value) for value in least]
+    return [float(value) for value in _few_forces(matrix, right)]
+
+
+def _few_forces(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Let the column that helps most act, drop those that would pull, until nothing is left over."""
+    count = matrix.shape[1]
+    x = np.zeros(count)
+    acting = np.zeros(count, dtype=bool)
+    smallest = _ROUNDING * float(np.linalg.norm(right))
+    for _ in range(10 * count):
+        help_of = matrix.T @ (right - matrix @ x)
+        help_of[acting] = -np.inf
+        best = int(help_of.argmax())
+        if help_of[best] <= smallest:
+            break
+        acting[best] = True
+        while True:
+            trial = np.zeros(count)
+            trial[acting] = np.linalg.lstsq(matrix[:, acting], right, rcond=_INDEPENDENT)[0]
+            pulling = acting & (trial <= 0.0)
+            if not pulling.any():
+                break
+            part = np.min(x[pulling] / (x[pulling] - trial[pulling]))
+            x += part * (trial - x)
+            acting &= ~pulling | (x > smallest)
+            x[~acting] = 0.0
+        x = trial
+    return x

@@ -1,0 +1,1 @@
+"""Planar problems, and the way between space and a plane of motion."""

@@ -1,0 +1,95 @@
+"""From a planar answer back to space: whether it holds there, and what it says of the body in space.
+
+A planar problem is one of space too where every contact lies in the plane of motion, or has a like one on the
+other side: then contact forces can balance about the axes in the plane, and like contacts carry equal shares.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from contact_dynamics.errors import OutOfPlaneError
+from contact_dynamics.plane.types import PlanarVelocity
+from contact_dynamics.tolerances import OUT_OF_PLANE_RATIO
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion
+    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.validation import FloatArray
+
+
+def mirror_partners(
+    plane: PlaneOfMotion, state: BodyState, contacts: ContactSet, *, distance_tolerance: float
+) -> tuple[int, ...]:
+    """Return, for each contact, the one that is its mirror image in the plane; itself where it lies in it.
+
+    -1: there is none. Positions may be off by `OUT_OF_PLANE_RATIO` of the farthest contact's distance, or by
+    ``distance_tolerance``, m, where that is more; normals by that ratio; frictions are equal.
+    """
+    n_x, n_y, n_z = plane.normal_W.tolist()
+    points, normals = (contacts.p_WC_W - state.p_WB_W).tolist(), contacts.normals_W.tolist()
+    frictions = contacts.frictions.tolist()
+    near = max(distance_tolerance, OUT_OF_PLANE_RATIO * max((math.hypot(*p) for p in points), default=0.0))
+    depths = [x * n_x + y * n_y + z * n_z for x, y, z in points]
+    partners = [i if abs(depth) <= near else -1 for i, depth in enumerate(depths)]
+    alone = [i for i, partner in enumerate(partners) if partner < 0]
+    while alone:
+        i = alone.pop()
+        (x, y, z), twice = points[i], 2.0 * depths[i]
+        image = (x - twice * n_x, y - twice * n_y, z - twice * n_z)
+        best, nearest = 2.0 * near, -1
+        for j in alone:
+            if abs(depths[i] + depths[j]) <= best and frictions[i] == frictions[j]:
+                off = math.dist(image, points[j])
+                if off <= best and math.dist(normals[i], normals[j]) <= 2.0 * OUT_OF_PLANE_RATIO:
+                    best, nearest = off, j
+        if nearest >= 0:
+            alone.remove(nearest)
+            partners[i], partners[nearest] = nearest, i
+    return tuple(partners)
+
+
+def check_mirrored(
+    plane: PlaneOfMotion, state: BodyState, contacts: ContactSet, partners: tuple[int, ...]
+) -> None:
+    """Refuse contacts that lie beside the plane of motion without a like one on its other side.
+
+    ``partners`` are the `mirror_partners` of the contacts.
+
+    Raises:
+        OutOfPlaneError: with the first such contact and how far from the plane it is.
+    """
+    if -1 in partners:
+        alone = partners.index(-1)
+        depth = abs(float((contacts.p_WC_W[alone] - state.p_WB_W) @ plane.normal_W))
+        raise OutOfPlaneError(
+            f"contacts.positions[{alone}]",
+            f"{depth:.6g} m beside the plane with normal {plane.normal_W.tolist()}",
+            "a contact in the plane through the centre of mass, or a like one on its other side",
+        )
+
+
+def equal_shares(forces_W: FloatArray, partners: tuple[int, ...]) -> FloatArray:
+    """Return planar contact forces, (n, 3), shared equally between each contact and its mirror image."""
+    shared: FloatArray = 0.5 * (forces_W + forces_W[[i if j < 0 else j for i, j in enumerate(partners)]])
+    return shared
+
+
+def with_planar_velocity(problem: PlanarProblem, state: BodyState, velocity: PlanarVelocity) -> BodyState:
+    """Return the state of a planar problem with another velocity in the plane; what is out of it stays."""
+    (v_x, v_y), (before_x, before_y) = velocity.v, problem.velocity.v
+    plane = problem.plane
+    return replace(
+        state,
+        v_WB_W=state.v_WB_W + plane.lift((v_x - before_x, v_y - before_y)),
+        w_WB_W=state.w_WB_W + (velocity.w - problem.velocity.w) * plane.normal_W,
+    )
+
+
+def planar_velocity(plane: PlaneOfMotion, state: BodyState) -> PlanarVelocity:
+    """Return the velocity that the plane of motion sees."""
+    x, y = plane.axes_W @ state.v_WB_W
+    return PlanarVelocity(v=(float(x), float(y)), w=float(state.w_WB_W @ plane.normal_W))

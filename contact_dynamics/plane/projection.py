@@ -1,0 +1,313 @@
+"""From space to a plane of motion and back: when a question is a planar one, and by how much it is not.
+
+The plane passes through the centre of mass. Seen with its normal towards the eye and a contact's normal up,
+*right* is right, so that turning the plane over swaps left and right.
+
+A spatial problem is planar where nothing couples it to the motion out of the plane: velocities lie in the
+plane, contact normals and the applied force too, and the plane's normal is a principal axis. Contacts at
+different depths project onto one plane: their forces are taken to balance about the axes in the plane, as
+they do where body and contacts are symmetric about it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.errors import OutOfPlaneError
+from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, scaled, without
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, Vector2
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.tolerances import OUT_OF_PLANE_RATIO, OUT_OF_PLANE_SPEED
+from contact_dynamics.validation import FloatArray, check_unit
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+_STEEP: Final = 0.8
+"""Cosine to the world's up above which a normal counts as upright: it is then over 36 degrees off x."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PlaneOfMotion:
+    """An oriented plane through the centre of mass, with axes x, y in it and z its normal.
+
+    Raises:
+        InvalidFieldError: the normal is not a unit vector of three finite numbers.
+    """
+
+    normal_W: FloatArray  # (3,), unit, world axes
+    # x and y, (2, 3), world axes: y is the world's up as seen in the plane; its x where up is the normal
+    axes_W: FloatArray = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Check the normal, and complete the axes."""
+        object.__setattr__(self, "normal_W", check_unit("plane_normal", self.normal_W, 3))
+        normal = _three(self.normal_W)
+        y = normalised(without((0.0, 0.0, 1.0) if abs(normal[2]) < _STEEP else (1.0, 0.0, 0.0), normal))
+        axes = np.array((cross(y, normal), y))
+        axes.flags.writeable = False
+        object.__setattr__(self, "axes_W", axes)
+
+    def lift(self, vector: Vector2) -> FloatArray:
+        """Return a vector of the plane, (x, y), in world axes, (3,)."""
+        lifted: FloatArray = np.array(vector) @ self.axes_W
+        return lifted
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanarProblem:
+    """A spatial problem as the plane of motion sees it."""
+
+    plane: PlaneOfMotion
+    body: PlanarBody
+    velocity: PlanarVelocity
+    contacts: tuple[PlanarContact, ...]
+    wrench: PlanarWrench
+    out_of_plane: (
+        float  # m/s, the largest speed, at a contact or the centre of mass, that the plane leaves out
+    )
+
+
+def project(
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    *,
+    plane: PlaneOfMotion,
+    force_W: FloatArray,
+    torque_W: FloatArray,
+    speed_tolerance: float = OUT_OF_PLANE_SPEED,
+) -> PlanarProblem:
+    """Return the problem in the plane.
+
+    Args:
+        body: mass properties.
+        state: pose and velocity.
+        contacts: the contacts in space.
+        plane: the plane of motion.
+        force_W: applied force, (3,), N, world axes, gravity included.
+        torque_W: applied torque about the centre of mass, (3,), N m, world axes.
+        speed_tolerance: largest speed out of the plane, m/s, that still counts as planar.
+
+    Raises:
+        OutOfPlaneError: velocity, a contact normal, the wrench or the inertia leaves the plane by more than
+        its tolerance.
+    """
+    normal = _three(plane.normal_W)
+    x, y = (_three(axis) for axis in plane.axes_W)
+    force, torque = _three(force_W), _three(torque_W)
+
+    def in_plane(vector: Vector3) -> Vector2:
+        return (dot(x, vector), dot(y, vector))
+
+    out_of_plane = out_of_plane_speed(plane, state, contacts)
+    if out_of_plane > speed_tolerance:
+        raise OutOfPlaneError(
+            "state",
+            f"{out_of_plane:.6g} m/s out of the plane with normal {plane.normal_W.tolist()}",
+            f"at most {speed_tolerance:g} m/s",
+        )
+    normals = _rows(contacts.normals_W)
+    _check_ratio("contact normals", max((abs(dot(n, normal)) for n in normals), default=0.0), plane)
+    inertia, coupling = _inertia_about(body, state.R_WB, normal)
+    _check_ratio("inertia", coupling, plane)
+    _check_ratio("applied force", _ratio(abs(dot(force, normal)), norm(force)), plane)
+    planar_body = PlanarBody(mass=body.mass, inertia=inertia)
+    torque_scale = norm(torque) + planar_body.radius_of_gyration * norm(force)
+    _check_ratio("applied torque", _ratio(norm(without(torque, normal)), torque_scale), plane)
+    return PlanarProblem(
+        plane=plane,
+        body=planar_body,
+        velocity=PlanarVelocity(v=in_plane(_three(state.v_WB_W)), w=dot(_three(state.w_WB_W), normal)),
+        contacts=tuple(
+            PlanarContact(
+                r=in_plane(r),
+                normal=_unit(in_plane(n)),
+                friction=mu,
+                restitution=e,
+                body_curvature=k_B,
+                surface_curvature=k_S,
+            )
+            for r, n, mu, e, (k_B, k_S) in zip(
+                _rows(contacts.p_WC_W - state.p_WB_W),
+                normals,
+                contacts.frictions.tolist(),
+                contacts.restitutions.tolist(),
+                _curvatures_in(plane, contacts),
+                strict=True,
+            )
+        ),
+        wrench=PlanarWrench(f=in_plane(force), moment=dot(torque, normal)),
+        out_of_plane=out_of_plane,
+    )
+
+
+def _curvatures_in(plane: PlaneOfMotion, contacts: ContactSet) -> list[tuple[float, float]]:
+    """Return the curvatures in a plane, 1/m, of the body and of the surface at each contact."""
+    if contacts.body_curvatures is None and contacts.surface_curvatures is None:
+        return [(math.inf, 0.0)] * len(contacts)
+    pairs = []
+    for i, normal in enumerate(contacts.normals_W):
+        tangent = np.cross(plane.normal_W, normal)
+        tangent /= math.sqrt(tangent @ tangent)
+        sides = []
+        for name, curvatures, default in (
+            ("body_curvatures", contacts.body_curvatures, math.inf),
+            ("surface_curvatures", contacts.surface_curvatures, 0.0),
+        ):
+            found = default if curvatures is None else curvatures.in_direction(i, tangent)
+            if found is None:
+                raise OutOfPlaneError(
+                    f"contacts.{name}[{i}]", "a principal direction at an angle to the plane", "one within it"
+                )
+            sides.append(found)
+        pairs.append((sides[0], sides[1]))
+    return pairs
+
+
+def out_of_plane_speed(plane: PlaneOfMotion, state: BodyState, contacts: ContactSet) -> float:
+    """Return the largest speed, m/s, at contacts and centre of mass that the plane leaves out."""
+    normal = _three(plane.normal_W)
+    w = without(_three(state.w_WB_W), normal)
+    v = scaled(normal, dot(_three(state.v_WB_W), normal))
+    fastest = norm(v)
+    if w == (0.0, 0.0, 0.0):
+        return fastest
+    for r in _rows(contacts.p_WC_W - state.p_WB_W):
+        turning = cross(w, r)
+        fastest = max(fastest, norm((v[0] + turning[0], v[1] + turning[1], v[2] + turning[2])))
+    return fastest
+
+
+def best_plane(
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    *,
+    force_W: FloatArray,
+    torque_W: FloatArray,
+    speed_tolerance: float = OUT_OF_PLANE_SPEED,
+) -> PlaneOfMotion:
+    """Return a plane in which a problem is planar, or the one in which it nearly is.
+
+    Contact normals and the applied force must lie in it. Where they leave a choice (a body on a floor), the
+    candidates, made to contain them, are: normal to the rotation's axis; along the sliding motion; normal to
+    the torque; through all contacts, where there is such a plane; normal to each of the body's principal
+    axes, and to the world's. The first that leaves out no motion above ``speed_tolerance`` (m/s) and couples
+    no inertia beyond `OUT_OF_PLANE_RATIO` is taken; if none does, the one that leaves out least.
+
+    Raises:
+        OutOfPlaneError: contact normals and force span space: no plane contains them.
+    """
+    fixed = _orthonormal_span([*_rows(contacts.normals_W), _normalised(_three(force_W))])
+    if len(fixed) > 2:
+        raise OutOfPlaneError(
+            "contact normals", "normals and an applied force that span space", "vectors in a common plane"
+        )
+    if len(fixed) == 2:
+        return PlaneOfMotion(normal_W=np.array(cross(fixed[0], fixed[1])))
+    R_WB = state.R_WB
+    best: tuple[float, PlaneOfMotion] | None = None
+    for seed in _axis_candidates(body, state, contacts, fixed, _three(torque_W)):
+        across = seed
+        for direction in fixed:
+            across = without(across, direction)
+        length = norm(across)
+        if length <= OUT_OF_PLANE_RATIO * norm(seed):
+            continue
+        plane = PlaneOfMotion(normal_W=np.array(scaled(across, 1.0 / length)))
+        speed = out_of_plane_speed(plane, state, contacts)
+        _, coupling = _inertia_about(body, R_WB, _three(plane.normal_W))
+        if speed <= speed_tolerance and coupling <= OUT_OF_PLANE_RATIO:
+            return plane
+        if best is None or speed < best[0]:
+            best = (speed, plane)
+    if best is None:  # cannot be: of the world's axes at least two are not parallel to one direction
+        raise OutOfPlaneError("plane_normal", "no candidate", "an explicit normal")
+    return best[1]
+
+
+def _axis_candidates(
+    body: MassProperties, state: BodyState, contacts: ContactSet, fixed: list[Vector3], torque: Vector3
+) -> Iterator[Vector3]:
+    """Yield normals of planes, not unit; zero vectors among them."""
+    yield _three(state.w_WB_W)
+    for direction in fixed:
+        yield cross(direction, _three(state.v_WB_W))
+    yield torque
+    for direction in fixed:
+        yield _normal_through(direction, _rows(contacts.p_WC_W - state.p_WB_W))
+    yield from _rows((state.R_WB @ _principal_axes(body)).T)
+    yield from ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+def _normal_through(direction: Vector3, points: list[Vector3]) -> Vector3:
+    """Return the normal, not unit, of the plane of a direction and points; zero where they name none."""
+    farthest = max((cross(direction, point) for point in points), key=norm)
+    size = norm(farthest)
+    off = max(abs(dot(farthest, point)) for point in points)
+    named = size > OUT_OF_PLANE_RATIO * max(map(norm, points)) and off <= OUT_OF_PLANE_RATIO * size * size
+    return farthest if named else (0.0, 0.0, 0.0)
+
+
+@lru_cache(maxsize=64)
+def _principal_axes(body: MassProperties) -> FloatArray:
+    axes: FloatArray = np.linalg.eigh(body.I_B)[1]
+    return axes
+
+
+def _inertia_about(body: MassProperties, R_WB: FloatArray, normal_W: Vector3) -> tuple[float, float]:
+    """Return the inertia about an axis, and the part of the angular momentum across it, relative to that."""
+    axis_B = np.array(normal_W) @ R_WB
+    momentum, axis = _three(body.I_B @ axis_B), _three(axis_B)
+    along = dot(momentum, axis)
+    return along, norm(without(momentum, axis)) / along
+
+
+def _check_ratio(field: str, ratio: float, plane: PlaneOfMotion) -> None:
+    if ratio > OUT_OF_PLANE_RATIO:
+        raise OutOfPlaneError(
+            field,
+            f"a part of {ratio:.6g} out of the plane with normal {plane.normal_W.tolist()}",
+            f"at most {OUT_OF_PLANE_RATIO:g}",
+        )
+
+
+def _ratio(part: float, whole: float) -> float:
+    return part / whole if whole > 0.0 else 0.0
+
+
+def _normalised(vector: Vector3) -> Vector3:
+    return normalised(vector) if vector != (0.0, 0.0, 0.0) else vector
+
+
+def _orthonormal_span(vectors: Iterable[Vector3]) -> list[Vector3]:
+    span: list[Vector3] = []
+    for vector in vectors:
+        rest = vector
+        for direction in span:
+            rest = without(rest, direction)
+        if norm(rest) > OUT_OF_PLANE_RATIO:
+            span.append(normalised(rest))
+    return span
+
+
+def _three(vector: FloatArray) -> Vector3:
+    x, y, z = vector.tolist()
+    return (x, y, z)
+
+
+def _rows(vectors: FloatArray) -> list[Vector3]:
+    return [(x, y, z) for x, y, z in vectors.tolist()]
+
+
+def _unit(vector: Vector2) -> Vector2:
+    x, y = vector
+    length = math.hypot(x, y)
+    return (x / length, y / length)

@@ -1,0 +1,178 @@
+"""The plane: a planar body, its motion and its contacts (Mason, lectures 26 and 27).
+
+Coordinates are those of the plane of motion, x and y, with the centre of mass as the origin of all positions.
+A contact's tangent is its normal turned by -90 degrees: for normal (0, 1) it is +x. *Right* is positive
+tangential, *left* negative. The cross product of r and f is r_x f_y - r_y f_x, so that a positive moment
+turns x towards y.
+
+Numbers are plain floats, because one planar answer is cheaper without arrays.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from contact_dynamics.contact.curvature import planar_gap_acceleration
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.tolerances import LARGEST_NUMBER, UNIT_LENGTH_TOLERANCE
+from contact_dynamics.validation import (
+    LENGTH_ROUNDING,
+    check_finite,
+    check_not_negative,
+    check_positive,
+    check_within,
+)
+
+Vector2: TypeAlias = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanarBody:
+    """Mass and scalar angular inertia of a planar body.
+
+    Raises:
+        InvalidFieldError: either is not a finite number > 0, or beyond `LARGEST_NUMBER` or below its inverse.
+    """
+
+    mass: float  # kg
+    inertia: float  # kg m^2, about the centre of mass; m rho^2 with rho the radius of gyration
+
+    def __post_init__(self) -> None:
+        """Check both fields."""
+        object.__setattr__(self, "mass", _check_size("mass", check_positive("mass", self.mass)))
+        object.__setattr__(self, "inertia", _check_size("inertia", check_positive("inertia", self.inertia)))
+
+    @property
+    def radius_of_gyration(self) -> float:
+        """Return rho in I = m rho^2, m (lecture 25, eq. 13)."""
+        return math.sqrt(self.inertia / self.mass)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanarVelocity:
+    """Velocity of a planar body.
+
+    Raises:
+        InvalidFieldError: a number is not finite, or beyond `LARGEST_NUMBER`.
+    """
+
+    v: Vector2  # m/s, of the centre of mass
+    w: float  # rad/s, positive from x to y
+
+    def __post_init__(self) -> None:
+        """Check both fields."""
+        object.__setattr__(self, "v", check_vector2("linear_velocity", self.v))
+        object.__setattr__(self, "w", _check_number("angular_velocity", self.w))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanarWrench:
+    """Force and moment applied to a planar body, besides those of its contacts.
+
+    Raises:
+        InvalidFieldError: a number is not finite, or beyond `LARGEST_NUMBER`.
+    """
+
+    f: Vector2  # N
+    moment: float = 0.0  # N m, about the centre of mass
+
+    def __post_init__(self) -> None:
+        """Check both fields."""
+        object.__setattr__(self, "f", check_vector2("force", self.f))
+        object.__setattr__(self, "moment", _check_number("torque", self.moment))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanarContact:
+    """A point of the body on a flat of the world; or sides that are curved, as `contact.curvature` has it.
+
+    A corner of the world that a flat of the body slides over has ``body_curvature=0`` and
+    ``surface_curvature=math.inf``; a disc of radius R on a floor has ``body_curvature=1 / R``.
+
+    Raises:
+        InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, e outside [0, 1], or two
+            sides that do not touch in one point of one normal: curvatures of a sum <= 0, or two corners.
+    """
+
+    r: Vector2  # m, from the centre of mass to the contact
+    normal: Vector2  # unit, into the body
+    friction: float  # Coulomb's mu, >= 0
+    restitution: float = 0.0  # e, in [0, 1]; contact modes do not use it
+    body_curvature: float = math.inf  # 1/m, of the body at the contact, convex positive; inf: a corner
+    surface_curvature: float = 0.0  # 1/m, of what it touches, likewise
+
+    def __post_init__(self) -> None:
+        """Check all fields and normalise the normal to rounding."""
+        object.__setattr__(self, "r", check_vector2("contact position", self.r))
+        n_x, n_y = check_vector2("contact normal", self.normal)
+        # Not `hypot`, whose last bit NumPy's may not share: batches repeat this.
+        length = math.sqrt(n_x * n_x + n_y * n_y)
+        off = abs(length - 1.0)
+        if off > UNIT_LENGTH_TOLERANCE:
+            raise InvalidFieldError("contact normal", self.normal, "a unit vector")
+        unit = (n_x / length, n_y / length) if off > LENGTH_ROUNDING else (n_x, n_y)
+        object.__setattr__(self, "normal", unit)
+        object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
+        object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
+        if self.body_curvature != math.inf or self.surface_curvature != 0.0:
+            self._check_curvatures()
+
+    def _check_curvatures(self) -> None:
+        one, other = self.body_curvature, self.surface_curvature
+        if (one == math.inf and other == math.inf) or not one + other > 0.0:
+            raise InvalidFieldError(
+                "contact curvatures",
+                f"{one} of the body, {other} of the surface, 1/m",
+                "a sum > 0, and at most one corner",
+            )
+
+    def gap_acceleration(self, v_t: float, w: float) -> float:
+        """Return what the gap's second derivative has besides the contact point's a_n, m/s^2.
+
+        For a tangential velocity, m/s, of the body's point at the contact, and an angular one, rad/s.
+        """
+        if self.body_curvature == math.inf and self.surface_curvature == 0.0:
+            return 0.0
+        return planar_gap_acceleration(self.body_curvature, self.surface_curvature, v_t=v_t, w=w)
+
+    def reach(self, rho: float) -> float:
+        """Return how far, m, an angular velocity counts at the contact, of a body of radius of gyration rho.
+
+        Where sides are curved the body turns about another point than its own, and a corner slides along it.
+        """
+        if self.body_curvature == math.inf and self.surface_curvature == 0.0:
+            return math.hypot(*self.r)
+        return math.hypot(*self.r) + rho + 1.0 / (self.body_curvature + self.surface_curvature)
+
+    @property
+    def tangent(self) -> Vector2:
+        """Return the unit tangent: the normal turned by -90 degrees."""
+        n_x, n_y = self.normal
+        return (n_y, -n_x)
+
+
+def check_vector2(field: str, value: Vector2) -> Vector2:
+    """Return ``value`` as a pair of floats up to `LARGEST_NUMBER`, or raise `InvalidFieldError`."""
+    try:
+        x, y = value
+    except (TypeError, ValueError):
+        raise InvalidFieldError(field, value, "two finite numbers") from None
+    # The common case first; NaN compares as false.
+    if type(x) is float and type(y) is float and abs(x) + abs(y) <= LARGEST_NUMBER:
+        return (x, y)
+    return (_check_number(field, x), _check_number(field, y))
+
+
+def _check_number(field: str, value: Any) -> float:
+    number = check_finite(field, value)
+    if abs(number) > LARGEST_NUMBER:
+        raise InvalidFieldError(field, value, f"a number of at most {LARGEST_NUMBER:g}, by size")
+    return number
+
+
+def _check_size(field: str, value: float) -> float:
+    if not 1.0 / LARGEST_NUMBER <= value <= LARGEST_NUMBER:
+        raise InvalidFieldError(field, value, f"a number from {1.0 / LARGEST_NUMBER:g} to {LARGEST_NUMBER:g}")
+    return value

@@ -1,0 +1,1 @@
+"""Rigid bodies (Mason, lectures 24 and 25): mass properties, states, momenta and energies."""

@@ -1,0 +1,62 @@
+"""Several distributions of mass as one, and one without a part of it: lecture 24's sums, part by part."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.rigid_body.inertia.distribution import MassDistribution, difference, point_inertia
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+
+def combined(parts: Iterable[MassDistribution]) -> MassDistribution:
+    """Return all parts as one rigid mass.
+
+    All are given in the same frame F; `MassDistribution.placed` brings them there. Parts that overlap count
+    twice where they do.
+
+    Raises:
+        InvalidFieldError: there is no part.
+    """
+    parts = list(parts)
+    if not parts:
+        raise InvalidFieldError("parts", "none", "at least one")
+    mass = sum(part.mass for part in parts)
+    origin = parts[0].p_FB_F  # measured from a part, so that a far frame costs no digits
+    offsets = [part.p_FB_F - origin for part in parts]
+    center = sum(
+        (part.mass / mass * offset for part, offset in zip(parts, offsets, strict=True)), np.zeros(3)
+    )
+    inertia = np.zeros((3, 3))
+    for part, offset in zip(parts, offsets, strict=True):
+        inertia += part.I_B + part.mass * point_inertia(offset - center)
+    return MassDistribution(mass=mass, p_FB_F=origin + center, I_B=inertia)
+
+
+def without(whole: MassDistribution, part: MassDistribution) -> MassDistribution:
+    """Return what is left of ``whole`` when ``part``, in the same frame F, is taken out of it: a bore.
+
+    Raises:
+        InvalidFieldError: the part is not lighter than the whole, or what is left is no distribution of
+            mass: the part does not lie within the whole.
+    """
+    mass = whole.mass - part.mass
+    if mass <= 0.0:
+        raise InvalidFieldError("part", f"mass {part.mass:g} kg", f"less than the whole's {whole.mass:g} kg")
+    to_part = part.p_FB_F - whole.p_FB_F
+    apart = whole.mass * part.mass / mass * point_inertia(to_part)
+    rounding = whole.mass / mass * float(np.trace(whole.I_B) + np.trace(part.I_B) + np.trace(apart))
+    try:
+        return MassDistribution(
+            mass=mass,
+            p_FB_F=whole.p_FB_F - part.mass / mass * to_part,
+            I_B=difference(whole.I_B, part.I_B + apart, terms=rounding),
+        )
+    except InvalidFieldError as error:
+        raise InvalidFieldError(
+            "part", f"one that leaves {error.found}", "a part that lies within the whole"
+        ) from None

@@ -1,0 +1,205 @@
+"""Mass in a frame: how much, where its centre is, and its angular inertia (Mason, lectures 24 and 25).
+
+A `MassDistribution` is what shapes are turned into and what composes: it may also be a point or a line, whose
+inertia no rigid body has. `mass_properties` is its view for dynamics.
+
+Frames: F is any frame fixed to the mass; B has F's axes and its origin at the centre of mass.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.rigid_body.body import MassProperties, rotation_matrix
+from contact_dynamics.shapes.convex import NO_SHAPE, ConvexShape, polyhedron
+from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, TRIANGLE_TOLERANCE
+from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_positive, check_unit
+from contact_dynamics.world import Body
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+ROUNDING: Final = 1e-14
+"""Relative to the largest term of a difference of inertias: some ten roundings of 1e-16, with room."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MassDistribution:
+    """A rigid distribution of mass in a frame F.
+
+    Raises:
+        InvalidFieldError: mass not > 0, a number not finite, a centre beyond `LARGEST_NUMBER`, or an inertia
+            that no mass has: not symmetric, or principal moments that break I1 + I2 >= I3.
+    """
+
+    mass: float  # kg, > 0
+    p_FB_F: FloatArray  # (3,), m, centre of mass, F's axes
+    I_B: FloatArray  # (3, 3), kg m^2, about the centre of mass, F's axes
+
+    def __post_init__(self) -> None:
+        """Check all fields."""
+        object.__setattr__(self, "mass", check_positive("mass", self.mass))
+        center = check_array("center_of_mass", self.p_FB_F, (3,))
+        object.__setattr__(self, "p_FB_F", check_magnitude("center_of_mass", center))
+        object.__setattr__(self, "I_B", _check_inertia("inertia", self.I_B))
+
+    @classmethod
+    def of(cls, mass_properties: MassProperties, p_FB_F: ArrayLike = (0.0, 0.0, 0.0)) -> MassDistribution:
+        """Return the distribution of a body whose centre of mass is at ``p_FB_F``, (3,), m."""
+        return cls(mass=mass_properties.mass, p_FB_F=np.asarray(p_FB_F), I_B=mass_properties.I_B)
+
+    @classmethod
+    def from_inertia_about(
+        cls, p_FQ_F: ArrayLike, I_Q: ArrayLike, *, mass: float, p_FB_F: ArrayLike
+    ) -> MassDistribution:
+        """Return the distribution whose inertia about a point Q is known: parallel axes, backwards.
+
+        Args:
+            p_FQ_F: (3,), m, the point.
+            I_Q: (3, 3), kg m^2, angular inertia about it, F's axes.
+            mass: kg.
+            p_FB_F: (3,), m, centre of mass.
+
+        Raises:
+            InvalidFieldError: as the class does, also where the inertia is too small for a centre so far.
+        """
+        mass = check_positive("mass", mass)
+        center = check_array("center_of_mass", p_FB_F, (3,))
+        arm = center - check_array("point", p_FQ_F, (3,))
+        about = check_array("inertia", I_Q, (3, 3))
+        I_B = difference(about, mass * point_inertia(arm), terms=float(np.abs(about).max()))
+        return cls(mass=mass, p_FB_F=center, I_B=I_B)
+
+    @property
+    def mass_properties(self) -> MassProperties:
+        """The same for dynamics, about the centre of mass.
+
+        Raises:
+            InvalidFieldError: the mass is a point or lies on a line: it has no inertia about some axis.
+        """
+        return MassProperties(mass=self.mass, I_B=self.I_B)
+
+    def body(
+        self, name: str, *, vertices_F: ArrayLike | None = None, shape_F: ConvexShape = NO_SHAPE
+    ) -> Body:
+        """Return a `Body` for a `World`, its convex shape given in F, or by corners (k, 3), m, in F.
+
+        Raises:
+            InvalidFieldError: as `mass_properties`, vertices of another shape or not finite, or both given.
+            TooLargeError: more vertices than a body may have.
+        """
+        if vertices_F is not None:
+            if shape_F is not NO_SHAPE:
+                raise InvalidFieldError("vertices", "vertices and a shape", "one of them")
+            shape_F = polyhedron(check_array("vertices", vertices_F, (None, 3)))
+        return Body(
+            name=name,
+            mass_properties=self.mass_properties,
+            p_FB_F=self.p_FB_F,
+            shape=shape_F.moved(-self.p_FB_F),
+        )
+
+    def placed(
+        self, *, p_GF_G: ArrayLike = (0.0, 0.0, 0.0), q_GF: ArrayLike = (0.0, 0.0, 0.0, 1.0)
+    ) -> MassDistribution:
+        """Return the same mass in a frame G in which F has that pose (lecture 25, eq. 11).
+
+        Args:
+            p_GF_G: (3,), m, F's origin in G.
+            q_GF: (4,), unit quaternion x, y, z, w: F's coordinates into G's.
+
+        Raises:
+            InvalidFieldError: a number is not finite, or the quaternion is not unit.
+        """
+        R_GF = rotation_matrix(check_unit("orientation", q_GF, 4))
+        origin = check_array("position", p_GF_G, (3,))
+        return MassDistribution(
+            mass=self.mass, p_FB_F=origin + R_GF @ self.p_FB_F, I_B=_symmetric(R_GF @ self.I_B @ R_GF.T)
+        )
+
+    def mirrored(self, normal_F: ArrayLike) -> MassDistribution:
+        """Return the mirror image in the plane through F's origin with that unit normal, (3,)."""
+        normal = check_unit("normal", normal_F, 3)
+        M = np.eye(3) - 2.0 * np.outer(normal, normal)
+        return MassDistribution(mass=self.mass, p_FB_F=M @ self.p_FB_F, I_B=_symmetric(M @ self.I_B @ M.T))
+
+    def with_mass(self, mass: float) -> MassDistribution:
+        """Return the same shape with another mass, kg, say the one that a scale shows."""
+        mass = check_positive("mass", mass)
+        return MassDistribution(mass=mass, p_FB_F=self.p_FB_F, I_B=self.I_B * (mass / self.mass))
+
+    def inertia_about(self, p_FQ_F: ArrayLike) -> FloatArray:
+        """Return the angular inertia, (3, 3), kg m^2, about a point Q, F's axes (parallel axes)."""
+        arm = self.p_FB_F - check_array("point", p_FQ_F, (3,))
+        about: FloatArray = self.I_B + self.mass * point_inertia(arm)
+        return about
+
+    def angular_inertia_about(self, axis_F: ArrayLike, *, p_FQ_F: ArrayLike | None = None) -> float:
+        """Return the scalar angular inertia, kg m^2, about a line (lecture 25, eq. 12).
+
+        Args:
+            axis_F: (3,), unit, the line's direction.
+            p_FQ_F: (3,), m, a point of the line; the centre of mass where none is given.
+        """
+        axis = check_unit("axis", axis_F, 3)
+        about_center = max(
+            float(axis @ self.I_B @ axis), 0.0
+        )  # of a line about itself: 0, or rounding below it
+        if p_FQ_F is None:
+            return about_center
+        lever = np.cross(axis, self.p_FB_F - check_array("point", p_FQ_F, (3,)))
+        return about_center + self.mass * float(lever @ lever)
+
+    def radius_of_gyration(self, axis_F: ArrayLike, *, p_FQ_F: ArrayLike | None = None) -> float:
+        """Return k in I_n = m k^2, m, about the line of `angular_inertia_about` (lecture 25, eq. 13)."""
+        return math.sqrt(self.angular_inertia_about(axis_F, p_FQ_F=p_FQ_F) / self.mass)
+
+
+def point_inertia(arm: FloatArray) -> FloatArray:
+    """Return |x|^2 1 - x x^T, (3, 3), m^2, of a particle of unit mass at ``arm``, (3,), m (lecture 24)."""
+    return inertia_of_second_moments(np.outer(arm, arm))
+
+
+def inertia_of_second_moments(second: FloatArray) -> FloatArray:
+    """Return the inertia tr(S) 1 - S, (3, 3), kg m^2, of S = integral of x x^T dm (lecture 25, eq. 4)."""
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = second.tolist()
+    xy, xz, yz = 0.0 - xy, 0.0 - xz, 0.0 - yz  # never -0.0
+    # Summed entry by entry: tr(S) - S_zz would lose a thin body's small moment.
+    return np.array([[yy + zz, xy, xz], [xy, xx + zz, yz], [xz, yz, xx + yy]])
+
+
+def difference(minuend: FloatArray, subtrahend: FloatArray, *, terms: float) -> FloatArray:
+    """Return the difference of two inertias, (3, 3), kg m^2, that rounding does not make impossible.
+
+    What is left of a point or a line is rounding alone, and may have I1 + I2 < I3. Where that is within the
+    rounding of the ``terms``, kg m^2, that went into it, the nearest possible inertia is returned.
+    """
+    inertia: FloatArray = minuend - subtrahend
+    half_trace = 0.5 * float(np.trace(inertia))
+    spreads, axes = np.linalg.eigh(half_trace * np.eye(3) - _symmetric(inertia))  # integrals of x^2, y^2, z^2
+    if not -ROUNDING * terms <= spreads[0] < 0.0:
+        return inertia
+    return inertia_of_second_moments(_symmetric((axes * np.maximum(spreads, 0.0)) @ axes.T))
+
+
+def _symmetric(matrix: FloatArray) -> FloatArray:
+    return 0.5 * (matrix + matrix.T)
+
+
+def _check_inertia(field: str, value: ArrayLike) -> FloatArray:
+    """Return the matrix if some mass has it: I1 + I2 >= I3 >= I2 also makes every moment >= 0."""
+    inertia = check_array(field, value, (3, 3))
+    scale = float(np.abs(inertia).max())
+    if float(np.abs(inertia - inertia.T).max()) > SYMMETRY_TOLERANCE * scale:
+        raise InvalidFieldError(field, inertia.tolist(), "a symmetric matrix")
+    moments = np.linalg.eigvalsh(inertia)
+    if moments[0] + moments[1] < moments[2] - TRIANGLE_TOLERANCE * abs(moments[2]):
+        raise InvalidFieldError(
+            field, f"principal moments {moments.tolist()}", "moments that a mass can have (I1 + I2 >= I3)"
+        )
+    return inertia

@@ -1,0 +1,150 @@
+"""Principal axes and moments, their order and signs, and the inertia ellipsoid (lecture 25, eq. 10 to 17).
+
+An inertia matrix fixes its principal axes up to order and sign, and, where moments are equal, up to a turn.
+This is the choice:
+
+- moments ascend, and the axes are right-handed;
+- of the first and the second axis the largest component is positive (of equally large ones the first; equal
+  means within `TIE`); the third is their cross product;
+- of two equal moments, the axis of the other moment has its largest component positive, and the frame is the
+  one nearest to the body's: what the least rotation makes of x, y, z when it takes the body axis nearest to
+  that axis onto it; so all three axes point the way of the body axes nearest to them;
+- of three equal moments, the axes are the body's.
+
+Equal means within `EQUAL_MOMENTS_TOLERANCE` of the largest; equal moments are returned as their mean. Any
+rule jumps somewhere: this one where moments meet and where two components of an axis are equally large.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.rigid_body.inertia.principal_frame import principal_frame
+from contact_dynamics.tolerances import EQUAL_MOMENTS_TOLERANCE, SYMMETRY_TOLERANCE
+from contact_dynamics.validation import FloatArray, check_array, check_positive, check_unit
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+REMEMBERED: Final = 128
+"""Bodies whose axes are kept."""
+
+TIE: Final = 1e-9
+"""Dimensionless, between components of a unit axis: far above the rounding of, say, (1, 1, 0) / sqrt(2)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PrincipalAxes:
+    """Principal moments and axes, in the order and with the signs of this module."""
+
+    moments: FloatArray  # (3,), kg m^2, ascending
+    R_BP: FloatArray  # (3, 3), a rotation; columns: the axis of each moment, body axes
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class InertiaEllipsoid:
+    """The surface r^T I r = a about the centre of mass (lecture 25, eq. 14)."""
+
+    I_B: FloatArray  # (3, 3), kg m^2
+    level: float  # a, kg m^4 where r is in m
+    semi_axes: FloatArray  # (3,), m, descending: sqrt(a / I); inf where a moment is 0
+    R_BP: FloatArray  # (3, 3), columns: their directions, body axes
+
+    def distance(self, axis_B: ArrayLike) -> float:
+        """Return the distance sqrt(a / I_n), m, to the surface along a unit axis, (3,) (lecture 25, eq. 16).
+
+        It is sqrt(a / m) over the radius of gyration about that axis (eq. 17).
+        """
+        axis = check_unit("axis", axis_B, 3)
+        angular_inertia = float(axis @ self.I_B @ axis)
+        return math.sqrt(self.level / angular_inertia) if angular_inertia > 0.0 else math.inf
+
+
+def principal_axes(I_B: ArrayLike) -> PrincipalAxes:
+    """Return the principal moments and axes of a (3, 3) symmetric matrix, kg m^2, such as a body's I_B.
+
+    Both are right to the last bit of the numbers given, slim bodies' small moments included.
+
+    Raises:
+        InvalidFieldError: the matrix is not symmetric, or not finite.
+    """
+    matrix = check_array("inertia", I_B, (3, 3))
+    if float(np.abs(matrix - matrix.T).max()) > SYMMETRY_TOLERANCE * float(np.abs(matrix).max()):
+        raise InvalidFieldError("inertia", matrix.tolist(), "a symmetric matrix")
+    return axes_of_bytes(matrix.tobytes())
+
+
+@lru_cache(maxsize=REMEMBERED)
+def axes_of_bytes(data: bytes) -> PrincipalAxes:
+    """Return `principal_axes` for the bytes of a symmetric matrix of doubles, unchecked; remembered."""
+    frame = principal_frame(np.frombuffer(data, dtype=np.float64))
+    low, middle, high = frame.moments
+    first, second, third = (np.array([float(x) for x in axis]) for axis in frame.axes_B)
+    equal = EQUAL_MOMENTS_TOLERANCE * max(abs(low), abs(high))
+    low_pair, high_pair = middle - low <= equal, high - middle <= equal
+    if low_pair and high_pair:
+        low = middle = high = (low + middle + high) / 3
+        R_BP = np.eye(3)
+    elif low_pair:
+        low = middle = (low + middle) / 2
+        R_BP = np.roll(_nearest_frame(third), 2, axis=1)
+    elif high_pair:
+        middle = high = (middle + high) / 2
+        R_BP = _nearest_frame(first)
+    else:
+        first, second = _signed(first), _signed(second)
+        R_BP = np.column_stack([first, second, np.cross(first, second)])
+    moments = np.array([float(low), float(middle), float(high)])
+    moments.flags.writeable = R_BP.flags.writeable = False  # they are shared
+    return PrincipalAxes(moments=moments, R_BP=R_BP)
+
+
+def inertia_ellipsoid(I_B: ArrayLike, *, level: float = 1.0) -> InertiaEllipsoid:
+    """Return the inertia ellipsoid r^T I r = a of a (3, 3) matrix, kg m^2 (lecture 25, eq. 14 and 15).
+
+    With ``level`` = a = 2 T it is the energy ellipsoid in the space of angular velocities, rad/s (eq. 23);
+    with a = m times 1 m^4 its distance is one over the radius of gyration.
+
+    Raises:
+        InvalidFieldError: the level is not > 0, the matrix is not symmetric, or a moment is negative.
+    """
+    level = check_positive("level", level)
+    axes = principal_axes(I_B)
+    low, _, high = axes.moments.tolist()
+    if low < -float(EQUAL_MOMENTS_TOLERANCE) * abs(high):
+        raise InvalidFieldError("inertia", f"principal moments {axes.moments.tolist()}", "moments >= 0")
+    semi_axes = [math.sqrt(level / moment) if moment > 0.0 else math.inf for moment in axes.moments.tolist()]
+    return InertiaEllipsoid(
+        I_B=check_array("inertia", I_B, (3, 3)), level=level, semi_axes=np.array(semi_axes), R_BP=axes.R_BP
+    )
+
+
+def _nearest_frame(axis: FloatArray) -> FloatArray:
+    """Return the body axes, (3, 3), in cyclic order, turned least to bring the first onto signed ``axis``."""
+    k = _largest(axis)
+    axis = _signed(axis)
+    columns = [axis]
+    for step in (1, 2):
+        i = (k + step) % 3
+        # The least rotation that takes e_k to n, applied to e_i: e_i - n_i (e_k + n) / (1 + n_k)
+        turned = -axis[i] / (1.0 + axis[k]) * axis
+        turned[k] -= axis[i] / (1.0 + axis[k])
+        turned[i] += 1.0
+        columns.append(turned)
+    return np.column_stack(columns)
+
+
+def _signed(axis: FloatArray) -> FloatArray:
+    return axis if axis[_largest(axis)] > 0.0 else -axis
+
+
+def _largest(axis: FloatArray) -> int:
+    """Return the index of the largest component, the first among equals."""
+    size = np.abs(axis)
+    return int(np.argmax(size >= size.max() * (1.0 - TIE)))

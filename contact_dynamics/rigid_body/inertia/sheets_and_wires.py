@@ -1,0 +1,71 @@
+"""Sheets and wires of no thickness, in closed form.
+
+Axes as for the solids: an axis of symmetry is z, the origin is the centre. Lengths in m. Give either
+``mass``, kg, or ``density``: kg/m^2 of a sheet, kg/m of a wire.
+
+A `rod` has no inertia about its own axis: it is a part of a body, not a body.
+
+All raise `InvalidFieldError` where a length is not > 0, or not exactly one of mass and density is given.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.rigid_body.inertia.mass_or_density import mass_of
+from contact_dynamics.rigid_body.inertia.solids import centered
+from contact_dynamics.validation import check_array, check_positive
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.rigid_body.inertia.distribution import MassDistribution
+
+
+def rod(*, length: float, mass: float | None = None, density: float | None = None) -> MassDistribution:
+    """Return a straight wire along z; density in kg/m."""
+    h = check_positive("length", length)
+    return centered(mass_of(h, mass=mass, density=density), (0.0, 0.0, h * h / 12.0))
+
+
+def ring(*, radius: float, mass: float | None = None, density: float | None = None) -> MassDistribution:
+    """Return a circle of wire about z; density in kg/m."""
+    r = check_positive("radius", radius)
+    total = mass_of(2.0 * math.pi * r, mass=mass, density=density)
+    return centered(total, (r * r / 2.0, r * r / 2.0, 0.0))
+
+
+def plate(*, size: ArrayLike, mass: float | None = None, density: float | None = None) -> MassDistribution:
+    """Return a rectangular sheet of full side lengths (2,) along x, y, normal to z; density in kg/m^2."""
+    x, y = check_array("size", size, (2,)).tolist()
+    if min(x, y) <= 0.0:
+        raise InvalidFieldError("size", [x, y], "two numbers > 0")
+    total = mass_of(x * y, mass=mass, density=density)
+    return centered(total, (x * x / 12.0, y * y / 12.0, 0.0))
+
+
+def disc(*, radius: float, mass: float | None = None, density: float | None = None) -> MassDistribution:
+    """Return a circular sheet, normal to z; density in kg/m^2."""
+    r = check_positive("radius", radius)
+    total = mass_of(math.pi * r * r, mass=mass, density=density)
+    return centered(total, (r * r / 4.0, r * r / 4.0, 0.0))
+
+
+def spherical_shell(
+    *, radius: float, mass: float | None = None, density: float | None = None
+) -> MassDistribution:
+    """Return a sphere's surface; density in kg/m^2."""
+    r = check_positive("radius", radius)
+    total = mass_of(4.0 * math.pi * r * r, mass=mass, density=density)
+    return centered(total, (r * r / 3.0, r * r / 3.0, r * r / 3.0))
+
+
+def cylindrical_shell(
+    *, radius: float, length: float, mass: float | None = None, density: float | None = None
+) -> MassDistribution:
+    """Return a cylinder's curved surface, open at both ends, along z; density in kg/m^2."""
+    r, h = check_positive("radius", radius), check_positive("length", length)
+    total = mass_of(2.0 * math.pi * r * h, mass=mass, density=density)
+    return centered(total, (r * r / 2.0, r * r / 2.0, h * h / 12.0))

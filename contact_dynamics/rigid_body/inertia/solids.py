@@ -1,0 +1,168 @@
+"""Solids of uniform density in closed form.
+
+Each stands in axes of its own: where it has an axis of symmetry, that is z; the origin is its centre, or,
+where the two ends of the axis differ (cone, hemisphere), the centre of its base, with the solid on the side
+of +z. `MassDistribution.placed` moves it anywhere. Lengths in m. Give either ``mass``, kg, or ``density``,
+kg/m^3.
+
+All raise `InvalidFieldError` where a length is not > 0, or not exactly one of mass and density is given.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.rigid_body.inertia.distribution import MassDistribution
+from contact_dynamics.rigid_body.inertia.mass_or_density import mass_of
+from contact_dynamics.validation import check_array, check_not_negative, check_positive
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+
+def box(*, size: ArrayLike, mass: float | None = None, density: float | None = None) -> MassDistribution:
+    """Return a box of full side lengths (3,) along x, y, z, about its centre."""
+    x, y, z = _lengths("size", size)
+    total = mass_of(x * y * z, mass=mass, density=density)
+    return centered(total, (x * x / 12.0, y * y / 12.0, z * z / 12.0))
+
+
+def sphere(*, radius: float, mass: float | None = None, density: float | None = None) -> MassDistribution:
+    """Return a ball about its centre."""
+    r = check_positive("radius", radius)
+    return ellipsoid(semi_axes=(r, r, r), mass=mass, density=density)
+
+
+def hollow_sphere(
+    *, outer_radius: float, inner_radius: float, mass: float | None = None, density: float | None = None
+) -> MassDistribution:
+    """Return a ball with a concentric hollow; thin: `spherical_shell`."""
+    R, r = _wall(outer_radius, inner_radius)
+    squares = R * R + R * r + r * r
+    total = mass_of(4.0 / 3.0 * math.pi * (R - r) * squares, mass=mass, density=density)
+    # (R^5 - r^5) / (R^3 - r^3), without the cancellation of thin walls
+    second = (R**4 + R**3 * r + R * R * r * r + R * r**3 + r**4) / (5.0 * squares)
+    return centered(total, (second, second, second))
+
+
+def ellipsoid(
+    *, semi_axes: ArrayLike, mass: float | None = None, density: float | None = None
+) -> MassDistribution:
+    """Return an ellipsoid of semi-axes (3,) along x, y, z, about its centre."""
+    a, b, c = _lengths("semi_axes", semi_axes)
+    total = mass_of(4.0 / 3.0 * math.pi * a * b * c, mass=mass, density=density)
+    return centered(total, (a * a / 5.0, b * b / 5.0, c * c / 5.0))
+
+
+def hemisphere(*, radius: float, mass: float | None = None, density: float | None = None) -> MassDistribution:
+    """Return half a ball: its flat face in z = 0, centred, the dome towards +z."""
+    r = check_positive("radius", radius)
+    total = mass_of(2.0 / 3.0 * math.pi * r**3, mass=mass, density=density)
+    return centered(total, (r * r / 5.0, r * r / 5.0, 19.0 / 320.0 * r * r), height=0.375 * r)
+
+
+def cylinder(
+    *, radius: float, length: float, mass: float | None = None, density: float | None = None
+) -> MassDistribution:
+    """Return a circular cylinder along z, about its centre."""
+    return _tube(check_positive("radius", radius), 0.0, length, mass, density)
+
+
+def tube(
+    *,
+    outer_radius: float,
+    inner_radius: float,
+    length: float,
+    mass: float | None = None,
+    density: float | None = None,
+) -> MassDistribution:
+    """Return a cylinder with a concentric bore, along z, about its centre; thin: `cylindrical_shell`."""
+    return _tube(*_wall(outer_radius, inner_radius), length, mass, density)
+
+
+def capsule(
+    *, radius: float, length: float, mass: float | None = None, density: float | None = None
+) -> MassDistribution:
+    """Return a cylinder along z, of that length >= 0, with a half ball on each end, about its centre."""
+    r, h = check_positive("radius", radius), check_not_negative("length", length)
+    middle, ends = h, 4.0 / 3.0 * r  # volumes over pi r^2
+    total = mass_of(math.pi * r * r * (middle + ends), mass=mass, density=density)
+    middle, ends = middle / (middle + ends), ends / (middle + ends)
+    across = middle * r * r / 4.0 + ends * r * r / 5.0
+    along = middle * h * h / 12.0 + ends * (r * r / 5.0 + 0.375 * r * h + h * h / 4.0)
+    return centered(total, (across, across, along))
+
+
+def cone(
+    *,
+    radius: float,
+    height: float,
+    top_radius: float = 0.0,
+    mass: float | None = None,
+    density: float | None = None,
+) -> MassDistribution:
+    """Return a circular cone, or a frustum: its base in z = 0, centred, its top at z = height.
+
+    A pointed cone's centre of mass is at a quarter of its height.
+    """
+    r, t = check_positive("radius", radius), check_not_negative("top_radius", top_radius)
+    h = check_positive("height", height)
+    squares = r * r + r * t + t * t
+    total = mass_of(math.pi / 3.0 * h * squares, mass=mass, density=density)
+    across = 0.15 * (r**4 + r**3 * t + r * r * t * t + r * t**3 + t**4) / squares
+    along = (
+        0.0375 * h * h * (r**4 + 4.0 * r**3 * t + 10.0 * r * r * t * t + 4.0 * r * t**3 + t**4) / squares**2
+    )
+    return centered(
+        total, (across, across, along), height=0.25 * h * (r * r + 2.0 * r * t + 3.0 * t * t) / squares
+    )
+
+
+def torus(
+    *, ring_radius: float, tube_radius: float, mass: float | None = None, density: float | None = None
+) -> MassDistribution:
+    """Return a torus around z: ``ring_radius`` to the middle of its tube, at least ``tube_radius``."""
+    R, a = check_positive("ring_radius", ring_radius), check_positive("tube_radius", tube_radius)
+    if a > R:
+        raise InvalidFieldError("tube_radius", a, f"at most the ring_radius, {R:g}")
+    total = mass_of(2.0 * math.pi**2 * R * a * a, mass=mass, density=density)
+    across = R * R / 2.0 + 0.375 * a * a
+    return centered(total, (across, across, a * a / 4.0))
+
+
+def centered(mass: float, spread: tuple[float, float, float], *, height: float = 0.0) -> MassDistribution:
+    """Return a mass with principal axes x, y, z and its centre at that height on z.
+
+    ``spread``: the mean of x^2, y^2, z^2 over the mass, m^2, about its centre.
+    """
+    xx, yy, zz = spread
+    return MassDistribution(
+        mass=mass,
+        p_FB_F=np.array([0.0, 0.0, height]),
+        I_B=mass * np.diag([yy + zz, xx + zz, xx + yy]),
+    )
+
+
+def _tube(R: float, r: float, length: float, mass: float | None, density: float | None) -> MassDistribution:
+    h = check_positive("length", length)
+    total = mass_of(math.pi * (R - r) * (R + r) * h, mass=mass, density=density)
+    across = (R * R + r * r) / 4.0
+    return centered(total, (across, across, h * h / 12.0))
+
+
+def _wall(outer_radius: float, inner_radius: float) -> tuple[float, float]:
+    R, r = check_positive("outer_radius", outer_radius), check_not_negative("inner_radius", inner_radius)
+    if r >= R:
+        raise InvalidFieldError("inner_radius", r, f"less than the outer_radius, {R:g}")
+    return R, r
+
+
+def _lengths(field: str, value: ArrayLike) -> tuple[float, float, float]:
+    x, y, z = check_array(field, value, (3,)).tolist()
+    if min(x, y, z) <= 0.0:
+        raise InvalidFieldError(field, [x, y, z], "three numbers > 0")
+    return x, y, z

@@ -1,0 +1,1 @@
+"""Rotations: unit quaternions and rotation matrices, one at a time and many."""

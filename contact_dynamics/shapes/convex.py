@@ -1,0 +1,169 @@
+"""Convex shapes of bodies: the hull of corners and circles, rolled over by a ball.
+
+A sphere is one point and a ball, a capsule two points and a ball, a box its corners, a cylinder its two rims.
+Rounding makes every shape larger: the faces of `rounded(box(...), radius=r)` are r outside the box's. All are
+centred on the body frame's origin, round ones about z; `moved` puts them elsewhere.
+
+Their mass properties are those of `contact_dynamics.rigid_body.inertia`, of the same names and places.
+
+Not covered: shapes that are not convex, ellipsoids, meshes (their corners do: `polyhedron`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.errors import TooLargeError
+from contact_dynamics.rigid_body.body import rotation_matrix
+from contact_dynamics.validation import (
+    FloatArray,
+    check_array,
+    check_not_negative,
+    check_positive,
+    check_unit,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+MOST_VERTICES: Final = 10_000
+"""Longest list of vertices accepted: above it a convex shape should be simplified, not searched."""
+
+MOST_RIMS: Final = 1_000
+"""Longest list of rims accepted; no primitive has more than two."""
+
+
+class Rim(NamedTuple):
+    """A circle."""
+
+    center: tuple[float, float, float]  # m
+    axis: tuple[float, float, float]  # unit, normal to its plane; either sense
+    radius: float  # m, > 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ConvexShape:
+    """The convex hull of points and circles, rolled over by a ball; without points and circles, no shape.
+
+    Raises:
+        InvalidFieldError: a number is not finite, a negative radius, an axis that is not unit.
+        TooLargeError: more than `MOST_VERTICES` vertices or `MOST_RIMS` rims.
+    """
+
+    vertices: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))  # (k, 3), m, body axes
+    rims: tuple[Rim, ...] = ()  # body axes
+    rounding: float = 0.0  # m, >= 0, the ball's radius
+
+    def __post_init__(self) -> None:
+        """Check all fields."""
+        vertices = check_array("vertices", self.vertices, (None, 3))
+        if len(vertices) > MOST_VERTICES:
+            raise TooLargeError("vertices", f"{len(vertices)} vertices", f"at most {MOST_VERTICES}")
+        if len(self.rims) > MOST_RIMS:
+            raise TooLargeError("rims", f"{len(self.rims)} rims", f"at most {MOST_RIMS}")
+        object.__setattr__(self, "vertices", vertices)
+        object.__setattr__(self, "rims", tuple(_checked(*rim) for rim in self.rims))
+        object.__setattr__(self, "rounding", check_not_negative("rounding", self.rounding))
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is nothing that could touch."""
+        return len(self.vertices) == 0 and not self.rims
+
+    @property
+    def is_polyhedron(self) -> bool:
+        """Whether corners are all that can touch."""
+        return not self.rims and self.rounding == 0.0
+
+    def moved(self, offset: ArrayLike, q: ArrayLike = (0.0, 0.0, 0.0, 1.0)) -> ConvexShape:
+        """Return the same shape turned by a unit quaternion x, y, z, w, then shifted by ``offset``, (3,), m.
+
+        Raises:
+            InvalidFieldError: not three finite numbers, or not a unit quaternion.
+        """
+        shift = check_array("offset", offset, (3,))
+        turn = check_unit("orientation", q, 4)
+        R = np.eye(3) if turn[3] == 1.0 else rotation_matrix(turn)
+        return ConvexShape(
+            vertices=self.vertices @ R.T + shift,
+            rims=tuple(
+                Rim(_triple(R @ rim.center + shift), _triple(R @ rim.axis), rim.radius) for rim in self.rims
+            ),
+            rounding=self.rounding,
+        )
+
+
+NO_SHAPE: Final = ConvexShape()
+
+
+def polyhedron(vertices: ArrayLike) -> ConvexShape:
+    """Return the hull of corners, (k, 3), m; they may lie in a plane (a plate), or on a line (a rod)."""
+    return ConvexShape(vertices=np.asarray(vertices))
+
+
+def polygon(outline: ArrayLike) -> ConvexShape:
+    """Return a flat body in the x, y plane, the hull of corners, (k, 2), m."""
+    corners = check_array("outline", outline, (None, 2))
+    return ConvexShape(vertices=np.column_stack([corners, np.zeros(len(corners))]))
+
+
+def box(*, size: ArrayLike) -> ConvexShape:
+    """Return a box of full side lengths (3,), m, each > 0."""
+    sides = [check_positive(f"size[{i}]", x) for i, x in enumerate(check_array("size", size, (3,)).tolist())]
+    return ConvexShape(vertices=box_vertices(sides))
+
+
+def box_vertices(size: ArrayLike) -> FloatArray:
+    """Return the 8 corners, (8, 3), m, of a box with those full side lengths, centred on the origin."""
+    signs = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+    return signs * (0.5 * check_array("size", size, (3,)))
+
+
+def sphere(*, radius: float) -> ConvexShape:
+    """Return a ball of a radius, m, > 0."""
+    return ConvexShape(vertices=np.zeros((1, 3)), rounding=check_positive("radius", radius))
+
+
+def capsule(*, radius: float, length: float) -> ConvexShape:
+    """Return a rod with round ends, about z: ``length``, m, >= 0, is between the centres of its two balls."""
+    half = 0.5 * check_not_negative("length", length)
+    return ConvexShape(
+        vertices=np.array([[0.0, 0.0, -half], [0.0, 0.0, half]]), rounding=check_positive("radius", radius)
+    )
+
+
+def cylinder(*, radius: float, length: float) -> ConvexShape:
+    """Return a cylinder about z, m; a disc without thickness where the length is 0."""
+    radius, half = check_positive("radius", radius), 0.5 * check_not_negative("length", length)
+    rims = (Rim((0.0, 0.0, -half), _Z, radius), Rim((0.0, 0.0, half), _Z, radius))
+    return ConvexShape(rims=rims if half > 0.0 else rims[:1])
+
+
+def cone(*, radius: float, height: float) -> ConvexShape:
+    """Return a cone about z, m: its base at z = 0, its tip at z = ``height`` > 0."""
+    rim = Rim((0.0, 0.0, 0.0), _Z, check_positive("radius", radius))
+    return ConvexShape(vertices=np.array([[0.0, 0.0, check_positive("height", height)]]), rims=(rim,))
+
+
+def rounded(shape: ConvexShape, *, radius: float) -> ConvexShape:
+    """Return a shape with a ball of ``radius``, m, >= 0, rolled over it: larger by that on all sides."""
+    return replace(shape, rounding=shape.rounding + check_not_negative("radius", radius))
+
+
+_Z: Final = (0.0, 0.0, 1.0)
+
+
+def _checked(center: ArrayLike, axis: ArrayLike, radius: float) -> Rim:
+    return Rim(
+        _triple(check_array("rim center", center, (3,))),
+        _triple(check_unit("rim axis", axis, 3)),
+        check_positive("rim radius", radius),
+    )
+
+
+def _triple(vector: FloatArray) -> tuple[float, float, float]:
+    x, y, z = vector.tolist()
+    return (x, y, z)

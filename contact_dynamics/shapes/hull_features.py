@@ -1,0 +1,105 @@
+"""What of a convex hull can touch: its corners, the normals of its faces and the directions of its edges."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.landing.rim_descent import radii_of
+
+if TYPE_CHECKING:
+    from contact_dynamics.shapes.convex import ConvexShape
+    from contact_dynamics.validation import FloatArray
+
+_FLAT: Final = 1e-9
+"""Relative to the size: thinner than this a hull is a plate or a rod. Corners carry 1e-16 of rounding."""
+
+_SAME: Final = 1e-9
+"""1 - cos of the angle, 4e-5 rad, within which normals, or directions of edges, are one."""
+
+_RIM_CORNERS: Final = 32
+
+_KEPT: Final = 64
+"""Shapes whose features are remembered."""
+
+
+class Features(NamedTuple):
+    """Of a hull that is solid, a plate (two faces), a rod (one edge) or a point."""
+
+    corners: FloatArray  # (k, 3), m
+    normals: FloatArray  # (f, 3), unit, outward
+    edges: FloatArray  # (e, 3), unit, one for each direction
+    triangles: FloatArray  # (t, 3, 3), m, the faces
+
+
+@lru_cache(maxsize=_KEPT)
+def features_of(shape: ConvexShape) -> Features:
+    """Return the features of the hull of a shape's corners and of points of its rims, in its axes.
+
+    Rims have `_RIM_CORNERS` corners there: their directions are some of those that a round side has.
+    """
+    rims = [radii_of(rim) for rim in shape.rims]
+    turns = np.linspace(0.0, 2.0 * np.pi, _RIM_CORNERS, endpoint=False)
+    circle = np.column_stack([np.ones(_RIM_CORNERS), np.cos(turns), np.sin(turns)])
+    return hull_features(
+        np.concatenate([shape.vertices, *(circle @ [rim.center, rim.first, rim.second] for rim in rims)])
+    )
+
+
+def hull_features(points: FloatArray) -> Features:
+    """Return the features of the hull of points, (k, 3), m, k > 0."""
+    center = points.mean(axis=0)
+    size = float(np.linalg.norm(np.ptp(points, axis=0)))
+    nothing = np.zeros((0, 3))
+    if size == 0.0:
+        return Features(points[:1], nothing, nothing, np.zeros((0, 3, 3)))
+    _, spread, axes = np.linalg.svd(points - center, full_matrices=False)
+    rank = int(np.sum(spread > _FLAT * size))
+    if rank == 1:
+        along = (points - center) @ axes[0]
+        ends = points[[int(along.argmin()), int(along.argmax())]]
+        return Features(ends, nothing, axes[:1], np.zeros((0, 3, 3)))
+    if rank == 2:
+        outline = points[_hull((points - center) @ axes[:2].T).vertices]
+        sides = np.roll(outline, -1, axis=0) - outline
+        fan = np.array([outline[[0, i, i + 1]] for i in range(1, len(outline) - 1)])
+        normal = np.cross(axes[0], axes[1])
+        return Features(outline, np.array([normal, -normal]), _distinct(_unit(sides), signed=False), fan)
+    hull = _hull(points)
+    normals = hull.equations[:, :3]
+    sides = [
+        points[a] - points[b]
+        for i, simplex in enumerate(hull.simplices)
+        for corner, j in enumerate(hull.neighbors[i])
+        if i < j and 1.0 - normals[i] @ normals[j] > _SAME
+        for a, b in [np.delete(simplex, corner)]
+    ]
+    return Features(
+        points[hull.vertices],
+        _distinct(normals, signed=True),
+        _distinct(_unit(np.array(sides)), signed=False),
+        points[hull.simplices],
+    )
+
+
+def _hull(points: FloatArray) -> Any:
+    from scipy.spatial import ConvexHull
+
+    return ConvexHull(points)
+
+
+def _unit(vectors: FloatArray) -> FloatArray:
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    units: FloatArray = vectors / lengths
+    return units
+
+
+def _distinct(directions: FloatArray, *, signed: bool) -> FloatArray:
+    kept: list[FloatArray] = []
+    for direction in directions:
+        cosines = np.array(kept).reshape(-1, 3) @ direction
+        if not (1.0 - (cosines if signed else np.abs(cosines)) <= _SAME).any():
+            kept.append(direction)
+    return np.array(kept)

@@ -1,0 +1,76 @@
+"""A convex piece of the world with edges and corners: a table's top, a box, a step, the sides of a slot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.shapes.convex import MOST_VERTICES
+from contact_dynamics.shapes.hull_features import Features, hull_features
+from contact_dynamics.validation import FloatArray, check_array, check_not_negative, check_within
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Obstacle:
+    """The hull of corners that stand still: a solid, or a plate (a convex polygon) with two sides.
+
+    Raises:
+        InvalidFieldError: a number is not finite, corners on a line, mu < 0, or e outside [0, 1].
+        TooLargeError: more than `MOST_VERTICES` corners.
+    """
+
+    name: str
+    vertices_W: FloatArray  # (k, 3), m, world
+    friction: float  # Coulomb's mu, >= 0, between this obstacle and any body
+    restitution: float  # e, in [0, 1], likewise
+    features: Features = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Check all fields and find faces and edges."""
+        vertices = check_array("vertices", self.vertices_W, (None, 3))
+        if len(vertices) > MOST_VERTICES:
+            raise TooLargeError("vertices", f"{len(vertices)} vertices", f"at most {MOST_VERTICES}")
+        object.__setattr__(self, "vertices_W", vertices)
+        object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
+        object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
+        features = hull_features(vertices) if len(vertices) > 0 else None
+        if features is None or len(features.normals) == 0:
+            raise InvalidFieldError("vertices", f"{len(vertices)} corners", "three or more, not on a line")
+        object.__setattr__(self, "features", features)
+
+
+def closest_points(features: Features, points: FloatArray) -> FloatArray:
+    """Return the points, (n, 3), of a hull's faces, or of a rod, that are nearest to points, (n, 3), m.
+
+    The nearest one of each triangle is above its inside or on a side, as Ericson, Real-Time Collision
+    Detection, 2005, 5.1.
+    """
+    if len(features.triangles) == 0:
+        return _on_sides(features.corners[:1], features.corners[-1:], points)[:, 0]
+    a, b, c = features.triangles.transpose(1, 0, 2)  # (t, 3) each
+    normals = np.cross(b - a, c - a)
+    sizes = np.einsum("ij,ij->i", normals, normals)
+    p = points[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):  # of slivers only the sides count
+        u = np.einsum("nti,ti->nt", np.cross(b - p, c - p), normals) / sizes
+        v = np.einsum("nti,ti->nt", np.cross(c - p, a - p), normals) / sizes
+        inside = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0)
+        above = u[..., None] * a + v[..., None] * b + (1.0 - u - v)[..., None] * c
+    above[~inside] = np.inf
+    candidates = [above, _on_sides(a, b, points), _on_sides(b, c, points), _on_sides(c, a, points)]
+    found = np.concatenate(candidates, axis=1)
+    distances = np.einsum("nci,nci->nc", found - p, found - p)
+    nearest: FloatArray = found[np.arange(len(points)), distances.argmin(axis=1)]
+    return nearest
+
+
+def _on_sides(a: FloatArray, b: FloatArray, points: FloatArray) -> FloatArray:
+    """Return the points, (n, s, 3), of sides from (s, 3) to (s, 3) that are nearest to points, (n, 3)."""
+    along = b - a
+    lengths = np.einsum("ij,ij->i", along, along)
+    arms = np.einsum("nsi,si->ns", points[:, None] - a, along)
+    shares = np.clip(np.divide(arms, lengths, out=np.zeros_like(arms), where=lengths > 0.0), 0.0, 1.0)
+    nearest: FloatArray = a + shares[..., None] * along
+    return nearest

@@ -1,0 +1,237 @@
+"""Poinsot's picture of a free rotation: the energy ellipsoid rolls on the invariable plane (lecture 25).
+
+In the space of angular velocities the ellipsoid w^T I w = 2 T is fixed in the body, the plane w . L = 2 T in
+the world, and w is where they touch. Its trace on the ellipsoid is the polhode, closed; its trace on the
+plane is the herpolhode, which in general never closes.
+
+Near the middle axis a rotation is stable in neither sense: the body flips (the Dzhanibekov effect), and when
+it does depends on the last digits of its state. `sensitivity` and `next_flips` say how much.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.numerics.arithmetic import ARRAYS, DOUBLES
+from contact_dynamics.rigid_body.body import angular_momentum, rotation_matrix
+from contact_dynamics.rigid_body.inertia.principal_axes import axes_of_bytes
+from contact_dynamics.rotations.one import rotated
+from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
+from contact_dynamics.tumbling.polhode import Rotation, Spin, Tumble, largest_rate
+from contact_dynamics.tumbling.regime import Regime
+from contact_dynamics.validation import FloatArray, check_array
+
+if TYPE_CHECKING:
+    from decimal import Decimal
+
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.tumbling import FreeMotion
+
+CONSTANT_RATE: Final = (Regime.AT_REST, Regime.SPHERICAL, Regime.PRINCIPAL_AXIS)
+"""Where the angular velocity does not change, or only within rounding: there is no polhode to speak of."""
+
+SEPARATRIX_END: Final = 1e-6
+"""rad of Jacobi's amplitude. The motion is this near to spin about the middle axis 14 time constants before
+and after its flip."""
+
+SMALLEST_COMPLEMENT: Final = 1e-100
+"""Of 1 - m. Below it the sensitivity is beyond 1e90: infinite for all that numbers can say."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Poinsot:
+    """The constants of a free rotation."""
+
+    regime: Regime
+    rotational_energy: float  # J, T
+    L_W: FloatArray  # (3,), kg m^2/s, angular momentum, world axes: the normal of the invariable plane
+    invariable_plane_distance: float  # rad/s, 2 T / |L|; NaN at rest
+    polhode_period: float  # s; inf on the separatrix, NaN where the angular velocity is constant
+    precession_per_period: float  # rad, turn about L in one period; NaN where there is no period
+    principal_moments: FloatArray  # (3,), kg m^2, ascending
+    principal_axes_B: FloatArray  # (3, 3), columns: their axes in body coordinates; see `inertia.principal`
+    ellipsoid_semi_axes: FloatArray  # (3,), rad/s, of the energy ellipsoid, along those axes: sqrt(2 T / I)
+    sensitivity: float  # attitude error per rad turned and relative error of the rate; NaN at rest
+
+
+def poinsot(motion: FreeMotion) -> Poinsot:
+    """Return Poinsot's picture of a free motion."""
+    rotation = motion.rotation
+    L_W = angular_momentum(motion.body, motion.state)
+    twice_energy = motion.w_along * math.hypot(*L_W.tolist())
+    axes = axes_of_bytes(motion.body.I_B.tobytes())
+    period = math.nan if motion.regime in CONSTANT_RATE else polhode_period(rotation)
+    return Poinsot(
+        regime=motion.regime,
+        rotational_energy=0.5 * twice_energy,
+        L_W=L_W,
+        invariable_plane_distance=motion.w_along if motion.regime is not Regime.AT_REST else math.nan,
+        polhode_period=period,
+        precession_per_period=_precession(rotation) * period if math.isfinite(period) else math.nan,
+        principal_moments=axes.moments,
+        principal_axes_B=axes.R_BP,
+        ellipsoid_semi_axes=np.sqrt(twice_energy / axes.moments),
+        sensitivity=sensitivity(motion),
+    )
+
+
+def polhode_period(rotation: Rotation) -> float:
+    """Return the time, s, until w in the body repeats; inf on the separatrix, NaN where it is constant."""
+    if isinstance(rotation, Spin):
+        return math.nan
+    if rotation.m1 == 0:
+        return math.inf
+    return 2.0 * math.pi / (float(rotation.quarter) * abs(float(rotation.omega_p)))
+
+
+def sensitivity(motion: FreeMotion) -> float:
+    """Return how fast an error of the initial angular velocity becomes an error of attitude, in the long run.
+
+    The error of attitude, rad, divided by the angle turned, rad, and by the relative error of the angular
+    velocity, for the worst direction of that error and the worst phase: 1 for a steady spin, large near the
+    separatrix, inf on it and about the middle axis itself, where errors grow exponentially. NaN at rest.
+
+    Both phases of the attitude are linear in time with rates that depend on T and |L| alone: nu on the
+    polhode and P about L. With the action J of nu, dT = nu dJ + P dL, and both rates are homogeneous in (J,
+    L); so that d nu / dT at constant L gives all four derivatives.
+    """
+    rotation = motion.rotation
+    if isinstance(rotation, Spin) or motion.regime is Regime.SPHERICAL:
+        return _sensitivity_of_spin(motion)
+    m1 = float(rotation.m1)
+    if m1 < SMALLEST_COMPLEMENT:
+        return math.inf
+    # In units in which I_3 and L are 1.
+    unit, rate_unit = float(rotation.moments[2]), float(rotation.L) / float(rotation.moments[2])
+    moments = [float(moment) / unit for moment in rotation.moments]
+    gap21, gap32, gap31 = (float(gap) / unit for gap in rotation.gaps)
+    P, T2, c2 = float(rotation.precession) / rate_unit, motion.w_along / rate_unit, float(rotation.c2)
+    excess = c2 * gap31  # L^2 - 2 T I_1
+    m_T = 2.0 * gap31 * gap21 / (excess * excess * gap32)
+    K_m = average_over_period(math.sqrt(m1), 1.0, 1.0, 0.0, numbers=DOUBLES)[1] / (2.0 * m1)
+    nu_T = -moments[0] / excess - K_m * m_T  # of log nu, as is the next
+    nu_L = 1.0 - T2 * nu_T
+    P_T = 1.0 + (P - T2) * nu_T
+    P_L = P - T2 * P_T
+    # d P z + (d nu / nu) (w - P z) = (dP - P d nu / nu) z + (d nu / nu) w
+    along_T, along_L = P_T - P * nu_T, P_L - P * nu_L
+    axes = [[float(x) for x in axis] for axis in rotation.axes_B]
+    x, y, z, w = motion.state.q_WB.tolist()
+    w_1, w_2, w_3 = rotated((-x, -y, -z, w), motion.state.w_WB_W.tolist())  # body axes
+    aa = ab = bb = 0.0  # of the gradients over w in P, of the phases' rates
+    for moment, (x, y, z) in zip(moments, axes, strict=True):
+        T_w = moment * (x * w_1 + y * w_2 + z * w_3) / rate_unit
+        L_w = moment * T_w
+        a, b = along_T * T_w + along_L * L_w, nu_T * T_w + nu_L * L_w
+        aa, ab, bb = aa + a * a, ab + a * b, bb + b * b
+    w2 = (largest_rate(rotation) / rate_unit) ** 2
+    trace = aa + 2.0 * T2 * ab + w2 * bb
+    determinant = (aa * bb - ab**2) * (w2 - T2 * T2)
+    return math.sqrt(0.5 * (trace + math.sqrt(max(trace * trace - 4.0 * determinant, 0.0))))
+
+
+def _sensitivity_of_spin(motion: FreeMotion) -> float:
+    """Steady spin is as predictable as any, but about the middle axis and at rest."""
+    if motion.regime is Regime.AT_REST:
+        return math.nan
+    if motion.regime is not Regime.PRINCIPAL_AXIS:
+        return 1.0
+    middle_B = np.array([float(x) for x in motion.frame.axes_B[1]])
+    w_B = motion.state.R_WB.T @ motion.state.w_WB_W
+    return math.inf if abs(middle_B @ w_B) > 0.5 * np.linalg.norm(w_B) else 1.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RollingCurves:
+    """Polhode and herpolhode, which roll on each other: row i of both is where they touch at ``seconds[i]``.
+
+    Arcs of the two between the same rows are equally long.
+    """
+
+    seconds: FloatArray  # (n,), s after the state's stamp, ascending; 0 throughout where nothing moves
+    polhode_B: FloatArray  # (n, 3), rad/s, angular velocity in body axes
+    herpolhode_W: FloatArray  # (n, 3), rad/s, the same in world axes, in the invariable plane
+
+
+def rolling_curves(motion: FreeMotion, count: int) -> RollingCurves:
+    """Return ``count`` points of `polhode` with the times at which the motion passes them, and where then.
+
+    They go once around the polhode, through the period that holds time 0; see `polhode` for what has none.
+
+    Raises:
+        InvalidFieldError: the period is so long that doubles do not tell turns apart in it, as it may be in
+            bodies whose moments differ by their last digits.
+    """
+    rotation = motion.rotation
+    if isinstance(rotation, Spin) or motion.regime in CONSTANT_RATE:
+        return RollingCurves(
+            seconds=np.zeros(count),
+            polhode_B=polhode(motion, count),
+            herpolhode_W=np.tile(motion.state.w_WB_W, (count, 1)),
+        )
+    angle = _amplitudes(rotation, count)
+    cos2, sin = np.square(np.cos(angle)), np.sin(angle)
+    m1 = float(rotation.m1)
+    u = sin * carlson_rf(cos2, cos2 + m1 * sin * sin, np.ones(count), numbers=ARRAYS)
+    if m1:  # sin u is of the nearest half turn
+        halves = np.rint(angle / math.pi)
+        u = np.where(halves % 2.0 == 0.0, u, -u) + halves * (math.pi / float(rotation.quarter))
+    seconds = (u - float(rotation.u0)) / float(rotation.omega_p)
+    longest = float(np.abs(seconds).max(initial=0.0))
+    if longest > motion.farthest:
+        allowed = f"one within {motion.farthest:g} s, in which doubles tell turns apart"
+        raise InvalidFieldError("rolling curves", f"a period of {longest:g} s", allowed)
+    order = slice(None) if float(rotation.omega_p) > 0.0 else slice(None, None, -1)
+    return RollingCurves(
+        seconds=seconds[order],
+        polhode_B=polhode(motion, count)[order],
+        herpolhode_W=motion.at(seconds[order]).w_WB_W,
+    )
+
+
+def polhode(motion: FreeMotion, count: int) -> FloatArray:
+    """Return ``count`` points of the polhode, (count, 3), rad/s, body axes, in order along it.
+
+    The curve is closed: the last point is the first again. On the separatrix, whose ends are infinitely far
+    away in time, it is the arc from one middle-axis spin to the other, to `SEPARATRIX_END` of each; where the
+    angular velocity is constant all points are one.
+    """
+    rotation = motion.rotation
+    if isinstance(rotation, Spin) or motion.regime in CONSTANT_RATE:
+        return np.tile(motion.state.R_WB.T @ motion.state.w_WB_W, (count, 1))
+    angle = _amplitudes(rotation, count)
+    cos, sin = np.cos(angle), np.sin(angle)
+    a, b, c = (math.sqrt(x) for x in (rotation.a2, rotation.b2, rotation.c2))
+    dn = np.sqrt(cos * cos + float(rotation.m1) * sin * sin)
+    L = float(rotation.L)
+    first, middle, third = (L / float(moment) for moment in rotation.moments)
+    w_P = np.column_stack([a * first * cos, b * middle * sin, c * third * dn])
+    points: FloatArray = w_P @ np.array([[float(x) for x in axis] for axis in rotation.axes_B])
+    return points
+
+
+def _amplitudes(rotation: Tumble[Decimal] | Tumble[float], count: int) -> FloatArray:
+    """Return Jacobi's amplitudes of u, rad, evenly over one period of the polhode."""
+    whole = math.pi if rotation.m1 else 0.5 * math.pi - SEPARATRIX_END
+    return np.linspace(-whole, whole, count)
+
+
+def herpolhode(motion: FreeMotion, seconds: ArrayLike) -> FloatArray:
+    """Return the herpolhode at times (n,), s: points (n, 3), rad/s, in the invariable plane.
+
+    The axes of the plane are world axes turned so that z lies along L; z is the plane's distance, 2 T / |L|.
+    """
+    times = check_array("times", seconds, (None,))
+    w_W = motion.at(times).w_WB_W
+    points: FloatArray = w_W @ rotation_matrix(np.array(motion.q_WL))
+    return points
+
+
+def _precession(rotation: Rotation) -> float:
+    return math.nan if isinstance(rotation, Spin) else float(rotation.precession)

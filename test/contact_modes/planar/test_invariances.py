@@ -1,0 +1,200 @@
+"""What cannot matter does not: order, mirror, units of mass, copies, contacts that leave."""
+
+from __future__ import annotations
+
+import math
+import random
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from contact_dynamics.contact_modes import ContactModeAnswer, planar_contact_modes
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_modes.evidence import check_evidence
+from oracles.contact_mode_cases import FloatCase, draw, rounded
+
+SWAPPED = str.maketrans("lr", "rl")
+
+cases = st.integers(0, 10**6).map(lambda seed: rounded(draw(seed, most_contacts=5)))
+
+
+def ask(case: FloatCase) -> ContactModeAnswer:
+    return planar_contact_modes(case[0], case[1], case[2], case[3])
+
+
+def strings(answer: ContactModeAnswer) -> tuple[set[str], set[str]]:
+    return set(answer.kinematic_modes), {mode.mode for mode in answer.modes}
+
+
+@given(cases, st.randoms(use_true_random=False))
+@settings(max_examples=60, deadline=None)
+def test_renaming_contacts_permutes_letters(case: FloatCase, chance: random.Random) -> None:
+    body, velocity, contacts, wrench = case
+    order = list(range(len(contacts)))
+    chance.shuffle(order)
+    shuffled = ask((body, velocity, [contacts[i] for i in order], wrench))
+    for found, expected in zip(strings(shuffled), strings(ask(case)), strict=True):
+        assert found == {"".join(mode[i] for i in order) for mode in expected}
+
+
+@given(cases)
+@settings(max_examples=60, deadline=None)
+def test_a_mirror_swaps_left_and_right(case: FloatCase) -> None:
+    body, velocity, contacts, wrench = case
+    mirrored = (
+        body,
+        PlanarVelocity(v=(-velocity.v[0], velocity.v[1]), w=-velocity.w),
+        [replace(one, r=(-one.r[0], one.r[1]), normal=(-one.normal[0], one.normal[1])) for one in contacts],
+        PlanarWrench(f=(-wrench.f[0], wrench.f[1]), moment=-wrench.moment),
+    )
+    for found, expected in zip(strings(ask(mirrored)), strings(ask(case)), strict=True):
+        assert found == {mode.translate(SWAPPED) for mode in expected}
+
+
+@given(cases, st.floats(1e-6, 1e6))
+@settings(max_examples=60, deadline=None)
+def test_mass_and_wrench_together_only_scale_forces(case: FloatCase, factor: float) -> None:
+    body, velocity, contacts, wrench = case
+    heavier = (
+        PlanarBody(mass=factor * body.mass, inertia=factor * body.inertia),
+        velocity,
+        contacts,
+        PlanarWrench(f=(factor * wrench.f[0], factor * wrench.f[1]), moment=factor * wrench.moment),
+    )
+    answer, scaled = ask(case), ask(heavier)
+    assert strings(answer) == strings(scaled)
+    for one, other in zip(answer.modes, scaled.modes, strict=True):
+        if one.motion_unique:
+            assert other.acceleration == pytest.approx(one.acceleration, rel=1e-6, abs=1e-6)
+        if one.forces_unique:
+            # Forces that are zero are what rounding leaves of the wrench.
+            size = max(max(abs(f_t), f_n) for f_t, f_n in one.contact_forces)
+            size = max(size, *map(abs, wrench.f), abs(wrench.moment) / body.radius_of_gyration)
+            for (f_t, f_n), (g_t, g_n) in zip(one.contact_forces, other.contact_forces, strict=True):
+                assert g_t == pytest.approx(factor * f_t, rel=1e-6, abs=1e-6 * factor * size)
+                assert g_n == pytest.approx(factor * f_n, rel=1e-6, abs=1e-6 * factor * size)
+
+
+@given(cases, st.randoms(use_true_random=False))
+@settings(max_examples=60, deadline=None)
+def test_a_copy_of_a_contact_adds_its_letter(case: FloatCase, chance: random.Random) -> None:
+    body, velocity, contacts, wrench = case
+    i = chance.randrange(len(contacts))
+    doubled = ask((body, velocity, [*contacts, contacts[i]], wrench))
+    for found, expected in zip(strings(doubled), strings(ask(case)), strict=True):
+        assert found == {mode + mode[i] for mode in expected}
+
+
+@given(cases)
+@settings(max_examples=60, deadline=None)
+def test_a_contact_that_leaves_adds_an_s(case: FloatCase) -> None:
+    body, velocity, contacts, wrench = case
+    moving = PlanarVelocity(v=velocity.v, w=velocity.w)
+    far = (1e3, 0.0)
+    c_x, c_y = moving.v[0] - moving.w * far[1], moving.v[1] + moving.w * far[0]
+    size = (c_x * c_x + c_y * c_y) ** 0.5
+    if size == 0.0:
+        return
+    leaving = PlanarContact(r=far, normal=(c_x / size, c_y / size), friction=1.0)
+    answer, wider = ask(case), ask((body, moving, [*contacts, leaving], wrench))
+    for found, expected in zip(strings(wider), strings(answer), strict=True):
+        assert found == {mode + "s" for mode in expected}
+
+
+@given(cases, st.floats(0.0, 7.0), st.randoms(use_true_random=False))
+@settings(max_examples=60, deadline=None)
+def test_copies_that_rounding_parts_are_copies_all_the_same(
+    case: FloatCase, angle: float, chance: random.Random
+) -> None:
+    """As the feet of a box on both sides of its plane of motion, the lower ones of an inclined face."""
+    body, velocity, contacts, wrench = case
+    c, s = math.cos(angle), math.sin(angle)
+    near = [
+        replace(one, r=(one.r[0] + 1e-16 * c, one.r[1] + 1e-16 * s), normal=one.normal) for one in contacts
+    ]
+    order = list(range(len(contacts)))
+    chance.shuffle(order)
+    answer, doubled = ask(case), ask((body, velocity, [*contacts, *(near[i] for i in order)], wrench))
+    for found, expected in zip(strings(doubled), strings(answer), strict=True):
+        assert found == {mode + "".join(mode[i] for i in order) for mode in expected}
+    for one, other in zip(answer.modes, doubled.modes, strict=True):
+        assert other.motion_unique == one.motion_unique
+        pressed = any(f_n > 1e-6 for _, f_n in one.contact_forces)
+        assert other.forces_unique == (one.forces_unique and not pressed)
+
+
+@given(cases, st.integers(10, 20))
+@settings(max_examples=60, deadline=None)
+def test_many_copies_of_all_contacts_repeat_the_letters(case: FloatCase, copies: int) -> None:
+    """So that the cones have many rows, most of which change nothing."""
+    body, velocity, contacts, wrench = case
+    many = ask((body, velocity, contacts * copies, wrench))
+    answer = ask(case)
+    for found, expected in zip(strings(many), strings(answer), strict=True):
+        assert found == {mode * copies for mode in expected}
+    for one, other in zip(answer.modes, many.modes, strict=True):
+        assert one.motion_unique == other.motion_unique
+    check_evidence(many, body, velocity, contacts * copies, wrench)
+
+
+@given(cases, st.floats(0.1, 10.0), st.integers(20, 60))
+@settings(max_examples=60, deadline=None)
+def test_many_feet_between_two_add_only_letters(case: FloatCase, width: float, count: int) -> None:
+    body, _, contacts, wrench = case
+    resting = PlanarVelocity(v=(0.0, 0.0), w=0.0)
+    feet = [
+        PlanarContact(r=(width * (2.0 * i / count - 1.0), -3.0), normal=(0.0, 1.0), friction=0.5)
+        for i in range(count + 1)
+    ]
+    answer = ask((body, resting, [feet[0], feet[-1], *contacts], wrench))
+    wider = ask((body, resting, [*feet, *contacts], wrench))
+    for found, expected in zip(strings(wider), strings(answer), strict=True):
+        assert {mode[0] + mode[count:] for mode in found} == expected
+        assert len(found) == len(expected)
+    check_evidence(wider, body, resting, [*feet, *contacts], wrench)
+
+
+@given(cases, st.floats(1.0, 1e3), st.floats(-0.9, 0.9))
+@settings(max_examples=60, deadline=None)
+def test_a_far_contact_that_others_make_redundant_adds_only_its_letter(
+    case: FloatCase, reach: float, place: float
+) -> None:
+    """Between two feet of one face the ground holds nothing that the two do not."""
+    body, _, contacts, wrench = case
+    resting = PlanarVelocity(v=(0.0, 0.0), w=0.0)
+    feet = [PlanarContact(r=(x * reach, -3.0), normal=(0.0, 1.0), friction=0.5) for x in (-1.0, 1.0, place)]
+    answer = ask((body, resting, [*contacts, *feet[:2]], wrench))
+    wider = ask((body, resting, [*contacts, *feet], wrench))
+    for found, expected in zip(strings(wider), strings(answer), strict=True):
+        assert {mode[:-1] for mode in found} == expected
+        assert len(found) == len(expected)
+
+
+@given(cases)
+@settings(max_examples=60, deadline=None)
+def test_the_strings_are_a_few_times_the_contacts(case: FloatCase) -> None:
+    # 4 n + 2 for facets cut once; coincident contacts can cut a facet once more each.
+    assert len(ask(case).kinematic_modes) <= 4 * len(case[2]) + 2
+
+
+@given(cases)
+@settings(max_examples=60, deadline=None)
+def test_asking_again_gives_the_same_answer(case: FloatCase) -> None:
+    assert ask(case) == ask(case)
+
+
+def test_noise_within_the_tolerance_does_not_move_a_resting_block() -> None:
+    body = PlanarBody(mass=0.4, inertia=3e-4)
+    contacts = [PlanarContact(r=(x, -0.05), normal=(0.0, 1.0), friction=0.18) for x in (-0.05, 0.0, 0.05)]
+    weight = PlanarWrench(f=(0.0, -0.4 * 9.81))
+    chance = random.Random(1)
+    for _ in range(200):
+        noisy = PlanarVelocity(
+            v=(chance.uniform(-4e-3, 4e-3), chance.uniform(-4e-3, 4e-3)), w=chance.uniform(-0.05, 0.05)
+        )
+        answer = planar_contact_modes(body, noisy, contacts, weight, velocity_tolerance=0.01)
+        assert [mode.mode for mode in answer.modes] == ["fff"]
+        assert answer.modes[0].motion_unique
+        assert not answer.modes[0].forces_unique

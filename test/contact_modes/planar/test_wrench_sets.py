@@ -1,0 +1,190 @@
+"""The map of modes over applied wrenches beside the modes themselves, and margins beside small pushes."""
+
+from __future__ import annotations
+
+import math
+import random
+
+import pytest
+
+from contact_dynamics.contact_modes import (
+    ModeMargin,
+    ModeVerdict,
+    ModeWrenchSet,
+    planar_contact_modes,
+    planar_mode_map,
+    planar_mode_margins,
+)
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from oracles.contact_mode_cases import draw, rounded
+
+BODY = PlanarBody(mass=2.0, inertia=0.5)
+AT_REST = PlanarVelocity(v=(0.0, 0.0), w=0.0)
+BLOCK = [PlanarContact(r=(x, -1.0), normal=(0.0, 1.0), friction=0.5) for x in (-0.5, 0.5)]
+WEIGHT = PlanarWrench(f=(0.0, -20.0))
+CLEAR = 1e-6  # N: what is nearer to a boundary than this is left to the exact tests
+
+
+def consistent(
+    body: PlanarBody, velocity: PlanarVelocity, contacts: list[PlanarContact], wrench: PlanarWrench
+) -> set[str]:
+    answer = planar_contact_modes(body, velocity, contacts, wrench)
+    return {mode.mode for mode in answer.modes}
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_the_map_says_what_the_modes_say(seed: int) -> None:
+    body, velocity, contacts, _ = rounded(draw(seed, most_contacts=4))
+    sets = planar_mode_map(body, contacts, velocity=velocity)
+    if not sets:
+        answer = planar_contact_modes(body, velocity, contacts, PlanarWrench(f=(0.0, 0.0)))
+        leaves = all(v_n > 0.0 for _, v_n in answer.contact_velocities)
+        assert leaves or answer.kinematic_modes == ()
+        return
+    chance = random.Random(seed)
+    for _ in range(8):
+        wrench = PlanarWrench(
+            f=(chance.uniform(-9.0, 9.0), chance.uniform(-9.0, 9.0)), moment=chance.uniform(-9.0, 9.0)
+        )
+        depths = {one.mode: one.depth(wrench, body.radius_of_gyration) for one in sets}
+        if any(abs(depth) < CLEAR for depth in depths.values()):
+            continue
+        found = consistent(body, velocity, contacts, wrench)
+        assert found == {mode for mode, depth in depths.items() if depth > 0.0}
+
+
+def combination(one: ModeWrenchSet, chance: random.Random) -> PlanarWrench:
+    parts = [(wrench, chance.uniform(0.1, 1.0)) for wrench in one.generators]
+    shares = [chance.uniform(0.1, 1.0) for _ in one.vertices]
+    parts += [(vertex, share / sum(shares)) for vertex, share in zip(one.vertices, shares, strict=True)]
+    return PlanarWrench(
+        f=(sum(s * w.f[0] for w, s in parts), sum(s * w.f[1] for w, s in parts)),
+        moment=sum(s * w.moment for w, s in parts),
+    )
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_what_the_generators_make_brings_the_mode_about(seed: int) -> None:
+    body, velocity, contacts, _ = rounded(draw(seed, most_contacts=4))
+    chance = random.Random(seed)
+    for one in planar_mode_map(body, contacts, velocity=velocity):
+        assert one.mode in consistent(body, velocity, contacts, combination(one, chance))
+
+
+def test_half_spaces_and_generators_touch() -> None:
+    for one in planar_mode_map(BODY, BLOCK):
+        for generator in one.generators:
+            size = math.hypot(*generator.f, generator.moment)
+            depth = one.depth(generator, BODY.radius_of_gyration)
+            assert abs(depth) <= 1e-12 * size, "a generator of these cones is on their boundary"
+
+
+def test_the_margin_of_a_resting_block_to_tipping_and_sliding() -> None:
+    (fixed,) = planar_mode_margins(BODY, AT_REST, BLOCK, WEIGHT, margin_length=1e3)
+    # With a long length moments cost nothing: the block tips at half its width.
+    assert fixed.mode == "ff"
+    assert fixed.margin == pytest.approx(20.0 * 0.5 / 1e3, rel=1e-5)
+    assert abs(fixed.change.moment) == pytest.approx(10.0, rel=1e-5)
+    assert fixed.modes_beyond in {("fs",), ("sf",)}
+    # With a short one they cost all: it slides at mu times the weight, at right angles to the cone's edge.
+    low = [PlanarContact(r=(x, -1e-3), normal=(0.0, 1.0), friction=0.5) for x in (-0.5, 0.5)]
+    (sliding,) = planar_mode_margins(BODY, AT_REST, low, WEIGHT, margin_length=1e-3)
+    assert sliding.margin == pytest.approx(20.0 * 0.5 / math.sqrt(1.0 + 0.25), rel=1e-4)
+    assert sliding.verdict_beyond == ModeVerdict.UNIQUE
+    assert sliding.modes_beyond in {("ll",), ("rr",)}
+
+
+@pytest.mark.parametrize("seed", range(100, 160))
+def test_the_margin_is_the_least_change_that_leaves_the_mode(seed: int) -> None:
+    body, velocity, contacts, wrench = rounded(draw(seed, most_contacts=3))
+    chance = random.Random(seed)
+    length = body.radius_of_gyration * chance.uniform(0.2, 5.0)
+    for margin in planar_mode_margins(body, velocity, contacts, wrench, margin_length=length):
+        if math.isinf(margin.margin):
+            assert margin.change == PlanarWrench(f=(0.0, 0.0))
+            continue
+        change = margin.change
+        size = math.hypot(*change.f, change.moment / length)
+        assert size == pytest.approx(margin.margin, rel=1e-9, abs=1e-12)
+        assert margin.mode not in margin.modes_beyond
+        for _ in range(10):  # no smaller change does
+            way = [chance.gauss(0.0, 1.0) for _ in range(3)]
+            scale = 0.999 * margin.margin / math.hypot(*way)
+            pushed = PlanarWrench(
+                f=(wrench.f[0] + scale * way[0], wrench.f[1] + scale * way[1]),
+                moment=wrench.moment + scale * way[2] * length,
+            )
+            if margin.margin > CLEAR:
+                assert margin.mode in consistent(body, velocity, contacts, pushed)
+
+
+@pytest.mark.parametrize("seed", range(300, 380))
+def test_just_inside_the_margin_the_mode_holds_and_just_outside_are_those_told(seed: int) -> None:
+    body, velocity, contacts, wrench = rounded(draw(seed, most_contacts=4))
+    length = body.radius_of_gyration * random.Random(seed).choice([0.1, 1.0, 10.0])
+    size = math.hypot(*wrench.f, wrench.moment / length)
+
+    def asked_again(margin: ModeMargin, step: float) -> tuple[str, ...]:
+        part, change = step / margin.margin, margin.change
+        f = (wrench.f[0] + part * change.f[0], wrench.f[1] + part * change.f[1])
+        there = PlanarWrench(f=f, moment=wrench.moment + part * change.moment)
+        return tuple(mode.mode for mode in planar_contact_modes(body, velocity, contacts, there).modes)
+
+    for margin in planar_mode_margins(body, velocity, contacts, wrench, margin_length=length):
+        if math.isinf(margin.margin) or margin.margin <= 1e-5 * size:
+            continue
+        largest = max(size, margin.margin)
+        assert margin.mode in asked_again(margin, margin.margin - 1e-7 * largest)
+        assert margin.modes_beyond == asked_again(margin, margin.margin + 1e-5 * largest)
+
+
+def test_a_wrench_in_a_tray_has_modes_like_rsrs() -> None:
+    # Two points on the floor, one at either wall, the right one higher: turning lifts the right-hand side.
+    tray = [
+        PlanarContact(r=(-1.0, -0.2), normal=(0.0, 1.0), friction=0.25),
+        PlanarContact(r=(1.0, -0.2), normal=(0.0, 1.0), friction=0.25),
+        PlanarContact(r=(-1.2, 0.2), normal=(1.0, 0.0), friction=0.25),
+        PlanarContact(r=(1.2, 0.4), normal=(-1.0, 0.0), friction=0.25),
+    ]
+    sets = {one.mode: one for one in planar_mode_map(BODY, tray)}
+    assert "ffff" in sets
+    assert "rsrs" in sets
+    chance = random.Random(0)
+    wrench = combination(sets["rsrs"], chance)
+    answer = planar_contact_modes(BODY, AT_REST, tray, wrench)
+    mode = next(mode for mode in answer.modes if mode.mode == "rsrs")
+    assert mode.contact_accelerations[0][0] > 0.0
+    assert mode.contact_accelerations[1][1] > 0.0
+    assert len(sets) <= 18
+
+
+@pytest.mark.parametrize("seed", range(200, 260))
+def test_margins_are_in_the_order_of_the_answer(seed: int) -> None:
+    body, velocity, contacts, wrench = rounded(draw(seed, most_contacts=2))
+    answer = planar_contact_modes(body, velocity, contacts, wrench)
+    margins = planar_mode_margins(body, velocity, contacts, wrench)
+    if margins:
+        assert [margin.mode for margin in margins] == [mode.mode for mode in answer.modes]
+
+
+def test_margins_of_an_indeterminate_rod_are_in_the_order_of_the_answer() -> None:
+    rod = PlanarBody(mass=1.0, inertia=1.0)
+    tip = PlanarContact(r=(-1.0353, -3.8637), normal=(0.0, 1.0), friction=0.57735)
+    wrench = PlanarWrench(f=(-1.0, 0.0))
+    margins = planar_mode_margins(rod, AT_REST, [tip], wrench)
+    assert [one.mode for one in margins] == ["l", "f"]
+    assert [one.mode for one in planar_contact_modes(rod, AT_REST, [tip], wrench).modes] == ["l", "f"]
+
+
+def test_no_map_without_touching_contacts() -> None:
+    up = PlanarVelocity(v=(0.0, 1.0), w=0.0)
+    down = PlanarVelocity(v=(0.0, -1.0), w=0.0)
+    assert planar_mode_map(BODY, BLOCK, velocity=up) == ()
+    assert planar_mode_map(BODY, BLOCK, velocity=down) == ()
+    assert planar_mode_margins(BODY, up, BLOCK, WEIGHT) == ()
+
+
+def test_a_length_that_is_none_is_refused() -> None:
+    with pytest.raises(InvalidFieldError, match="margin_length"):
+        planar_mode_margins(BODY, AT_REST, BLOCK, WEIGHT, margin_length=0.0)

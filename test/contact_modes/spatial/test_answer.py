@@ -1,0 +1,325 @@
+"""Sticking and sliding in space: closed forms, the planar answers in a plane of symmetry, evidence."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact_modes import (
+    ModeVerdict,
+    SpatialModeAnswer,
+    planar_contact_modes,
+    spatial_contact_modes,
+)
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from oracles.contact_mode_cases import FloatCase, draw, rounded
+
+MASS = 2.0
+WEIGHT = MASS * 10.0
+BODY = MassProperties(mass=MASS, I_B=np.diag([0.3, 0.4, 0.5]))
+FEET = [(-1.0, -0.5, -0.2), (1.0, -0.5, -0.2), (1.0, 0.5, -0.2), (-1.0, 0.5, -0.2)]
+SOLVED = 1e-7  # relative: linear programs are solved to 1e-9, and their errors add up
+
+
+def on_floor(points: list[tuple[float, ...]], friction: float) -> ContactSet:
+    n = len(points)
+    return ContactSet(
+        p_WC_W=np.array(points).reshape(-1, 3),
+        normals_W=np.tile([0.0, 0.0, 1.0], (n, 1)),
+        frictions=np.full(n, friction),
+        restitutions=np.zeros(n),
+    )
+
+
+def state(v: tuple[float, ...] = (0, 0, 0), w: tuple[float, ...] = (0, 0, 0)) -> BodyState:
+    return BodyState(
+        p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.array(v), w_WB_W=np.array(w)
+    )
+
+
+def check_evidence(
+    answer: SpatialModeAnswer, body: MassProperties, now: BodyState, contacts: ContactSet, wrench: np.ndarray
+) -> None:
+    r = contacts.p_WC_W - now.p_WB_W
+    w = now.w_WB_W
+    inertia = body.inertia_in_world(now.R_WB)
+    for mode in answer.modes:
+        forces = mode.contact_forces_W
+        size = SOLVED * (1.0 + np.abs(wrench).sum() + np.abs(forces).sum())
+        total = wrench[:3] + forces.sum(axis=0)
+        moment = wrench[3:] + np.cross(r, forces).sum(axis=0) - np.cross(w, inertia @ w)
+        np.testing.assert_allclose(total, body.mass * mode.acceleration_W, atol=size)
+        np.testing.assert_allclose(moment, inertia @ mode.angular_acceleration_W, atol=size)
+        for i, letter in enumerate(mode.mode):
+            a = mode.acceleration_W + np.cross(mode.angular_acceleration_W, r[i])
+            a = a + np.cross(w, np.cross(w, r[i]))
+            np.testing.assert_allclose(mode.contact_accelerations_W[i], a, atol=size * 10)
+            normal = contacts.normals_W[i]
+            f_n = float(forces[i] @ normal)
+            f_t = forces[i] - f_n * normal
+            a_t = a - (a @ normal) * normal
+            assert f_n >= -size
+            assert np.linalg.norm(f_t) <= contacts.frictions[i] * f_n + size
+            way = mode.tangential_directions_W[i]
+            if letter == "s":
+                assert np.all(forces[i] == 0.0)
+            else:
+                assert abs(a @ normal) <= 10 * size
+            assert (np.linalg.norm(way) == pytest.approx(1.0)) == (letter == "c")
+            if letter == "f":
+                assert np.linalg.norm(a_t) <= 100 * size
+            if letter == "c":  # friction takes energy away, at least what the pyramid's edges can
+                assert f_t @ way <= -0.5 * contacts.frictions[i] * f_n + size
+
+
+@pytest.mark.parametrize("heading", [0.0, 0.4, 1.3, 4.0])
+def test_a_pushed_block_slides_at_the_angle_of_friction_in_any_direction(heading: float) -> None:
+    contacts = on_floor(FEET, 0.4)
+    for share, mode in ((0.999, "ffff"), (1.001, "cccc")):
+        push = share * 0.4 * WEIGHT
+        wrench = np.array([push * math.cos(heading), push * math.sin(heading), -WEIGHT, 0.0, 0.0, 0.0])
+        answer = spatial_contact_modes(BODY, state(), contacts, force_W=wrench[:3])
+        assert answer.verdict == ModeVerdict.UNIQUE
+        assert [one.mode for one in answer.modes] == [mode]
+        assert answer.modes[0].motion_unique
+        assert not answer.modes[0].forces_unique
+        check_evidence(answer, BODY, state(), contacts, wrench)
+        if mode == "cccc":
+            np.testing.assert_allclose(
+                answer.modes[0].tangential_directions_W,
+                np.tile([math.cos(heading), math.sin(heading), 0.0], (4, 1)),
+                atol=1e-4,
+            )
+
+
+@pytest.mark.parametrize("heading", [0.3, 2.0])
+def test_a_sliding_block_is_braked_against_its_motion(heading: float) -> None:
+    way = np.array([math.cos(heading), math.sin(heading), 0.0])
+    now = state(v=tuple(3.0 * way))
+    wrench = np.array([0.0, 0.0, -WEIGHT, 0.0, 0.0, 0.0])
+    contacts = on_floor(FEET, 0.4)
+    answer = spatial_contact_modes(BODY, now, contacts, force_W=wrench[:3])
+    (mode,) = answer.modes
+    assert mode.mode == "cccc"
+    np.testing.assert_allclose(mode.acceleration_W, -4.0 * way, atol=1e-6)
+    np.testing.assert_allclose(mode.tangential_directions_W, np.tile(way, (4, 1)), atol=1e-12)
+    check_evidence(answer, BODY, now, contacts, wrench)
+
+
+def test_a_block_tips_about_an_edge() -> None:
+    contacts = on_floor([(x, y, -1.0) for x, y, _ in FEET], 2.0)
+    answer = spatial_contact_modes(BODY, state(), contacts, force_W=(0.0, 0.51 * WEIGHT, -WEIGHT))
+    # Pushed at its centre, height 1, half-width 0.5: it tips once the push is half its weight.
+    assert [one.mode for one in answer.modes] == ["ssff"]
+    still = spatial_contact_modes(BODY, state(), contacts, force_W=(0.0, 0.49 * WEIGHT, -WEIGHT))
+    assert [one.mode for one in still.modes] == ["ffff"]
+
+
+@pytest.mark.parametrize("contacts", [6, 9, 30])
+def test_more_contacts_than_the_motion_has_dimensions(contacts: int) -> None:
+    # A cup of contacts around the lower half: the weight rests in it, whatever pushes a little.
+    angles = 2.0 * math.pi * np.arange(contacts) / contacts
+    lean = 0.4 + 0.5 * (np.arange(contacts) % 3)
+    normals = np.column_stack([np.sin(lean) * np.cos(angles), np.sin(lean) * np.sin(angles), np.cos(lean)])
+    chance = np.random.default_rng(contacts)
+    cup = ContactSet(
+        p_WC_W=-normals + 0.1 * chance.normal(size=(contacts, 3)),
+        normals_W=normals,
+        frictions=np.full(contacts, 0.8),
+        restitutions=np.zeros(contacts),
+    )
+    wrench = np.array([0.3, 0.2, -WEIGHT, 0.1, 0.0, 0.2])
+    answer = spatial_contact_modes(BODY, state(), cup, force_W=wrench[:3], torque_W=wrench[3:])
+    assert "f" * contacts in [mode.mode for mode in answer.modes]
+    check_evidence(answer, BODY, state(), cup, wrench)
+
+
+@pytest.mark.parametrize("corners", [5, 24])
+def test_a_block_on_many_feet_slides_as_on_four(corners: int) -> None:
+    angles = 2.0 * math.pi * np.arange(corners) / corners
+    feet = [(math.cos(angle), math.sin(angle), -0.2) for angle in angles]
+    answer = spatial_contact_modes(BODY, state(), on_floor(feet, 0.4), force_W=(10.0, 0.0, -WEIGHT))
+    (mode,) = answer.modes
+    assert mode.mode == "c" * corners
+    np.testing.assert_allclose(mode.acceleration_W, [5.0 - 4.0, 0.0, 0.0], atol=1e-9)
+
+
+def test_a_frictionless_block_slides_freely() -> None:
+    contacts = on_floor(FEET, 0.0)
+    pushed = spatial_contact_modes(BODY, state(), contacts, force_W=(1.0, 0.0, -WEIGHT))
+    assert [one.mode for one in pushed.modes] == ["cccc"]
+    np.testing.assert_allclose(pushed.modes[0].acceleration_W, [0.5, 0.0, 0.0], atol=1e-6)
+    resting = spatial_contact_modes(BODY, state(), contacts, force_W=(0.0, 0.0, -WEIGHT))
+    assert [one.mode for one in resting.modes] == ["ffff"]
+
+
+def in_space(case: FloatCase) -> tuple[MassProperties, BodyState, ContactSet, np.ndarray]:
+    """Put a planar case into the plane y = 0; the planar y is the world's z."""
+    body, velocity, contacts, wrench = case
+    inertia = body.inertia
+    return (
+        MassProperties(mass=body.mass, I_B=np.diag([0.8 * inertia, inertia, 0.9 * inertia])),
+        state(v=(velocity.v[0], 0.0, velocity.v[1]), w=(0.0, -velocity.w, 0.0)),
+        ContactSet(
+            p_WC_W=np.array([(one.r[0], 0.0, one.r[1]) for one in contacts]),
+            normals_W=np.array([(one.normal[0], 0.0, one.normal[1]) for one in contacts]),
+            frictions=np.array([one.friction for one in contacts]),
+            restitutions=np.zeros(len(contacts)),
+        ),
+        np.array([wrench.f[0], 0.0, wrench.f[1], 0.0, -wrench.moment, 0.0]),
+    )
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_every_planar_mode_is_one_in_space(seed: int) -> None:
+    case = rounded(draw(seed, most_contacts=2))
+    body, now, contacts, wrench = in_space(case)
+    answer = spatial_contact_modes(
+        body, now, contacts, force_W=wrench[:3], torque_W=wrench[3:], friction_facets=4
+    )
+    check_evidence(answer, body, now, contacts, wrench)
+    planar = planar_contact_modes(case[0], case[1], case[2], case[3])
+    for mode in planar.modes:
+        # A frictionless contact that stays is c or f by its acceleration.
+        letters = "".join("c" if letter in "lr" else letter for letter in mode.mode)
+        alike = [one for one in answer.modes if one.mode == letters]
+        assert alike
+        if mode.motion_unique:
+            x, z = mode.acceleration
+            scale = 1e-5 * (1.0 + math.hypot(x, z) + abs(mode.angular_acceleration))
+            assert any(
+                np.abs(one.acceleration_W - [x, 0.0, z]).max() <= scale
+                and abs(one.angular_acceleration_W[1] + mode.angular_acceleration) <= scale
+                for one in alike
+            )
+
+
+def rod(velocity: tuple[float, float], force: tuple[float, float]) -> SpatialModeAnswer:
+    theta = math.radians(75.0)
+    tip = PlanarContact(
+        r=(-4.0 * math.cos(theta), -4.0 * math.sin(theta)),
+        normal=(0.0, 1.0),
+        friction=math.tan(math.pi / 6.0),
+    )
+    body, now, contacts, wrench = in_space(
+        (PlanarBody(mass=1.0, inertia=1.0), PlanarVelocity(v=velocity, w=0.0), [tip], PlanarWrench(f=force))
+    )
+    answer = spatial_contact_modes(body, now, contacts, force_W=wrench[:3])
+    check_evidence(answer, body, now, contacts, wrench)
+    return answer
+
+
+def test_the_rods_of_lecture_26_in_space() -> None:
+    assert rod((-1.0, 0.0), (0.0, -1.0)).verdict == ModeVerdict.INCONSISTENT
+    sideways = rod((0.0, 0.0), (-1.0, 0.0))
+    assert sideways.verdict == ModeVerdict.INDETERMINATE
+    assert {mode.mode for mode in sideways.modes} >= {"c", "f"}
+
+
+def test_free_leaving_and_approaching_bodies() -> None:
+    free = spatial_contact_modes(BODY, state(w=(1, 2, 3)), on_floor([], 0.5), force_W=(0, 0, -WEIGHT))
+    (mode,) = free.modes
+    assert mode.mode == ""
+    L = BODY.I_B @ [1.0, 2.0, 3.0]
+    np.testing.assert_allclose(BODY.I_B @ mode.angular_acceleration_W, -np.cross([1.0, 2.0, 3.0], L))
+    contacts = on_floor(FEET, 0.5)
+    leaving = spatial_contact_modes(BODY, state(v=(0, 0, 1)), contacts, force_W=(0, 0, -WEIGHT))
+    assert [one.mode for one in leaving.modes] == ["ssss"]
+    strikes = spatial_contact_modes(BODY, state(v=(0, 0, -1)), contacts, force_W=(0, 0, -WEIGHT))
+    assert strikes.verdict == ModeVerdict.IMPACT
+    assert strikes.approaching == (0, 1, 2, 3)
+
+
+def drawn_feet(seed: int) -> tuple[ContactSet, np.ndarray]:
+    """Return two feet and a wall, whose contacts slide in ways that no pyramid has an edge against."""
+    chance = np.random.default_rng(seed)
+    normals = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+    points = np.array([[0.4, -0.5, -0.3], [0.3, 0.6, -0.3], [-0.9, 0.1, 0.0]]) + 0.1 * chance.normal(
+        size=(3, 3)
+    )
+    contacts = ContactSet(
+        p_WC_W=points, normals_W=normals, frictions=np.array([0.2, 0.3, 0.2]), restitutions=np.zeros(3)
+    )
+    return contacts, np.array([-15.0, 12.0, -WEIGHT, 0.0, 0.0, 0.0]) + chance.normal(size=6)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_sharpened_friction_is_coulombs_and_knows_no_facets(seed: int) -> None:
+    contacts, wrench = drawn_feet(seed)
+    answers = [
+        spatial_contact_modes(
+            BODY, state(), contacts, force_W=wrench[:3], torque_W=wrench[3:], friction_facets=facets
+        )
+        for facets in (6, 13)
+    ]
+    (few,), (many,) = (answer.modes for answer in answers)
+    assert few.mode == many.mode
+    assert "c" in few.mode
+    for answer in answers:
+        check_evidence(answer, BODY, state(), contacts, wrench)
+    np.testing.assert_allclose(few.acceleration_W, many.acceleration_W, atol=1e-8)
+    np.testing.assert_allclose(few.angular_acceleration_W, many.angular_acceleration_W, atol=1e-8)
+    for i, letter in enumerate(few.mode):
+        if letter == "c":
+            f_n = few.contact_forces_W[i] @ contacts.normals_W[i]
+            expected = f_n * (contacts.normals_W[i] - contacts.frictions[i] * few.tangential_directions_W[i])
+            np.testing.assert_allclose(few.contact_forces_W[i], expected, atol=1e-8)
+    assert few.misdirection <= 1e-8
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_pyramid_turns_friction_by_half_a_sector_at_most(seed: int) -> None:
+    contacts, wrench = drawn_feet(seed)
+    for facets in (6, 24):
+        answer = spatial_contact_modes(
+            BODY,
+            state(),
+            contacts,
+            force_W=wrench[:3],
+            torque_W=wrench[3:],
+            friction_facets=facets,
+            sharpen=False,
+        )
+        assert all(1e-6 < mode.misdirection <= math.pi / facets + 1e-9 for mode in answer.modes)
+
+
+def test_four_feet_share_a_load_and_one_foot_has_no_choice() -> None:
+    resting = spatial_contact_modes(BODY, state(), on_floor(FEET, 0.4), force_W=(2.0, 0.0, -WEIGHT))
+    (mode,) = resting.modes
+    assert (mode.motion_unique, mode.forces_unique) == (True, False)
+    # Least squares: the load's line of force meets the floor 0.02 m from the middle.
+    np.testing.assert_allclose(mode.contact_forces_W[:, :2], np.tile([-0.5, 0.0], (4, 1)), atol=1e-9)
+    np.testing.assert_allclose(
+        mode.contact_forces_W[:, 2], WEIGHT / 4.0 * np.array([0.98, 1.02, 1.02, 0.98]), atol=1e-9
+    )
+    balanced = spatial_contact_modes(
+        BODY, state(), on_floor([(0, 0, -0.2)], 0.4), force_W=(0.0, 0.0, -WEIGHT)
+    )
+    (mode,) = balanced.modes
+    assert (mode.mode, mode.motion_unique, mode.forces_unique) == ("f", True, True)
+
+
+def test_a_pushed_and_turned_block_is_one_mode_of_several_motions() -> None:
+    # How its feet share the load decides how much it turns, so that one pyramid's sectors are as good as
+    # another's; the letters are the same.
+    asked = {"force_W": (12.0, 0.1, -WEIGHT), "torque_W": (0.0, 0.0, 0.5)}
+    answer = spatial_contact_modes(BODY, state(), on_floor(FEET, 0.4), **asked)
+    assert answer.verdict == ModeVerdict.UNIQUE
+    assert [(mode.mode, mode.motion_unique) for mode in answer.modes] == [("cccc", False)]
+    sectors = spatial_contact_modes(BODY, state(), on_floor(FEET, 0.4), sharpen=False, **asked)
+    assert len(sectors.modes) > 1
+    assert {mode.mode for mode in sectors.modes} == {"cccc"}
+
+
+def test_misuse_is_refused_by_name() -> None:
+    with pytest.raises(InvalidFieldError, match="friction_facets"):
+        spatial_contact_modes(BODY, state(), on_floor(FEET, 0.5), force_W=(0, 0, -1), friction_facets=2)
+    with pytest.raises(InvalidFieldError, match="force"):
+        spatial_contact_modes(BODY, state(), on_floor(FEET, 0.5), force_W=(0, 0, math.nan))
+    with pytest.raises(TooLargeError, match="contacts"):
+        spatial_contact_modes(BODY, state(), on_floor(FEET * 9, 0.5), force_W=(0, 0, -1))

@@ -1,0 +1,200 @@
+"""Statics in space: closed forms, and the plane's answers where a case is planar."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import linprog
+
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact_modes import BodyStatics, Certainty, planar_statics, spatial_statics
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+
+WEIGHT, MU, HEIGHT = 20.0, 0.5, 0.25
+BODY = MassProperties(mass=2.0, I_B=0.7 * np.eye(3))
+STATE = BodyState(
+    p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
+)
+FEET = [(x, y, -HEIGHT) for x in (-1.0, 1.0) for y in (-0.6, 0.6)]
+SOLVED = 1e-9  # relative: facets of a hull of some dozen points
+
+
+def touching(
+    points: list[tuple[float, ...]], normals: list[tuple[float, ...]], friction: float = MU
+) -> ContactSet:
+    return ContactSet(
+        p_WC_W=np.array(points, dtype=float).reshape(-1, 3),
+        normals_W=np.array(normals, dtype=float).reshape(-1, 3),
+        frictions=np.full(len(points), friction),
+        restitutions=np.zeros(len(points)),
+    )
+
+
+def on_floor(points: list[tuple[float, ...]], friction: float = MU) -> ContactSet:
+    return touching(points, [(0.0, 0.0, 1.0)] * len(points), friction)
+
+
+def pushed(
+    x: float = 0.0, y: float = 0.0, *, length: float = 1e3, facets: int = 8, friction: float = MU
+) -> BodyStatics:
+    return spatial_statics(
+        BODY,
+        STATE,
+        on_floor(FEET, friction),
+        force_W=(x, y, -WEIGHT),
+        margin_length=length,
+        friction_facets=facets,
+    )
+
+
+def test_a_table_tips_over_its_nearest_edge_or_turns_on_its_feet() -> None:
+    # With a long length torques cost next to nothing. Rough feet: the weight's torque about the nearest edge.
+    rough = pushed(friction=2.0)
+    assert rough.stable_disturbance == pytest.approx(WEIGHT * 0.6 / 1e3, rel=1e-6)
+    assert (rough.equilibrium, rough.jammed, rough.wedged) == (Certainty.CERTAIN, Certainty.NO, False)
+    # Smooth ones turn first: all friction at the feet's distance from the middle, to the pyramid's 8 %.
+    turns = MU * WEIGHT * math.hypot(1.0, 0.6) / 1e3
+    assert math.cos(math.pi / 8.0) * turns <= pushed().stable_disturbance <= turns
+
+
+@pytest.mark.parametrize("heading", [0.0, 0.7, 2.5])
+def test_it_slides_at_the_angle_of_friction_in_any_direction(heading: float) -> None:
+    for share, holds in ((0.999, True), (1.001, False)):
+        push = share * MU * WEIGHT
+        found = pushed(push * math.cos(heading), push * math.sin(heading))
+        assert (found.equilibrium == Certainty.CERTAIN) == holds
+        assert found.jammed == found.equilibrium
+        assert math.isnan(found.stable_disturbance) != holds
+
+
+@pytest.mark.parametrize("facets", [4, 8, 16])
+def test_the_disturbance_is_the_pyramids_within_the_round_cone(facets: int) -> None:
+    # Short length: torques cost all. A regular pyramid's sides are nearer than the cone by cos(pi / facets).
+    low = on_floor([(x, y, -1e-6) for x, y, _ in FEET])
+    found = spatial_statics(
+        BODY, STATE, low, force_W=(0.0, 0.0, -WEIGHT), margin_length=1e-4, friction_facets=facets
+    )
+    slope = MU * math.cos(math.pi / facets)
+    assert found.stable_disturbance == pytest.approx(WEIGHT * slope / math.hypot(1.0, slope), rel=1e-4)
+    assert found.stable_disturbance <= WEIGHT * MU / math.hypot(1.0, MU) + SOLVED
+
+
+def test_two_soft_less_fingers_cannot_hold_a_twist_but_three_hold_all() -> None:
+    # Points without torsional friction: a body turns about the line of two, and not about three.
+    two = touching([(-1.0, 0.0, 0.0), (1.0, 0.0, 0.0)], [(1.0, 0.0, 0.0), (-1.0, 0.0, 0.0)])
+    nothing = {"force_W": (0.0, 0.0, 0.0)}
+    found = spatial_statics(BODY, STATE, two, **nothing)
+    assert found.wedged
+    assert found.stable_disturbance == 0.0
+    twisted = spatial_statics(BODY, STATE, two, force_W=(0.0, 0.0, 0.0), torque_W=(0.1, 0.0, 0.0))
+    assert twisted.equilibrium == Certainty.NO
+    assert spatial_statics(BODY, STATE, two, force_W=(0.0, 0.0, -5.0)).equilibrium != Certainty.NO
+    angles = [0.0, 2.0 * math.pi / 3.0, 4.0 * math.pi / 3.0]
+    three = touching(
+        [(math.cos(a), math.sin(a), 0.0) for a in angles], [(-math.cos(a), -math.sin(a), 0.0) for a in angles]
+    )
+    held = spatial_statics(BODY, STATE, three, **nothing)
+    assert held.wedged
+    assert math.isinf(held.stable_disturbance)
+    slippery = touching(
+        [(math.cos(a), math.sin(a), 0.0) for a in angles],
+        [(-math.cos(a), -math.sin(a), 0.0) for a in angles],
+        0.0,
+    )
+    loose = spatial_statics(BODY, STATE, slippery, **nothing)
+    assert loose.wedged
+    assert loose.stable_disturbance == 0.0
+
+
+@pytest.mark.parametrize("seed", range(16))
+def test_planar_cases_have_the_planes_answer(seed: int) -> None:
+    """Contacts in pairs on both sides of the plane, and a wrench within it."""
+    chance = np.random.default_rng(seed)
+    contacts, points, normals = [], [], []
+    for _ in range(int(chance.integers(1, 4))):
+        x, z, angle = chance.uniform(-1.0, 1.0), chance.uniform(-1.0, 1.0), chance.uniform(0.0, 2.0 * math.pi)
+        normal = (math.cos(angle), math.sin(angle))
+        contacts.append(PlanarContact(r=(float(x), float(z)), normal=normal, friction=MU))
+        points += [(x, -1.0, z), (x, 1.0, z)]
+        normals += [(normal[0], 0.0, normal[1])] * 2
+    # Half the wrenches are made of contact forces, so that equilibrium is as frequent as not.
+    force, moment = chance.normal(size=2), float(chance.normal())
+    if seed % 2:
+        parts = [chance.uniform(0.1, 1.0) * np.array(one.normal) for one in contacts]
+        force = -sum(parts, np.zeros(2))
+        moment = -sum(one.r[0] * f[1] - one.r[1] * f[0] for one, f in zip(contacts, parts, strict=True))
+    plane = planar_statics(
+        PlanarBody(mass=2.0, inertia=0.7), contacts, PlanarWrench(f=(force[0], force[1]), moment=moment)
+    )
+    space = spatial_statics(
+        BODY,
+        STATE,
+        touching(points, normals),
+        force_W=(force[0], 0.0, force[1]),
+        torque_W=(0.0, -moment, 0.0),
+        friction_facets=16,
+    )
+    assert space.wedged == plane.wedged
+    if not math.isnan(plane.stable_disturbance) and plane.stable_disturbance < 1e-3:
+        return  # too near the cone's side for a pyramid whose edges lean elsewhere
+    assert (space.equilibrium == Certainty.NO) == (plane.equilibrium == Certainty.NO)
+    if space.equilibrium != Certainty.NO:
+        assert space.stable_disturbance <= plane.stable_disturbance * (1.0 + 1e-6)
+        assert (space.jammed == Certainty.NO) == (plane.jammed == Certainty.NO)
+
+
+def can_balance(found: ContactSet, wrench: np.ndarray, share: float) -> bool:
+    """Whether forces in cones of 64 edges, friction scaled by ``share``, balance a wrench."""
+    columns = []
+    for point, normal, friction in zip(found.p_WC_W, found.normals_W, found.frictions, strict=True):
+        one = np.cross(normal, [1.0, 0.0, 0.0] if abs(normal[0]) < 0.9 else [0.0, 1.0, 0.0])
+        one /= np.linalg.norm(one)
+        for angle in 2.0 * np.pi * np.arange(64) / 64:
+            way = math.cos(angle) * one + math.sin(angle) * np.cross(normal, one)
+            force = normal + share * friction * way
+            columns.append(np.concatenate([force, np.cross(point, force)]))
+    found_forces = linprog(np.zeros(len(columns)), A_eq=np.array(columns).T, b_eq=-wrench)
+    return bool(found_forces.status == 0)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_linear_programs_over_the_forces_agree(seed: int) -> None:
+    """Between pyramids that surely lie inside ours and cones that surely hold them; many coincidences."""
+    chance = np.random.default_rng(seed)
+    n, whole = int(chance.integers(2, 6)), seed % 2 == 0
+    normals = np.ones((1, 3))
+    while len(normals) != n or not normals.any(axis=1).all():
+        normals = chance.integers(-1, 2, size=(n, 3)).astype(float) if whole else chance.normal(size=(n, 3))
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    points = chance.integers(-1, 2, size=(n, 3)).astype(float) if whole else chance.normal(size=(n, 3))
+    found = touching(list(map(tuple, points)), list(map(tuple, normals)))
+    wrench = -np.concatenate([normals.sum(axis=0), np.cross(points, normals).sum(axis=0)])
+    wrench += 0.3 * chance.normal(size=6) * (seed % 3)
+    statics = spatial_statics(BODY, STATE, found, force_W=wrench[:3], torque_W=wrench[3:], margin_length=1.0)
+    inner, outer = math.cos(math.pi / 8.0), 1.0 / math.cos(math.pi / 64.0)
+    if can_balance(found, wrench, inner):
+        assert statics.equilibrium != Certainty.NO
+    if statics.equilibrium != Certainty.NO:
+        assert can_balance(found, wrench, outer)
+        room = min(statics.stable_disturbance, 10.0)
+        for way in chance.normal(size=(5, 6)):
+            assert can_balance(found, wrench + 0.999 * room * way / np.linalg.norm(way), outer)
+
+
+def test_without_contacts_only_nothing_is_held() -> None:
+    none = on_floor([])
+    assert spatial_statics(BODY, STATE, none, force_W=(0, 0, -1)).equilibrium == Certainty.NO
+    assert spatial_statics(BODY, STATE, none, force_W=(0, 0, 0)).equilibrium == Certainty.CERTAIN
+
+
+def test_misuse_is_refused_by_name() -> None:
+    with pytest.raises(InvalidFieldError, match="margin_length"):
+        pushed(length=-1.0)
+    with pytest.raises(InvalidFieldError, match="friction_facets"):
+        pushed(facets=2)
+    with pytest.raises(TooLargeError, match="edges"):
+        pushed(facets=64)

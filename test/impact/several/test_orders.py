@@ -1,0 +1,301 @@
+"""Several contacts at once: named landings in closed form, and what every law must obey."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
+from contact_dynamics.impact import (
+    RestitutionLaw,
+    SeveralContactsLaw,
+    SeveralVerdict,
+    bodies_impact,
+    outcomes_over_orders,
+    several_impact,
+    spatial_impact,
+)
+from contact_dynamics.rigid_body.body import (
+    BodyState,
+    MassProperties,
+    angular_momentum,
+    kinetic_energy,
+    momentum,
+)
+
+IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
+CUBE = MassProperties(mass=0.5, I_B=0.5 * 0.1**2 / 6.0 * np.eye(3))
+SEQUENTIAL, SIMULTANEOUS = SeveralContactsLaw
+LAWS = [
+    (SEQUENTIAL, RestitutionLaw.POISSON),
+    (SEQUENTIAL, RestitutionLaw.NEWTON),
+    (SEQUENTIAL, RestitutionLaw.ENERGETIC),
+    (SIMULTANEOUS, RestitutionLaw.POISSON),
+    (SIMULTANEOUS, RestitutionLaw.NEWTON),
+]
+
+
+def floor_contacts(points: list[list[float]], *, friction: float, restitution: float) -> ContactSet:
+    n = len(points)
+    return ContactSet(
+        p_WC_W=np.array(points),
+        normals_W=np.tile([0.0, 0.0, 1.0], (n, 1)),
+        frictions=np.full(n, friction),
+        restitutions=np.full(n, restitution),
+    )
+
+
+def falling(height: float, v: list[float], w: list[float] | None = None) -> BodyState:
+    return BodyState(p_WB_W=[0.0, 0.0, height], q_WB=IDENTITY, v_WB_W=v, w_WB_W=w or [0.0, 0.0, 0.0])
+
+
+FACE = [[x, y, 0.0] for x in (-0.05, 0.05) for y in (-0.05, 0.05)]
+
+
+@pytest.mark.parametrize("law", [RestitutionLaw.POISSON, RestitutionLaw.NEWTON])
+@pytest.mark.parametrize("restitution", [0.0, 0.4, 1.0])
+def test_cube_on_its_face_at_once(restitution: float, law: RestitutionLaw) -> None:
+    """By symmetry it stays level: the centre's velocity turns round by e."""
+    contacts = floor_contacts(FACE, friction=0.3, restitution=restitution)
+    answer = several_impact(
+        CUBE, falling(0.05, [0.0, 0.0, -2.0]), contacts, law=SIMULTANEOUS, restitution_law=law
+    )
+    assert answer.verdict is SeveralVerdict.RESOLVED
+    assert answer.state.v_WB_W == pytest.approx([0.0, 0.0, 2.0 * restitution], abs=1e-12)
+    assert answer.state.w_WB_W == pytest.approx([0.0, 0.0, 0.0], abs=1e-11)
+    assert answer.impulses_W.sum(axis=0) == pytest.approx(
+        [0.0, 0.0, 0.5 * 2.0 * (1.0 + restitution)], abs=1e-12
+    )
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.5])
+def test_sliding_cube_on_its_face_at_once(restitution: float) -> None:
+    """Friction of mu times the whole impulse slows the slide; its lever arm loads the leading feet more."""
+    contacts = floor_contacts(FACE, friction=0.1, restitution=restitution)
+    answer = several_impact(CUBE, falling(0.05, [3.0, 0.0, -1.0]), contacts, law=SIMULTANEOUS)
+    assert answer.verdict is SeveralVerdict.RESOLVED
+    total = 0.5 * (1.0 + restitution)
+    if restitution == 0.0:
+        assert answer.state.v_WB_W == pytest.approx([3.0 - 0.1 * total / 0.5, 0.0, 0.0], abs=1e-10)
+        assert answer.state.w_WB_W == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
+    leading = answer.impulses_W[2:, 2].sum()
+    assert leading > answer.impulses_W[:2, 2].sum()
+    # Moments about the centre balance: friction's arm is the half height, the feet's the half side.
+    if restitution == 0.0:
+        assert (2.0 * leading - total) * 0.05 == pytest.approx(0.1 * total * 0.05, rel=1e-8)
+
+
+@pytest.mark.parametrize(("law", "restitution_law"), LAWS)
+def test_cube_on_an_edge(law: SeveralContactsLaw, restitution_law: RestitutionLaw) -> None:
+    """Frictionless, the edge a distance d beside the centre: impulse v / (1/m + d^2/I), both ends alike.
+
+    One end after the other comes to the same in the limit of many strikes, for e = 0.
+    """
+    offset = 0.02
+    contacts = floor_contacts([[offset, -0.05, 0.0], [offset, 0.05, 0.0]], friction=0.0, restitution=0.0)
+    answer = several_impact(
+        CUBE, falling(0.07, [0.0, 0.0, -1.0]), contacts, law=law, restitution_law=restitution_law
+    )
+    assert answer.verdict is SeveralVerdict.RESOLVED
+    inertia = float(CUBE.I_B[0, 0])
+    total = 1.0 / (1.0 / 0.5 + offset**2 / inertia)
+    assert answer.impulses_W.sum(axis=0) == pytest.approx([0.0, 0.0, total], abs=2e-9)
+    assert answer.state.w_WB_W == pytest.approx([0.0, -offset * total / inertia, 0.0], abs=1e-7)
+
+
+@pytest.mark.parametrize("law", RestitutionLaw)
+def test_level_rod_on_two_supports(law: RestitutionLaw) -> None:
+    """Elastic and frictionless: one end, then the other; both orders are mirror images.
+
+    By hand for half length l and I = m l^2/3: the first strike at the right takes J = 2 v m / 4 = m v / 2, so
+    that the centre falls at v/2 and the left end at 2 v; the second strike takes J = 2 (2 v) m / 4 = m v. The
+    centre then rises at v/2, and the rod turns by (J_right - J_left) l / I = (1/2 - 1) m v l 3 / (m l^2)
+    about -y, that is by +3 v / (2 l).
+    """
+    rod = MassProperties(mass=2.0, I_B=np.diag([1e-4, 2.0 / 3.0, 2.0 / 3.0]))
+    contacts = floor_contacts([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]], friction=0.0, restitution=1.0)
+    state = falling(0.0, [0.0, 0.0, -1.0])
+    answer = several_impact(rod, state, contacts, restitution_law=law)
+    assert answer.order[:2] == (0, 1)
+    first, second = answer.strikes[0][1], answer.strikes[1][1]
+    assert first.impulse_W == pytest.approx([0.0, 0.0, 1.0], rel=1e-12)
+    assert second.impulse_W == pytest.approx([0.0, 0.0, 2.0], rel=1e-12)
+    assert second.state.v_WB_W == pytest.approx([0.0, 0.0, 0.5], rel=1e-12)
+    assert second.state.w_WB_W == pytest.approx([0.0, 1.5, 0.0], rel=1e-12)
+    assert answer.verdict is SeveralVerdict.RESOLVED
+    assert kinetic_energy(rod, answer.state) == pytest.approx(kinetic_energy(rod, state), rel=1e-12)
+    outcomes = outcomes_over_orders(rod, state, contacts, restitution_law=law)
+    assert outcomes.complete
+    mirrored = outcomes.velocities_W * np.array([-1.0, 1.0, 1.0, 1.0, -1.0, 1.0])
+    assert np.sort(outcomes.velocities_W, axis=0) == pytest.approx(np.sort(mirrored, axis=0), abs=1e-12)
+
+
+def test_rocking_block() -> None:
+    """Housner 1963: a block that rocks over keeps 1 - 3/2 sin^2(alpha) of its spin; one corner lifts off."""
+    half_width, half_height = 0.1, 0.4
+    mass = 3.0
+    inertia = mass * (half_width**2 + half_height**2) / 3.0
+    block = MassProperties(mass=mass, I_B=np.diag([inertia, inertia, mass * 2.0 * half_width**2 / 3.0]))
+    # Turning about its left corner (v_n = 0 there), it comes down on its right one.
+    w = np.array([0.0, 2.0, 0.0])
+    state = BodyState(
+        p_WB_W=[0.0, 0.0, half_height],
+        q_WB=IDENTITY,
+        v_WB_W=np.cross(w, [half_width, 0.0, half_height]),
+        w_WB_W=w,
+    )
+    contacts = floor_contacts(
+        [[-half_width, 0.0, 0.0], [half_width, 0.0, 0.0]], friction=5.0, restitution=0.0
+    )
+    kept = 1.0 - 1.5 * half_width**2 / (half_width**2 + half_height**2)
+    for law in SeveralContactsLaw:
+        answer = several_impact(block, state, contacts, law=law)
+        assert answer.verdict is SeveralVerdict.RESOLVED
+        assert answer.state.w_WB_W == pytest.approx([0.0, 2.0 * kept, 0.0], abs=1e-9)
+        assert answer.velocities_after_W[0, 2] > 0.0
+        assert answer.velocities_after_W[1] == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
+
+
+def random_set(seed: int) -> tuple[MassProperties, BodyState, ContactSet]:
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(1, 4))
+    moments = rng.uniform(0.1, 1.0, size=3)
+    body = MassProperties(mass=float(rng.uniform(0.5, 2.0)), I_B=np.diag(moments.sum() - moments))
+    points = rng.uniform(-1.0, 1.0, size=(n, 3))
+    points[:, 2] = -rng.uniform(0.3, 1.0)
+    normals = rng.normal(size=(n, 3)) * 0.2 + [0.0, 0.0, 1.0]
+    contacts = ContactSet(
+        p_WC_W=points,
+        normals_W=normals / np.linalg.norm(normals, axis=1)[:, None],
+        frictions=rng.uniform(0.0, 0.6, size=n),
+        restitutions=rng.choice([0.0, 0.3, 0.7], size=n),
+    )
+    velocity = rng.normal(size=3) * 0.5 - [0.0, 0.0, 2.0]
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=velocity, w_WB_W=rng.normal(size=3))
+    return body, state, contacts
+
+
+@pytest.mark.parametrize(("law", "restitution_law"), LAWS)
+@settings(max_examples=25, deadline=None)
+@given(seed=st.integers(0, 2**32))
+def test_resolved_answers_are_admissible(
+    law: SeveralContactsLaw, restitution_law: RestitutionLaw, seed: int
+) -> None:
+    body, state, contacts = random_set(seed)
+    try:
+        answer = several_impact(body, state, contacts, law=law, restitution_law=restitution_law)
+    except SeparatingContactError:
+        return
+    normals = contacts.normals_W
+    normal_impulses = np.einsum("ij,ij->i", answer.impulses_W, normals)
+    tangential = answer.impulses_W - normal_impulses[:, None] * normals
+    size = float(abs(answer.impulses_W).max()) + 1e-12
+    assert (normal_impulses >= -1e-12 * size).all()
+    assert (np.linalg.norm(tangential, axis=1) <= contacts.frictions * normal_impulses + 1e-10 * size).all()
+    gained = body.mass * (answer.state.v_WB_W - state.v_WB_W)
+    assert gained == pytest.approx(answer.impulses_W.sum(axis=0), abs=1e-11 * size * len(contacts) + 1e-12)
+    if answer.verdict is SeveralVerdict.RESOLVED:
+        assert (np.einsum("ij,ij->i", answer.velocities_after_W, normals) >= -1e-8).all()
+    if law is SEQUENTIAL and restitution_law is not RestitutionLaw.NEWTON:
+        assert kinetic_energy(body, answer.state) <= kinetic_energy(body, state) * (1.0 + 1e-10)
+
+
+@pytest.mark.parametrize("restitution_law", RestitutionLaw)
+def test_one_contact_is_the_single_law(restitution_law: RestitutionLaw) -> None:
+    body, state, contacts = random_set(5)
+    alone = ContactSet(
+        p_WC_W=contacts.p_WC_W[:1],
+        normals_W=contacts.normals_W[:1],
+        frictions=contacts.frictions[:1],
+        restitutions=contacts.restitutions[:1],
+    )
+    answer = several_impact(body, state, alone, restitution_law=restitution_law)
+    single = spatial_impact(
+        body,
+        state,
+        p_WC_W=alone.p_WC_W[0],
+        n_W=alone.normals_W[0],
+        friction=float(alone.frictions[0]),
+        restitution=float(alone.restitutions[0]),
+        law=restitution_law,
+    )
+    assert answer.order == (0,)
+    assert answer.impulses_W[0].tolist() == single.impulse_W.tolist()
+    outcomes = outcomes_over_orders(body, state, alone, restitution_law=restitution_law)
+    assert outcomes.orders == ((0,),)
+    assert outcomes.spread.tolist() == [0.0] * 6
+
+
+def test_orders_matter_where_contacts_couple() -> None:
+    contacts = floor_contacts(FACE, friction=0.3, restitution=0.5)
+    outcomes = outcomes_over_orders(CUBE, falling(0.05, [0.5, 0.0, -1.0]), contacts)
+    assert len(outcomes.orders) > 1
+    assert outcomes.velocities_W.shape == (len(outcomes.orders), 6)
+    assert outcomes.spread.max() > 0.1
+    few = outcomes_over_orders(CUBE, falling(0.05, [0.5, 0.0, -1.0]), contacts, most_orders=2)
+    assert not few.complete
+    assert len(few.orders) <= 2
+
+
+def test_refusals() -> None:
+    contacts = floor_contacts(FACE, friction=0.3, restitution=0.5)
+    with pytest.raises(SeparatingContactError, match="every contact"):
+        several_impact(CUBE, falling(0.05, [0.0, 0.0, 1.0]), contacts)
+    with pytest.raises(InvalidFieldError, match="restitution_law"):
+        several_impact(
+            CUBE,
+            falling(0.05, [0.0, 0.0, -1.0]),
+            contacts,
+            law=SIMULTANEOUS,
+            restitution_law=RestitutionLaw.ENERGETIC,
+        )
+    with pytest.raises(InvalidFieldError, match="velocity_tolerance"):
+        several_impact(CUBE, falling(0.05, [0.0, 0.0, -1.0]), contacts, velocity_tolerance=0.0)
+    none = ContactSet(
+        p_WC_W=np.zeros((0, 3)), normals_W=np.zeros((0, 3)), frictions=np.zeros(0), restitutions=np.zeros(0)
+    )
+    with pytest.raises(InvalidFieldError, match="contacts"):
+        several_impact(CUBE, falling(0.05, [0.0, 0.0, -1.0]), none)
+
+
+@pytest.mark.parametrize(("law", "restitution_law"), LAWS)
+@settings(max_examples=15, deadline=None)
+@given(seed=st.integers(0, 2**32))
+def test_bodies_that_touch_no_world_keep_their_momenta(
+    law: SeveralContactsLaw, restitution_law: RestitutionLaw, seed: int
+) -> None:
+    """Linear and angular momentum about the world's origin, of two bodies with up to three contacts."""
+    body, state, contacts = random_set(seed)
+    other = MassProperties(mass=2.0, I_B=np.diag([0.5, 0.6, 0.7]))
+    below = BodyState(
+        p_WB_W=np.array([0.1, -0.2, -1.5]),
+        q_WB=IDENTITY,
+        v_WB_W=np.array([0.1, 0.0, 0.3]),
+        w_WB_W=state.w_WB_W,
+    )
+    pairs = [(0, 1)] * len(contacts)
+    try:
+        answer = bodies_impact(
+            [body, other], [state, below], contacts, pairs, law=law, restitution_law=restitution_law
+        )
+    except SeparatingContactError:
+        return
+    size = float(abs(answer.impulses_W).max()) * len(contacts) * 3.0 + 1.0  # arms are within 2 m
+    for kept in (momentum, about_origin):
+        before = kept(body, state) + kept(other, below)
+        after = kept(body, answer.states[0]) + kept(other, answer.states[1])
+        assert after == pytest.approx(before, abs=1e-12 * size)
+    if law is SEQUENTIAL and restitution_law is not RestitutionLaw.NEWTON:
+        energy_before = kinetic_energy(body, state) + kinetic_energy(other, below)
+        energy_after = kinetic_energy(body, answer.states[0]) + kinetic_energy(other, answer.states[1])
+        assert energy_after <= energy_before * (1.0 + 1e-10)
+    if answer.verdict is SeveralVerdict.RESOLVED:
+        leaving = np.einsum("ij,ij->i", answer.velocities_after_W, contacts.normals_W)
+        assert (leaving >= -1e-8).all()
+
+
+def about_origin(body: MassProperties, state: BodyState) -> np.ndarray:
+    return angular_momentum(body, state) + np.cross(state.p_WB_W, momentum(body, state))

@@ -1,0 +1,205 @@
+"""Uncertain states through an impact: closed forms where the law is linear, counted outcomes elsewhere."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
+from contact_dynamics.impact import (
+    ImpactDistribution,
+    ImpactOutcome,
+    planar_impact,
+    planar_impact_distribution,
+    spatial_impact,
+    spatial_impact_distribution,
+)
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+
+BODY = PlanarBody(mass=1.0, inertia=1.0)
+IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
+
+
+def planar(
+    v: tuple[float, float], deviation: list[float], contact: PlanarContact, samples: int
+) -> ImpactDistribution:
+    return planar_impact_distribution(
+        BODY, PlanarVelocity(v=v, w=0.0), contact, covariance=np.diag(np.square(deviation)), samples=samples
+    )
+
+
+def test_a_linear_law_carries_the_covariance_linearly() -> None:
+    """Without friction, at the centre: v_x stays, v_y is turned round by e, w stays."""
+    contact = PlanarContact(r=(0.0, -1.0), normal=(0.0, 1.0), friction=0.0, restitution=0.5)
+    answer = planar((0.2, -10.0), [0.3, 0.2, 0.1], contact, 40_000)
+    assert answer.mean == pytest.approx([0.2, 5.0, 0.0], abs=1e-12)
+    # Of a standard deviation, 40 000 draws leave 0.35 %; of a variance, twice that.
+    assert np.diag(answer.covariance) == pytest.approx([0.09, 0.01, 0.01], rel=0.03)
+    assert answer.probabilities[ImpactOutcome.SLIDES] == 1.0
+    assert answer.missed == 0.0
+
+
+def test_probabilities_are_those_of_the_threshold() -> None:
+    """A particle with mu = 1/2, e = 0 sticks where |v_x| < |v_y|/2, so P = erf(0.5/(sigma sqrt 2))."""
+    contact = PlanarContact(r=(0.0, 0.0), normal=(0.0, 1.0), friction=0.5, restitution=0.0)
+    answer = planar((0.0, -1.0), [0.5, 0.0, 0.0], contact, 100_000)
+    expected = math.erf(1.0 / math.sqrt(2.0))
+    # Five standard errors.
+    error = 5.0 * math.sqrt(expected * (1.0 - expected) / 100_000)
+    assert answer.probabilities[ImpactOutcome.STICKS_IN_COMPRESSION] == pytest.approx(expected, abs=error)
+    assert answer.probabilities[ImpactOutcome.SLIDES] == pytest.approx(1.0 - expected, abs=error)
+    assert answer.probabilities.sum() + answer.missed == pytest.approx(1.0, abs=1e-12)
+
+
+def test_half_of_the_draws_miss_a_contact_at_rest() -> None:
+    contact = PlanarContact(r=(0.0, -1.0), normal=(0.0, 1.0), friction=0.2, restitution=0.5)
+    answer = planar((0.0, 0.0), [0.0, 1.0, 0.0], contact, 1000)
+    assert answer.missed == 0.5
+
+
+def test_no_uncertainty_gives_the_answer_itself() -> None:
+    contact = PlanarContact(r=(0.3, -1.0), normal=(0.0, 1.0), friction=0.2, restitution=0.5)
+    answer = planar((0.7, -1.0), [0.0, 0.0, 0.0], contact, 2)
+    single = planar_impact(BODY, PlanarVelocity(v=(0.7, -1.0), w=0.0), contact)
+    assert answer.mean.tolist() == [*single.velocity.v, single.velocity.w]
+    assert answer.covariance.tolist() == [[0.0] * 3] * 3
+    assert answer.probabilities[single.outcome] == 1.0
+
+
+def test_space_agrees_with_the_plane() -> None:
+    """Uncertain only in the plane: the same distribution, within what so few draws allow."""
+    contact = PlanarContact(r=(0.3, -1.0), normal=(0.0, 1.0), friction=0.3, restitution=0.5)
+    flat = planar((0.6, -1.0), [0.2, 0.1, 0.3], contact, 20_000)
+    covariance = np.zeros((12, 12))
+    covariance[6, 6], covariance[8, 8], covariance[10, 10] = 0.04, 0.01, 0.09
+    answer = spatial_impact_distribution(
+        MassProperties(mass=1.0, I_B=np.eye(3)),
+        BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[0.6, 0.0, -1.0], w_WB_W=np.zeros(3)),
+        covariance=covariance,
+        p_WC_W=[0.3, 0.0, -1.0],
+        n_W=[0.0, 0.0, 1.0],
+        friction=0.3,
+        restitution=0.5,
+        samples=4000,
+    )
+    # x, z, and the turn about -y.
+    errors = 5.0 * np.sqrt(np.diag(flat.covariance) / 4000)
+    assert (abs(answer.mean[[0, 2, 4]] * [1.0, 1.0, -1.0] - flat.mean) < errors).all()
+    assert answer.probabilities == pytest.approx(flat.probabilities, abs=5.0 * 0.5 / math.sqrt(4000))
+
+
+def test_a_tilted_pose_moves_the_contact_with_it() -> None:
+    """A frictionless point mass on a stick: a tilt by x shifts the contact by h x, and so spins the body."""
+    covariance = np.zeros((12, 12))
+    covariance[4, 4] = 0.01**2
+    answer = spatial_impact_distribution(
+        MassProperties(mass=1.0, I_B=np.eye(3)),
+        BodyState(p_WB_W=[0.0, 0.0, 1.0], q_WB=IDENTITY, v_WB_W=[0.0, 0.0, -1.0], w_WB_W=np.zeros(3)),
+        covariance=covariance,
+        p_WC_W=[0.0, 0.0, 0.0],
+        n_W=[0.0, 0.0, 1.0],
+        friction=0.0,
+        restitution=0.0,
+        samples=400,
+    )
+    # Tilted by x about +y the lowest point is at -x, where the impulse m v turns the body by +x v m/I.
+    assert answer.covariance[4, 10] == pytest.approx(0.01**2, rel=0.3)
+    assert math.sqrt(answer.covariance[10, 10]) == pytest.approx(0.01, rel=0.15)
+
+
+def test_agrees_with_plain_monte_carlo_in_the_plane() -> None:
+    """Independent draws, one scalar call each, counted: several outcome classes and misses among them."""
+    contact = PlanarContact(r=(0.5, -1.0), normal=(0.0, 1.0), friction=0.3, restitution=0.5)
+    covariance = np.array([[0.25, 0.02, 0.0], [0.02, 0.16, 0.05], [0.0, 0.05, 0.2]])
+    mean = np.array([0.3, -0.6, 0.1])
+    answer = planar_impact_distribution(
+        BODY, PlanarVelocity(v=(0.3, -0.6), w=0.1), contact, covariance=covariance, samples=50_000
+    )
+    draws = np.random.default_rng(99).multivariate_normal(mean, covariance, size=8000)
+    after, counts = np.empty((8000, 3)), np.zeros(len(ImpactOutcome))
+    for i, (v_x, v_y, w) in enumerate(draws.tolist()):
+        try:
+            single = planar_impact(BODY, PlanarVelocity(v=(v_x, v_y), w=w), contact)
+        except SeparatingContactError:
+            after[i] = v_x, v_y, w
+            continue
+        after[i] = *single.velocity.v, single.velocity.w
+        counts[single.outcome] += 1
+    assert np.count_nonzero(counts > 100) >= 3
+    compare(answer, after, after, counts)
+
+
+def test_agrees_with_plain_monte_carlo_in_space() -> None:
+    """The same with uncertain poses, whose contact point moves with them."""
+    body = MassProperties(mass=0.5, I_B=np.diag([0.02, 0.03, 0.04]))
+    quaternion = np.array([0.1, -0.2, 0.3, math.sqrt(0.86)])
+    state = BodyState(
+        p_WB_W=[0.1, 0.2, 0.3], q_WB=quaternion, v_WB_W=[0.4, -0.1, -0.5], w_WB_W=[1.0, -0.5, 0.3]
+    )
+    contact = {"n_W": [0.0, 0.0, 1.0], "friction": 0.35, "restitution": 0.4}
+    arm = np.array([0.1, -0.05, -0.3])
+    spread = np.array([0.01] * 3 + [0.1, 0.15, 0.1] + [0.3, 0.3, 0.3] + [0.5, 0.5, 0.5])
+    mixing = np.random.default_rng(3).normal(size=(12, 12)) * 0.2 + np.eye(12)
+    covariance = (spread[:, None] * mixing) @ (spread[:, None] * mixing).T
+    answer = spatial_impact_distribution(
+        body, state, covariance=covariance, p_WC_W=state.p_WB_W + arm, samples=20_000, **contact
+    )
+    draws = np.random.default_rng(98).multivariate_normal(np.zeros(12), covariance, size=1500)
+    after, counts = np.empty((1500, 6)), np.zeros(len(ImpactOutcome))
+    for i, draw in enumerate(draws):
+        turn = Rotation.from_rotvec(draw[3:6])
+        drawn = BodyState(
+            p_WB_W=state.p_WB_W + draw[:3],
+            q_WB=(turn * Rotation.from_quat(quaternion)).as_quat(),
+            v_WB_W=state.v_WB_W + draw[6:9],
+            w_WB_W=state.w_WB_W + draw[9:],
+        )
+        try:
+            single = spatial_impact(body, drawn, p_WC_W=drawn.p_WB_W + turn.apply(arm), **contact)
+        except SeparatingContactError:
+            after[i] = [*drawn.v_WB_W, *drawn.w_WB_W]
+            continue
+        after[i] = [*single.state.v_WB_W, *single.state.w_WB_W]
+        counts[single.outcome] += 1
+    assert np.count_nonzero(counts > 50) >= 3
+    compare(answer, after, np.concatenate((draws[:, :6], after), axis=1), counts)
+
+
+def compare(answer: ImpactDistribution, after: np.ndarray, whole: np.ndarray, counts: np.ndarray) -> None:
+    """Compare within five standard errors of the plain draws, which are fewer.
+
+    A variance's standard error is sqrt(2/n) of it for a normal distribution; ours have heavier tails, so that
+    a covariance is allowed ten.
+    """
+    count = len(after)
+    deviations = after.std(axis=0)
+    assert (abs(answer.mean - after.mean(axis=0)) <= 5.0 * deviations / math.sqrt(count)).all()
+    sizes = whole.std(axis=0)
+    difference = abs(answer.covariance - np.cov(whole, rowvar=False)) / np.outer(sizes, sizes)
+    assert difference.max() <= 10.0 / math.sqrt(count)
+    shares = counts / count
+    errors = np.sqrt(np.maximum(shares * (1.0 - shares), 1.0 / count) / count)
+    assert (abs(answer.probabilities - shares) <= 5.0 * errors).all()
+    assert answer.missed == pytest.approx(1.0 - shares.sum(), abs=5.0 * 0.5 / math.sqrt(count))
+
+
+@pytest.mark.parametrize(
+    ("covariance", "samples", "text"),
+    [
+        (np.diag([1.0, -1.0, 1.0]), 100, "covariance"),
+        ([[1.0, 0.5, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], 100, "covariance"),
+        (np.eye(2), 100, "covariance"),
+        (np.eye(3), 101, "samples"),
+        (np.eye(3), 0, "samples"),
+    ],
+)
+def test_bad_input_is_refused(covariance: object, samples: int, text: str) -> None:
+    contact = PlanarContact(r=(0.0, -1.0), normal=(0.0, 1.0), friction=0.0, restitution=0.5)
+    with pytest.raises(InvalidFieldError, match=text):
+        planar_impact_distribution(
+            BODY, PlanarVelocity(v=(0.0, -1.0), w=0.0), contact, covariance=covariance, samples=samples
+        )

@@ -1,0 +1,131 @@
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.measured.cube_tosses import HALF_SIDE, RATE
+from contact_dynamics.measured.events import measure_events
+from contact_dynamics.measured.read_toss import read_toss
+from contact_dynamics.measured.velocity_estimate import FEWEST_FRAMES
+from oracles.rigid_flight import about, fly, matrix
+
+CORNERS = HALF_SIDE * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+
+
+def toss_table(*, tilt: float, flight: int, between: int) -> np.ndarray:
+    """A cube that falls without spin, jumps, and lies still, each for some frames: 14 columns as published.
+
+    ``tilt``: how far one corner points down, 1 wholly, 0 flat.
+    """
+    down = about(np.array([1.0, -1.0, 0.0]) / np.sqrt(2.0), tilt * np.arctan(np.sqrt(2.0)))
+    touching = -(CORNERS @ matrix(down).T)[:, 2].min()
+    before = np.arange(-flight, 0) / RATE
+    after = np.arange(between) / RATE
+    p_1, q_1, _, _ = fly(before, [0.0, 0.0, touching], down, [0.5, 0.0, -1.0], np.zeros(3), step=0.01)
+    p_2, q_2, _, _ = fly(
+        after, [0.0, 0.0, touching], down, [0.4, 0.0, 0.5 * 9.81 * between / RATE], np.zeros(3), step=0.01
+    )
+    p_3, q_3 = np.tile(p_2[-1] * [1.0, 1.0, 0.0] + [0.0, 0.0, touching], (30, 1)), np.tile(down, (30, 1))
+    p, q = np.concatenate([p_1, p_2, p_3]), np.concatenate([q_1, q_2, q_3])
+    published = np.full((len(p), 6), 1e6)  # nonsense, which nobody may read
+    return np.column_stack([np.arange(len(p)) / RATE, p, q, published])
+
+
+def save(path: Path, *tables: np.ndarray) -> Path:
+    offsets = np.cumsum([0, *(len(table) for table in tables)])
+    np.savez(path, data=np.concatenate(tables), offsets=offsets, columns=np.array(["t"] * 14))
+    return path
+
+
+def test_an_index_selects_a_toss(tmp_path: Path) -> None:
+    path = save(tmp_path / "t.npz", *(toss_table(tilt=1.0, flight=f, between=14) for f in (10, 14, 12)))
+    lengths = [len(read_toss(path, index=index)) for index in range(3)]
+    assert lengths == [f + 14 + 30 - (FEWEST_FRAMES - 1) for f in (10, 14, 12)]
+    assert len(read_toss(f"{path}#1")) == lengths[1]
+    assert len(read_toss(f"{path}:2")) == lengths[2]
+    with pytest.raises(InvalidFieldError, match="index: found 3, allowed is 0 to 2"):
+        read_toss(f"{path}#3")
+
+
+def test_the_longest_flight_is_the_default(tmp_path: Path) -> None:
+    tables = [toss_table(tilt=1.0, flight=f, between=14) for f in (10, 18, 12)]
+    assert read_toss(save(tmp_path / "t.npz", *tables)).source.startswith("measured toss 1 ")
+
+
+def test_among_equal_flights_the_longer_second_flight_is_the_default(tmp_path: Path) -> None:
+    tables = [toss_table(tilt=1.0, flight=12, between=b) for b in (13, 16, 14)]
+    assert read_toss(save(tmp_path / "t.npz", *tables)).source.startswith("measured toss 1 ")
+
+
+@pytest.mark.parametrize(
+    "unclean",
+    [
+        toss_table(tilt=0.0, flight=20, between=14),  # four corners at once
+        toss_table(tilt=0.1, flight=20, between=14),  # nearly
+        toss_table(tilt=1.0, flight=20, between=5),  # strikes again too soon
+        toss_table(tilt=1.0, flight=20, between=14)[:10],  # never strikes
+    ],
+)
+def test_a_longer_flight_with_an_unclean_strike_is_not(tmp_path: Path, unclean: np.ndarray) -> None:
+    clean = toss_table(tilt=1.0, flight=10, between=14)
+    assert read_toss(save(tmp_path / "t.npz", unclean, clean)).source.startswith("measured toss 1 ")
+    with pytest.raises(InvalidFieldError, match="no toss with a clean strike"):
+        read_toss(save(tmp_path / "u.npz", unclean))
+
+
+def test_velocities_come_from_the_poses_and_have_no_lag(tmp_path: Path) -> None:
+    toss = read_toss(save(tmp_path / "t.npz", toss_table(tilt=1.0, flight=18, between=14)))
+    falling = toss.times < 18 / RATE
+    expected = -1.0 - 9.81 * (toss.times[falling] - 18 / RATE)
+    assert toss.v_WB_W[falling, 2] == pytest.approx(expected, abs=1e-9)
+    assert toss.w_WB_W[falling] == pytest.approx(np.zeros((falling.sum(), 3)), abs=1e-9)
+
+
+def test_the_published_constants_go_with_it(tmp_path: Path) -> None:
+    toss = read_toss(save(tmp_path / "t.npz", toss_table(tilt=1.0, flight=18, between=14)))
+    assert toss.body.mass_properties.mass == 0.37
+    assert toss.body.mass_properties.I_B.tolist() == np.diag([8.1e-4] * 3).tolist()
+    assert np.abs(toss.body.vertices_B).tolist() == np.full((8, 3), 0.0524).tolist()
+    assert (toss.surface.friction, toss.surface.restitution) == (0.18, 0.125)
+    assert toss.rate == 148.0
+
+
+def test_a_file_that_is_not_as_described_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "t.npz"
+    np.savez(path, data=np.zeros((3, 14)))
+    with pytest.raises(InvalidFieldError, match="allowed is arrays data and offsets"):
+        read_toss(path)
+    np.savez(path, data=np.zeros((3, 13)), offsets=[0, 3])
+    with pytest.raises(InvalidFieldError, match=r"data: found shape \(3, 13\)"):
+        read_toss(path)
+    for offsets in ([0], [0, 4], [2, 1], [-1, 3]):
+        np.savez(path, data=np.zeros((3, 14)), offsets=offsets)
+        with pytest.raises(InvalidFieldError, match="offsets"):
+            read_toss(path)
+    path.write_bytes(b"no archive")
+    with pytest.raises(InvalidFieldError, match="plain arrays"):
+        read_toss(path)
+
+
+BESIDE = Path(__file__).parents[3] / "shared" / "data" / "cube_tosses" / "tosses.npz"
+MEASURED = Path(os.environ.get("CUBE_TOSSES", BESIDE))
+
+
+@pytest.mark.skipif(not MEASURED.is_file(), reason=f"no published tosses at {MEASURED} (CUBE_TOSSES)")
+def test_published_tosses_fly_strike_and_come_to_rest() -> None:
+    assert read_toss(MEASURED).source.startswith("measured toss 344 ")
+    with_strikes = 0
+    tosses = range(0, 360, 12)
+    for index in tosses:
+        toss = read_toss(MEASURED, index=index)
+        assert np.linalg.norm(toss.v_WB_W, axis=1).max() < 3.0  # thrown at 1.4 m/s from 15 cm
+        events = measure_events(toss)
+        assert events.rest is not None
+        # the board is where corners are at rest, to what frame, half side and board are known
+        assert -0.006 < events.rest.heights.min() < 0.002
+        with_strikes += len(events.strikes) > 0
+    assert with_strikes > 0.7 * len(tosses)  # of all 360, 281 have a strike between two flights

@@ -1,0 +1,53 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contact_dynamics.measured.flights import SPAN, find_flights
+from contact_dynamics.measured.read_toss import read_toss
+from measured.brick_truth import TRUTH
+from measured.known_toss import P_NOISE, Q_NOISE, as_toss
+from oracles.bouncing_toss import Leg, toss
+
+LEGS = [
+    Leg(0.2013, (0.7, -0.3, -1.0), (5.0, 3.0, -4.0)),
+    Leg(0.1507, (0.6, 0.1, 1.3), (-9.0, 8.0, 2.0)),
+    Leg(0.0904, (0.4, 0.2, 0.6), (3.0, -5.0, 6.0)),
+]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_flights_end_where_velocities_jump(seed: int) -> None:
+    known = toss(LEGS, at_rest=0.2, p_noise=P_NOISE, q_noise=Q_NOISE, seed=seed)
+    flights = find_flights(as_toss(known))
+    jumps = np.cumsum([leg.duration for leg in LEGS])
+    assert len(flights) == 3
+    for flight, jump in zip(flights, jumps, strict=True):
+        first_after = int(np.searchsorted(known.times, jump))
+        # the first pose after a jump may still be within noise of the old flight
+        assert first_after <= flight.stop <= first_after + 1
+    assert flights[0].start == 0
+
+
+def test_rest_is_not_flight() -> None:
+    known = toss([Leg(1e-9, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))], at_rest=1.0, p_noise=P_NOISE, q_noise=Q_NOISE)
+    assert find_flights(as_toss(known)) == []
+
+
+def test_a_slide_at_constant_speed_is_not_flight() -> None:
+    known = toss([Leg(1e-9, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))], at_rest=1.0, p_noise=P_NOISE, q_noise=Q_NOISE)
+    sliding = known._replace(p=known.p + 0.5 * known.times[:, None] * [1.0, 0.0, 0.0])
+    assert find_flights(as_toss(sliding)) == []
+
+
+def test_flights_shorter_than_the_span_are_not_seen() -> None:
+    known = toss([LEGS[0], Leg(0.8 * SPAN, (0.5, 0.0, 0.2), (2.0, 8.0, 1.0))], at_rest=0.2)
+    assert len(find_flights(as_toss(known))) == 1
+
+
+def test_the_recorded_brick_flies_between_its_strikes() -> None:
+    toss_read = read_toss()
+    flights = find_flights(toss_read)
+    assert len(flights) >= 3
+    for flight, strike in zip(flights[:3], TRUTH.strikes, strict=False):
+        assert toss_read.times[flight.stop - 1] < strike.begin < toss_read.times[flight.stop]

@@ -1,0 +1,276 @@
+"""Fits of free motions: exact data, known noise, another minimiser, and windows that say too little."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import least_squares
+from scipy.spatial.transform import Rotation
+
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.motion.free_fit import FitResult, StateNoise, fit_free_motion
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.tumbling import FreeMotion, free_motion
+from tumbling.known_motions import MOTIONS, motion_of
+
+WINDOW = 1.3 + np.linspace(0.0, 0.22, 12)
+NOISE = StateNoise(position=1e-3, orientation=5e-3)
+WITH_RATES = StateNoise(position=1e-3, orientation=5e-3, linear_velocity=0.02, angular_velocity=0.05)
+
+
+def published(
+    motion: FreeMotion, times: np.ndarray, noise: StateNoise | None, seed: int = 0
+) -> list[BodyState]:
+    """States of a motion as a tracker would see them."""
+    rng = np.random.default_rng(seed)
+    states = []
+    for t in times:
+        state = motion.state_at(t)
+        draws = rng.normal(size=(4, 3))
+        if noise is None:
+            draws[:] = 0.0
+        else:
+            sizes = [noise.position, noise.orientation, noise.linear_velocity, noise.angular_velocity]
+            draws *= np.array([size or 0.0 for size in sizes])[:, None]
+        states.append(
+            BodyState(
+                p_WB_W=state.p_WB_W + draws[0],
+                q_WB=(Rotation.from_rotvec(draws[1]) * Rotation.from_quat(state.q_WB)).as_quat(),
+                v_WB_W=state.v_WB_W + draws[2],
+                w_WB_W=state.w_WB_W + draws[3],
+                stamp_ns=state.stamp_ns,
+            )
+        )
+    return states
+
+
+def truth(motion: FreeMotion, stamp_ns: int) -> BodyState:
+    return motion.state_at((stamp_ns - motion.state.stamp_ns) * 1e-9)
+
+
+def error(found: BodyState, true: BodyState) -> np.ndarray:
+    """The error of a state, (12,), in the order of the covariance."""
+    turn = (Rotation.from_quat(true.q_WB) * Rotation.from_quat(found.q_WB).inv()).as_rotvec()
+    return np.concatenate(
+        [true.p_WB_W - found.p_WB_W, turn, true.v_WB_W - found.v_WB_W, true.w_WB_W - found.w_WB_W]
+    )
+
+
+def fit(motion: FreeMotion, states: list[BodyState], noise: StateNoise | None = None) -> FitResult:
+    return fit_free_motion(motion.body, states, gravity_W=motion.gravity_W, noise=noise)
+
+
+# Exact data
+
+
+@pytest.mark.parametrize("name", sorted(MOTIONS))
+@pytest.mark.parametrize("noise", [None, NOISE, WITH_RATES])
+def test_exact_states_are_found(name: str, noise: StateNoise | None) -> None:
+    """To rounding: stamps are whole ns, which at these speeds are 1e-9 m and rad, hence the tolerance."""
+    motion = motion_of(name)
+    states = published(motion, WINDOW, None)
+    found = fit(motion, states, noise)
+    np.testing.assert_allclose(
+        error(found.state, truth(motion, found.state.stamp_ns)), 0.0, rtol=0.0, atol=2e-8
+    )
+    assert found.converged
+    assert found.rounds <= 4
+    assert found.count == 12
+    assert found.state.stamp_ns == states[-1].stamp_ns
+    assert found.position_residual < 5e-9
+    assert found.orientation_residual < 5e-9
+
+
+positive = st.floats(0.3, 3.0)
+component = st.floats(-8.0, 8.0)
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    a=positive,
+    b=positive,
+    share=st.floats(0.05, 0.95),
+    w=st.tuples(component, component, component),
+    gaps=st.lists(st.integers(1_000_000, 60_000_000), min_size=2, max_size=12),
+)
+def test_any_body_any_window(a: float, b: float, share: float, w: tuple, gaps: list[int]) -> None:
+    moments = np.array([a, b, abs(a - b) + share * (a + b - abs(a - b))])
+    motion = free_motion(
+        MassProperties(mass=1.0, I_B=np.diag(moments)),
+        BodyState(p_WB_W=np.ones(3), q_WB=[0.0, 0.6, 0.0, 0.8], v_WB_W=np.ones(3), w_WB_W=w),
+    )
+    times = np.concatenate([[0], np.cumsum(gaps)]) * 1e-9
+    found = fit(motion, published(motion, times, None))
+    # Rounding over the length of the window is that of rates; the reference itself rounds its time to 1e-9 s.
+    span = times[-1]
+    limits = np.repeat([1e-9, 1e-8, 1e-9 / span, 1e-8 / span], 3)
+    wrong = np.abs(error(found.state, truth(motion, found.state.stamp_ns)))
+    assert (wrong < limits).all(), wrong / limits
+
+
+def test_a_radian_from_state_to_state_is_no_obstacle() -> None:
+    motion = motion_of("about the major axis")
+    found = fit(motion, published(motion, np.linspace(0.0, 8.0, 12), None))
+    assert found.converged
+    np.testing.assert_allclose(error(found.state, motion.state_at(8.0)), 0.0, rtol=0.0, atol=2e-8)
+
+
+# Noise
+
+
+@pytest.mark.parametrize("noise", [NOISE, WITH_RATES])
+@pytest.mark.parametrize("name", ["about the major axis", "a rod", "near the middle axis", "at rest"])
+def test_errors_are_as_large_as_the_covariance_says(name: str, noise: StateNoise) -> None:
+    """Squared errors beside the covariance are chi squared of 12 degrees: mean 12, variance 24."""
+    motion, trials = motion_of(name), 50
+    squares, places, turns = [], [], []
+    for seed in range(trials):
+        found = fit(motion, published(motion, WINDOW, noise, seed), noise)
+        wrong = error(found.state, truth(motion, found.state.stamp_ns))
+        squares.append(wrong @ np.linalg.solve(found.covariance, wrong))
+        places.append(found.position_residual**2)
+        turns.append(found.orientation_residual**2)
+    deviation = math.sqrt(24.0 / trials)
+    assert abs(np.mean(squares) - 12.0) < 3.5 * deviation
+    assert np.percentile(squares, 95) < 21.03 + 4.0  # 5 % of chi squared of 12 are above 21.03
+    if noise is NOISE:
+        # Residuals lose the 6 unknowns of 36 numbers; a mean square of 30 has a deviation of a quarter.
+        free = 3.0 * 30.0 / 36.0
+        assert np.mean(places) == pytest.approx(
+            free * noise.position**2, rel=3.5 * math.sqrt(2.0 / 30.0 / trials)
+        )
+        assert np.mean(turns) == pytest.approx(
+            free * noise.orientation**2, rel=3.5 * math.sqrt(2.0 / 30.0 / trials)
+        )
+
+
+def test_without_a_known_noise_residuals_tell_it() -> None:
+    motion = motion_of("about the minor axis")
+    ratios = []
+    for seed in range(30):
+        states = published(motion, WINDOW, NOISE, seed)
+        told, found = fit(motion, states, NOISE), fit(motion, states)
+        np.testing.assert_allclose(found.state.w_WB_W, told.state.w_WB_W, rtol=0.0, atol=1e-9)
+        ratios.append(found.covariance.diagonal() / told.covariance.diagonal())
+    np.testing.assert_allclose(
+        np.mean(ratios, axis=0), 1.0, rtol=0.0, atol=3.5 * math.sqrt(2.0 / 30.0 / 30.0)
+    )
+
+
+@pytest.mark.parametrize("name", ["about the major axis", "a rod", "near the middle axis"])
+def test_it_predicts_better_than_the_newest_state(name: str) -> None:
+    """Where a body will be 0.4 s on, from the fit and from the newest published state alone."""
+    motion, ahead = motion_of(name), 0.4
+    of_fit, of_newest = [], []
+    for seed in range(20):
+        states = published(motion, WINDOW, WITH_RATES, seed)
+        true = truth(motion, states[-1].stamp_ns + round(ahead * 1e9))
+        best = fit(motion, states, WITH_RATES).state
+        for state, errors in ((best, of_fit), (states[-1], of_newest)):
+            later = free_motion(motion.body, state, gravity_W=motion.gravity_W).state_at(ahead)
+            errors.append(error(later, true))
+    for part in (slice(0, 3), slice(3, 6)):  # where it is, and how it is turned
+        best, newest = (np.sqrt(np.square(errors)[:, part].mean()) for errors in (of_fit, of_newest))
+        assert best < 0.5 * newest
+
+
+def test_velocities_make_the_answer_surer() -> None:
+    motion = motion_of("about the major axis")
+    states = published(motion, WINDOW, WITH_RATES)
+    poses, all_of_it = fit(motion, states, NOISE), fit(motion, states, WITH_RATES)
+    assert (all_of_it.covariance.diagonal() < poses.covariance.diagonal()).all()
+
+
+@pytest.mark.parametrize("noise", [NOISE, WITH_RATES])
+def test_another_minimiser_finds_the_same(noise: StateNoise) -> None:
+    motion = motion_of("near the middle axis")
+    states = published(motion, WINDOW, WITH_RATES, 5)
+    found = fit(motion, states, noise).state
+    times = np.array([state.stamp_ns - found.stamp_ns for state in states]) * 1e-9
+
+    def residuals(x: np.ndarray) -> np.ndarray:
+        state = BodyState(
+            p_WB_W=found.p_WB_W + x[:3],
+            q_WB=(Rotation.from_rotvec(x[3:6]) * Rotation.from_quat(found.q_WB)).as_quat(),
+            v_WB_W=found.v_WB_W + x[6:9],
+            w_WB_W=found.w_WB_W + x[9:],
+        )
+        then = free_motion(motion.body, state, gravity_W=motion.gravity_W).at(times)
+        seen = Rotation.from_quat([state.q_WB for state in states])
+        parts = [
+            (then.p_WB_W - [state.p_WB_W for state in states]) / noise.position,
+            (seen * Rotation.from_quat(then.q_WB).inv()).as_rotvec() / noise.orientation,
+        ]
+        if noise.linear_velocity and noise.angular_velocity:
+            parts.append((then.v_WB_W - [state.v_WB_W for state in states]) / noise.linear_velocity)
+            parts.append((then.w_WB_W - [state.w_WB_W for state in states]) / noise.angular_velocity)
+        return np.concatenate(parts).ravel()
+
+    start = np.repeat([1e-2, -2e-2, 1e-2, 3e-2], 3)
+    other = least_squares(residuals, start, xtol=1e-14, ftol=1e-14, gtol=1e-14)
+    # Gauss and Newton leave out that a rotation vector's rate is not quite the angular velocity: second order
+    # in residuals of 5e-3.
+    np.testing.assert_allclose(other.x, 0.0, rtol=0.0, atol=2e-4)
+    assert np.square(residuals(np.zeros(12))).sum() == pytest.approx(2.0 * other.cost, rel=1e-4)
+
+
+# Windows that say too little, or too much
+
+
+def test_two_states_are_too_few() -> None:
+    motion = motion_of("flat")
+    for count in (0, 1, 2):
+        with pytest.raises(
+            InvalidFieldError, match=f"fit window: found {count} states, allowed is at least 3"
+        ):
+            fit(motion, published(motion, WINDOW[:count], None))
+
+
+def test_too_many_states() -> None:
+    with pytest.raises(TooLargeError, match="2001 states"):
+        fit(motion_of("flat"), [motion_of("flat").state] * 2001)
+
+
+@pytest.mark.parametrize("times", [[0.0, 0.0, 0.0], [0.0, 0.1, 0.1, 0.2], [0.0, 0.2, 0.1], [0.3, 0.2, 0.1]])
+def test_stamps_ascend(times: list[float]) -> None:
+    with pytest.raises(InvalidFieldError, match="fit window: stamps"):
+        fit(motion_of("flat"), published(motion_of("flat"), np.array(times), None))
+
+
+def test_a_window_beyond_prediction() -> None:
+    motion = motion_of("about the middle axis")
+    with pytest.raises(InvalidFieldError, match="fit window: found 3000 s"):
+        fit(motion, published(motion, np.linspace(0.0, 3000.0, 2000), None))
+
+
+@pytest.mark.parametrize("field", ["position", "orientation", "linear_velocity", "angular_velocity"])
+@pytest.mark.parametrize("value", [0.0, -1.0, math.nan])
+def test_noise_is_positive(field: str, value: float) -> None:
+    good = {"position": 1.0, "orientation": 1.0}
+    with pytest.raises(InvalidFieldError, match=f"{field}_noise"):
+        StateNoise(**{**good, field: value})
+
+
+def test_gravity_is_finite() -> None:
+    motion = motion_of("flat")
+    with pytest.raises(InvalidFieldError, match="gravity"):
+        fit_free_motion(motion.body, published(motion, WINDOW, None), gravity_W=[0.0, 0.0, math.nan])
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_needles_are_found_whose_spin_is_lost_in_their_momentum(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    slim = 10.0 ** rng.uniform(-5.0, -3.0)
+    body = MassProperties(mass=1.0, I_B=np.diag([slim, 1.0, 1.0 + 0.5 * slim]))
+    w = rng.normal(size=3)
+    begin = BodyState(
+        p_WB_W=np.zeros(3), q_WB=(0, 0, 0, 1), v_WB_W=np.zeros(3), w_WB_W=10.0 * w / np.linalg.norm(w)
+    )
+    motion = free_motion(body, begin)
+    fit = fit_free_motion(body, [motion.state_at(0.01 * i) for i in range(12)])
+    assert fit.converged
+    assert fit.orientation_residual < 1e-8
