@@ -28,7 +28,8 @@ from contact_dynamics.measured.cube_tosses import BOARD, CUBE, GRAVITY, read_cub
 from contact_dynamics.measured.events import FIT_SPAN, corner_heights
 from contact_dynamics.measured.flight_fit import FEWEST_FRAMES, fit_flight
 from contact_dynamics.measured.flights import find_flights
-from contact_dynamics.rigid_body.body import BodyState, rotation_matrix
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.world import Body, Surface, World
 

@@ -1,8 +1,8 @@
 """How well each law predicts the velocity after measured impacts of a cube, beside "no impact" and MuJoCo.
 
-The recordings are the published cube tosses (`contact_dynamics.measured.cube_tosses`); the environment variable
-CUBE_TOSSES names their `tosses.npz`. Strikes of a single corner are cut out of them with the states just
-before and after, each fitted over the flight next to it (`measured_events`). mu and e are fitted on the
+The recordings are the published cube tosses (`measured.cube_tosses`); the environment variable CUBE_TOSSES
+names their `tosses.npz`. Strikes of a single corner are cut out of them with the states just
+before and after, each fitted over the flight next to it (`measured.events`). mu and e are fitted on the
 strikes of every other toss; the errors are those on the rest.
 
 What limits the error: not the measurement, whose standard deviation is printed, but the published body.

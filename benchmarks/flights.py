@@ -23,7 +23,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from contact_dynamics.demo.rotation_vectors import rotation_vectors_from
 from contact_dynamics.measured.cube_tosses import read_cube_toss
 from contact_dynamics.measured.flights import find_flights
 from contact_dynamics.measured.read_toss import read_toss
@@ -31,6 +30,7 @@ from contact_dynamics.measured.recorded_toss import Toss
 from contact_dynamics.motion.covariance import propagate_covariance
 from contact_dynamics.motion.free_fit import FitResult, fit_free_motion
 from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rotations.many import rotation_vectors
 from contact_dynamics.tumbling import free_motion
 
 FILE = "tosses.npz"
@@ -50,7 +50,7 @@ class Half:
 
     def error(self, predicted: BodyState) -> tuple[float, float]:
         """Return how far a predicted end is off, m and rad."""
-        turn = rotation_vectors_from(self.end.q_WB, predicted.q_WB[None])[0]
+        turn = rotation_vectors(predicted.q_WB[None], self.end.q_WB)[0]
         return float(np.linalg.norm(predicted.p_WB_W - self.end.p_WB_W)), float(np.linalg.norm(turn))
 
     def flown(self, state: BodyState, gravity_W: NDArray[np.float64]) -> BodyState:

@@ -18,6 +18,11 @@ normalised, or has its components in another order than expected with one missin
 SYMMETRY_TOLERANCE: Final = 1e-9
 """Relative to the largest entry. An inertia matrix that is less symmetric than this was not meant as one."""
 
+NEGATIVE_VARIANCE_TOLERANCE: Final = 1e-9
+"""Dimensionless, of a correlation matrix, whose entries are at most 1: how negative an eigenvalue may be.
+Rounding of a covariance that has no variance in some direction leaves 1e-15, of one that went through filters
+some more."""
+
 TRIANGLE_TOLERANCE: Final = 1e-6
 """Relative to the largest principal moment. I1 + I2 >= I3 holds with equality for flat bodies, and measured
 or rounded moments of a flat body miss it by their last printed digit."""

@@ -1,6 +1,7 @@
-"""The gates of batches: a row a case, or one row that stands for all, checked as the scalar calls check.
+"""The gates of batches, which have a row a case or one row that stands for all, and of covariances.
 
-Each error names the field and the first row that is not allowed.
+Batches are checked as the scalar calls check. Each error names the field and the first row that is not
+allowed.
 """
 
 from __future__ import annotations
@@ -10,8 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.impact.law import RestitutionLaw
-from contact_dynamics.tolerances import UNIT_LENGTH_TOLERANCE
+from contact_dynamics.tolerances import (
+    NEGATIVE_VARIANCE_TOLERANCE,
+    SYMMETRY_TOLERANCE,
+    UNIT_LENGTH_TOLERANCE,
+)
 from contact_dynamics.validation import LENGTH_ROUNDING, FloatArray, check_array
 
 if TYPE_CHECKING:
@@ -80,15 +84,38 @@ def check_unit_rows(field: str, value: ArrayLike, width: int) -> FloatArray:
     return unit
 
 
-def check_law_rows(field: str, value: ArrayLike) -> FloatArray:
-    """Return values of `RestitutionLaw`, (N,)."""
-    known = [float(law) for law in RestitutionLaw]
-    return check_rows(field, value, (), "a value of RestitutionLaw", lambda x: np.isin(x, known))
-
-
 def common_length(fields: Mapping[str, FloatArray]) -> int:
     """Return the number of cases; refuse fields of different lengths, but for single rows."""
     lengths = {name: len(rows) for name, rows in fields.items() if len(rows) != 1}
     if len(set(lengths.values())) > 1:
         raise InvalidFieldError("batch", f"arrays of lengths {lengths}", "one length N, or single cases")
     return next(iter(lengths.values()), 1)
+
+
+def check_covariance(field: str, value: ArrayLike) -> FloatArray:
+    """Return a covariance, (12, 12), made exactly symmetric.
+
+    Raises:
+        InvalidFieldError: another shape, a number that is not finite, not symmetric, a negative variance, a
+            correlation beyond 1, or any direction in which the variance would be negative.
+    """
+    matrix = check_array(field, value, (12, 12))
+    variances = matrix.diagonal()
+    if (variances < 0.0).any():
+        raise InvalidFieldError(field, f"variances {variances.tolist()}", "variances >= 0")
+    scale = np.sqrt(variances)
+    unit = np.outer(scale, scale)
+    if np.any(matrix[unit == 0.0]):
+        raise InvalidFieldError(
+            field, "a correlation with what has no variance", "zero beside a zero variance"
+        )
+    correlation = np.divide(matrix, unit, out=np.zeros((12, 12)), where=unit > 0.0)
+    asymmetry = float(np.abs(correlation - correlation.T).max())
+    if asymmetry > SYMMETRY_TOLERANCE:
+        raise InvalidFieldError(field, f"correlations that differ by {asymmetry:g}", "a symmetric matrix")
+    lowest = float(np.linalg.eigvalsh(0.5 * (correlation + correlation.T))[0])
+    if lowest < -NEGATIVE_VARIANCE_TOLERANCE:
+        raise InvalidFieldError(
+            field, f"correlations with an eigenvalue of {lowest:g}", "a positive semidefinite matrix"
+        )
+    return 0.5 * (matrix + matrix.T)

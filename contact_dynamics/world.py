@@ -6,20 +6,23 @@ Surfaces are flats without end (`Surface`) and convex solids and plates (`Obstac
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import InvalidFieldError, UnknownBodyError
 from contact_dynamics.rigid_body.body import MassProperties
-from contact_dynamics.shapes.convex import MOST_VERTICES, NO_SHAPE, ConvexShape, box_vertices
+from contact_dynamics.shapes.convex import MOST_VERTICES, NO_SHAPE, ConvexShape, box_vertices, polyhedron
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.validation import FloatArray, check_array, check_not_negative, check_unit, check_within
 
-__all__ = ["MOST_VERTICES", "STANDARD_GRAVITY_W", "Body", "Surface", "World", "box_vertices"]
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
-STANDARD_GRAVITY_W: Final = (0.0, 0.0, -9.80665)
-"""m/s^2, world axes, z up (REP 103); the conventional value of the third CGPM, 1901."""
+    from contact_dynamics.rigid_body.inertia import MassDistribution
+
+__all__ = ["MOST_VERTICES", "Body", "Surface", "World", "box_vertices"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -50,6 +53,39 @@ class Body:
         elif len(self.vertices_B) > 0 and self.vertices_B is not self.shape.vertices:
             raise InvalidFieldError("vertices", "vertices and a shape", "one of them")
         object.__setattr__(self, "vertices_B", self.shape.vertices)
+
+    @classmethod
+    def of(
+        cls,
+        name: str,
+        mass: MassDistribution,
+        *,
+        vertices_F: ArrayLike | None = None,
+        shape_F: ConvexShape = NO_SHAPE,
+    ) -> Body:
+        """Return the body of a distribution of mass in the published frame F.
+
+        Args:
+            name: What questions call it.
+            mass: Mass, centre of mass and inertia, in F.
+            vertices_F: (k, 3), m, corners of its shape in F; instead of ``shape_F``.
+            shape_F: Its shape in F.
+
+        Raises:
+            InvalidFieldError: the mass is a point or a line, vertices of another shape or not finite, or both
+                vertices and a shape.
+            TooLargeError: more vertices than `MOST_VERTICES`.
+        """
+        if vertices_F is not None:
+            if shape_F is not NO_SHAPE:
+                raise InvalidFieldError("vertices_F", "vertices and a shape", "one of them")
+            shape_F = polyhedron(check_array("vertices_F", vertices_F, (None, 3)))
+        return cls(
+            name=name,
+            mass_properties=mass.mass_properties,
+            p_FB_F=mass.p_FB_F,
+            shape=shape_F.moved(-mass.p_FB_F),
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.motion.covariance import check_covariance
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.validation import check_unit
+from contact_dynamics.validation_batches import check_covariance
 from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 from msg_adapters.frames import check_frame, origin_of_published_frame, turned
 from msg_adapters.geometry import quaternion_from_msg, vector_from_msg
@@ -70,7 +70,7 @@ def covariance_from_msg(msg: BodyStateMsg) -> FloatArray | None:
     """Return the state's covariance, (12, 12), in the message's order, or None where it has none.
 
     Raises:
-        InvalidFieldError: another length than 144; or as `contact_dynamics.motion.covariance.check_covariance`.
+        InvalidFieldError: another length than 144; or as `check_covariance`.
     """
     if len(msg.covariance) == 0:
         return None

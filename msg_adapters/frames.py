@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import FrameMismatchError
-from contact_dynamics.rigid_body.body import BodyState, cross_matrix, rotation_matrix
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rotations.one import cross_matrix, rotation_matrix
 from contact_dynamics.validation import check_unit
 
 if TYPE_CHECKING:

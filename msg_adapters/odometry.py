@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from nav_msgs.msg import Odometry
 
-from contact_dynamics.rigid_body.body import rotation_matrix
+from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.validation import check_unit
 from msg_adapters.frames import (
     check_frame,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from geometry_msgs.msg import PoseStamped, TwistStamped
 
 from contact_dynamics.errors import FrameMismatchError, InvalidFieldError
-from contact_dynamics.rigid_body.body import rotation_matrix
+from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.validation import check_unit
 from msg_adapters.frames import (
     check_frame,

@@ -49,12 +49,12 @@ from typing import Final, NamedTuple
 import mujoco
 import numpy as np
 
-from contact_dynamics.demo.rotation_vectors import rotated
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING
 from contact_dynamics.measured.recorded_toss import Toss
 from contact_dynamics.measured.toss_csv import COLUMNS, DECIMALS, write_toss_csv
 from contact_dynamics.measured.velocity_estimate import causal_velocities, frames_in_window
 from contact_dynamics.rigid_body.body import MassProperties
+from contact_dynamics.rotations.many import turned
 from contact_dynamics.world import Body, Surface, box_vertices
 
 SIZE: Final = (0.15, 0.09, 0.05)  # m
@@ -153,7 +153,7 @@ def measure(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
     random = np.random.Generator(np.random.PCG64(SEED))
     n = len(motion.times)
     p_W = motion.p_WB_W + POSITION_NOISE * random.standard_normal((n, 3))
-    q = rotated(ORIENTATION_NOISE * random.standard_normal((n, 3)), motion.q_WB)
+    q = turned(motion.q_WB, ORIENTATION_NOISE * random.standard_normal((n, 3)))
     # q and -q are the same orientation; a continuous sign is what trackers publish
     flips = np.cumprod(np.where(np.einsum("ij,ij->i", q[1:], q[:-1]) < 0.0, -1.0, 1.0))
     q[1:] *= flips[:, None]

@@ -36,16 +36,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.tolerances import ROW_TOLERANCE, UNIT_LENGTH_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array
-
-if TYPE_CHECKING:
-    from contact_dynamics.contact.contact import ContactSet
 
 Pair: TypeAlias = "tuple[float, float]"
 
@@ -131,13 +128,16 @@ def check_pairs(
 ) -> None:
     """Raise `InvalidFieldError` for the first contact that is not one at a point with a normal of its own."""
     n = len(normals_W)
-    mine, theirs = _least_and_most(body_curvatures, n, math.inf), _least_and_most(surface_curvatures, n, 0.0)
+    mine, theirs = least_and_most(body_curvatures, n, math.inf), least_and_most(surface_curvatures, n, 0.0)
     # Quick: one side convex in all directions and the other flat.
     clear = ((mine[0] > 0.0) & (theirs == 0.0).all(axis=0)) | ((theirs[0] > 0.0) & (mine == 0.0).all(axis=0))
     for i in np.flatnonzero(~clear).tolist():
-        frame = _frame(normals_W[i])
-        body, surface = _side(body_curvatures, i, frame, math.inf), _side(surface_curvatures, i, frame, 0.0)
-        if _rolling(body, surface, (0.0, 0.0), (0.0, 0.0)) is None:
+        frame = tangent_frame(normals_W[i])
+        body, surface = (
+            side_of(body_curvatures, i, frame, math.inf),
+            side_of(surface_curvatures, i, frame, 0.0),
+        )
+        if rolling(body, surface, (0.0, 0.0), (0.0, 0.0)) is None:
             raise InvalidFieldError(
                 f"contacts.curvatures[{i}]",
                 f"{[k for k, _ in body]} of the body, {[k for k, _ in surface]} of the surface, 1/m",
@@ -145,45 +145,11 @@ def check_pairs(
             )
 
 
-def _least_and_most(curvatures: Curvatures | None, n: int, default: float) -> FloatArray:
+def least_and_most(curvatures: Curvatures | None, n: int, default: float) -> FloatArray:
     """Return the smaller and the larger curvature of each contact, (2, n), 1/m."""
     if curvatures is None:
         return np.full((2, n), default)
     return np.sort([curvatures.along, curvatures.across], axis=0)
-
-
-def velocity_accelerations(contacts: ContactSet, velocities_W: FloatArray, w_W: FloatArray) -> FloatArray:
-    """Return what velocities add to the accelerations of the body's points at contacts, (n, 3), m/s^2.
-
-    In the normal direction the sum is the gap's second derivative; in tangential ones, at a contact at rest,
-    the rate of its velocity of sliding.
-
-    Args:
-        contacts: n contacts.
-        velocities_W: (n, 3), m/s, of the body's points there, world axes; normal parts are not used.
-        w_W: (3,), rad/s, angular velocity of the body, world axes.
-    """
-    added = np.zeros((len(contacts), 3))
-    if contacts.body_curvatures is None and contacts.surface_curvatures is None:
-        return added
-    n = len(contacts)
-    mine = _least_and_most(contacts.body_curvatures, n, math.inf)
-    theirs = _least_and_most(contacts.surface_curvatures, n, 0.0)
-    for i in np.flatnonzero(np.isfinite(mine[0]) | (theirs != 0.0).any(axis=0)).tolist():  # not point on flat
-        normal = contacts.normals_W[i]
-        frame = _frame(normal)
-        m = frame @ np.cross(normal, w_W)
-        v = frame @ velocities_W[i]
-        found = _rolling(
-            _side(contacts.body_curvatures, i, frame, math.inf),
-            _side(contacts.surface_curvatures, i, frame, 0.0),
-            (float(m[0]), float(m[1])),
-            (float(v[0]), float(v[1])),
-        )
-        if found is not None:  # as `check_pairs` saw to
-            eta_W = np.array(found.eta) @ frame
-            added[i] = found.gap * normal + float(normal @ w_W) * np.cross(normal, eta_W)
-    return added
 
 
 def planar_gap_acceleration(
@@ -196,7 +162,9 @@ def planar_gap_acceleration(
     return slip * v_t - (w + slip) ** 2 / (body_curvature + surface_curvature)
 
 
-class _Rolling(NamedTuple):
+class Rolling(NamedTuple):
+    """How the point of contact moves over the body, and what its motion adds to the gap."""
+
     eta: Pair  # m/s, of the point of contact over the body
     gap: float  # m/s^2, what the gap's second derivative has besides a_n
 
@@ -205,15 +173,16 @@ Side: TypeAlias = "list[tuple[float, Pair]]"
 """Two curvatures, 1/m, with their directions in the tangent plane."""
 
 
-def _frame(normal_W: FloatArray) -> FloatArray:
-    """Return two tangents, (2, 3)."""
+def tangent_frame(normal_W: FloatArray) -> FloatArray:
+    """Return two unit tangents at right angles, (2, 3)."""
     least = np.eye(3)[int(np.abs(normal_W).argmin())]
     first = np.cross(normal_W, least)
     first = first / math.sqrt(first @ first)
     return np.array([first, np.cross(normal_W, first)])
 
 
-def _side(curvatures: Curvatures | None, i: int, frame: FloatArray, default: float) -> Side:
+def side_of(curvatures: Curvatures | None, i: int, frame: FloatArray, default: float) -> Side:
+    """Return the curvatures of one side of contact ``i``, in the tangents of ``frame``, (2, 3)."""
     along, across, x, y = default, default, 1.0, 0.0
     if curvatures is not None:
         along, across = float(curvatures.along[i]), float(curvatures.across[i])
@@ -222,7 +191,7 @@ def _side(curvatures: Curvatures | None, i: int, frame: FloatArray, default: flo
     return [(along, (x, y)), (across, (-y, x))]
 
 
-def _rolling(body: Side, surface: Side, m: Pair, v: Pair) -> _Rolling | None:
+def rolling(body: Side, surface: Side, m: Pair, v: Pair) -> Rolling | None:
     """Return how the contact moves, or None where it is not one point: the minimum over eta above."""
     held = [(u, 0.0) for k, u in body if math.isinf(k)]
     held += [(u, -_dot(u, v)) for k, u in surface if math.isinf(k)]
@@ -250,7 +219,7 @@ def _rolling(body: Side, surface: Side, m: Pair, v: Pair) -> _Rolling | None:
         for step, u in zip(steps, ways, strict=True):
             eta = (eta[0] + step * u[0], eta[1] + step * u[1])
     over = (eta[0] + v[0], eta[1] + v[1])
-    return _Rolling(eta, _form(body, eta, eta) + 2.0 * _dot(m, eta) + _form(surface, over, over))
+    return Rolling(eta, _form(body, eta, eta) + 2.0 * _dot(m, eta) + _form(surface, over, over))
 
 
 def _least(bend: list[list[float]], slope: list[float], smallest: float) -> list[float] | None:

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
-from contact_dynamics.landing.rim_descent import radii_of
+from contact_dynamics.shapes.rim import radii_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from contact_dynamics.landing.rim_descent import Radii
     from contact_dynamics.shapes.convex import ConvexShape
+    from contact_dynamics.shapes.rim import Radii
     from contact_dynamics.validation import FloatArray
 
     Side: TypeAlias = tuple[float, float, FloatArray]

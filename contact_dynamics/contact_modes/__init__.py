@@ -33,8 +33,6 @@ from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialMo
 from contact_dynamics.contact_modes.spatial.sliding import spatial_sliding_modes
 from contact_dynamics.contact_modes.spatial.statics import spatial_statics
 from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet, spatial_wrench_sets
-from contact_dynamics.impact.several.jamming import jamming_impact
-from contact_dynamics.impact.several.settling import settling_impact
 
 __all__ = [
     "BodyStatics",
@@ -51,12 +49,10 @@ __all__ = [
     "SpatialModeMargin",
     "SpatialWrenchSet",
     "WrenchHalfSpace",
-    "jamming_impact",
     "planar_contact_modes",
     "planar_mode_map",
     "planar_mode_margins",
     "planar_statics",
-    "settling_impact",
     "spatial_contact_modes",
     "spatial_kinematic_modes",
     "spatial_mode_margins",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from contact_dynamics.demo.rotation_vectors import rotation_vectors_from
+from contact_dynamics.rotations.many import rotation_vectors
 from contact_dynamics_interfaces.msg import Impact
 from msg_adapters.geometry import vector_from_msg
 
@@ -136,7 +136,7 @@ def _landing_rows(response: Any, landing: float, strike: MeasuredStrike | None) 
     if strike is None:
         return rows
     state = strike.before.state
-    turn = rotation_vectors_from(state.q_WB, np.array(response.trajectory.orientations[-4:])[None])[0]
+    turn = rotation_vectors(np.array(response.trajectory.orientations[-4:])[None], state.q_WB)[0]
     return [
         Row(
             quantity="time of landing, s",

@@ -22,6 +22,7 @@ from contact_dynamics.impact.planar.one_contact import planar_impact
 from contact_dynamics.impact.planar.result import PlanarImpact
 from contact_dynamics.impact.planar.routh import ImpulsePath, InverseInertia
 from contact_dynamics.impact.planar.two_bodies import planar_pair_impact
+from contact_dynamics.impact.several.jamming import jamming_impact
 from contact_dynamics.impact.several.orders import outcomes_over_orders, several_impact
 from contact_dynamics.impact.several.planar import planar_several_impact
 from contact_dynamics.impact.several.result import (
@@ -32,6 +33,7 @@ from contact_dynamics.impact.several.result import (
     SeveralVerdict,
 )
 from contact_dynamics.impact.several.sequential import bodies_impact
+from contact_dynamics.impact.several.settling import settling_impact
 from contact_dynamics.impact.spatial.batch import SpatialImpacts, StrikingBodies, spatial_impacts
 from contact_dynamics.impact.spatial.one_contact import spatial_impact, spatial_pair_impact
 from contact_dynamics.impact.spatial.result import SpatialImpact
@@ -59,12 +61,14 @@ __all__ = [
     "bodies_impact",
     "impact_sequence",
     "impact_sequence_of",
+    "jamming_impact",
     "outcomes_over_orders",
     "planar_impact",
     "planar_impact_distribution",
     "planar_impacts",
     "planar_pair_impact",
     "planar_several_impact",
+    "settling_impact",
     "several_impact",
     "spatial_impact",
     "spatial_impact_distribution",

@@ -3,6 +3,16 @@
 from __future__ import annotations
 
 from enum import IntEnum
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.validation_batches import check_rows
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.validation import FloatArray
 
 
 class RestitutionLaw(IntEnum):
@@ -66,3 +76,9 @@ _STICKING = frozenset(
         ImpactOutcome.STICKS_IN_RESTITUTION,
     }
 )
+
+
+def check_law_rows(field: str, value: ArrayLike) -> FloatArray:
+    """Return values of `RestitutionLaw`, (N,)."""
+    known = [float(law) for law in RestitutionLaw]
+    return check_rows(field, value, (), "a value of RestitutionLaw", lambda x: np.isin(x, known))

@@ -20,7 +20,7 @@ import numpy as np
 from contact_dynamics.contact.on_obstacles import site_of, touches_of
 from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.landing.plane_arrival import Descent
-from contact_dynamics.rigid_body.body import rotation_matrix
+from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, GRAZING_DEPTH
 from contact_dynamics.validation import check_not_negative
 

@@ -20,9 +20,10 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.landing.acceleration_bounds import Bound, all_free_for, bounds_of, free_for
-from contact_dynamics.landing.rim_descent import RimAbove, radii_of
+from contact_dynamics.landing.rim_descent import RimAbove
 from contact_dynamics.rotations.one import conjugate, rotated
 from contact_dynamics.shapes.convex import ConvexShape
+from contact_dynamics.shapes.rim import radii_of
 from contact_dynamics.tolerances import GRAZING_DEPTH
 from contact_dynamics.validation import FloatArray, check_array, check_not_negative, check_unit
 

@@ -22,11 +22,11 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from contact_dynamics.demo.rotation_vectors import rotation_matrices
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.measured.recorded_toss import Toss
 from contact_dynamics.measured.velocity_estimate import FEWEST_FRAMES, causal_velocities, frames_in_window
 from contact_dynamics.rigid_body.body import MassProperties
+from contact_dynamics.rotations.many import matrices_of
 from contact_dynamics.validation import check_array
 from contact_dynamics.world import Body, Surface, box_vertices
 
@@ -117,7 +117,7 @@ def default_index(data: FloatArray, offsets: Sequence[int]) -> int:
     `FLIGHT_BETWEEN` frames later. Among flights of equal length, the one with the longest flight after the
     strike.
     """
-    heights = data[:, 3, None] + (rotation_matrices(data[:, 4:8]) @ CUBE.vertices_B.T)[:, 2, :]
+    heights = data[:, 3, None] + (matrices_of(data[:, 4:8]) @ CUBE.vertices_B.T)[:, 2, :]
     heights.sort(axis=1)
     found = []
     for index in range(len(offsets) - 1):

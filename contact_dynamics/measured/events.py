@@ -21,10 +21,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.demo.rotation_vectors import rotated, rotation_vectors_from
 from contact_dynamics.measured.flight_fit import FEWEST_FRAMES, FlightFit, MeasuredState, fit_flight
 from contact_dynamics.measured.flights import DEVIATIONS, ORIENTATION_SLACK, POSITION_SLACK, find_flights
 from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rotations.many import rotation_vectors, turned
 
 if TYPE_CHECKING:
     from contact_dynamics.measured.recorded_toss import Toss
@@ -134,7 +134,7 @@ def _crossing(before: FlightFit, after: FlightFit) -> tuple[float, float]:
     for _ in range(3):  # Newton's steps; the paths are nearly straight, so that the first is nearly exact
         a, b = before.at(time), after.at(time)
         gap = np.concatenate(
-            [b.state.p_WB_W - a.state.p_WB_W, rotation_vectors_from(a.state.q_WB, b.state.q_WB[None])[0]]
+            [b.state.p_WB_W - a.state.p_WB_W, rotation_vectors(b.state.q_WB[None], a.state.q_WB)[0]]
         )
         rate = np.concatenate([b.state.v_WB_W - a.state.v_WB_W, b.state.w_WB_W - a.state.w_WB_W])
         p_variance = a.position_std**2 + b.position_std**2
@@ -148,7 +148,7 @@ def _crossing(before: FlightFit, after: FlightFit) -> tuple[float, float]:
 
 def _rest(toss: Toss) -> MeasuredRest | None:
     n = max(FEWEST_FRAMES, round(REST_SPAN * toss.rate))
-    poses = np.hstack([toss.p_WB_W, rotation_vectors_from(toss.q_WB[-1], toss.q_WB)])
+    poses = np.hstack([toss.p_WB_W, rotation_vectors(toss.q_WB, toss.q_WB[-1])])
     noise = np.repeat([toss.position_noise, toss.orientation_noise], 3)
     if n > len(toss) or (_drift(toss.times[-n:], poses[-n:]) > np.repeat([REST_SPEED, REST_SPIN], 3)).any():
         return None
@@ -160,7 +160,7 @@ def _rest(toss: Toss) -> MeasuredRest | None:
     mean, std = poses[begin:].mean(axis=0), noise / math.sqrt(len(toss) - begin)
     state = BodyState(
         p_WB_W=mean[:3],
-        q_WB=rotated(mean[None, 3:], toss.q_WB[-1])[0],
+        q_WB=turned(toss.q_WB[-1], mean[None, 3:])[0],
         v_WB_W=np.zeros(3),
         w_WB_W=np.zeros(3),
         stamp_ns=round(float(toss.times[begin]) * 1e9),
@@ -177,4 +177,5 @@ def _rest(toss: Toss) -> MeasuredRest | None:
 def _drift(times: FloatArray, poses: FloatArray) -> FloatArray:
     """Return the size of the mean rate of each column of ``poses``, (n, 6)."""
     centred = times - times.mean()
-    return np.abs(centred @ poses) / (centred @ centred)
+    sizes: FloatArray = np.abs(centred @ poses) / (centred @ centred)
+    return sizes

@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.demo.rotation_vectors import rotated, rotation_matrices, rotation_vectors_from
 from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rotations.many import matrices_of, rotation_vectors, turned
 
 if TYPE_CHECKING:
     from contact_dynamics.measured.recorded_toss import Toss
@@ -65,9 +65,9 @@ class FlightFit:
         in the angle: ask within a few frames of the reference.
         """
         after = time - self.reference
-        q_0 = rotated(self.theta_W[None], self.q_reference)[0]
-        q_half = rotated(0.5 * after * self._w_W(q_0)[None], q_0)[0]
-        q = rotated(after * self._w_W(q_half)[None], q_0)[0]
+        q_0 = turned(self.q_reference, self.theta_W[None])[0]
+        q_half = turned(q_0, 0.5 * after * self._w_W(q_0)[None])[0]
+        q = turned(q_0, after * self._w_W(q_half)[None])[0]
         inverse = self._inverse_inertia(q)
         cov_w = inverse @ self.cov_rotation[3:, 3:] @ inverse.T
         to_q = np.hstack([np.eye(3), after * inverse])
@@ -89,7 +89,7 @@ class FlightFit:
         )
 
     def _inverse_inertia(self, q: FloatArray) -> FloatArray:
-        R = rotation_matrices(q[None])[0]
+        R = matrices_of(q[None])[0]
         inverse: FloatArray = R @ np.linalg.solve(self.I_B, R.T)
         return inverse
 
@@ -111,8 +111,8 @@ def fit_flight(toss: Toss, frames: slice, *, reference: int | None = None) -> Fl
     straight = toss.p_WB_W[frames] - 0.5 * np.square(times)[:, None] * gravity_W
     (p_W, v_W), cov_p = _least_squares(line, straight, toss.position_noise)
 
-    theta = rotation_vectors_from(toss.q_WB[reference], toss.q_WB[frames])
-    R = rotation_matrices(toss.q_WB[frames])
+    theta = rotation_vectors(toss.q_WB[frames], toss.q_WB[reference])
+    R = matrices_of(toss.q_WB[frames])
     rates = _inverse_left_jacobians(theta) @ (R @ np.linalg.inv(I_B) @ R.transpose(0, 2, 1))
     turned = _integral(rates, times)
     design = np.concatenate([np.broadcast_to(np.eye(3), turned.shape), turned], axis=2).reshape(-1, 6)

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.demo.rotation_vectors import rotation_vectors_from
 from contact_dynamics.measured.flight_fit import fit_flight
+from contact_dynamics.rotations.many import rotation_vectors
 
 if TYPE_CHECKING:
     from contact_dynamics.measured.flight_fit import FlightFit
@@ -73,7 +73,7 @@ def _worst(toss: Toss, fit: FlightFit, frames: slice) -> float:
         p_std = np.hypot(toss.position_noise, expected.position_std)
         q_std = np.hypot(toss.orientation_noise, expected.orientation_std)
         p_off = np.abs(toss.p_WB_W[frame] - expected.state.p_WB_W)
-        q_off = np.abs(rotation_vectors_from(expected.state.q_WB, toss.q_WB[frame : frame + 1])[0])
+        q_off = np.abs(rotation_vectors(toss.q_WB[frame : frame + 1], expected.state.q_WB)[0])
         p_worst = float(p_off.max()) / (DEVIATIONS * p_std + POSITION_SLACK)
         q_worst = float((q_off / (DEVIATIONS * q_std + ORIENTATION_SLACK)).max())
         worst = max(worst, p_worst, q_worst)

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.demo.rotation_vectors import rotation_vectors_from
+from contact_dynamics.rotations.many import rotation_vectors
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
@@ -53,9 +53,7 @@ def causal_velocities(
         window = slice(max(0, newest + 1 - frames), newest + 1)
         ago = times[window] - times[newest]
         powers = np.column_stack([np.ones_like(ago), ago, ago * ago])
-        coordinates = np.column_stack(
-            [p_W[window] - p_W[newest], rotation_vectors_from(q[newest], q[window])]
-        )
+        coordinates = np.column_stack([p_W[window] - p_W[newest], rotation_vectors(q[window], q[newest])])
         slopes = np.linalg.lstsq(powers, coordinates, rcond=None)[0][1]
         v_W[newest], w_W[newest] = slopes[:3], slopes[3:]
     return v_W, w_W

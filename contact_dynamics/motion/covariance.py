@@ -26,17 +26,18 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion.free_derivative import state_derivatives
 from contact_dynamics.motion.integrated import ForcedMotion
 from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import rotation_vectors, turned
-from contact_dynamics.tolerances import SYMMETRY_TOLERANCE
+from contact_dynamics.tolerances import NEGATIVE_VARIANCE_TOLERANCE
 from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
 from contact_dynamics.tumbling.poinsot_construction import polhode_period
 from contact_dynamics.validation import FloatArray, check_array
-from contact_dynamics.world import STANDARD_GRAVITY_W
+from contact_dynamics.validation_batches import check_covariance
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -44,10 +45,6 @@ if TYPE_CHECKING:
 TRUSTED_DEVIATION: Final = 0.1
 """rad. Linearisation leaves out squares of deviations. At this limit they are, against samples, less than
 1 % of the largest deviation, and up to a third of variances in directions in which neighbours hardly part."""
-
-NEGATIVE_VARIANCE_TOLERANCE: Final = 1e-9
-"""Of a correlation matrix, whose entries are at most 1: how negative an eigenvalue may be. Rounding of a
-covariance that has no variance in some direction leaves 1e-15, of one that went through filters some more."""
 
 PROBES: Final = 64
 """Times at which growth on the way is looked at, over the period of the polhode or as far as is asked for."""
@@ -131,35 +128,6 @@ def covariance_along(
         ],
         method=method,
     )
-
-
-def check_covariance(field: str, value: ArrayLike) -> FloatArray:
-    """Return a covariance, (12, 12), made exactly symmetric.
-
-    Raises:
-        InvalidFieldError: another shape, a number that is not finite, not symmetric, a negative variance, a
-            correlation beyond 1, or any direction in which the variance would be negative.
-    """
-    matrix = check_array(field, value, (12, 12))
-    variances = matrix.diagonal()
-    if (variances < 0.0).any():
-        raise InvalidFieldError(field, f"variances {variances.tolist()}", "variances >= 0")
-    scale = np.sqrt(variances)
-    unit = np.outer(scale, scale)
-    if np.any(matrix[unit == 0.0]):
-        raise InvalidFieldError(
-            field, "a correlation with what has no variance", "zero beside a zero variance"
-        )
-    correlation = np.divide(matrix, unit, out=np.zeros((12, 12)), where=unit > 0.0)
-    asymmetry = float(np.abs(correlation - correlation.T).max())
-    if asymmetry > SYMMETRY_TOLERANCE:
-        raise InvalidFieldError(field, f"correlations that differ by {asymmetry:g}", "a symmetric matrix")
-    lowest = float(np.linalg.eigvalsh(0.5 * (correlation + correlation.T))[0])
-    if lowest < -NEGATIVE_VARIANCE_TOLERANCE:
-        raise InvalidFieldError(
-            field, f"correlations with an eigenvalue of {lowest:g}", "a positive semidefinite matrix"
-        )
-    return _symmetric(matrix)
 
 
 def _linearised(motion: FreeMotion | ForcedMotion, start: FloatArray, seconds: FloatArray) -> FloatArray:

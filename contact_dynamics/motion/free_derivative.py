@@ -34,8 +34,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.numerics.gauss_collocation import Collocation
-from contact_dynamics.rigid_body.body import angular_momentum, cross_matrix
+from contact_dynamics.rigid_body.body import angular_momentum
 from contact_dynamics.rotations.many import cross_matrices, matrices_of
+from contact_dynamics.rotations.one import cross_matrix
 from contact_dynamics.tumbling.poinsot_construction import polhode_period
 from contact_dynamics.tumbling.polhode import Spin, largest_rate
 from contact_dynamics.validation import FloatArray, check_array

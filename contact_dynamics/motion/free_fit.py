@@ -3,9 +3,9 @@
 Model: a torque-free body in uniform gravity (`contact_dynamics.tumbling`), seen at n times with white noise
 in position and orientation and, where they are to be used, in the velocities. The centre of mass is a linear
 least-squares problem. The rotation has six unknowns, attitude and angular velocity at the newest stamp, found
-by Gauss's and Newton's method with the exact derivative of the motion (`contact_dynamics.motion.free_derivative`),
-from a start that no single velocity decides: L is constant, so it is averaged over all neighbouring pairs
-(where that fits worse than the last turn alone, as for needles, from that).
+by Gauss's and Newton's method with the exact derivative of the motion (`free_derivative`), from a start that
+no single velocity decides: L is constant, so it is averaged over all neighbouring pairs (where that fits
+worse than the last turn alone, as for needles, from that).
 
 Not covered: windows in which something touched the body, drag, outliers, noise that is correlated from state
 to state, unknown mass properties; half a turn or more between neighbouring states.
@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.motion.free_derivative import rotation_derivatives
 from contact_dynamics.numerics.gauss_newton import gauss_newton
@@ -27,7 +28,6 @@ from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import matrices_of, rotation_vectors, turned
 from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
 from contact_dynamics.validation import FloatArray, check_array, check_positive
-from contact_dynamics.world import STANDARD_GRAVITY_W
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

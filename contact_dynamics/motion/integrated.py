@@ -29,6 +29,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
+from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, angular_momentum
@@ -38,7 +39,6 @@ from contact_dynamics.tolerances import LARGEST_NUMBER
 from contact_dynamics.tumbling import FreeMotion, Sample, Trajectory, free_motion
 from contact_dynamics.tumbling.motion import check_extent
 from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_within
-from contact_dynamics.world import STANDARD_GRAVITY_W
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -7,7 +7,7 @@ of force and torque, all in world axes, the neighbours of a motion obey
 
 where dF and dN are linear in dp, theta, dv and dw = theta x w + I_W^-1 (dL - theta x L): a wrench in body
 axes turns by theta, drag follows its law, a user's function is differenced. These equations are solved by
-Gauss collocation (`contact_dynamics.numerics.gauss_collocation`) over the integrator's own steps, cut where neighbours move
+Gauss collocation (`numerics.gauss_collocation`) over the integrator's own steps, cut where neighbours move
 faster than the motion does.
 
 Accuracy: that of the motion, 1e-11 relative to the largest entry over ten revolutions of a compact body; with

@@ -1,6 +1,6 @@
 """The motion under torque and drag that fits a short window of published states best.
 
-Model: a body under gravity, a constant wrench, drag and a user's function (`contact_dynamics.motion.integrated`),
+Model: a body under gravity, a constant wrench, drag and a user's function (`motion.integrated`),
 seen at n times with white noise. All twelve numbers of the newest state are found together, since a force
 that turns with the body ties its path to its attitude: Gauss's and Newton's method with the derivative of the
 integrated motion (`contact_dynamics.motion.integrated_derivative`), from the free motion that fits best.
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag
 from contact_dynamics.motion.free_fit import SMALL_STEP, FitResult, StateNoise, fit_free_motion
 from contact_dynamics.motion.integrated import MOST_STEPS, ForcedMotion, forced_motion, turns_or_drags
@@ -23,7 +24,6 @@ from contact_dynamics.numerics.gauss_newton import Fit, gauss_newton
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import rotation_vectors, turned
 from contact_dynamics.validation import FloatArray, check_array
-from contact_dynamics.world import STANDARD_GRAVITY_W
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

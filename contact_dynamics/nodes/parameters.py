@@ -12,13 +12,14 @@ import numpy as np
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from rclpy.parameter import Parameter
 
+from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.nodes.body_shapes import DESCRIPTIONS, ShapeParameters
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, OUT_OF_PLANE_SPEED, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_positive
-from contact_dynamics.world import STANDARD_GRAVITY_W, Body, Surface, World
+from contact_dynamics.world import Body, Surface, World
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from contact_dynamics.impact.law import ImpactOutcome
-from contact_dynamics.rigid_body.body import rotation_matrix
+from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.tumbling import Trajectory
 from contact_dynamics.viewing.impact import DrawnStrike, ImpactPicture, OtherBody
 from contact_dynamics.viewing.poinsot import PoinsotPicture

@@ -21,7 +21,6 @@ from contact_dynamics.impact import (
     spatial_pair_impact,
 )
 from contact_dynamics.impact.in_time.sequence import MOST_STRIKES, STRIKE_WINDOW
-from contact_dynamics.impact.several.planar import planar_in_space
 from contact_dynamics.motion.covariance import propagate_covariance
 from contact_dynamics.nodes.strike import strike_of
 from contact_dynamics.nodes.subject import (
@@ -30,6 +29,7 @@ from contact_dynamics.nodes.subject import (
     or_configured,
     planar_problem_of,
 )
+from contact_dynamics.plane.in_space import planar_in_space
 from contact_dynamics.plane.lifting import (
     check_mirrored,
     mirror_partners,

@@ -12,8 +12,8 @@ from contact_dynamics.impact import (
     several_impact,
     spatial_impact,
 )
-from contact_dynamics.impact.several.planar import planar_in_space
 from contact_dynamics.impact.several.settling import settling_impact
+from contact_dynamics.plane.in_space import planar_in_space
 from contact_dynamics.plane.lifting import equal_shares, planar_velocity, with_planar_velocity
 from msg_adapters.contact_mode import planar_modes_to_msgs, spatial_modes_to_msgs
 from msg_adapters.impact import (

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.rotations.one import cross_matrix, rotation_matrix
 from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, TRIANGLE_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array, check_positive, check_unit
 
@@ -98,24 +99,6 @@ def kinetic_energy(body: MassProperties, state: BodyState) -> float:
 def rotational_energy(body: MassProperties, state: BodyState) -> float:
     """Return the kinetic energy of rotation, w . L / 2, J (lecture 25, eq. 23)."""
     return 0.5 * float(state.w_WB_W @ angular_momentum(body, state))
-
-
-def rotation_matrix(q: FloatArray) -> FloatArray:
-    """Return the (3, 3) rotation matrix of a unit quaternion x, y, z, w."""
-    x, y, z, w = q.tolist()
-    return np.array(
-        [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-        ]
-    )
-
-
-def cross_matrix(vector: FloatArray) -> FloatArray:
-    """Return the (3, 3) matrix R of the cross product, R a = vector x a (lecture 27, eq. 7)."""
-    x, y, z = vector.tolist()
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def _check_inertia(field: str, value: FloatArray) -> FloatArray:

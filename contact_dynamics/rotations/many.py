@@ -35,7 +35,11 @@ def cross_matrices(vectors: FloatArray) -> FloatArray:
 
 
 def rotation_vectors(q: FloatArray, q_from: FloatArray) -> FloatArray:
-    """Return the rotation vectors, (n, 3), that turn ``q_from`` into ``q``, (n, 4) each; at most pi long."""
+    """Return the rotation vectors, (n, 3), at most pi long, that turn ``q_from`` into ``q``, (n, 4).
+
+    ``q_from`` is (n, 4), or (4,) for all.
+    """
+    q_from = np.broadcast_to(q_from, q.shape)
     u, w, u_from, w_from = q[:, :3], q[:, 3:], q_from[:, :3], q_from[:, 3:]
     vector = w_from * u - w * u_from - np.cross(u, u_from)  # of q times the conjugate of q_from
     scalar = np.einsum("ij,ij->i", q, q_from)
@@ -47,7 +51,11 @@ def rotation_vectors(q: FloatArray, q_from: FloatArray) -> FloatArray:
 
 
 def turned(q: FloatArray, theta: FloatArray) -> FloatArray:
-    """Return the quaternions, (n, 4), of attitudes ``q``, (n, 4), turned by rotation vectors, (n, 3)."""
+    """Return the quaternions, (n, 4), of attitudes ``q`` turned by rotation vectors, (n, 3).
+
+    ``q`` is (n, 4), or (4,) for all.
+    """
+    q = np.broadcast_to(q, (len(theta), 4))
     angle = np.sqrt(np.einsum("ij,ij->i", theta, theta))
     a = theta * (0.5 * np.sinc(angle / (2.0 * np.pi)))[:, None]
     c = np.cos(0.5 * angle)

@@ -1,4 +1,4 @@
-"""Unit quaternions as plain tuples x, y, z, w, where one at a time is wanted."""
+"""One rotation at a time: unit quaternions x, y, z, w, as plain tuples, and matrices, (3, 3)."""
 
 from __future__ import annotations
 
@@ -85,3 +85,21 @@ def from_z_onto(direction: Sequence[float]) -> Quaternion:
         flipped = from_z_onto((x, -y, -z))
         return product((1.0, 0.0, 0.0, 0.0), flipped)
     return normalised((-y, x, 0.0, 1.0 + z))
+
+
+def rotation_matrix(q: FloatArray) -> FloatArray:
+    """Return the (3, 3) rotation matrix of a unit quaternion x, y, z, w."""
+    x, y, z, w = q.tolist()
+    return np.array(
+        [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+        ]
+    )
+
+
+def cross_matrix(vector: FloatArray) -> FloatArray:
+    """Return the (3, 3) matrix R of the cross product, R a = vector x a (lecture 27, eq. 7)."""
+    x, y, z = vector.tolist()
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

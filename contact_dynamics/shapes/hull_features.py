@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.landing.rim_descent import radii_of
+from contact_dynamics.shapes.rim import radii_of
 
 if TYPE_CHECKING:
     from contact_dynamics.shapes.convex import ConvexShape

@@ -12,18 +12,18 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.motion.covariance import check_covariance
 from contact_dynamics.rigid_body.inertia.principal_frame import in_doubles
 from contact_dynamics.tumbling.many import flips_of_many
 from contact_dynamics.tumbling.polhode import Spin, Tumble
 from contact_dynamics.tumbling.regime import Regime
+from contact_dynamics.validation_batches import check_covariance
 
 if TYPE_CHECKING:
     from decimal import Decimal
 
     from numpy.typing import ArrayLike
 
-    from contact_dynamics.tumbling import FreeMotion
+    from contact_dynamics.tumbling.motion import FreeMotion
     from contact_dynamics.validation import FloatArray
 
 NEAR_MIDDLE_AXIS: Final = 0.75

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.arithmetic import ARRAYS, FloatArray
 from contact_dynamics.rotations.many import matrices_of
@@ -20,7 +21,6 @@ from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
 from contact_dynamics.tumbling.motion import Trajectory
 from contact_dynamics.tumbling.polhode import MOTIONLESS
 from contact_dynamics.validation import check_array
-from contact_dynamics.world import STANDARD_GRAVITY_W
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.arithmetic import Precision
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
@@ -34,7 +35,6 @@ from contact_dynamics.rotations.one import (
 from contact_dynamics.tolerances import LARGEST_NUMBER
 from contact_dynamics.tumbling.constants import constants_of
 from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_within
-from contact_dynamics.world import STANDARD_GRAVITY_W
 
 if TYPE_CHECKING:
     from decimal import Decimal

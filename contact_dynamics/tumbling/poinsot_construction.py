@@ -18,9 +18,9 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.arithmetic import ARRAYS, DOUBLES
-from contact_dynamics.rigid_body.body import angular_momentum, rotation_matrix
+from contact_dynamics.rigid_body.body import angular_momentum
 from contact_dynamics.rigid_body.inertia.principal_axes import axes_of_bytes
-from contact_dynamics.rotations.one import rotated
+from contact_dynamics.rotations.one import rotated, rotation_matrix
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
 from contact_dynamics.tumbling.polhode import Rotation, Spin, Tumble, largest_rate
 from contact_dynamics.tumbling.regime import Regime
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from contact_dynamics.tumbling import FreeMotion
+    from contact_dynamics.tumbling.motion import FreeMotion
 
 CONSTANT_RATE: Final = (Regime.AT_REST, Regime.SPHERICAL, Regime.PRINCIPAL_AXIS)
 """Where the angular velocity does not change, or only within rounding: there is no polhode to speak of."""

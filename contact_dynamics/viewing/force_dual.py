@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
-from contact_dynamics.contact.friction import friction_cone
+from contact_dynamics.plane.force_dual import friction_cone
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import FORCE_DUAL
 from contact_dynamics.viewing.mode_map import NO_MODE, borders_of, draw_frame, mode_regions

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.landing.rim_descent import radii_of
+from contact_dynamics.shapes.rim import radii_of
 
 if TYPE_CHECKING:
-    from contact_dynamics.landing.rim_descent import Radii
     from contact_dynamics.shapes.convex import ConvexShape
+    from contact_dynamics.shapes.rim import Radii
     from contact_dynamics.validation import FloatArray
 
 FLAT: Final = 1e-6

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
-from contact_dynamics.rigid_body.body import rotation_matrix
+from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import predicted_entity
 from contact_dynamics.viewing.scene import solid

@@ -9,16 +9,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contact_dynamics.contact.friction import (
+from contact_dynamics.contact.friction import linearised_cone, tangents
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.plane.force_dual import (
     OrientedPoint,
     Turn,
     acceleration_centre,
     force_dual,
     friction_cone,
-    linearised_cone,
-    tangents,
 )
-from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench
 
 # Smaller forces have a force dual at a distance that no double holds.

@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from contact_dynamics.demo.rotation_vectors import rotated
 from contact_dynamics.measured.velocity_estimate import (
     FEWEST_FRAMES,
     causal_velocities,
     frames_in_window,
     slope_noise,
 )
+from contact_dynamics.rotations.many import turned
 from oracles.rigid_flight import Motion, about, fly
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def test_noise_is_as_large_as_the_formula_says(frames: int) -> None:
     n = 3000
     times = np.arange(n) / 240.0
     p = 2e-4 * random.standard_normal((n, 3))
-    q = rotated(1e-3 * random.standard_normal((n, 3)), Q_0)
+    q = turned(Q_0, 1e-3 * random.standard_normal((n, 3)))
     v, w = causal_velocities(times, p, q, frames=frames)
     # windows overlap, so of 9000 draws about 9000 / frames are independent; four standard errors
     tolerance = 4.0 / np.sqrt(2.0 * 9000 / frames)

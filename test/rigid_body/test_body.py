@@ -15,11 +15,11 @@ from contact_dynamics.rigid_body.body import (
     BodyState,
     MassProperties,
     angular_momentum,
-    cross_matrix,
     kinetic_energy,
     momentum,
     rotational_energy,
 )
+from contact_dynamics.rotations.one import cross_matrix
 
 REST = {
     "p_WB_W": np.zeros(3),

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from contact_dynamics.contact.friction import acceleration_centre
 from contact_dynamics.contact_modes import ModeWrenchSet, planar_contact_modes, planar_mode_map
+from contact_dynamics.plane.force_dual import acceleration_centre
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.force_dual import draw_force_dual, split_generators

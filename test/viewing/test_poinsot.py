@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from contact_dynamics.rigid_body.body import rotation_matrix
+from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.tumbling.poinsot_construction import poinsot, rolling_curves
 from contact_dynamics.viewing.poinsot import PoinsotPicture, draw_poinsot, draw_rolling, ellipsoid_net

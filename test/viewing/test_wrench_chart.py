@@ -3,8 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact_dynamics.contact.friction import force_dual
 from contact_dynamics.contact_modes import WrenchHalfSpace
+from contact_dynamics.plane.force_dual import force_dual
 from contact_dynamics.plane.types import PlanarBody, PlanarWrench
 from contact_dynamics.viewing.wrench_chart import (
     ANTICLOCKWISE,

@@ -16,11 +16,11 @@ from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.contact.friction import friction_cone
 from contact_dynamics.contact_modes.planar.answer import planar_contact_modes
 from contact_dynamics.contact_modes.planar.cone import PolyhedralCone
 from contact_dynamics.contact_modes.planar.result import ModeVerdict
 from contact_dynamics.numerics.vectors import Vector3, dot, normalised
+from contact_dynamics.plane.force_dual import friction_cone
 from contact_dynamics.plane.types import PlanarVelocity
 from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, ROW_TOLERANCE
 from contact_dynamics.validation import check_not_negative, check_positive

@@ -72,8 +72,8 @@ def spatial_contact_modes(
 
     Raises:
         InvalidFieldError: a wrench that is not finite, a negative tolerance, too few facets.
-        TooLargeError: more contacts touch than `spatial.problem.MOST_DYNAMIC_CONTACTS`; or the search takes more
-            trials than `search.MOST_EXAMINED`, as for hundreds of sectors without ``sharpen``.
+        TooLargeError: more contacts touch than `spatial.problem.MOST_DYNAMIC_CONTACTS`; or the search takes
+            more trials than `search.MOST_EXAMINED`, as for hundreds of sectors without ``sharpen``.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     wrench = np.concatenate([check_array("force", force_W, (3,)), check_array("torque", torque_W, (3,))])

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact.curvature import velocity_accelerations
+from contact_dynamics.contact.kinds import velocity_accelerations
 from contact_dynamics.contact_modes.spatial.cone import cone_of
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, ROW_TOLERANCE, VELOCITY_TOLERANCE

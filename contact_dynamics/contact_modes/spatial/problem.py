@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact.curvature import velocity_accelerations
+from contact_dynamics.contact.kinds import velocity_accelerations
 from contact_dynamics.contact_modes.spatial.search import Search, Touching
 from contact_dynamics.errors import TooLargeError
 

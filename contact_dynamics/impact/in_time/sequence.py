@@ -26,17 +26,17 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact.curvature import velocity_accelerations
+from contact_dynamics.constants import STANDARD_GRAVITY_W
+from contact_dynamics.contact.kinds import velocity_accelerations
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.in_time.meetings import FoundMeetings, NamedMeetings
 from contact_dynamics.impact.in_time.result import ImpactSequence, SequenceEnd, TimedStrike
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.spatial.one_contact import spatial_impact
-from contact_dynamics.rigid_body.body import cross_matrix
+from contact_dynamics.rotations.one import cross_matrix
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.tumbling import Precision, free_motion
 from contact_dynamics.validation import check_array, check_not_negative, check_positive
-from contact_dynamics.world import STANDARD_GRAVITY_W
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

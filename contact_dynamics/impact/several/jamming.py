@@ -22,11 +22,12 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact.curvature import velocity_accelerations
 from contact_dynamics.contact.friction import tangents
+from contact_dynamics.contact.kinds import velocity_accelerations
 from contact_dynamics.contact.velocities import spatial_contact_velocities
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
-from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw, SeveralImpact, SeveralVerdict
+from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralImpact, SeveralVerdict
 from contact_dynamics.numerics.lemke import solve_complementarity
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE

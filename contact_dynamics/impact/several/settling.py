@@ -9,14 +9,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
-from contact_dynamics.impact import SeveralVerdict
 from contact_dynamics.impact.several.jamming import jamming_impact
+from contact_dynamics.impact.several.result import SeveralVerdict
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.impact import SeveralImpact
+    from contact_dynamics.impact.several.result import SeveralImpact
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
 MOST_JAMS: Final = 10

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from contact_dynamics.errors import SeparatingContactError
-from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.law import RestitutionLaw, check_law_rows
 from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
 from contact_dynamics.impact.spatial.batch_paths import trace_all
 from contact_dynamics.impact.spatial.response import (
@@ -31,7 +31,6 @@ from contact_dynamics.tolerances import (
 )
 from contact_dynamics.validation import FloatArray, check_not_negative
 from contact_dynamics.validation_batches import (
-    check_law_rows,
     check_not_negative_rows,
     check_positive_rows,
     check_rows,

@@ -1,7 +1,7 @@
 """Mass properties (Mason, lectures 24, 25): of particles, shapes and meshes; composed; in principal axes.
 
 `from contact_dynamics import inertia`, then for a hammer: ``inertia.combined([inertia.cylinder(...),
-inertia.box(...).placed(p_GF_G=...)]).body("hammer")``.
+inertia.box(...).placed(p_GF_G=...)])``; `Body.of` makes a body of it for a `World`.
 
 In reading order: what all shapes become (`distribution`), put together (`composition`);
 `system_of_particles`; `solids`, `thin` sheets and wires (of an `amount` of mass); `triangle_mesh` (checked by

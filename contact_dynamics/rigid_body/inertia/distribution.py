@@ -15,11 +15,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.rigid_body.body import MassProperties, rotation_matrix
-from contact_dynamics.shapes.convex import NO_SHAPE, ConvexShape, polyhedron
+from contact_dynamics.rigid_body.body import MassProperties
+from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, TRIANGLE_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_positive, check_unit
-from contact_dynamics.world import Body
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -83,26 +82,6 @@ class MassDistribution:
             InvalidFieldError: the mass is a point or lies on a line: it has no inertia about some axis.
         """
         return MassProperties(mass=self.mass, I_B=self.I_B)
-
-    def body(
-        self, name: str, *, vertices_F: ArrayLike | None = None, shape_F: ConvexShape = NO_SHAPE
-    ) -> Body:
-        """Return a `Body` for a `World`, its convex shape given in F, or by corners (k, 3), m, in F.
-
-        Raises:
-            InvalidFieldError: as `mass_properties`, vertices of another shape or not finite, or both given.
-            TooLargeError: more vertices than a body may have.
-        """
-        if vertices_F is not None:
-            if shape_F is not NO_SHAPE:
-                raise InvalidFieldError("vertices", "vertices and a shape", "one of them")
-            shape_F = polyhedron(check_array("vertices", vertices_F, (None, 3)))
-        return Body(
-            name=name,
-            mass_properties=self.mass_properties,
-            p_FB_F=self.p_FB_F,
-            shape=shape_F.moved(-self.p_FB_F),
-        )
 
     def placed(
         self, *, p_GF_G: ArrayLike = (0.0, 0.0, 0.0), q_GF: ArrayLike = (0.0, 0.0, 0.0, 1.0)

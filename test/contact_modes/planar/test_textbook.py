@@ -15,7 +15,6 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
-from contact_dynamics.contact.friction import friction_cone
 from contact_dynamics.contact_modes import (
     BodyStatics,
     Certainty,
@@ -24,6 +23,7 @@ from contact_dynamics.contact_modes import (
     planar_mode_map,
     planar_statics,
 )
+from contact_dynamics.plane.force_dual import friction_cone
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from oracles.contact_mode_cases import contact, resting, rounded
 from oracles.contact_modes import kinematic_modes

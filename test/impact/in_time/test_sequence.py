@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact import (
@@ -24,7 +25,7 @@ from contact_dynamics.impact import (
 from contact_dynamics.landing.earliest import next_landing
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, kinetic_energy
 from contact_dynamics.shapes.convex import ConvexShape
-from contact_dynamics.world import STANDARD_GRAVITY_W, Body, Surface, World, box_vertices
+from contact_dynamics.world import Body, Surface, World, box_vertices
 from oracles import strikes_in_time
 
 G = 9.80665

@@ -13,9 +13,9 @@ from contact_dynamics.contact_modes import ModeVerdict, planar_contact_modes, sp
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact import SeveralImpact, SeveralVerdict, planar_impact
 from contact_dynamics.impact.several.jamming import jamming_impact
-from contact_dynamics.impact.several.planar import planar_in_space
 from contact_dynamics.impact.several.settling import MOST_JAMS, settling_impact
 from contact_dynamics.numerics.lemke import solve_complementarity
+from contact_dynamics.plane.in_space import planar_in_space
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, kinetic_energy
 from oracles.contact_mode_cases import FloatCase, draw, rounded

@@ -15,7 +15,7 @@ from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.rigid_body.inertia import MassDistribution
 from contact_dynamics.shapes.convex import sphere
-from contact_dynamics.world import MOST_VERTICES, box_vertices
+from contact_dynamics.world import MOST_VERTICES, Body, box_vertices
 from oracles.inertia_particles import sums
 
 vectors = st.tuples(*[st.floats(-5.0, 5.0)] * 3).map(np.array)
@@ -178,17 +178,17 @@ def test_a_hammer_becomes_a_body_of_the_world() -> None:
     handle = inertia.cylinder(radius=0.01, length=0.3, density=700.0).placed(p_GF_G=(0.0, 0.0, -0.15))
     hammer = inertia.combined([head, handle])
     corners = box_vertices((0.1, 0.03, 0.03))
-    body = hammer.body("hammer", vertices_F=corners)
+    body = Body.of("hammer", hammer, vertices_F=corners)
     np.testing.assert_array_equal(body.p_FB_F, hammer.p_FB_F)
     np.testing.assert_allclose(body.vertices_B + body.p_FB_F, corners, atol=1e-17)
     assert -0.15 < body.p_FB_F[2] < 0.0
     assert_equal(MassDistribution.of(body.mass_properties, body.p_FB_F), hammer, scale=1e-2)
-    assert len(hammer.body("bare").vertices_B) == 0
-    ball = hammer.body("ball", shape_F=sphere(radius=0.1))
+    assert len(Body.of("bare", hammer).vertices_B) == 0
+    ball = Body.of("ball", hammer, shape_F=sphere(radius=0.1))
     np.testing.assert_allclose(ball.shape.vertices + ball.p_FB_F, np.zeros((1, 3)), atol=1e-17)
     assert ball.shape.rounding == 0.1
     with pytest.raises(InvalidFieldError, match="vertices"):
-        hammer.body("both", vertices_F=corners, shape_F=sphere(radius=0.1))
+        Body.of("both", hammer, vertices_F=corners, shape_F=sphere(radius=0.1))
 
 
 def test_what_is_kept_cannot_change() -> None:
@@ -242,7 +242,7 @@ def test_other_misuse_is_refused_by_name() -> None:
     with pytest.raises(InvalidFieldError, match=r"axis: .*unit"):
         ball.radius_of_gyration((0.0, 0.0, 2.0))
     with pytest.raises(TooLargeError, match=r"vertices"):
-        ball.body("ball", vertices_F=np.zeros((MOST_VERTICES + 1, 3)))
+        Body.of("ball", ball, vertices_F=np.zeros((MOST_VERTICES + 1, 3)))
     with pytest.raises(InvalidFieldError, match=r"masses: found -1.0"):
         inertia.particles([1.0, -1.0], np.zeros((2, 3)))
     with pytest.raises(InvalidFieldError, match=r"masses: .*at least one"):

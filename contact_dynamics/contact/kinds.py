@@ -1,0 +1,51 @@
+"""What the velocities of a body add to the accelerations at its contacts, for contacts of every kind.
+
+The derivation, and the terms of the known kinds, stand in `curvature`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.contact.curvature import least_and_most, rolling, side_of, tangent_frame
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.validation import FloatArray
+
+
+def velocity_accelerations(contacts: ContactSet, velocities_W: FloatArray, w_W: FloatArray) -> FloatArray:
+    """Return what velocities add to the accelerations of the body's points at contacts, (n, 3), m/s^2.
+
+    In the normal direction the sum is the gap's second derivative; in tangential ones, at a contact at rest,
+    the rate of its velocity of sliding.
+
+    Args:
+        contacts: n contacts.
+        velocities_W: (n, 3), m/s, of the body's points there, world axes; normal parts are not used.
+        w_W: (3,), rad/s, angular velocity of the body, world axes.
+    """
+    added = np.zeros((len(contacts), 3))
+    if contacts.body_curvatures is None and contacts.surface_curvatures is None:
+        return added
+    n = len(contacts)
+    mine = least_and_most(contacts.body_curvatures, n, math.inf)
+    theirs = least_and_most(contacts.surface_curvatures, n, 0.0)
+    for i in np.flatnonzero(np.isfinite(mine[0]) | (theirs != 0.0).any(axis=0)).tolist():  # not point on flat
+        normal = contacts.normals_W[i]
+        frame = tangent_frame(normal)
+        m = frame @ np.cross(normal, w_W)
+        v = frame @ velocities_W[i]
+        found = rolling(
+            side_of(contacts.body_curvatures, i, frame, math.inf),
+            side_of(contacts.surface_curvatures, i, frame, 0.0),
+            (float(m[0]), float(m[1])),
+            (float(v[0]), float(v[1])),
+        )
+        if found is not None:  # as `check_pairs` saw to
+            eta_W = np.array(found.eta) @ frame
+            added[i] = found.gap * normal + float(normal @ w_W) * np.cross(normal, eta_W)
+    return added

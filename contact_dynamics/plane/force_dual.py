@@ -1,0 +1,67 @@
+"""Lecture 26's picture of planar wrenches and accelerations: the force dual.
+
+With the centre of mass as origin and the radius of gyration as unit of length, a wrench and the acceleration
+that it causes are the same vector, so that its projection is one point: the force dual of the wrench and the
+acceleration centre (Mason, 5.8 and lecture 26). The point carries the sign of the moment. The wrenches of a
+contact with Coulomb's friction are the positive combinations of the two edges of its friction cone.
+"""
+
+from __future__ import annotations
+
+import math
+from enum import IntEnum
+from typing import NamedTuple
+
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench, Vector2
+
+
+class Turn(IntEnum):
+    """The sign that a point of the oriented plane carries."""
+
+    CLOCKWISE = -1
+    NEITHER = 0
+    """The point is at infinity, in the given direction: a pure force, or a translation."""
+    ANTICLOCKWISE = 1
+
+
+class OrientedPoint(NamedTuple):
+    """A wrench or an acceleration up to a positive factor, as a point of the plane with a sign."""
+
+    point: Vector2  # m, from the centre of mass; a unit direction where the point is at infinity
+    turn: Turn
+
+
+def friction_cone(contact: PlanarContact) -> tuple[PlanarWrench, PlanarWrench]:
+    """Return the wrenches of unit normal force along the two edges of a contact's cone.
+
+    First the one that pushes right (of a contact that slides left), then the one that pushes left.
+    """
+    return _edge(contact, contact.friction), _edge(contact, -contact.friction)
+
+
+def _edge(contact: PlanarContact, slope: float) -> PlanarWrench:
+    (n_x, n_y), (x, y) = contact.normal, contact.r
+    f_x, f_y = n_x + slope * n_y, n_y - slope * n_x
+    return PlanarWrench(f=(f_x, f_y), moment=x * f_y - y * f_x)
+
+
+def force_dual(body: PlanarBody, wrench: PlanarWrench) -> OrientedPoint | None:
+    """Return the force dual of a wrench, in m; None: no wrench (Mason, 5.8)."""
+    return acceleration_centre(
+        (wrench.f[0] / body.mass, wrench.f[1] / body.mass), wrench.moment / body.inertia
+    )
+
+
+def acceleration_centre(acceleration: Vector2, angular_acceleration: float) -> OrientedPoint | None:
+    """Return the point of a body, at rest, that does not accelerate; None: all do not (lecture 26).
+
+    Args:
+        acceleration: m/s^2, of the centre of mass.
+        angular_acceleration: rad/s^2.
+    """
+    a_x, a_y = acceleration
+    size = math.hypot(a_x, a_y)
+    if angular_acceleration == 0.0:
+        return OrientedPoint((-a_y / size, a_x / size), Turn.NEITHER) if size > 0.0 else None
+    point = (-a_y / angular_acceleration, a_x / angular_acceleration)
+    return OrientedPoint(point, Turn.ANTICLOCKWISE if angular_acceleration > 0.0 else Turn.CLOCKWISE)

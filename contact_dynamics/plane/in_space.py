@@ -1,0 +1,42 @@
+"""A planar problem as one in space that moves alike.
+
+The plane is put into space, where nothing couples it to the motion out of it: a body that is isotropic there
+moves in the plane as the planar one does.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.validation import check_array
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
+
+
+def planar_in_space(
+    body: PlanarBody, velocity: PlanarVelocity, contacts: Sequence[PlanarContact], *, axes_W: ArrayLike
+) -> tuple[MassProperties, BodyState, ContactSet]:
+    """Return a problem in space that moves as a planar one does, with the plane's x and y, (2, 3)."""
+    axes = check_array("axes", axes_W, (2, 3))
+    state = BodyState(
+        p_WB_W=np.zeros(3),
+        q_WB=np.array([0.0, 0.0, 0.0, 1.0]),
+        v_WB_W=np.array(velocity.v) @ axes,
+        w_WB_W=velocity.w * np.cross(axes[0], axes[1]),
+    )
+    touching = ContactSet(
+        p_WC_W=np.array([contact.r for contact in contacts]).reshape(-1, 2) @ axes,
+        normals_W=np.array([contact.normal for contact in contacts]).reshape(-1, 2) @ axes,
+        frictions=np.array([contact.friction for contact in contacts]),
+        restitutions=np.array([contact.restitution for contact in contacts]),
+    )
+    return MassProperties(mass=body.mass, I_B=body.inertia * np.eye(3)), state, touching

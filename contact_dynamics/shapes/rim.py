@@ -1,0 +1,40 @@
+"""A rim as two orthogonal radii, from which its points and their heights follow."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from contact_dynamics.rotations.one import Vector
+    from contact_dynamics.shapes.convex import Rim
+
+_ALONG: Final = 0.9
+"""Cosine above which an axis counts as along x."""
+
+
+class Radii(NamedTuple):
+    """A rim as two orthogonal radii."""
+
+    center: Vector  # m
+    first: Vector  # m
+    second: Vector  # m
+    reach: float  # m, a distance from the origin that no point of the rim exceeds
+
+
+def radii_of(rim: Rim) -> Radii:
+    """Return two orthogonal radii of a rim; the first lies as near to x as can be, or to y for an x axis."""
+    axis = np.array(rim.axis)
+    helper = np.array([1.0, 0.0, 0.0]) if abs(axis[0]) < _ALONG else np.array([0.0, 1.0, 0.0])
+    first = helper - (helper @ axis) * axis
+    first *= rim.radius / math.sqrt(first @ first)
+    second = np.cross(axis, first)
+    reach = math.hypot(*rim.center) + rim.radius
+    return Radii(rim.center, _triple(first), _triple(second), reach)
+
+
+def _triple(vector: np.ndarray) -> Vector:
+    x, y, z = vector.tolist()
+    return (x, y, z)

@@ -1,0 +1,191 @@
+"""The house: chapters in the lectures' order, each importing only what stands above it in the list.
+
+`docs/architecture.md` draws it.  An import counts wherever it stands, also inside a function or where only
+the type checker follows it: it is what a reader must know to read the file.
+"""
+
+from __future__ import annotations
+
+import ast
+import sys
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PACKAGE = ROOT / "contact_dynamics"
+
+CHAPTERS = (
+    "errors",
+    "constants",
+    "tolerances",
+    "validation",
+    "validation_batches",
+    "numerics",
+    "rotations",
+    "rigid_body",  # lectures 24, 25
+    "tumbling",  # lecture 25
+    "motion",
+    "shapes",
+    "world",
+    "contact",
+    "plane",
+    "landing",
+    "contact_modes",  # lecture 26
+    "impact",  # lecture 27
+    "questions",
+    "msg_adapters",
+    "recording",
+    "viewing",
+    "measured",
+    "nodes",
+    "demo",
+    "command_line",
+    "__main__",
+)
+PHYSICS = CHAPTERS[: CHAPTERS.index("questions")]
+SIDE_BY_SIDE = {("impact", "contact_modes")}
+"""Chapters of which neither needs the other."""
+EXCEPTIONS: frozenset[tuple[str, str]] = frozenset()
+"""Imports against the order, file and module.  The list may only become shorter, and it is empty."""
+
+
+def module_of(path: Path) -> str:
+    """Return the dotted name of a file, `contact_dynamics.impact.law`."""
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts)
+
+
+def chapter_of(module: str) -> str | None:
+    """Return the chapter of a module of ours; None: another's module, or the table of contents."""
+    first, *rest = module.split(".")
+    if first == "msg_adapters":
+        return first
+    if first != "contact_dynamics" or not rest or rest[0] == "__init__":
+        return None
+    return rest[0]
+
+
+@cache
+def imports_of(path: Path) -> frozenset[str]:
+    """Return all modules that a file imports, also inside functions and for types."""
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
+            for alias in node.names:
+                inner = f"{node.module}.{alias.name}"
+                found.add(inner if is_ours(inner) else node.module)
+    return frozenset(found)
+
+
+def is_ours(module: str) -> bool:
+    """Tell whether a dotted name is a file or a folder of this repository's packages."""
+    path = ROOT.joinpath(*module.split("."))
+    return path.with_suffix(".py").is_file() or (path / "__init__.py").is_file()
+
+
+SOURCES = sorted([*PACKAGE.rglob("*.py"), *(ROOT / "msg_adapters").rglob("*.py")])
+INSIDE = [path for path in SOURCES if chapter_of(module_of(path)) is not None]
+
+
+def relative(path: Path) -> str:
+    """What pytest shows."""
+    return str(path.relative_to(ROOT))
+
+
+def test_every_file_has_a_chapter() -> None:
+    chapters = {chapter_of(module_of(path)) for path in INSIDE}
+    assert chapters <= set(CHAPTERS), chapters - set(CHAPTERS)
+    assert len(INSIDE) > 150
+
+
+@pytest.mark.parametrize("path", INSIDE, ids=relative)
+def test_an_import_goes_to_a_chapter_above(path: Path) -> None:
+    mine = chapter_of(module_of(path))
+    for module in imports_of(path):
+        theirs = chapter_of(module)
+        if theirs is None or (relative(path), module) in EXCEPTIONS:
+            continue
+        assert CHAPTERS.index(theirs) <= CHAPTERS.index(mine or ""), f"{relative(path)} imports {module}"
+        assert (mine, theirs) not in SIDE_BY_SIDE, f"{relative(path)} imports {module}"
+
+
+@pytest.mark.parametrize("path", INSIDE, ids=relative)
+def test_nobody_asks_the_table_of_contents(path: Path) -> None:
+    """Inside, names come from the file that defines them; `contact_dynamics` itself is for users."""
+    assert "contact_dynamics" not in imports_of(path), relative(path)
+
+
+@pytest.mark.parametrize("path", [p for p in INSIDE if p.name != "__init__.py"], ids=relative)
+def test_a_file_does_not_import_its_own_chapters_door(path: Path) -> None:
+    package = module_of(path).rpartition(".")[0]
+    parts = package.split(".")
+    doors = {".".join(parts[:n]) for n in range(2, len(parts) + 1)}
+    assert not doors & imports_of(path), f"{relative(path)} imports {doors & imports_of(path)}"
+
+
+def test_no_files_import_each_other_in_a_circle() -> None:
+    arrows = {
+        module_of(path): {module for module in imports_of(path) if is_ours(module)}
+        for path in SOURCES
+        if path.name != "__init__.py"
+    }
+    done: set[str] = set()
+
+    def follow(module: str, way: list[str]) -> None:
+        assert module not in way, " -> ".join([*way[way.index(module) :], module])
+        if module in done or module not in arrows:
+            return
+        for further in sorted(arrows[module]):
+            follow(further, [*way, module])
+        done.add(module)
+
+    for module in sorted(arrows):
+        follow(module, [])
+
+
+@pytest.mark.parametrize("path", [p for p in INSIDE if chapter_of(module_of(p)) in PHYSICS], ids=relative)
+def test_physics_imports_numpy_scipy_and_itself_only(path: Path) -> None:
+    for module in imports_of(path):
+        root = module.split(".")[0]
+        assert root in {"numpy", "scipy", "contact_dynamics"} or root in sys.stdlib_module_names, (
+            f"{relative(path)} imports {module}"
+        )
+
+
+@pytest.mark.parametrize("chapter", ["contact_modes", "impact"])
+def test_plane_and_space_are_sisters(chapter: str) -> None:
+    """What both have has one name: a reader who knows one folder finds the same in the other."""
+    plane, space = (
+        {path.name for path in (PACKAGE / chapter / way).glob("*.py")} for way in ("planar", "spatial")
+    )
+    common = {
+        "contact_modes": {
+            "answer.py",
+            "problem.py",
+            "margins.py",
+            "statics.py",
+            "wrench_sets.py",
+            "result.py",
+        },
+        "impact": {"one_contact.py", "batch.py", "result.py"},
+    }[chapter]
+    assert common <= plane
+    assert common <= space
+
+
+def test_the_root_keeps_few_files() -> None:
+    """Those that every chapter uses, the way in, and the world that all are about."""
+    assert {path.stem for path in PACKAGE.glob("*.py")} == {
+        "__init__",
+        "__main__",
+        "command_line",
+        "constants",
+        "errors",
+        "tolerances",
+        "validation",
+        "validation_batches",
+        "world",
+    }
