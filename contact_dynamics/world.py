@@ -6,7 +6,7 @@ Surfaces are flats without end (`Surface`) and convex solids and plates (`Obstac
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.shapes.convex import MOST_VERTICES, NO_SHAPE, ConvexShape, box_vertices
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.validation import FloatArray, check_array, check_not_negative, check_unit, check_within
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 __all__ = ["MOST_VERTICES", "STANDARD_GRAVITY_W", "Body", "Surface", "World", "box_vertices"]
 
@@ -42,6 +45,19 @@ class Body:
     )  # (k, 3), m, corners of the shape, body axes; given, they are short for the polyhedron of these corners
     shape: ConvexShape = NO_SHAPE  # what can touch, body axes
 
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            name: str,
+            mass_properties: MassProperties,
+            p_FB_F: ArrayLike = ...,
+            vertices_B: ArrayLike = ...,
+            shape: ConvexShape = ...,
+        ) -> None:
+            """Take whatever NumPy makes arrays of."""
+
     def __post_init__(self) -> None:
         """Check the arrays, and make corners and shape say the same."""
         object.__setattr__(self, "p_FB_F", check_array("center_of_mass", self.p_FB_F, (3,)))
@@ -65,6 +81,13 @@ class Surface:
     normal_W: FloatArray  # (3,), unit, into the free side, world axes
     friction: float  # Coulomb's mu, >= 0, between this surface and any body
     restitution: float  # e, in [0, 1], likewise
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self, *, name: str, p_WS_W: ArrayLike, normal_W: ArrayLike, friction: float, restitution: float
+        ) -> None:
+            """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
         """Check all fields."""
@@ -92,6 +115,17 @@ class World:
     gravity_W: FloatArray = field(
         default_factory=lambda: np.array(STANDARD_GRAVITY_W)
     )  # (3,), m/s^2, world axes
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            bodies: tuple[Body, ...] = ...,
+            surfaces: tuple[Surface | Obstacle, ...] = ...,
+            gravity_W: ArrayLike = ...,
+        ) -> None:
+            """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
         """Check gravity and that names are unique."""

@@ -45,6 +45,8 @@ from contact_dynamics.tolerances import ROW_TOLERANCE, UNIT_LENGTH_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from contact_dynamics.contact.contact import ContactSet
 
 Pair: TypeAlias = "tuple[float, float]"
@@ -61,6 +63,11 @@ class Curvatures:
     along: FloatArray  # (n,), 1/m, along the direction; inf: a corner or the edge of a blade
     across: FloatArray  # (n,), 1/m, along the tangent at right angles to it
     directions_W: FloatArray  # (n, 3), unit, tangent, world axes; zero where both curvatures are equal
+
+    if TYPE_CHECKING:
+
+        def __init__(self, *, along: ArrayLike, across: ArrayLike, directions_W: ArrayLike) -> None:
+            """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
         """Check all three."""
