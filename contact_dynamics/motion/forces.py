@@ -9,11 +9,14 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass, field
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.validation import FloatArray, check_array, check_not_negative
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 
 class WrenchAxes(enum.IntEnum):
@@ -34,6 +37,13 @@ class ConstantWrench:
     force: FloatArray = field(default_factory=lambda: np.zeros(3))  # (3,), N, in `axes`
     torque: FloatArray = field(default_factory=lambda: np.zeros(3))  # (3,), N m, in `axes`
     axes: WrenchAxes = WrenchAxes.WORLD
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self, *, force: ArrayLike = ..., torque: ArrayLike = ..., axes: WrenchAxes = ...
+        ) -> None:
+            """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
         """Check both arrays."""

@@ -25,6 +25,7 @@ KEYS = {
     "mcap": "mcap-ros2-support",
     "mcap_ros2": "mcap-ros2-support",
     "mpmath": None,
+    "mypy": "python3-mypy",
     "numpy": "python3-numpy",
     "pytest": "python3-pytest",
     "rerun": None,
