@@ -15,10 +15,12 @@ from nav_msgs.msg import Path
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
 from rclpy.node import Node
-from rclpy.qos import QoSProfile
+from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.service_introspection import ServiceIntrospectionState
+from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.nodes.call_times import CallTimes
 from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.nodes.predict_contact_mode import predict_contact_mode
@@ -36,11 +38,15 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 NODE_NAME = "contact_dynamics"
-EVENT_QOS = QoSProfile(depth=1000)
-"""Of the service events. Deep, because the log must lose none while a long answer keeps this process busy."""
-
 SERVICE_QOS = QoSProfile(depth=1000)
 """Of the services. With the usual depth of 10, replies get lost when several clients ask at once."""
+
+EVENT_QOS = QoSProfile(depth=10 * SERVICE_QOS.depth)
+"""Of the service events. The log must lose none, and all requests that wait are answered, each with two events,
+before the first of these events is taken."""
+
+CLOCK_QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
+"""Of the simulated time: matches every publisher, as the subscription by which the node itself hears it."""
 
 PATH_QOS = QoSProfile(depth=1)
 """Of the newest predicted trajectory as a path: a picture, of which the last one matters."""
@@ -86,6 +92,7 @@ class Server(Node):
             )
             for topic, type_name in types.items():
                 self._log.add_topic(topic, type_name, STATE_QOS)
+        self._log_clock()
         self._path = self.create_publisher(Path, "~/predicted_path", PATH_QOS)
         for service in _SERVICES:
             self._serve(*service)
@@ -99,7 +106,10 @@ class Server(Node):
         return True
 
     def _serve(self, service_type: type[Any], type_name: str, name: str, answer: Callable[..., None]) -> None:
+        times = CallTimes(lambda: self.get_clock().now().nanoseconds)
+
         def handle(request: Any, response: Any) -> Any:
+            times.begin()
             start = time.perf_counter()
             try:
                 answer(request, response, self._knowledge)
@@ -113,15 +123,28 @@ class Server(Node):
             response.computation_time = time.perf_counter() - start
             if service_type is PredictTumbling and response.status == response.OK:
                 self._publish_path(response.trajectory)
+            times.end()
             return response
+
+        def record(data: bytes) -> None:
+            self._log.record(events, data, log_time_ns=times.log_time_ns(data))
 
         service = self.create_service(service_type, f"~/{name}", handle, qos_profile=SERVICE_QOS)
         service.configure_introspection(self.get_clock(), EVENT_QOS, ServiceIntrospectionState.CONTENTS)
         events = f"{service.service_name}/_service_event"
         self._log.add_topic(events, f"contact_dynamics_interfaces/srv/{type_name}_Event", EVENT_QOS)
-        self.create_subscription(
-            service_type.Event, events, lambda data: self._log.record(events, data), EVENT_QOS, raw=True
-        )
+        self.create_subscription(service_type.Event, events, record, EVENT_QOS, raw=True)
+
+    def _log_clock(self) -> None:
+        """Log the simulated time, which the stamps of states and events are of, where there is one."""
+        if not self._parameters["use_sim_time"].value:
+            return
+
+        def record(data: bytes) -> None:
+            self._log.record(topic, data)
+
+        topic: str = self.create_subscription(Clock, "/clock", record, CLOCK_QOS, raw=True).topic_name
+        self._log.add_topic(topic, "rosgraph_msgs/msg/Clock", CLOCK_QOS)
 
     def _publish_path(self, trajectory: Any) -> None:
         """Publish the newest trajectory for RViz, if somebody listens."""
