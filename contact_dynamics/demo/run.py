@@ -54,6 +54,8 @@ def main(arguments: list[str]) -> int:
     try:
         with stop_signals() as stop, Processes(folder) as processes:
             asked = _play(toss, given, folder, processes, stop)
+            processes.stop()
+            _tell(processes)
     except KeyboardInterrupt:
         print("\nstopped", file=sys.stderr)
         return 130
@@ -74,7 +76,9 @@ def _play(
     def go_on() -> bool:
         if stop.is_set():
             raise KeyboardInterrupt
-        return processes.all_alive()
+        processes.all_alive()
+        _tell(processes)
+        return True
 
     print(f"playing {toss.source}: {len(toss)} states at {toss.rate:g} Hz", flush=True)
     parameters = folder / "parameters.yaml"
@@ -96,6 +100,11 @@ def _play(
     finally:
         questioner.close()
     return questioner
+
+
+def _tell(processes: Processes) -> None:
+    for complaint in processes.new_complaints():
+        print(complaint, file=sys.stderr, flush=True)
 
 
 def _arguments(arguments: list[str]) -> argparse.Namespace:

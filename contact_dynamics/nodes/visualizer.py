@@ -18,7 +18,6 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import rerun as rr
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
@@ -41,7 +40,7 @@ from contact_dynamics.nodes.state_store import StateStore
 from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
 from contact_dynamics.recording import BagReader
 from contact_dynamics.viewing.picture import Picture
-from contact_dynamics.viewing.sinks import DEFAULT_PORT, OpenRecording, Sinks, ViewerMode
+from contact_dynamics.viewing.sinks import DEFAULT_PORT, OpenRecording, Sinks, ViewerMode, raise_errors
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg
 
@@ -87,10 +86,11 @@ class Visualizer(Node):
 
         Raises:
             ConfigurationError: a parameter is missing or not allowed.
+            NowhereToDrawError: a viewer was asked for alone, and there is none.
             OSError: the file cannot be written.
         """
         super().__init__(NODE_NAME, **node_options)
-        rr.set_strict_mode(True)
+        raise_errors()
         self._strict = strict
         self._told: set[str] = set()
         parameters = read_server_parameters(self)
@@ -141,7 +141,9 @@ class Visualizer(Node):
         self.draw_states()
         if self._sinks.viewer is ViewerMode.NONE:
             self._guarded("the last look", self._picture.frame_all)
-        return self._recording.close()
+        took_all = self._recording.close()
+        # Who listens goes on with the file. Who draws a log wants to see it.
+        return took_all and not (self.log_path and self._recording.viewer_failed)
 
     def _wait_for_server(self, server: str, events: list[Subscription], patience: float) -> None:
         """Wait for the server's events, so that nothing is missed by who plays states to their listeners."""

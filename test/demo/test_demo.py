@@ -290,6 +290,21 @@ def test_stopped_in_the_middle_it_stops_all_and_closes_the_log(tmp_path: Path) -
         assert reader.message_count == summary.statistics.message_count
 
 
+def test_a_viewer_that_does_not_open_is_told_where_the_demo_was_started(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At the port of rerun's viewer, where none may be open."""
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"):
+        monkeypatch.delenv(name, raising=False)
+    with demo("--view", "--quiet", output=tmp_path) as (process, mark):
+        run = finished(process, mark, toss=read_toss(), output=tmp_path)
+    assert run.exit_code == 0, run.errors
+    (told,) = run.errors.splitlines()
+    assert told.startswith("visualizer: [WARN] ")
+    assert "neither WAYLAND_DISPLAY nor WAYLAND_SOCKET nor DISPLAY is set" in told
+    assert run.paths[1].stat().st_size > 10_000  # the picture is in the file
+
+
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP], ids=lambda number: number.name)
 def test_stopped_at_the_start_it_stops_all(tmp_path: Path, number: signal.Signals) -> None:
     """While its processes start, by `kill` or by a terminal that is closed."""

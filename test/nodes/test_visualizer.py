@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 import warnings
 from typing import TYPE_CHECKING, Any
 
@@ -35,7 +36,7 @@ from contact_dynamics_interfaces.msg import (
 )
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.stamps import stamp_to_msg
-from running_server import DOMAIN_ID, ROOT, process, server_and_client
+from running_server import DOMAIN_ID, ROOT, process, server_and_client, wait_for
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -502,6 +503,29 @@ def test_a_log_is_drawn_as_what_is_heard(tmp_path: Path) -> None:
     assert drawn.stamps("/world/bodies/brick", "Transform3D:translation") == [STAMP_NS]
     strip = drawn.array("/world/predicted/brick/path", "LineStrips3D:strips")[0]
     np.testing.assert_allclose(strip, np.array(answer.trajectory.positions).reshape(-1, 3), atol=1e-6)
+
+
+def test_a_log_that_was_to_be_seen_and_is_not_ends_with_the_reason(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"):
+        monkeypatch.delenv(name, raising=False)
+    with server_and_client(tmp_path / "log") as client:
+        assert client.ask(PredictTumbling.Request(body_name="brick")) is not None
+    (log,) = (tmp_path / "log").iterdir()
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    parameters = ("-p", f"from_log:={log}", "-p", "spawn:=true", "-p", f"port:={port}")
+    arguments = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", *parameters)
+    reason = "neither WAYLAND_DISPLAY nor WAYLAND_SOCKET nor DISPLAY is set"
+    with process("visualizer", *arguments) as started:
+        assert "nowhere to draw to: rerun's viewer ended with" in wait_for(started, reason)
+        assert started.wait(10.0) == 2
+    path = tmp_path / "drawn.rrd"
+    with process("visualizer", *arguments, "-p", f"rrd_path:={path}", ready=reason) as started:
+        assert started.wait(10.0) == 1  # the file is there, what was asked for was to see it
+    assert path.stat().st_size > 0
 
 
 def test_a_log_that_is_none_is_named(tmp_path: Path) -> None:
