@@ -20,9 +20,10 @@ from rclpy.service_introspection import ServiceIntrospectionState
 from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.nodes.arguments import VISUALIZER_PARAMETERS, server_parser
 from contact_dynamics.nodes.call_times import CallTimes
 from contact_dynamics.nodes.log import Log
-from contact_dynamics.nodes.parameters import read_server_parameters
+from contact_dynamics.nodes.parameters import read_server_parameters, refuse_unknown_parameters
 from contact_dynamics.nodes.predict_contact_mode import predict_contact_mode
 from contact_dynamics.nodes.predict_impact import predict_impact
 from contact_dynamics.nodes.predict_tumbling import predict_tumbling
@@ -65,10 +66,12 @@ class Server(Node):
         """Read the parameters, begin the log, subscribe and serve.
 
         Raises:
-            ConfigurationError: a parameter is missing or not allowed.
+            ConfigurationError: a parameter is missing, unknown or not allowed.
         """
         super().__init__(NODE_NAME, **node_options)
         parameters = read_server_parameters(self)
+        # One file may configure both nodes.
+        refuse_unknown_parameters(self, also_known=VISUALIZER_PARAMETERS)
         states = StateStore(history=parameters.state_history, timeout=parameters.state_timeout)
         # A simulation or a log that is played again: without this its new states would count as old ones.
         set_back = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
@@ -158,5 +161,4 @@ class Server(Node):
 
 def main(arguments: list[str]) -> int:
     """Run the server until it is told to stop; return the exit code."""
-    description = "Serve contact modes, impacts and tumbling over ROS 2."
-    return run_node(Server, verb="server", description=description, arguments=arguments)
+    return run_node(Server, verb="server", parser=server_parser(), arguments=arguments)

@@ -25,7 +25,12 @@ from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 from service_msgs.msg import ServiceEventInfo
 
-from contact_dynamics.nodes.parameters import ConfigurationError, read_server_parameters
+from contact_dynamics.nodes.arguments import visualizer_parser
+from contact_dynamics.nodes.parameters import (
+    ConfigurationError,
+    read_server_parameters,
+    refuse_unknown_parameters,
+)
 from contact_dynamics.nodes.pictured_answers import (
     IMPACT,
     TUMBLING,
@@ -85,7 +90,7 @@ class Visualizer(Node):
             node_options: of `rclpy.node.Node`.
 
         Raises:
-            ConfigurationError: a parameter is missing or not allowed.
+            ConfigurationError: a parameter is missing, unknown or not allowed.
             NowhereToDrawError: a viewer was asked for alone, and there is none.
             OSError: the file cannot be written.
         """
@@ -96,6 +101,7 @@ class Visualizer(Node):
         parameters = read_server_parameters(self)
         self._world = parameters.world
         server, surface_side, self.log_path, self._sinks = _read_own_parameters(self)
+        refuse_unknown_parameters(self)
         self._recording = OpenRecording(self._sinks, on_problem=self.get_logger().warning)
         self._picture = Picture(self._recording.stream, self._world, surface_side=surface_side)
         self._states = _WaitingStates()
@@ -257,7 +263,7 @@ def main(arguments: list[str]) -> int:
     exit_code = run_node(
         _make_visualizer,
         verb="visualizer",
-        description="Show bodies, contacts and predictions in rerun, live or to a file.",
+        parser=visualizer_parser(),
         arguments=arguments,
     )
     if exit_code == 1:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -160,6 +161,22 @@ def test_it_ends_well_and_its_last_lines_are_the_log_and_the_picture(run: Run) -
     assert log.is_file()
     assert picture.stat().st_size > 10_000  # the scene alone; states and answers come on top
     assert run.errors == ""
+
+
+def test_the_command_that_opens_the_picture_works(run: Run) -> None:
+    (command,) = re.findall(r"^to look at the picture: (.*)$", run.printed, re.MULTILINE)
+    rerun, picture = shlex.split(command)
+    assert (ROOT / picture).samefile(run.paths[-1])
+    # The same program and file, without a window.
+    done = subprocess.run(
+        [rerun if rerun == "rerun" else ROOT / rerun, "rrd", "verify", picture],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT_S,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
 
 
 def test_it_leaves_no_process_behind(run: Run) -> None:
@@ -335,8 +352,8 @@ def test_help_of_the_command_names_every_verb() -> None:
         timeout=TIMEOUT_S,
         check=True,
     )
-    for verb, (_, description) in VERBS.items():
-        assert re.search(rf"^  {verb} +{re.escape(description)}$", done.stdout, re.MULTILINE)
+    for name, verb in VERBS.items():
+        assert re.search(rf"^  {name} +{re.escape(verb.help)}$", done.stdout, re.MULTILINE)
 
 
 @pytest.mark.parametrize(
