@@ -58,7 +58,7 @@ class NotSupportedError(ContactDynamicsError):
     """A question that the interface carries and this version does not answer; the message says which part."""
 
 
-class UndecidedError(ContactDynamicsError):
+class UndecidedError(NotSupportedError):
     """A question whose answer hangs on rounding: what was asked about is degenerate to the last digits."""
 
 

@@ -5,14 +5,14 @@ Each error names the field and the first row that is not allowed.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.tolerances import UNIT_LENGTH_TOLERANCE
-from contact_dynamics.validation import LENGTH_ROUNDING, FloatArray, check_array
+from contact_dynamics.validation import LENGTH_ROUNDING, FloatArray, check_array, check_choice
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -81,9 +81,16 @@ def check_unit_rows(field: str, value: ArrayLike, width: int) -> FloatArray:
 
 
 def check_law_rows(field: str, value: ArrayLike) -> FloatArray:
-    """Return values of `RestitutionLaw`, (N,)."""
+    """Return values of `RestitutionLaw`, (N,); each may be a member or, in an array of numbers, its value."""
+    if not (isinstance(value, np.ndarray) and value.dtype.kind in "iuf"):
+        several = isinstance(value, (list, tuple, np.ndarray)) and np.ndim(value) > 0
+        given: Any = value if several else [value]
+        for i, law in enumerate(given):
+            if type(law) not in {int, float} and not isinstance(law, np.number):
+                check_choice(f"{field}[{i}]" if several else field, law, RestitutionLaw)
     known = [float(law) for law in RestitutionLaw]
-    return check_rows(field, value, (), "a value of RestitutionLaw", lambda x: np.isin(x, known))
+    allowed = " or ".join(f"{law.name} ({law.value})" for law in RestitutionLaw)
+    return check_rows(field, value, (), allowed, lambda x: np.isin(x, known))
 
 
 def common_length(fields: Mapping[str, FloatArray]) -> int:

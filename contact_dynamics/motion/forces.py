@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from contact_dynamics.validation import FloatArray, check_array, check_not_negative
+from contact_dynamics.validation import FloatArray, check_array, check_choice, check_not_negative
 
 
 class WrenchAxes(enum.IntEnum):
@@ -28,7 +28,7 @@ class ConstantWrench:
     """A force through the centre of mass and a torque about it that stay as they are.
 
     Raises:
-        InvalidFieldError: not three finite numbers each.
+        InvalidFieldError: not three finite numbers each, or axes that are none of `WrenchAxes`.
     """
 
     force: FloatArray = field(default_factory=lambda: np.zeros(3))  # (3,), N, in `axes`
@@ -36,9 +36,10 @@ class ConstantWrench:
     axes: WrenchAxes = WrenchAxes.WORLD
 
     def __post_init__(self) -> None:
-        """Check both arrays."""
+        """Check all fields."""
         object.__setattr__(self, "force", check_array("force", self.force, (3,)))
         object.__setattr__(self, "torque", check_array("torque", self.torque, (3,)))
+        check_choice("axes", self.axes, WrenchAxes)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
