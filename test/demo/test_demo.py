@@ -167,8 +167,8 @@ def test_the_command_that_opens_the_picture_works(run: Run) -> None:
     (command,) = re.findall(r"^to look at the picture: (.*)$", run.printed, re.MULTILINE)
     rerun, picture = shlex.split(command)
     assert (ROOT / picture).samefile(run.paths[-1])
-    # The same program reads the same file, without a window. (Not `rrd verify`: it wants a footer, which grows in
-    # the memory of who writes.)
+    # The same program reads the same file, without a window. `rrd verify` would want a footer, which grows in
+    # the memory of who writes.
     done = subprocess.run(
         [rerun if rerun == "rerun" else ROOT / rerun, "rrd", "stats", picture],
         cwd=ROOT,

@@ -36,7 +36,7 @@ from contact_dynamics.impact.spatial.one_contact import spatial_impact
 from contact_dynamics.rotations.one import cross_matrix
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.tumbling import Precision, free_motion
-from contact_dynamics.validation import check_array, check_not_negative, check_positive
+from contact_dynamics.validation import check_array, check_choice, check_not_negative, check_positive
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -104,6 +104,7 @@ def impact_sequence(
     Raises:
         InvalidFieldError: a number that is not allowed.
     """
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     held = None if hold_step is None else check_positive("hold_step", hold_step)
     meetings = FoundMeetings(
@@ -155,6 +156,7 @@ def impact_sequence_of(
     Raises:
         InvalidFieldError: a number that is not allowed, or a contact with curvature: it is no fixed point.
     """
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     held = None if hold_step is None else check_positive("hold_step", hold_step)
     if contacts.body_curvatures is not None or contacts.surface_curvatures is not None:

@@ -24,7 +24,7 @@ from contact_dynamics.impact.several.result import BodiesImpact, SeveralContacts
 from contact_dynamics.impact.several.simultaneous import simultaneous_impulses
 from contact_dynamics.impact.spatial.one_contact import spatial_impact, spatial_pair_impact
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_positive
+from contact_dynamics.validation import check_choice, check_positive
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -66,6 +66,8 @@ def bodies_impact(
         InvalidFieldError: no contacts, lists of unequal length, an index that is none, a tolerance that is
             not > 0, or ENERGETIC with SIMULTANEOUS.
     """
+    check_choice("law", law, SeveralContactsLaw)
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     _check_pairs(bodies, states, contacts, pairs)
     touching = Touching(bodies, contacts, pairs, restitution_law, tolerance)
