@@ -275,9 +275,14 @@ def test_polhode_and_herpolhode_are_drawn_where_the_answer_carries_them(bench: B
     answer.poinsot.invariable_plane_distance = 5.0
     answer.poinsot.polhode = answer.poinsot.herpolhode = [0.0, 0.0, 5.0, 1.0, 0.0, 5.0]
     bench.answer("predict_tumbling", answer)
-    bench.states.publish(odometry(STAMP_NS + 7, 0.1))
-    bench.spin_until(lambda: bench.received == 2)
+    turning = odometry(STAMP_NS + 7, 0.1)
+    w_WB_B = Rotation.from_quat(TURNED).inv().apply(answer.poinsot.angular_momentum) / [0.01, 0.04, 0.0625]
+    turning.twist.twist.angular = Vector3(x=w_WB_B[0], y=w_WB_B[1], z=w_WB_B[2])
+    bench.states.publish(turning)
+    bench.states.publish(odometry(STAMP_NS + 8, 0.1))  # something has stopped it
+    bench.spin_until(lambda: bench.received == 3)
     drawn = bench.drawn()
+    assert drawn.stamps("/poinsot/brick", "Clear:is_recursive") == [STAMP_NS + 8]
     net = np.vstack(drawn.array("/poinsot/brick/body/ellipsoid", "LineStrips3D:strips"))
     np.testing.assert_allclose(net.max(axis=0), [10.0, 5.0, 4.0], rtol=1e-3)
     assert drawn.stamps("/poinsot/brick/body", "Transform3D:quaternion") == [STAMP_NS, STAMP_NS + 7]
