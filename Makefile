@@ -20,11 +20,11 @@ export PIP_USER := 0
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-slow lint types bench setup venv clean FORCE
+.PHONY: help demo test test-matrix test-slow lint types bench setup venv clean FORCE
 
 help: ## print this
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | while IFS='	' read -r name text; do \
-	    printf '  make %-9s  %s\n' "$$name" "$$text"; done
+	    printf '  make %-11s  %s\n' "$$name" "$$text"; done
 	@echo "  PYTHON=python3.12 chooses the Python (3.10 to 3.14) that $(VENV) is made with."
 
 demo: $(MADE)/package $(MADE)/interfaces ## play a toss and compare predictions with it; VIEW=1 opens the viewer, TOSS=path plays another
@@ -32,6 +32,9 @@ demo: $(MADE)/package $(MADE)/interfaces ## play a toss and compare predictions 
 
 test: lint types $(MADE)/test ## lint, types and the tests
 	@$(BIN)/python -m pytest
+
+test-matrix: ## the physics with the oldest and newest NumPy and SciPy, on every Python and several kinds of processors
+	@setup/matrix.sh $(VENV)-matrix
 
 test-slow: $(MADE)/test ## the sweeps that are too slow for `make test`
 	@HYPOTHESIS_PROFILE=explore $(BIN)/python -m pytest -m slow

@@ -4,7 +4,7 @@
 set -eu
 
 for venv in "$1" "$1"-matrix/*; do
-    if [ -e "$venv/.made/python" ]; then
+    if [ -d "$venv/.made" ]; then
         echo "removing $venv"
         rm -rf "$venv"
     elif [ -e "$venv" ]; then
