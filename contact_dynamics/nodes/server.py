@@ -42,8 +42,8 @@ SERVICE_QOS = QoSProfile(depth=1000)
 """Of the services. With the usual depth of 10, replies get lost when several clients ask at once."""
 
 EVENT_QOS = QoSProfile(depth=10 * SERVICE_QOS.depth)
-"""Of the service events. The log must lose none, and all requests that wait are answered, each with two events,
-before the first of these events is taken."""
+"""Of the service events. The log must lose none, and all requests that wait are answered, each with two
+events, before the first of these events is taken."""
 
 CLOCK_QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
 """Of the simulated time: matches every publisher, as the subscription by which the node itself hears it."""

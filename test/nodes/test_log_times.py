@@ -1,7 +1,7 @@
-"""The times in the log of a server that is asked while states stream in, by the wall clock and in a simulation.
+"""The times in the log of a server that is asked while states stream in, also in a simulation.
 
-What counts is that a log can be replayed: the states with a `log_time` up to a request's are those that its answer
-was made from.
+What counts is that a log can be replayed: the states with a `log_time` up to a request's are those that its
+answer was made from.
 """
 
 from __future__ import annotations
