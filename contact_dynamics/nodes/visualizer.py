@@ -129,7 +129,7 @@ class Visualizer(Node):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DamagedLogWarning)  # told below, where all else is told
             for count, message in enumerate(log.messages(set(self._receivers)), start=1):
-                self._receivers[message.topic](message.data)
+                self._guarded(message.topic, partial(self._receivers[message.topic], message.data))
                 if count % LOGGED_AT_ONCE == 0:
                     self.draw_states()
         self.draw_states()
