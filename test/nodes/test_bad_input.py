@@ -293,7 +293,7 @@ def test_no_state_published_yet(client: Client, service: Any) -> None:
 
 
 def test_states_that_are_stale_or_make_no_sense(client: Client) -> None:
-    """A stale state is refused with its age; one with a NaN or in another frame is not taken at all."""
+    """A stale state is refused with its age; one with a NaN or in another frame, or bytes, are not taken."""
     publisher = client.publisher(Odometry, "/brick/odometry")
     nonsense = Odometry()
     nonsense.header.frame_id = "world"
@@ -305,6 +305,7 @@ def test_states_that_are_stale_or_make_no_sense(client: Client) -> None:
     old = Odometry()
     old.header.frame_id = "world"
     old.header.stamp.sec = nonsense.header.stamp.sec - 3
+    publisher.publish(b"\0\1\0\0no message at all")
     publisher.publish(nonsense)
     publisher.publish(elsewhere)
     publisher.publish(old)
