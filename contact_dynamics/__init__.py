@@ -1,6 +1,6 @@
 """Contact modes, impacts and free tumbling of rigid bodies (Mason's lectures 24 to 27).
 
-The table of contents, chapters in reading order; everything here is plain NumPy and knows no ROS.
+The table of contents, chapters in reading order; everything here needs NumPy and SciPy, and knows no ROS.
 
 - Lecture 24, 25, rigid bodies: `MassProperties`, `BodyState`, momenta and energies (`rigid_body`).
 - Lecture 24, 25, mass properties from particles, shapes and meshes: `MassDistribution` (`inertia`).
@@ -13,8 +13,9 @@ The table of contents, chapters in reading order; everything here is plain NumPy
 - Contacts: `ContactSet` in space (`contact`), of all kinds (`contact.curvature`), from geometry
   (`find_contacts`); `PlanarContact` and its kin in the plane (`planar`), reached from space by a
   `PlaneOfMotion`.
-- Lecture 26, contact modes: `planar_contact_modes` (`contact_modes`).
-- Lecture 27, impact: `planar_impact`, `spatial_impact`, strikes in time `impact_sequence` (`impact`).
+- Lecture 26, contact modes: `planar_contact_modes`, `spatial_contact_modes` (`contact_modes`).
+- Lecture 27, impact: `planar_impact`, `spatial_impact`, several contacts at once `several_impact`, strikes in
+  time `impact_sequence` (`impact`).
 - What is refused, and how: `errors`. What counts as zero: `tolerances`.
 """
 
