@@ -28,9 +28,9 @@ from contact_dynamics.nodes.predict_contact_mode import predict_contact_mode
 from contact_dynamics.nodes.predict_impact import predict_impact
 from contact_dynamics.nodes.predict_tumbling import predict_tumbling
 from contact_dynamics.nodes.running import run_node
-from contact_dynamics.nodes.state_store import StateStore
 from contact_dynamics.nodes.state_subscriptions import STATE_QOS, subscribe_to_states
 from contact_dynamics.nodes.subject import Knowledge
+from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.path import path_from_trajectory
 from msg_adapters.status import report_error

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
     from contact_dynamics.nodes.parameters import StateTopics
-    from contact_dynamics.nodes.state_store import StateStore
+    from contact_dynamics.questions.state_store import StateStore
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
 

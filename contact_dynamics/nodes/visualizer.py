@@ -42,8 +42,8 @@ from contact_dynamics.nodes.pictured_answers import (
 )
 from contact_dynamics.nodes.pictured_contact_modes import CONTACT_MODE, show_contact_modes
 from contact_dynamics.nodes.running import run_node
-from contact_dynamics.nodes.state_store import StateStore
 from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
+from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.recording import BagReader, DamagedLogWarning
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import DEFAULT_PORT, OpenRecording, Sinks, ViewerMode, raise_errors
