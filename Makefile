@@ -20,7 +20,7 @@ export PIP_USER := 0
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-matrix test-slow lint types bench setup venv clean FORCE
+.PHONY: help demo test test-matrix test-slow coverage lint types bench setup venv clean FORCE
 
 help: ## print this
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | while IFS='	' read -r name text; do \
@@ -38,6 +38,13 @@ test-matrix: ## the physics with the oldest and newest NumPy and SciPy, on every
 
 test-slow: $(MADE)/test ## the sweeps that are too slow for `make test`
 	@HYPOTHESIS_PROFILE=explore $(BIN)/python -m pytest -m slow
+
+coverage: $(MADE)/test ## which lines the tests do not reach, in coverage_html/ too
+	@$(BIN)/python -m coverage erase
+	@$(BIN)/python -m coverage run -m pytest -q
+	@$(BIN)/python -m coverage combine -q
+	@$(BIN)/python -m coverage html -q -d coverage_html
+	@$(BIN)/python -m coverage report
 
 lint: $(MADE)/test ## ruff: rules and format
 	@$(BIN)/ruff check
