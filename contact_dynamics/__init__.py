@@ -65,6 +65,16 @@ from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.tumbling import FreeMotion, Regime, Trajectory, free_motion, states_of_many
 from contact_dynamics.world import Body, Surface, World, box_vertices
 
+
+def __getattr__(name: str) -> str:
+    """Return ``__version__``, which is looked up where it is asked for."""
+    if name == "__version__":
+        from contact_dynamics.version import version_of_this_package
+
+        return version_of_this_package()
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
 __all__ = [
     "Body",
     "BodyState",
