@@ -52,7 +52,7 @@ def test_a_python_is_found_behind_a_shim_that_does_not_run(
     if setting == "PATH":
         environment["PATH"] = f"{shim.parent}:{folder}:/usr/bin:/bin"
     elif setting:
-        environment[setting] = str(tmp_path / place.split("/")[0])
+        environment[setting] = str(tmp_path / place.split("/", maxsplit=1)[0])
     programs, _ = found(**environment)
     usual = {f"/usr/bin/python{VERSION}", f"/bin/python{VERSION}"}
     assert programs[VERSION] == str(python) or (setting != "PATH" and programs[VERSION] in usual)
