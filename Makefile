@@ -53,8 +53,8 @@ lint: $(MADE)/test ## ruff: rules and format
 types: $(MADE)/test ## mypy
 	@$(BIN)/mypy
 
-bench: $(MADE)/bench ## measure speed and accuracy, peers beside us
-	@$(BIN)/python -m benchmarks
+bench: $(MADE)/bench ## measure speed and accuracy, peers beside us; WRITE=1 renews the numbers in the documents
+	@$(BIN)/python -m benchmarks $(if $(WRITE),--write)
 
 setup: $(MADE)/package $(MADE)/interfaces ## make the environment in .venv and nothing else
 venv: setup
