@@ -13,6 +13,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.numerics.elementwise import Number, Vector3, combined, cross, dot, larger, sign, sqrt
+from contact_dynamics.rotations.one import rows_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -89,13 +90,9 @@ def responding(  # noqa: PLR0917 - the columns of one table
     rest = i_yz - l31 * i_xy
     l32 = rest / d2
     d3 = larger(i_zz - l31 * i_xz - l32 * rest, _LEAST_PIVOT * i_zz)
-    x, y, z, s = q
-    rotation = (
-        (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + s * z), 2.0 * (x * z - s * y)),
-        (2.0 * (x * y - s * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + s * x)),
-        (2.0 * (x * z + s * y), 2.0 * (y * z - s * x), 1.0 - 2.0 * (x * x + y * y)),
-    )
-    return Responding(1.0 / mass, (i_xx, d2, d3, l21, l31, l32), rotation, r, v, w)
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rows_of(*q)
+    columns = ((xx, yx, zx), (xy, yy, zy), (xz, yz, zz))
+    return Responding(1.0 / mass, (i_xx, d2, d3, l21, l31, l32), columns, r, v, w)
 
 
 def velocity_at_contact(body: Responding, other: Responding | None) -> Vector3:
