@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from contact_dynamics.numerics.elementwise import Number
+from contact_dynamics.numerics.elementwise import Real
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -89,7 +89,7 @@ def from_z_onto(direction: Sequence[float]) -> Quaternion:
     return normalised((-y, x, 0.0, 1.0 + z))
 
 
-def rows_of(x: Number, y: Number, z: Number, w: Number) -> tuple[tuple[Number, Number, Number], ...]:
+def rows_of(x: Real, y: Real, z: Real, w: Real) -> tuple[tuple[Real, Real, Real], ...]:
     """Return the three rows of the rotation matrix of a unit quaternion, each number a float or an array."""
     return (
         (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
