@@ -157,10 +157,3 @@ def _is_new(place: FloatArray, taken: list[FloatArray], slack: float) -> bool:
 def _along(side: FloatArray, frame: FloatArray) -> FloatArray:
     direction: FloatArray = side @ frame
     return direction / math.sqrt(direction @ direction)
-
-
-def tangents_of(n_W: FloatArray) -> FloatArray:
-    """Return two tangents, (2, 3), unit, of a plane of unit normal, right-handed with it."""
-    first = np.cross(n_W, np.eye(3)[int(np.abs(n_W).argmin())])
-    first = first / math.sqrt(first @ first)
-    return np.array([first, np.cross(n_W, first)])

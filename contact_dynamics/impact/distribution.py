@@ -20,6 +20,7 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.impact.planar.batch import planar_impacts
 from contact_dynamics.impact.spatial.batch import StrikingBodies, spatial_impacts
+from contact_dynamics.rotations.many import products, quaternions_of, rotated
 from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array, check_choice, check_unit
 
@@ -135,10 +136,10 @@ def spatial_impact_distribution(
     """
     check_choice("law", law, RestitutionLaw)
     draws = _draw(covariance, 12, samples, seed)
-    turns = _rotation_quaternions(draws[:, 3:6])
+    turns = quaternions_of(draws[:, 3:6])
     arm = check_array("contact position", p_WC_W, (3,)) - state.p_WB_W
     normal = check_unit("contact normal", n_W, 3)
-    arms = _rotated(turns, arm)
+    arms = rotated(turns, arm)
     after = np.concatenate((state.v_WB_W, state.w_WB_W)) + draws[:, 6:]
     v_n = (after[:, :3] + np.cross(after[:, 3:], arms)) @ normal
     # Half, as in the plane.
@@ -149,7 +150,7 @@ def spatial_impact_distribution(
             StrikingBodies(
                 masses=np.array(body.mass),
                 inertias_B=body.I_B,
-                q_WB=_quaternion_products(turns[strikes], state.q_WB),
+                q_WB=products(turns[strikes], state.q_WB),
                 v_WB_W=after[strikes, :3],
                 w_WB_W=after[strikes, 3:],
                 r_W=arms[strikes],
@@ -190,23 +191,3 @@ def _distribution(after: FloatArray, whole: FloatArray, outcomes: np.ndarray) ->
         missed=1.0 - len(outcomes) / samples,
         samples=samples,
     )
-
-
-def _rotation_quaternions(vectors: FloatArray) -> FloatArray:
-    """Return the quaternions x, y, z, w, (n, 4), of rotation vectors, (n, 3), rad."""
-    angles = np.linalg.norm(vectors, axis=1)
-    halves = 0.5 * np.sinc(angles / (2.0 * np.pi))
-    return np.column_stack((halves[:, None] * vectors, np.cos(0.5 * angles)))
-
-
-def _quaternion_products(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return the rotation ``b``, (4,), followed by each of ``a``, (n, 4), quaternions x, y, z, w."""
-    vectors = a[:, 3:] * b[:3] + b[3] * a[:, :3] + np.cross(a[:, :3], b[:3])
-    return np.column_stack((vectors, a[:, 3] * b[3] - a[:, :3] @ b[:3]))
-
-
-def _rotated(quaternions: FloatArray, vector: FloatArray) -> FloatArray:
-    """Return ``vector``, (3,), turned by each of the quaternions, (n, 4)."""
-    twice = 2.0 * np.cross(quaternions[:, :3], vector)
-    rotated: FloatArray = vector + quaternions[:, 3:] * twice + np.cross(quaternions[:, :3], twice)
-    return rotated

@@ -23,6 +23,7 @@ import rerun as rr
 
 from contact_dynamics.impact.law import PathEvent
 from contact_dynamics.impact.spatial.one_contact import contact_inverse_inertia
+from contact_dynamics.numerics.vectors import across
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import IMPULSE_SPACE
 from contact_dynamics.viewing.scene import tangents
@@ -151,7 +152,7 @@ def contact_axes(picture: ImpactPicture, contact: int) -> FloatArray:
         slip_W = picture.state.velocity_of_point(picture.contacts.p_WC_W[contact])
         candidates = [picture.impulses_W[contact], -slip_W]
     for vector_W in (*candidates, tangents(normal_W)[0]):
-        tangent_W = vector_W - (vector_W @ normal_W) * normal_W
+        tangent_W = across(vector_W, normal_W)
         length = float(np.linalg.norm(tangent_W))
         if length > 1e-9 * float(np.linalg.norm(vector_W)):
             break

@@ -25,6 +25,7 @@ from contact_dynamics.contact_modes.spatial.cone import nearest_sum
 from contact_dynamics.contact_modes.spatial.problem import search_of
 from contact_dynamics.contact_modes.spatial.wrenches import Way, distinct, supports, wrench_generators
 from contact_dynamics.errors import TooLargeError
+from contact_dynamics.rigid_body.body import mean_radius_of_gyration
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
@@ -132,7 +133,7 @@ class _Union:
 
     def __init__(self, case: SpatialCase, search: Search, mode: str, facets: int) -> None:
         motion = case.motion
-        gyration = math.sqrt(float(np.trace(motion.inertia)) / (3.0 * motion.mass))
+        gyration = mean_radius_of_gyration(motion.mass, motion.inertia)
         # Cones are stated in the body's own metric, whichever margins are asked for in.
         self.own = np.array([1.0, 1.0, 1.0, gyration, gyration, gyration])
         self.unit = motion.mass * motion.scale  # N; wrenches are divided by it, and by the metric

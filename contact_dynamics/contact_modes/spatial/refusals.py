@@ -13,7 +13,6 @@ where loads are shared, that differs from one sharing to the next.
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -75,8 +74,8 @@ def spatial_refused_modes(
         TooLargeError: more contacts than `spatial_contact_modes` accepts.
     """
     wrench = np.concatenate([check_array("force", force_W, (3,)), check_array("torque", torque_W, (3,))])
-    gyration = math.sqrt(float(np.trace(body.I_B)) / (3.0 * body.mass))
-    length = gyration if margin_length is None else check_positive("margin_length", margin_length)
+    own = body.mean_radius_of_gyration
+    length = own if margin_length is None else check_positive("margin_length", margin_length)
     tolerance = answer.velocity_tolerance
     case = spatial_case(body, state, contacts, wrench, tolerance)
     if not isinstance(case, SpatialCase):
