@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.contact import Contact, ContactSet
 from contact_dynamics.impact import (
     ImpactOutcome,
     RestitutionLaw,
@@ -171,17 +171,17 @@ def _random(count: int) -> tuple[StrikingBodies, dict[str, Any]]:
 
 def _single(
     bodies: StrikingBodies, contacts: dict[str, FloatArray], i: int
-) -> tuple[MassProperties, BodyState, dict[str, Any]]:
+) -> tuple[MassProperties, BodyState, Contact]:
     body = MassProperties(mass=float(bodies.masses[i]), I_B=bodies.inertias_B[i])
     state = BodyState(
         p_WB_W=np.zeros(3), q_WB=bodies.q_WB[i], v_WB_W=bodies.v_WB_W[i], w_WB_W=bodies.w_WB_W[i]
     )
-    contact = {
-        "p_WC_W": bodies.r_W[i],
-        "n_W": contacts["normals_W"][i],
-        "friction": float(contacts["frictions"][i]),
-        "restitution": float(contacts["restitutions"][i]),
-    }
+    contact = Contact(
+        p_WC_W=bodies.r_W[i],
+        normal_W=contacts["normals_W"][i],
+        friction=float(contacts["frictions"][i]),
+        restitution=float(contacts["restitutions"][i]),
+    )
     return body, state, contact
 
 
@@ -193,11 +193,11 @@ def _spatial() -> None:
     for law in RestitutionLaw:
         seconds: dict[ImpactOutcome | str, list[float]] = {}
         for body, state, contact in problems:
-            answer = spatial_impact(body, state, law=law, **contact)
-            spent = _quickest(lambda: spatial_impact(body, state, law=law, **contact))  # noqa: B023
+            answer = spatial_impact(body, state, contact, law=law)
+            spent = _quickest(lambda: spatial_impact(body, state, contact, law=law))  # noqa: B023
             for kind in ("all", answer.outcome):
                 seconds.setdefault(kind, []).append(spent)
-            pair = lambda: spatial_pair_impact(body, state, other, still, law=law, **contact)  # noqa: B023, E731
+            pair = lambda: spatial_pair_impact(body, state, other, still, contact, law=law)  # noqa: B023, E731
             seconds.setdefault("two bodies", []).append(_quickest(pair))
         for kind, spent_on in sorted(seconds.items(), key=lambda item: str(item[0])):
             name = kind.name if isinstance(kind, ImpactOutcome) else kind
@@ -255,11 +255,8 @@ def _uncertain() -> None:
             lambda samples=samples: spatial_impact_distribution(  # type: ignore[misc]
                 cube,
                 state,
+                Contact(p_WC_W=[0.03, 0.04, 0.0], normal_W=[0.0, 0.0, 1.0], friction=0.2, restitution=0.3),
                 covariance=covariance,
-                p_WC_W=[0.03, 0.04, 0.0],
-                n_W=[0.0, 0.0, 1.0],
-                friction=0.2,
-                restitution=0.3,
                 samples=samples,
             ),
             1,

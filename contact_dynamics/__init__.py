@@ -18,7 +18,7 @@ The table of contents, chapters in reading order; everything here is plain NumPy
 - What is refused, and how: `errors`. What counts as zero: `tolerances`.
 """
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.contact import Contact, ContactSet
 from contact_dynamics.contact.curvature import Curvatures
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact_modes import (
@@ -68,6 +68,7 @@ __all__ = [
     "Body",
     "BodyState",
     "ConsistentMode",
+    "Contact",
     "ContactDynamicsError",
     "ContactModeAnswer",
     "ContactSet",

@@ -21,11 +21,12 @@ from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.impact.planar.batch import planar_impacts
 from contact_dynamics.impact.spatial.batch import StrikingBodies, spatial_impacts
 from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, VELOCITY_TOLERANCE
-from contact_dynamics.validation import FloatArray, check_array, check_unit
+from contact_dynamics.validation import FloatArray, check_array
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from contact_dynamics.contact.contact import Contact
     from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
@@ -99,12 +100,9 @@ def planar_impact_distribution(
 def spatial_impact_distribution(
     body: MassProperties,
     state: BodyState,
+    contact: Contact,
     *,
     covariance: ArrayLike,
-    p_WC_W: ArrayLike,
-    n_W: ArrayLike,
-    friction: float,
-    restitution: float,
     law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     samples: int = 2000,
@@ -117,12 +115,9 @@ def spatial_impact_distribution(
     Args:
         body: Mass and angular inertia.
         state: Mean of the state just before.
+        contact: Where it is at the mean pose, along which normal into the body, friction and restitution.
         covariance: (12, 12), of the state before: position (m), rotation vector (rad, world axes, applied
             after the attitude), linear velocity (m/s), angular velocity (rad/s), each x y z.
-        p_WC_W: (3,), m, the contact at the mean pose, world.
-        n_W: (3,), unit normal into the body, world axes.
-        friction: Coulomb's mu, >= 0.
-        restitution: e, in [0, 1].
         law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A normal or tangential velocity of the contact within it counts as
             zero.
@@ -135,9 +130,7 @@ def spatial_impact_distribution(
     """
     draws = _draw(covariance, 12, samples, seed)
     turns = _rotation_quaternions(draws[:, 3:6])
-    arm = check_array("contact position", p_WC_W, (3,)) - state.p_WB_W
-    normal = check_unit("contact normal", n_W, 3)
-    arms = _rotated(turns, arm)
+    arms, normal = _rotated(turns, contact.p_WC_W - state.p_WB_W), contact.normal_W
     after = np.concatenate((state.v_WB_W, state.w_WB_W)) + draws[:, 6:]
     v_n = (after[:, :3] + np.cross(after[:, 3:], arms)) @ normal
     # Half, as in the plane.
@@ -154,8 +147,8 @@ def spatial_impact_distribution(
                 r_W=arms[strikes],
             ),
             normals_W=normal,
-            frictions=friction,
-            restitutions=restitution,
+            frictions=contact.friction,
+            restitutions=contact.restitution,
             laws=law,
             velocity_tolerance=velocity_tolerance,
         )

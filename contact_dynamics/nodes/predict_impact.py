@@ -139,7 +139,13 @@ def _in_space(strike: Strike, msg: ImpactMsg) -> None:
         _of_two(strike, other, msg)
         return
     if len(strike.contacts) == 1:
-        impact = spatial_impact(before.body, strike.state, **strike.one_contact())
+        impact = spatial_impact(
+            before.body,
+            strike.state,
+            strike.contacts[0],
+            law=strike.law,
+            velocity_tolerance=strike.velocity_tolerance,
+        )
         spatial_impact_to_msg(impact, before, into=msg)
         return
     several = several_impact(
@@ -158,7 +164,13 @@ def _of_two(strike: Strike, other: Subject, msg: ImpactMsg) -> None:
     other_before = Before(body=other.body.mass_properties, state=other.state, state_to_msg=other.state_to_msg)
     if len(strike.contacts) == 1:
         impact = spatial_pair_impact(
-            before.body, strike.state, other_before.body, other.state, **strike.one_contact()
+            before.body,
+            strike.state,
+            other_before.body,
+            other.state,
+            strike.contacts[0],
+            law=strike.law,
+            velocity_tolerance=strike.velocity_tolerance,
         )
         spatial_impact_to_msg(impact, before, other_before, into=msg)
         return
@@ -244,5 +256,11 @@ def _distribution(strike: Strike) -> ImpactDistribution:
         )
         covariance = flight.covariances[0]
     return spatial_impact_distribution(
-        body, strike.state, covariance=covariance, samples=SAMPLES, **strike.one_contact()
+        body,
+        strike.state,
+        strike.contacts[0],
+        covariance=covariance,
+        law=strike.law,
+        velocity_tolerance=strike.velocity_tolerance,
+        samples=SAMPLES,
     )

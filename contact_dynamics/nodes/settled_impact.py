@@ -84,10 +84,7 @@ def settle_in_space(response: Any, question: Question, verdict: ModeVerdict) -> 
         impact = spatial_impact(
             body,
             state,
-            p_WC_W=contacts.p_WC_W[0],
-            n_W=contacts.normals_W[0],
-            friction=float(contacts.frictions[0]),
-            restitution=float(contacts.restitutions[0]),
+            contacts[0],
             velocity_tolerance=question.velocity_tolerance,
         )
         after, msg = impact.state, spatial_impact_to_msg(impact, question.before)

@@ -47,17 +47,6 @@ class Strike:
         subject = self.subject
         return Before(body=subject.body.mass_properties, state=self.state, state_to_msg=subject.state_to_msg)
 
-    def one_contact(self) -> dict[str, Any]:
-        """Return the arguments of the laws for one contact in space."""
-        return {
-            "p_WC_W": self.contacts.p_WC_W[0],
-            "n_W": self.contacts.normals_W[0],
-            "friction": float(self.contacts.frictions[0]),
-            "restitution": float(self.contacts.restitutions[0]),
-            "law": self.law,
-            "velocity_tolerance": self.velocity_tolerance,
-        }
-
 
 def strike_of(request: Any, knowledge: Knowledge) -> Strike:
     """Return the impact that a request means: at the contacts that it carries, or at the next landing.

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from contact_dynamics.contact.contact import Contact
 from contact_dynamics.impact import (
     ImpactOutcome,
     RestitutionLaw,
@@ -62,10 +63,7 @@ def in_space(problem: impact_compliant.Problem) -> tuple[ImpactOutcome, np.ndarr
     answer = spatial_impact(
         MassProperties(mass=problem.mass, I_B=problem.inertia),
         BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=problem.v, w_WB_W=problem.w),
-        p_WC_W=problem.arm,
-        n_W=problem.normal,
-        friction=problem.mu,
-        restitution=problem.e,
+        Contact(p_WC_W=problem.arm, normal_W=problem.normal, friction=problem.mu, restitution=problem.e),
         law=RestitutionLaw.ENERGETIC,
     )
     return answer.outcome, np.concatenate([answer.state.v_WB_W, answer.state.w_WB_W])

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.contact import Contact, ContactSet
 from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact import (
     BodiesImpact,
@@ -71,10 +71,7 @@ def test_a_ball_grips_or_slides(spin: float, beta: float, law: RestitutionLaw) -
         impact = spatial_impact(
             body,
             state,
-            p_WC_W=[0.0, 0.0, 0.0],
-            n_W=[0.0, 0.0, 1.0],
-            friction=friction,
-            restitution=e,
+            Contact(p_WC_W=[0.0, 0.0, 0.0], normal_W=[0.0, 0.0, 1.0], friction=friction, restitution=e),
             law=law,
         )
         if friction > needed:

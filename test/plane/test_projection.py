@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.contact import Contact, ContactSet
 from contact_dynamics.errors import InvalidFieldError, OutOfPlaneError
 from contact_dynamics.impact import planar_impact, spatial_impact
 from contact_dynamics.plane.projection import PlaneOfMotion, best_plane, out_of_plane_speed, project
@@ -214,7 +214,7 @@ def test_a_planar_impact_lifted_to_space_is_the_spatial_impact(
     plane = PlaneOfMotion(normal_W=turn.apply([0.0, -1.0, 0.0]))
     problem = project(BODY, before, touching, plane=plane, force_W=NONE, torque_W=NONE, speed_tolerance=1e-12)
     flat = planar_impact(problem.body, problem.velocity, problem.contacts[0])
-    deep = spatial_impact(BODY, before, p_WC_W=point, n_W=UP, friction=mu, restitution=e)
+    deep = spatial_impact(BODY, before, Contact(p_WC_W=point, normal_W=UP, friction=mu, restitution=e))
     scale = 1e-9 * (
         1.0 + float(np.linalg.norm(deep.impulse_W))
     )  # the path's series are summed to about 1e-12

@@ -14,7 +14,7 @@ Not covered: moments at the contacts.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -141,19 +141,21 @@ def _strike(touching: Touching, states: list[BodyState], contact: int) -> Spatia
     """Return the impact at one contact, and put the states after it in place."""
     bodies, contacts = touching.bodies, touching.contacts
     first, second = touching.pairs[contact]
-    how: dict[str, Any] = {
-        "p_WC_W": contacts.p_WC_W[contact],
-        "n_W": contacts.normals_W[contact],
-        "friction": float(contacts.frictions[contact]),
-        "restitution": float(contacts.restitutions[contact]),
-        "law": touching.restitution_law,
-        # Half, since the approach was judged by another sum with other rounding.
-        "velocity_tolerance": 0.5 * touching.tolerance,
-    }
+    touch, law = contacts[contact], touching.restitution_law
+    # Half, since the approach was judged by another sum with other rounding.
+    tolerance = 0.5 * touching.tolerance
     if second is None:
-        impact = spatial_impact(bodies[first], states[first], **how)
+        impact = spatial_impact(bodies[first], states[first], touch, law=law, velocity_tolerance=tolerance)
     else:
-        impact = spatial_pair_impact(bodies[first], states[first], bodies[second], states[second], **how)
+        impact = spatial_pair_impact(
+            bodies[first],
+            states[first],
+            bodies[second],
+            states[second],
+            touch,
+            law=law,
+            velocity_tolerance=tolerance,
+        )
         if impact.other_state is not None:
             states[second] = impact.other_state
     states[first] = impact.state

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from contact_dynamics.contact.contact import Contact
 from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact import (
     RestitutionLaw,
@@ -116,10 +117,12 @@ def test_spatial_momentum_and_energy(law: RestitutionLaw, seed: int) -> None:
         state,
         second,
         other_state,
-        p_WC_W=point,
-        n_W=normal,
-        friction=float(10.0 ** rng.uniform(-1.5, 0.5)),
-        restitution=float(rng.uniform()),
+        Contact(
+            p_WC_W=point,
+            normal_W=normal,
+            friction=float(10.0 ** rng.uniform(-1.5, 0.5)),
+            restitution=float(rng.uniform()),
+        ),
         law=law,
     )
     assert answer.other_state is not None
@@ -192,10 +195,7 @@ def test_ball_against_the_corner_of_a_free_block() -> None:
         BodyState(p_WB_W=[0.3, 0.0, 1.05], q_WB=IDENTITY, v_WB_W=[0.0, 0.0, -2.0], w_WB_W=np.zeros(3)),
         MassProperties(mass=2.0, I_B=np.diag([0.2, 0.25, 0.3])),
         BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)),
-        p_WC_W=[0.3, 0.0, 1.0],
-        n_W=[0.0, 0.0, 1.0],
-        friction=0.0,
-        restitution=0.8,
+        Contact(p_WC_W=[0.3, 0.0, 1.0], normal_W=[0.0, 0.0, 1.0], friction=0.0, restitution=0.8),
     )
     impulse = 1.8 * 2.0 / (1.0 / 0.5 + 1.0 / 2.0 + 0.3**2 / 0.25)
     assert answer.impulse_W == pytest.approx([0.0, 0.0, impulse], rel=1e-14)
@@ -216,6 +216,8 @@ def test_the_fixed_world_has_no_state_afterwards() -> None:
     point = state.p_WB_W + 0.1
     normal = -state.velocity_of_point(point)
     answer = spatial_impact(
-        body, state, p_WC_W=point, n_W=normal / np.linalg.norm(normal), friction=0.1, restitution=0.1
+        body,
+        state,
+        Contact(p_WC_W=point, normal_W=normal / np.linalg.norm(normal), friction=0.1, restitution=0.1),
     )
     assert answer.other_state is None

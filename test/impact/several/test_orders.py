@@ -213,15 +213,7 @@ def test_one_contact_is_the_single_law(restitution_law: RestitutionLaw) -> None:
         restitutions=contacts.restitutions[:1],
     )
     answer = several_impact(body, state, alone, restitution_law=restitution_law)
-    single = spatial_impact(
-        body,
-        state,
-        p_WC_W=alone.p_WC_W[0],
-        n_W=alone.normals_W[0],
-        friction=float(alone.frictions[0]),
-        restitution=float(alone.restitutions[0]),
-        law=restitution_law,
-    )
+    single = spatial_impact(body, state, alone[0], law=restitution_law)
     assert answer.order == (0,)
     assert answer.impulses_W[0].tolist() == single.impulse_W.tolist()
     outcomes = outcomes_over_orders(body, state, alone, restitution_law=restitution_law)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from contact_dynamics.contact.contact import Contact
 from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact import (
     ImpactOutcome,
@@ -95,9 +96,18 @@ def contacts(cases: list[Case]) -> dict[str, np.ndarray]:
 def single(case: Case, law: RestitutionLaw) -> SpatialImpact:
     """Solve one case with its centre of mass at the origin, so that its arm is exact."""
     body, state, contact = case
-    rest = {name: value for name, value in contact.items() if name != "arm"}
     at_origin = replace(state, p_WB_W=np.zeros(3))
-    return spatial_impact(body, at_origin, p_WC_W=contact["arm"], law=law, **rest)  # type: ignore[arg-type]
+    return spatial_impact(body, at_origin, at(contact["arm"], contact), law=law)
+
+
+def at(p_WC_W: np.ndarray, contact: dict[str, object]) -> Contact:
+    """Return a drawn contact at a place."""
+    return Contact(
+        p_WC_W=p_WC_W,
+        normal_W=contact["n_W"],
+        friction=contact["friction"],
+        restitution=contact["restitution"],
+    )
 
 
 def check_row(batch: SpatialImpacts, i: int, answer: SpatialImpact) -> None:
@@ -165,10 +175,7 @@ def test_two_bodies_equal_the_scalar_call_to_the_last_bit(law: RestitutionLaw) -
             replace(state, p_WB_W=-contact["arm"]),
             other,
             replace(other_state, p_WB_W=-other_contact["arm"]),
-            p_WC_W=np.zeros(3),
-            n_W=contact["n_W"],
-            friction=contact["friction"],
-            restitution=contact["restitution"],
+            at(np.zeros(3), contact),
             law=law,
         )
         check_row(batch, i, answer)
