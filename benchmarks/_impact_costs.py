@@ -84,7 +84,7 @@ def _path(law: RestitutionLaw) -> float:
 
 
 def _planar(law: RestitutionLaw) -> float:
-    return 1e6 * _best(lambda: planar_impact(BODY, VELOCITY, CONTACT, law=law), 5_000)
+    return 1e6 * _best(lambda: planar_impact(BODY, VELOCITY, CONTACT, restitution_law=law), 5_000)
 
 
 def _gauss_seidel() -> float:
@@ -138,7 +138,7 @@ def _batch(law: RestitutionLaw, *, normals: bool) -> float:
             normals=directions if normals else (0.0, 1.0),
             frictions=frictions,
             restitutions=0.5,
-            law=law,
+            restitution_law=law,
         ),
         1,
     )
@@ -193,11 +193,11 @@ def _spatial() -> None:
     for law in RestitutionLaw:
         seconds: dict[ImpactOutcome | str, list[float]] = {}
         for body, state, contact in problems:
-            answer = spatial_impact(body, state, contact, law=law)
-            spent = _quickest(lambda: spatial_impact(body, state, contact, law=law))  # noqa: B023
+            answer = spatial_impact(body, state, contact, restitution_law=law)
+            spent = _quickest(lambda: spatial_impact(body, state, contact, restitution_law=law))  # noqa: B023
             for kind in ("all", answer.outcome):
                 seconds.setdefault(kind, []).append(spent)
-            pair = lambda: spatial_pair_impact(body, state, other, still, contact, law=law)  # noqa: B023, E731
+            pair = lambda: spatial_pair_impact(body, state, other, still, contact, restitution_law=law)  # noqa: B023, E731
             seconds.setdefault("two bodies", []).append(_quickest(pair))
         for kind, spent_on in sorted(seconds.items(), key=lambda item: str(item[0])):
             name = kind.name if isinstance(kind, ImpactOutcome) else kind
@@ -238,7 +238,7 @@ def _print_batches(
             approach = np.einsum("ij,ij->i", contacts["normals_W"], fields["v_WB_W"])
             fields["v_WB_W"] = np.where(approach[:, None] > 0.0, -fields["v_WB_W"], fields["v_WB_W"])
         bodies, chosen = StrikingBodies(**fields), {**contacts, **same_contact}
-        seconds = _best(lambda: spatial_impacts(bodies, laws=law, **chosen), 1)  # noqa: B023
+        seconds = _best(lambda: spatial_impacts(bodies, restitution_laws=law, **chosen), 1)  # noqa: B023
         costs.append(seconds / count)
     numbers = " ".join(f"{1e6 * cost:8.1f}" for cost in costs)
     print(f"  {law.name:>10} {text:>12} {numbers} {1.0 / costs[-1]:12.2e}")
@@ -276,8 +276,8 @@ def _several() -> None:
         restitutions=np.full(4, 0.1),
     )
     for law in SeveralContactsLaw:
-        answer = several_impact(cube, state, contacts, law=law)
-        cost = _best(lambda law=law: several_impact(cube, state, contacts, law=law), 1)  # type: ignore[misc]
+        answer = several_impact(cube, state, contacts, several_contacts_law=law)
+        cost = _best(lambda law=law: several_impact(cube, state, contacts, several_contacts_law=law), 1)  # type: ignore[misc]
         print(
             f"  {law.name:>14} {1e3 * cost:8.2f}   {answer.verdict.name.lower()}, {len(answer.order)} strikes"
         )

@@ -181,7 +181,7 @@ def _rigid(body: MassProperties, law: RestitutionLaw) -> Prediction:
                 Contact(
                     p_WC_W=strike.corner, normal_W=[0.0, 0.0, 1.0], friction=friction, restitution=restitution
                 ),
-                law=law,
+                restitution_law=law,
             )
         except SeparatingContactError:
             return _velocity(strike.before)

@@ -186,7 +186,7 @@ class ContactSet:
 
 def _for_each(values: ArrayLike, n: int, ndim: int = 0) -> ArrayLike:
     """Return one value for all contacts, of so many dimensions, n times; anything else as it is."""
-    return values if np.ndim(values) != ndim else np.array([values] * n)
+    return values if np.ndim(values) != ndim else np.broadcast_to(values, (n, *np.shape(values)))
 
 
 def _together(curvatures: list[Curvatures | None], otherwise: float) -> Curvatures | None:

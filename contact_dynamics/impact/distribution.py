@@ -50,7 +50,7 @@ def planar_impact_distribution(
     contact: PlanarContact,
     *,
     covariance: ArrayLike,
-    law: RestitutionLaw = RestitutionLaw.POISSON,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     samples: int = 10_000,
     seed: int = 0,
@@ -62,7 +62,7 @@ def planar_impact_distribution(
         velocity: Mean of the velocity just before.
         contact: Where, along which normal, with which friction and restitution.
         covariance: (3, 3), of v_x, v_y (m/s) and w (rad/s) before.
-        law: What the coefficient of restitution means.
+        restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A component of the contact's velocity within it counts as zero.
         samples: How many states to draw, an even number; about 0.2 us each.
         seed: Of the draw, so that the same question has the same answer.
@@ -89,7 +89,7 @@ def planar_impact_distribution(
             normals=normal,
             frictions=contact.friction,
             restitutions=contact.restitution,
-            law=law,
+            restitution_law=restitution_law,
             velocity_tolerance=velocity_tolerance,
         )
         after[strikes] = np.column_stack((impacts.v, impacts.w))
@@ -103,7 +103,7 @@ def spatial_impact_distribution(
     contact: Contact,
     *,
     covariance: ArrayLike,
-    law: RestitutionLaw = RestitutionLaw.POISSON,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     samples: int = 2000,
     seed: int = 0,
@@ -118,7 +118,7 @@ def spatial_impact_distribution(
         contact: Where it is at the mean pose, along which normal into the body, friction and restitution.
         covariance: (12, 12), of the state before: position (m), rotation vector (rad, world axes, applied
             after the attitude), linear velocity (m/s), angular velocity (rad/s), each x y z.
-        law: What the coefficient of restitution means.
+        restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A normal or tangential velocity of the contact within it counts as
             zero.
         samples: How many states to draw, an even number; 2000 take some 20 ms, 10 000 some 60 ms.
@@ -149,7 +149,7 @@ def spatial_impact_distribution(
             normals_W=normal,
             frictions=contact.friction,
             restitutions=contact.restitution,
-            laws=law,
+            restitution_laws=restitution_law,
             velocity_tolerance=velocity_tolerance,
         )
         after[strikes] = np.concatenate((impacts.v_WB_W, impacts.w_WB_W), axis=1)

@@ -36,8 +36,8 @@ class Strike:
     seconds: float  # s from the state's stamp
     state: BodyState  # just before
     contacts: ContactSet
-    law: RestitutionLaw
-    several_law: SeveralContactsLaw  # of one instant
+    restitution_law: RestitutionLaw
+    several_contacts_law: SeveralContactsLaw  # of one instant
     velocity_tolerance: float  # m/s
     gravity_W: FloatArray  # (3,), m/s^2, of the flight before
 
@@ -71,8 +71,8 @@ def strike_of(request: Any, knowledge: Knowledge) -> Strike:
         seconds=seconds,
         state=state,
         contacts=contacts,
-        law=_restitution_law(request.restitution_law),
-        several_law=_several_law(request),
+        restitution_law=_restitution_law(request.restitution_law),
+        several_contacts_law=_several_contacts_law(request),
         velocity_tolerance=velocity_tolerance_of(request, knowledge),
         gravity_W=knowledge.parameters.world.gravity_W,
     )
@@ -110,7 +110,7 @@ def _restitution_law(value: int) -> RestitutionLaw:
         raise InvalidFieldError("restitution_law", value, allowed) from None
 
 
-def _several_law(request: Any) -> SeveralContactsLaw:
+def _several_contacts_law(request: Any) -> SeveralContactsLaw:
     if request.several_contacts_law == request.SEQUENTIAL_IN_TIME:
         return SeveralContactsLaw.SEQUENTIAL  # at one instant
     try:

@@ -15,7 +15,7 @@ ROLLING = Contact(
     p_WC_W=[0.0, 0.0, 0.0],
     normal_W=UP,
     friction=0.3,
-    body_curvatures=Curvatures(along=[10.0], across=[0.0], directions_W=[[1.0, 0.0, 0.0]]),
+    body_curvatures=Curvatures(along=[10.0], across=[5.0], directions_W=[[1.0, 0.0, 0.0]]),
 )
 
 
@@ -45,7 +45,7 @@ def test_curvatures_go_with_their_contact() -> None:
     assert wall.body_curvatures is not None
     assert math.isinf(wall.body_curvatures.along[0])
     assert rolling.body_curvatures is not None
-    assert (rolling.body_curvatures.along[0], rolling.body_curvatures.across[0]) == (10.0, 0.0)
+    assert (rolling.body_curvatures.along[0], rolling.body_curvatures.across[0]) == (10.0, 5.0)
     assert ContactSet.of([WALL]).body_curvatures is None
 
 

@@ -303,7 +303,7 @@ class _Sequence:
             self.body,
             landing.state,
             replace(landing.contacts[row], restitution=restitution),
-            law=self.law,
+            restitution_law=self.law,
             # Half, since the approach was judged by another sum with other rounding.
             velocity_tolerance=0.5 * self.tolerance,
         )

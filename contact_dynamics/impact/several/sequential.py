@@ -45,7 +45,7 @@ def bodies_impact(
     contacts: ContactSet,
     pairs: Sequence[tuple[int, int | None]],
     *,
-    law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
+    several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> BodiesImpact:
@@ -57,7 +57,7 @@ def bodies_impact(
         contacts: All that touch, approaching or not; at least one.
         pairs: For each contact the body that its normal points into, and the other one, None for the world;
             indices into ``bodies``.
-        law: The law for several contacts.
+        several_contacts_law: The law for several contacts.
         restitution_law: What the coefficients of restitution mean; ENERGETIC only with SEQUENTIAL.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
 
@@ -71,7 +71,7 @@ def bodies_impact(
     touching = Touching(bodies, contacts, pairs, restitution_law, tolerance)
     before = check_touching(touching, states)
     strikes: tuple[tuple[int, SpatialImpact], ...] = ()
-    if law == SeveralContactsLaw.SEQUENTIAL:
+    if several_contacts_law == SeveralContactsLaw.SEQUENTIAL:
         strikes, after, verdict = strike_in_turn(touching, states)
         impulses = np.zeros((len(contacts), 3))
         for contact, impact in strikes:
@@ -81,7 +81,7 @@ def bodies_impact(
     else:
         impulses, after, verdict = _strike_at_once(touching, states)
     return BodiesImpact(
-        law=law,
+        several_contacts_law=several_contacts_law,
         restitution_law=restitution_law,
         verdict=verdict,
         states=tuple(after),
@@ -145,7 +145,9 @@ def _strike(touching: Touching, states: list[BodyState], contact: int) -> Spatia
     # Half, since the approach was judged by another sum with other rounding.
     tolerance = 0.5 * touching.tolerance
     if second is None:
-        impact = spatial_impact(bodies[first], states[first], touch, law=law, velocity_tolerance=tolerance)
+        impact = spatial_impact(
+            bodies[first], states[first], touch, restitution_law=law, velocity_tolerance=tolerance
+        )
     else:
         impact = spatial_pair_impact(
             bodies[first],
@@ -153,7 +155,7 @@ def _strike(touching: Touching, states: list[BodyState], contact: int) -> Spatia
             bodies[second],
             states[second],
             touch,
-            law=law,
+            restitution_law=law,
             velocity_tolerance=tolerance,
         )
         if impact.other_state is not None:

@@ -46,7 +46,7 @@ def spatial_impact(
     state: BodyState,
     contact: Contact,
     *,
-    law: RestitutionLaw = RestitutionLaw.POISSON,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SpatialImpact:
     """Return what the impact of ``body`` does.
@@ -56,7 +56,7 @@ def spatial_impact(
         state: Pose and velocities just before.
         contact: Where, along which normal into the body, with which friction and restitution. Curvatures play
             no part in an impact.
-        law: What the coefficient of restitution means.
+        restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A normal or tangential velocity of the contact within it counts as
             zero.
 
@@ -64,7 +64,9 @@ def spatial_impact(
         SeparatingContactError: the contact's normal velocity is above the tolerance.
         InvalidFieldError: the tolerance is negative.
     """
-    return _impact(body, state, None, None, contact, law=law, velocity_tolerance=velocity_tolerance)
+    return _impact(
+        body, state, None, None, contact, law=restitution_law, velocity_tolerance=velocity_tolerance
+    )
 
 
 def spatial_pair_impact(
@@ -74,7 +76,7 @@ def spatial_pair_impact(
     other_state: BodyState,
     contact: Contact,
     *,
-    law: RestitutionLaw = RestitutionLaw.POISSON,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SpatialImpact:
     """Return what the impact of two bodies in space does; no moment passes the contact.
@@ -85,14 +87,16 @@ def spatial_pair_impact(
         other: The second body.
         other_state: Of the second body just before.
         contact: Where, along which normal into the first body, with which friction and restitution.
-        law: What the coefficient of restitution means.
+        restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A normal or tangential relative velocity within it counts as zero.
 
     Raises:
         SeparatingContactError: the contact's relative normal velocity is above the tolerance.
         InvalidFieldError: the tolerance is negative.
     """
-    return _impact(body, state, other, other_state, contact, law=law, velocity_tolerance=velocity_tolerance)
+    return _impact(
+        body, state, other, other_state, contact, law=restitution_law, velocity_tolerance=velocity_tolerance
+    )
 
 
 def _impact(
@@ -139,7 +143,7 @@ def _impact(
     columns = np.array([axes.t1, axes.t2, axes.n]).T
     matrix = np.array([[axes.l1, 0.0, axes.k1], [0.0, axes.l2, axes.k2], [axes.k1, axes.k2, axes.kn]])
     return SpatialImpact(
-        law=law,
+        restitution_law=law,
         outcome=path.outcome,
         jams=path.jams,
         state=replace(state, v_WB_W=np.array(v), w_WB_W=np.array(w)),

@@ -74,7 +74,9 @@ def random_body(rng: np.random.Generator) -> tuple[MassProperties, BodyState]:
 @given(seed=st.integers(0, 2**32))
 def test_planar_momentum_and_energy(law: RestitutionLaw, seed: int) -> None:
     first, before, second, other_before, contact, other_r = planar_draw(seed)
-    answer = planar_pair_impact(first, before, second, other_before, contact, other_r=other_r, law=law)
+    answer = planar_pair_impact(
+        first, before, second, other_before, contact, other_r=other_r, restitution_law=law
+    )
     after, other_after = answer.velocity, answer.other_velocity
     assert other_after is not None
     # Angular momentum about the contact, to which each body's centre is at -r.
@@ -123,7 +125,7 @@ def test_spatial_momentum_and_energy(law: RestitutionLaw, seed: int) -> None:
             friction=float(10.0 ** rng.uniform(-1.5, 0.5)),
             restitution=float(rng.uniform()),
         ),
-        law=law,
+        restitution_law=law,
     )
     assert answer.other_state is not None
     before, after = (
@@ -164,8 +166,8 @@ def test_a_heavy_second_body_is_the_world(law: RestitutionLaw, seed: int) -> Non
         contact = replace(contact, normal=(-contact.normal[0], -contact.normal[1]))
     heavy = PlanarBody(mass=1e30, inertia=1e30)
     rest = PlanarVelocity(v=(0.0, 0.0), w=0.0)
-    alone = planar_impact(first, before, contact, law=law)
-    answer = planar_pair_impact(first, before, heavy, rest, contact, other_r=other_r, law=law)
+    alone = planar_impact(first, before, contact, restitution_law=law)
+    answer = planar_pair_impact(first, before, heavy, rest, contact, other_r=other_r, restitution_law=law)
     assert answer.outcome is alone.outcome
     assert answer.impulse == pytest.approx(alone.impulse, rel=1e-12, abs=1e-12)
     assert answer.velocity.v == pytest.approx(alone.velocity.v, rel=1e-12, abs=1e-11)

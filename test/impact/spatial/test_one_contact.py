@@ -71,7 +71,7 @@ def solve(problem: dict[str, object], law: RestitutionLaw = RestitutionLaw.POISS
     names = {"p_WC_W": "p_WC_W", "n_W": "normal_W", "friction": "friction", "restitution": "restitution"}
     contact = Contact(**{names[name]: problem[name] for name in names})
     rest = {name: value for name, value in problem.items() if name not in {"body", "state", *names}}
-    return spatial_impact(problem["body"], problem["state"], contact, law=law, **rest)  # type: ignore[arg-type]
+    return spatial_impact(problem["body"], problem["state"], contact, restitution_law=law, **rest)  # type: ignore[arg-type]
 
 
 # Independent integrations.
@@ -242,7 +242,7 @@ def test_newton_creates_energy_where_friction_stops_the_slide() -> None:
             MassProperties(mass=1.0, I_B=np.eye(3)),
             BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[-0.3, 0.0, -1.0], w_WB_W=np.zeros(3)),
             Contact(p_WC_W=[1.0, 0.0, -1.0], normal_W=UP, friction=0.6, restitution=1.0),
-            law=law,
+            restitution_law=law,
         )
         for law in RestitutionLaw
     }
@@ -320,7 +320,7 @@ def test_planar_problems_have_planar_answers(law: RestitutionLaw, seed: int) -> 
         PlanarBody(mass=mass, inertia=inertia),
         PlanarVelocity(v=tuple(v), w=w),
         PlanarContact(r=tuple(r), normal=(0.0, 1.0), friction=friction, restitution=e),
-        law=law,
+        restitution_law=law,
     )
     # Plane x, y with z as the axis; then the whole problem turned at random.
     turn = random_rotation(rng)
@@ -333,7 +333,7 @@ def test_planar_problems_have_planar_answers(law: RestitutionLaw, seed: int) -> 
         body,
         state,
         Contact(p_WC_W=turn @ [*r, 0.0], normal_W=turn @ [0.0, 1.0, 0.0], friction=friction, restitution=e),
-        law=law,
+        restitution_law=law,
     )
     assert answer.outcome is flat.outcome
     assert answer.jams == flat.jams
@@ -360,13 +360,13 @@ def test_planes_along_the_axes_have_planar_answers_to_rounding(law: RestitutionL
         PlanarBody(mass=mass, inertia=inertia),
         PlanarVelocity(v=tuple(v), w=0.0),
         PlanarContact(r=tuple(r), normal=(0.0, 1.0), friction=friction, restitution=e),
-        law=law,
+        restitution_law=law,
     )
     answer = spatial_impact(
         MassProperties(mass=mass, I_B=inertia * np.diag([0.7, 1.0, 0.8])),
         BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[v[0], 0.0, v[1]], w_WB_W=np.zeros(3)),
         Contact(p_WC_W=[r[0], 0.0, r[1]], normal_W=UP, friction=friction, restitution=e),
-        law=law,
+        restitution_law=law,
     )
     assert answer.outcome is flat.outcome
     assert list(answer.path_events) == [event for event, _ in flat.path]
@@ -570,6 +570,6 @@ def test_weak_coupling_ends_in_the_central_impact(offset: float, law: Restitutio
         body,
         state,
         Contact(p_WC_W=[offset, -0.3 * offset, 0.0], normal_W=UP, friction=0.0, restitution=0.5),
-        law=law,
+        restitution_law=law,
     )
     assert answer.impulse_W == pytest.approx([0.0, 0.0, 2.0 * 1.5e-7], rel=1e-8, abs=1e-22)
