@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.contact_modes import ContactModeAnswer, SpatialModeAnswer
+    from contact_dynamics.contact_modes import PlanarModeAnswer, SpatialModeAnswer
     from contact_dynamics.impact import OrderedOutcomes, SeveralImpact
     from contact_dynamics.nodes.subject import Subject
     from contact_dynamics.plane.projection import PlanarProblem
@@ -128,7 +128,7 @@ def settle_in_plane(
         return
     plane = problem.plane
 
-    def modes_after(velocity: PlanarVelocity) -> ContactModeAnswer:
+    def modes_after(velocity: PlanarVelocity) -> PlanarModeAnswer:
         return planar_contact_modes(
             problem.body,
             velocity,
