@@ -59,6 +59,7 @@ from contact_dynamics.rigid_body.body import (
     kinetic_energy,
     momentum,
 )
+from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.inertia import MassDistribution
 from contact_dynamics.shapes.convex import ConvexShape
 from contact_dynamics.shapes.obstacle import Obstacle
@@ -117,6 +118,7 @@ __all__ = [
     "fit_motion",
     "free_motion",
     "impact_sequence",
+    "inertia",
     "kinetic_energy",
     "momentum",
     "motion_of",
