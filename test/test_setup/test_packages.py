@@ -22,6 +22,7 @@ OWN = {"contact_dynamics", "msg_adapters", "benchmarks", *(path.stem for path in
 KEYS = {
     "colcon_core": "python3-colcon-common-extensions",
     "hypothesis": "python3-hypothesis",
+    "lz4": "mcap-ros2-support",  # the mcap library needs it, and zstandard
     "mcap": "mcap-ros2-support",
     "mcap_ros2": "mcap-ros2-support",
     "mpmath": None,
@@ -32,6 +33,7 @@ KEYS = {
     "scipy": "python3-scipy",
     "typing_extensions": "python3-typing-extensions",
     "yaml": "python3-yaml",
+    "zstandard": "mcap-ros2-support",
 }
 
 
