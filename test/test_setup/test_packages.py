@@ -45,6 +45,7 @@ KEYS = {
     "catkin_pkg": "python3-catkin-pkg-modules",
     "colcon_core": "python3-colcon-common-extensions",
     "hypothesis": "python3-hypothesis",
+    "lz4": "mcap-ros2-support",  # the mcap library needs it, and zstandard
     "mcap": "mcap-ros2-support",
     "mcap_ros2": "mcap-ros2-support",
     "mpmath": None,
@@ -56,6 +57,7 @@ KEYS = {
     "scipy": "python3-scipy",
     "typing_extensions": "python3-typing-extensions",
     "yaml": "python3-yaml",
+    "zstandard": "mcap-ros2-support",
 }
 
 
