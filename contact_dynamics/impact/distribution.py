@@ -136,8 +136,8 @@ def spatial_impact_distribution(
     check_choice("law", law, RestitutionLaw)
     draws = _draw(covariance, 12, samples, seed)
     turns = _rotation_quaternions(draws[:, 3:6])
-    arm = check_array("contact position", p_WC_W, (3,)) - state.p_WB_W
-    normal = check_unit("contact normal", n_W, 3)
+    arm = check_array("p_WC_W", p_WC_W, (3,)) - state.p_WB_W
+    normal = check_unit("n_W", n_W, 3)
     arms = _rotated(turns, arm)
     after = np.concatenate((state.v_WB_W, state.w_WB_W)) + draws[:, 6:]
     v_n = (after[:, :3] + np.cross(after[:, 3:], arms)) @ normal

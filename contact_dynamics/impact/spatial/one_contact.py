@@ -150,8 +150,8 @@ def _impact(
 ) -> SpatialImpact:
     """Return the impact of a body on ``other``; None is the fixed world."""
     check_choice("law", law, RestitutionLaw)
-    normal = check_unit("contact normal", n_W, 3)
-    point = check_array("contact position", p_WC_W, (3,))
+    normal = check_unit("n_W", n_W, 3)
+    point = check_array("p_WC_W", p_WC_W, (3,))
     mu = check_not_negative("friction", friction)
     e = check_within("restitution", restitution, 0.0, 1.0)
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)

@@ -546,8 +546,8 @@ def test_path_runs_from_nothing_to_the_total() -> None:
         ("friction", -0.1, "friction"),
         ("friction", math.nan, "friction"),
         ("restitution", 1.1, "restitution"),
-        ("n_W", [0.0, 0.0, 0.0], "contact normal"),
-        ("p_WC_W", [0.0, math.inf, 0.0], "contact position"),
+        ("n_W", [0.0, 0.0, 0.0], "n_W"),
+        ("p_WC_W", [0.0, math.inf, 0.0], "p_WC_W"),
         ("velocity_tolerance", -1.0, "velocity_tolerance"),
     ],
 )
