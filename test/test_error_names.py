@@ -86,3 +86,19 @@ def test_what_is_not_finite_in_a_batch_is_named_with_its_row(field: str, value: 
     rows[2] = value
     with pytest.raises(InvalidFieldError, match=rf"^{field}\[2\]: found .*(nan|inf).*, allowed is finite"):
         impact.planar_impacts(**{**BATCH, field: rows})
+
+
+@pytest.mark.parametrize("facets", [2, 8.5, 1_000_000])
+@pytest.mark.parametrize("function", [contact_modes.spatial_contact_modes, contact_modes.spatial_wrench_sets])
+def test_facets_are_a_whole_number_within_bounds(function: Callable[..., Any], facets: float) -> None:
+    with pytest.raises(
+        InvalidFieldError, match=rf"^friction_facets: found {facets}, allowed is a whole number"
+    ):
+        modes(function)(friction_facets=facets)
+
+
+def test_one_friction_for_a_set_of_contacts_is_refused_by_name() -> None:
+    with pytest.raises(
+        InvalidFieldError, match=r"^contacts.frictions: found 0.3, allowed is one number for each"
+    ):
+        ContactSet(p_WC_W=np.zeros((1, 3)), normals_W=np.eye(3)[2:], frictions=0.3, restitutions=np.zeros(1))  # type: ignore[arg-type]

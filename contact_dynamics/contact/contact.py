@@ -42,6 +42,8 @@ class ContactSet:
 
     def __post_init__(self) -> None:
         """Check every array and normalise the normals to rounding."""
+        if np.ndim(self.frictions) != 1:
+            raise InvalidFieldError("contacts.frictions", self.frictions, "one number for each contact, (n,)")
         n = len(self.frictions)
         if n > MOST_CONTACTS:
             raise TooLargeError("contacts", f"{n} contacts", f"at most {MOST_CONTACTS}")

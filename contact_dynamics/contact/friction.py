@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from enum import IntEnum
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -23,6 +23,10 @@ from contact_dynamics.tolerances import ROW_TOLERANCE
 if TYPE_CHECKING:
     from contact_dynamics.plane.types import PlanarBody, PlanarContact, Vector2
     from contact_dynamics.validation import FloatArray
+
+
+MOST_FACETS: Final = 1000
+"""Edges of a friction pyramid, which then leaves out 5e-6 of friction; far more would only take memory."""
 
 
 class Turn(IntEnum):
@@ -87,10 +91,10 @@ def linearised_cone(
     leans towards ``towards``, (3,), if given.
 
     Raises:
-        InvalidFieldError: fewer than 3 facets.
+        InvalidFieldError: fewer than 3 facets, more than `MOST_FACETS`, or no whole number of them.
     """
-    if facets < 3:
-        raise InvalidFieldError("friction_facets", facets, "a whole number >= 3")
+    if not isinstance(facets, (int, np.integer)) or not 3 <= facets <= MOST_FACETS:
+        raise InvalidFieldError("friction_facets", facets, f"a whole number >= 3 and <= {MOST_FACETS}")
     one, two = tangents(normal, towards)
     angles = 2.0 * math.pi * np.arange(facets) / facets
     edges: FloatArray = normal + friction * (np.outer(np.cos(angles), one) + np.outer(np.sin(angles), two))
