@@ -52,6 +52,7 @@ from contact_dynamics.motion.integrated import motion_of
 from contact_dynamics.motion.integrated_fit import fit_motion
 from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, best_plane, project_onto_plane
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import (
     BodyState,
     MassProperties,
@@ -59,7 +60,6 @@ from contact_dynamics.rigid_body.body import (
     kinetic_energy,
     momentum,
 )
-from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.inertia import MassDistribution
 from contact_dynamics.shapes.convex import ConvexShape
 from contact_dynamics.shapes.obstacle import Obstacle

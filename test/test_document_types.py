@@ -120,7 +120,12 @@ LISTS: dict[str, dict[str, Any]] = {
     "World": {"gravity_W": [0, 0, -1]},
     "Contact": {"p_WC_W": [0, 0, 0], "normal_W": [0, 0, 1], "friction": 0},
     "TumblingQuestion": {"body": "brick", "gravity_W": [0, 0, -1]},
-    "ContactModeQuestion": {"body": "brick", "force_W": [0, 0, 1], "torque_W": [0, 0, 1], "gravity_W": [0, 0, -1]},
+    "ContactModeQuestion": {
+        "body": "brick",
+        "force_W": [0, 0, 1],
+        "torque_W": [0, 0, 1],
+        "gravity_W": [0, 0, -1],
+    },
     "AtTimes": {"times": [0, 1]},
     "AtStamps": {"stamps_ns": (0, 1)},
     "UntilPlane": {"plane_point": [0, 0, 0], "plane_normal": [0, 0, 1], "body_point": [0, 0, 0]},

@@ -73,7 +73,7 @@ def spatial_refused_modes(
         InvalidFieldError: a wrench that is not finite, or the length is not > 0.
         TooLargeError: more contacts than `spatial_contact_modes` accepts.
     """
-    wrench = np.concatenate([check_array("force", force_W, (3,)), check_array("torque", torque_W, (3,))])
+    wrench = np.concatenate([check_array("force_W", force_W, (3,)), check_array("torque_W", torque_W, (3,))])
     own = body.mean_radius_of_gyration
     length = own if margin_length is None else check_positive("margin_length", margin_length)
     tolerance = answer.velocity_tolerance

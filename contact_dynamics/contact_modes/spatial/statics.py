@@ -64,8 +64,8 @@ def spatial_statics(
         TooLargeError: more than `MOST_EDGES` edges, or more contacts than `spatial_contact_modes` accepts.
     """
     accuracy = check_not_negative("acceleration_tolerance", acceleration_tolerance)
-    force = check_array("force", force_W, (3,))
-    torque = check_array("torque", torque_W, (3,))
+    force = check_array("force_W", force_W, (3,))
+    torque = check_array("torque_W", torque_W, (3,))
     own = body.mean_radius_of_gyration
     length = own if margin_length is None else check_positive("margin_length", margin_length)
     if len(contacts) * friction_facets > MOST_EDGES:

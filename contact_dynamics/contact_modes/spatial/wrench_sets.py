@@ -113,7 +113,7 @@ def spatial_wrench_sets(
     Source: lecture 26, "Force dual for dynamic contact problem"; Huang, Cheng and Mason 2020 for the ways.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
-    wrench = np.concatenate([check_array("force", force_W, (3,)), check_array("torque", torque_W, (3,))])
+    wrench = np.concatenate([check_array("force_W", force_W, (3,)), check_array("torque_W", torque_W, (3,))])
     for mode in modes or ():
         if len(mode) != len(contacts) or set(mode) - set("sfc"):
             raise InvalidFieldError("modes", mode, f"{len(contacts)} letters of s, f and c")
