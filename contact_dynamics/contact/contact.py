@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from contact_dynamics.contact.curvature import Curvatures, check_pairs, checked_
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.tolerances import UNIT_LENGTH_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 MOST_CONTACTS: Final = 10_000
 """Longest list of contacts accepted: far above any real contact set, far below what would stall a service."""
@@ -39,6 +42,21 @@ class ContactSet:
     surfaces: tuple[str, ...] = ()  # the surface that each contact touches; empty: not known
     body_curvatures: Curvatures | None = None  # of the body at each contact; None: its points touch
     surface_curvatures: Curvatures | None = None  # of the world at each contact; None: its flats are touched
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            p_WC_W: ArrayLike,
+            normals_W: ArrayLike,
+            frictions: ArrayLike,
+            restitutions: ArrayLike,
+            surfaces: tuple[str, ...] = ...,
+            body_curvatures: Curvatures | None = ...,
+            surface_curvatures: Curvatures | None = ...,
+        ) -> None:
+            """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
         """Check every array and normalise the normals to rounding."""

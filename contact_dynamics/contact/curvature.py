@@ -36,7 +36,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -44,6 +44,9 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.vectors import tangent_rows
 from contact_dynamics.tolerances import ROW_TOLERANCE, UNIT_LENGTH_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 Pair: TypeAlias = "tuple[float, float]"
 
@@ -59,6 +62,11 @@ class Curvatures:
     along: FloatArray  # (n,), 1/m, along the direction; inf: a corner or the edge of a blade
     across: FloatArray  # (n,), 1/m, along the tangent at right angles to it
     directions_W: FloatArray  # (n, 3), unit, tangent, world axes; zero where both curvatures are equal
+
+    if TYPE_CHECKING:
+
+        def __init__(self, *, along: ArrayLike, across: ArrayLike, directions_W: ArrayLike) -> None:
+            """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
         """Check all three."""

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.contact.on_flats import Touch
+from contact_dynamics.numerics.convex_hull import hull_of
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.on_flats import Side
@@ -68,9 +69,7 @@ def outline(points: FloatArray, frame: FloatArray) -> Outline:
         along = spread @ axes[0]
         ends = [int(along.argmin()), int(along.argmax())]
         return Outline(points[ends], flat[ends], ends)
-    from scipy.spatial import ConvexHull
-
-    order = ConvexHull(flat).vertices.tolist()
+    order = hull_of("vertices", flat).vertices.tolist()
     return Outline(points[order], flat[order], order)
 
 

@@ -22,7 +22,7 @@ from contact_dynamics.impact.planar.batch import planar_impacts
 from contact_dynamics.impact.spatial.batch import StrikingBodies, spatial_impacts
 from contact_dynamics.rotations.many import products, quaternions_of, rotated
 from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, VELOCITY_TOLERANCE
-from contact_dynamics.validation import FloatArray, check_array, check_unit
+from contact_dynamics.validation import FloatArray, check_array, check_choice, check_unit
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -134,6 +134,7 @@ def spatial_impact_distribution(
         InvalidFieldError: as `spatial_impact`; or the covariance is not symmetric and positive semidefinite,
             or the number of samples is odd or outside [2, 1 000 000].
     """
+    check_choice("law", law, RestitutionLaw)
     draws = _draw(covariance, 12, samples, seed)
     turns = quaternions_of(draws[:, 3:6])
     arm = check_array("contact position", p_WC_W, (3,)) - state.p_WB_W

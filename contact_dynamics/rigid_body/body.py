@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rotations.one import cross_matrix, rotation_matrix
 from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, TRIANGLE_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array, check_positive, check_unit
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -29,6 +33,11 @@ class MassProperties:
 
     mass: float  # kg, > 0
     I_B: FloatArray  # (3, 3), kg m^2, about the centre of mass, in body axes
+
+    if TYPE_CHECKING:
+
+        def __init__(self, *, mass: float, I_B: ArrayLike) -> None:
+            """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
         """Check both fields."""
@@ -66,6 +75,19 @@ class BodyState:
     v_WB_W: FloatArray  # (3,), m/s, velocity of the centre of mass, world axes
     w_WB_W: FloatArray  # (3,), rad/s, angular velocity, world axes
     stamp_ns: int = 0  # ns, the time of this state, on whatever clock the caller uses
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            p_WB_W: ArrayLike,
+            q_WB: ArrayLike,
+            v_WB_W: ArrayLike,
+            w_WB_W: ArrayLike,
+            stamp_ns: int = ...,
+        ) -> None:
+            """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
         """Check all fields; the quaternion is normalised to rounding."""

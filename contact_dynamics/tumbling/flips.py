@@ -66,8 +66,8 @@ def next_flips(motion: FreeMotion, count: int, *, covariance: ArrayLike | None =
     if (
         not flips
         or isinstance(rotation, Spin)
-        or rotation.b2 < NEAR_MIDDLE_AXIS
-        or rotation.m1 > NEAR_SEPARATRIX
+        or float(rotation.b2) < NEAR_MIDDLE_AXIS
+        or float(rotation.m1) > NEAR_SEPARATRIX
     ):
         return Flips(seconds=np.zeros(0), deviations=np.zeros(0))
     times = _flip_times(rotation, count, from_seconds=0.0)

@@ -11,3 +11,15 @@ Everything is drawn on one timeline, `stamp`: the stamps of the states, to the n
 at the stamp of the state that it was computed from, never later, so that a live view that follows the newest
 data is not pulled into the future. Poses are stored as float32: this is a picture, not a record.
 """
+
+import os
+from typing import Final
+
+_RUST_LOG: Final = "warn,re_log_encoding::rrd::file_sink=error"
+"""rerun's own level without its warning of files that have no index at their end, as `sinks` writes them."""
+
+if "RUST_LOG" not in os.environ:  # rerun reads it once, when it is imported first
+    os.environ["RUST_LOG"] = _RUST_LOG
+    import rerun as _rerun  # noqa: F401
+
+    del os.environ["RUST_LOG"]

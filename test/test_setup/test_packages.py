@@ -5,8 +5,10 @@ from __future__ import annotations
 import ast
 import os
 import re
+import shutil
 import subprocess
 import sys
+import tarfile
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -18,6 +20,25 @@ ROOT = Path(__file__).parents[2]
 MANIFESTS = (ROOT / "package.xml", ROOT / "contact_dynamics_interfaces" / "package.xml")
 OWN = {"contact_dynamics", "msg_adapters", "benchmarks", *(path.stem for path in (ROOT / "test").iterdir())}
 
+SOURCES = (
+    "benchmarks",
+    "cmake",
+    "config",
+    "contact_dynamics",
+    "contact_dynamics_interfaces",
+    "docs",
+    "examples",
+    "executables",
+    "launch",
+    "msg_adapters",
+    "requirements",
+    "resource",
+    "scripts",
+    "setup",
+    "test",
+)
+"""The folders that a source distribution holds."""
+
 # Where a rosdep key is not called what is imported; None: there is no key, and pip installs it.
 KEYS = {
     "colcon_core": "python3-colcon-common-extensions",
@@ -25,6 +46,7 @@ KEYS = {
     "mcap": "mcap-ros2-support",
     "mcap_ros2": "mcap-ros2-support",
     "mpmath": None,
+    "mypy": "python3-mypy",
     "numpy": "python3-numpy",
     "pytest": "python3-pytest",
     "rerun": None,
@@ -95,6 +117,63 @@ def test_setup_py_takes_the_version_from_package_xml() -> None:
     command = [sys.executable, "setup.py", "--version"]
     answer = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
     assert answer.stdout.split()[-1] == ET.parse(MANIFESTS[0]).getroot().findtext("version")
+
+
+def described(*fields: str) -> list[str]:
+    """What setup.py says of some fields of the metadata, line by line."""
+    command = [sys.executable, "setup.py", "-q", *(f"--{field}" for field in fields)]
+    answer = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    return answer.stdout.splitlines()
+
+
+def test_the_metadata_describe_the_package_and_invent_nobody() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert "\n".join(described("long-description")).strip() == readme.strip()
+    pythons = [f"Programming Language :: Python :: 3.{minor}" for minor in range(10, 15)]
+    assert set(pythons) <= set(described("classifiers"))
+    assert described("maintainer", "maintainer-email", "author", "author-email", "url") == ["None"] * 5
+    # .invalid is reserved: such an address reaches nobody (RFC 2606).
+    emails = [ET.parse(path).getroot().find("maintainer").get("email") for path in MANIFESTS]
+    assert all(email.endswith(".invalid") for email in emails)
+
+
+def test_an_sdist_holds_the_project_and_installs(tmp_path: Path) -> None:
+    leave = shutil.ignore_patterns(
+        ".*", "__pycache__", "*.egg-info", "build", "install", "log", "demo_output"
+    )
+    checkout = shutil.copytree(ROOT, tmp_path / "a checkout", symlinks=True, ignore=leave)
+    command = [sys.executable, "setup.py", "-q", "sdist", "--formats=gztar"]
+    subprocess.run(command, cwd=checkout, capture_output=True, check=True)
+    (archive,) = (checkout / "dist").iterdir()
+    with tarfile.open(archive) as packed:
+        names = {name.partition("/")[2] for name in packed.getnames()}
+    for folder in SOURCES:
+        files = [path for path in (checkout / folder).rglob("*") if path.is_file()]
+        assert {str(path.relative_to(checkout)) for path in files} <= names, folder
+    assert {"Makefile", "LICENSE", "CHANGELOG.md", "package.xml", "colcon_defaults.yaml"} <= names
+    installed = tmp_path / "installed"
+    install = [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--no-build-isolation"]
+    done = subprocess.run(
+        [*install, "--no-index", "--target", installed, archive], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    answer = subprocess.run(
+        [
+            sys.executable,
+            "-c",
+            "import contact_dynamics.command_line as c; print(c.__file__); c.main(['--help'])",
+        ],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(installed)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert answer.returncode == 0, answer.stderr
+    assert answer.stdout.startswith(str(installed))
+    assert "usage: contact-dynamics" in answer.stdout
+    assert (installed / "contact_dynamics" / "demo" / "tosses" / "brick.csv").exists()
+    assert (installed / "share" / "contact_dynamics" / "config" / "server.yaml").exists()
 
 
 def test_colcon_finds_both_packages_from_the_root() -> None:

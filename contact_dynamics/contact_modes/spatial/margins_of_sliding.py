@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.contact_modes.spatial.answer import evidenced
+from contact_dynamics.contact_modes.spatial.cone import nearest_sum
 from contact_dynamics.contact_modes.spatial.problem import search_of
 from contact_dynamics.contact_modes.spatial.wrenches import Way, distinct, supports, wrench_generators
 from contact_dynamics.errors import TooLargeError
@@ -172,13 +173,11 @@ class _Union:
 
 def _next(heap: list[_Boundary], wrench: FloatArray, stretch: FloatArray) -> _Boundary | None:
     """Take the nearest boundary, with its nearest point; None: there are no more."""
-    from scipy.optimize import nnls
-
     while heap:
         side = heapq.heappop(heap)
         if side.nearest is not None:
             return side
-        nearest = nnls((side.spans * stretch).T, wrench * stretch)[0] @ side.spans
+        nearest = nearest_sum(side.spans * stretch, wrench * stretch)[0] @ side.spans
         distance = float(np.linalg.norm((nearest - wrench) * stretch))
         heapq.heappush(heap, side._replace(distance=distance, nearest=nearest))
     return None

@@ -60,6 +60,7 @@ def spatial_statics(
 
     Raises:
         InvalidFieldError: a number that is not allowed, too few facets.
+        UndecidedError: contacts so nearly the same that rounding decides the answer.
         TooLargeError: more than `MOST_EDGES` edges, or more contacts than `spatial_contact_modes` accepts.
     """
     accuracy = check_not_negative("acceleration_tolerance", acceleration_tolerance)

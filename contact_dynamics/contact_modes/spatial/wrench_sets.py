@@ -105,6 +105,7 @@ def spatial_wrench_sets(
 
     Raises:
         InvalidFieldError: as for `spatial_contact_modes`, or modes that are not strings of s, f and c.
+        UndecidedError: contacts so nearly the same that rounding decides the sets.
         TooLargeError: as for `spatial_contact_modes`; more than `MOST_WRENCH_SETS` sets, more than
             `spatial_statics.MOST_EDGES` edges of all pyramids, or too many ways of sliding
             (`ways_of_sliding.MOST_MEETINGS`).

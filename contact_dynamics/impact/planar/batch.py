@@ -16,7 +16,7 @@ from contact_dynamics.impact.energy import energy_change, law_created
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import FloatArray, check_not_negative
+from contact_dynamics.validation import FloatArray, check_choice, check_not_negative
 from contact_dynamics.validation_batches import (
     check_not_negative_rows,
     check_positive_rows,
@@ -107,6 +107,7 @@ def planar_impacts(
             first.
         InvalidFieldError: a number is not allowed; the message names the field and the first row.
     """
+    check_choice("law", law, RestitutionLaw)
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     fields = {
         "masses": check_positive_rows("masses", masses),

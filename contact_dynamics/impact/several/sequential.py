@@ -26,7 +26,7 @@ from contact_dynamics.impact.spatial.one_contact import spatial_impact, spatial_
 from contact_dynamics.numerics.vectors import point_jacobians
 from contact_dynamics.rigid_body.body import inverse_mass_matrix
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_positive
+from contact_dynamics.validation import check_choice, check_positive
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -68,6 +68,8 @@ def bodies_impact(
         InvalidFieldError: no contacts, lists of unequal length, an index that is none, a tolerance that is
             not > 0, or ENERGETIC with SIMULTANEOUS.
     """
+    check_choice("law", law, SeveralContactsLaw)
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     _check_pairs(bodies, states, contacts, pairs)
     touching = Touching(bodies, contacts, pairs, restitution_law, tolerance)

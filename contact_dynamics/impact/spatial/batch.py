@@ -61,6 +61,20 @@ class StrikingBodies:
     w_WB_W: FloatArray  # (N, 3) or (3,), rad/s, world axes
     r_W: FloatArray  # (N, 3) or (3,), m, from the centres of mass to the contacts, world axes
 
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            masses: ArrayLike,
+            inertias_B: ArrayLike,
+            q_WB: ArrayLike,
+            v_WB_W: ArrayLike,
+            w_WB_W: ArrayLike,
+            r_W: ArrayLike,
+        ) -> None:
+            """Take whatever NumPy makes arrays of."""
+
     def __post_init__(self) -> None:
         """Check all fields and make arrays with a leading axis of them."""
         checked = {

@@ -33,7 +33,13 @@ from contact_dynamics.impact.spatial.response import (
 from contact_dynamics.impact.spatial.result import SpatialImpact
 from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_array, check_not_negative, check_unit, check_within
+from contact_dynamics.validation import (
+    check_array,
+    check_choice,
+    check_not_negative,
+    check_unit,
+    check_within,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -143,6 +149,7 @@ def _impact(
     velocity_tolerance: float,
 ) -> SpatialImpact:
     """Return the impact of a body on ``other``; None is the fixed world."""
+    check_choice("law", law, RestitutionLaw)
     normal = check_unit("contact normal", n_W, 3)
     point = check_array("contact position", p_WC_W, (3,))
     mu = check_not_negative("friction", friction)
