@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from benchmarks._quotes import quote
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.contact import Contact, ContactSet
 from contact_dynamics.impact import (
     ImpactOutcome,
     RestitutionLaw,
@@ -95,7 +95,7 @@ def _path(law: RestitutionLaw) -> float:
 
 
 def _planar(law: RestitutionLaw) -> float:
-    return 1e6 * _best(lambda: planar_impact(BODY, VELOCITY, CONTACT, law=law), 5_000)
+    return 1e6 * _best(lambda: planar_impact(BODY, VELOCITY, CONTACT, restitution_law=law), 5_000)
 
 
 def _gauss_seidel() -> float:
@@ -149,7 +149,7 @@ def _batch(law: RestitutionLaw, *, normals: bool) -> float:
             normals=directions if normals else (0.0, 1.0),
             frictions=frictions,
             restitutions=0.5,
-            law=law,
+            restitution_law=law,
         ),
         1,
     )
@@ -182,17 +182,17 @@ def _random(count: int) -> tuple[StrikingBodies, dict[str, Any]]:
 
 def _single(
     bodies: StrikingBodies, contacts: dict[str, FloatArray], i: int
-) -> tuple[MassProperties, BodyState, dict[str, Any]]:
+) -> tuple[MassProperties, BodyState, Contact]:
     body = MassProperties(mass=float(bodies.masses[i]), I_B=bodies.inertias_B[i])
     state = BodyState(
         p_WB_W=np.zeros(3), q_WB=bodies.q_WB[i], v_WB_W=bodies.v_WB_W[i], w_WB_W=bodies.w_WB_W[i]
     )
-    contact = {
-        "p_WC_W": bodies.r_W[i],
-        "n_W": contacts["normals_W"][i],
-        "friction": float(contacts["frictions"][i]),
-        "restitution": float(contacts["restitutions"][i]),
-    }
+    contact = Contact(
+        p_WC_W=bodies.r_W[i],
+        normal_W=contacts["normals_W"][i],
+        friction=float(contacts["frictions"][i]),
+        restitution=float(contacts["restitutions"][i]),
+    )
     return body, state, contact
 
 
@@ -204,11 +204,11 @@ def _spatial() -> None:
     for law in RestitutionLaw:
         seconds: dict[ImpactOutcome | str, list[float]] = {}
         for body, state, contact in problems:
-            answer = spatial_impact(body, state, law=law, **contact)
-            spent = _quickest(lambda: spatial_impact(body, state, law=law, **contact))  # noqa: B023
+            answer = spatial_impact(body, state, contact, restitution_law=law)
+            spent = _quickest(lambda: spatial_impact(body, state, contact, restitution_law=law))  # noqa: B023
             for kind in ("all", answer.outcome):
                 seconds.setdefault(kind, []).append(spent)
-            pair = lambda: spatial_pair_impact(body, state, other, still, law=law, **contact)  # noqa: B023, E731
+            pair = lambda: spatial_pair_impact(body, state, other, still, contact, restitution_law=law)  # noqa: B023, E731
             seconds.setdefault("two bodies", []).append(_quickest(pair))
         for kind, spent_on in sorted(seconds.items(), key=lambda item: str(item[0])):
             name = kind.name if isinstance(kind, ImpactOutcome) else kind
@@ -251,7 +251,7 @@ def _print_batches(
             approach = np.einsum("ij,ij->i", contacts["normals_W"], fields["v_WB_W"])
             fields["v_WB_W"] = np.where(approach[:, None] > 0.0, -fields["v_WB_W"], fields["v_WB_W"])
         bodies, chosen = StrikingBodies(**fields), {**contacts, **same_contact}
-        seconds = _best(lambda: spatial_impacts(bodies, laws=law, **chosen), 1)  # noqa: B023
+        seconds = _best(lambda: spatial_impacts(bodies, restitution_laws=law, **chosen), 1)  # noqa: B023
         costs.append(seconds / count)
     numbers = " ".join(f"{1e6 * cost:8.1f}" for cost in costs)
     if law is RestitutionLaw.POISSON and text in {"any", "balls"}:
@@ -270,11 +270,8 @@ def _uncertain() -> None:
             lambda samples=samples: spatial_impact_distribution(  # type: ignore[misc]
                 cube,
                 state,
+                Contact(p_WC_W=[0.03, 0.04, 0.0], normal_W=[0.0, 0.0, 1.0], friction=0.2, restitution=0.3),
                 covariance=covariance,
-                p_WC_W=[0.03, 0.04, 0.0],
-                n_W=[0.0, 0.0, 1.0],
-                friction=0.2,
-                restitution=0.3,
                 samples=samples,
             ),
             1,
@@ -294,8 +291,8 @@ def _several() -> None:
         restitutions=np.full(4, 0.1),
     )
     for law in SeveralContactsLaw:
-        answer = several_impact(cube, state, contacts, law=law)
-        cost = _best(lambda law=law: several_impact(cube, state, contacts, law=law), 1)  # type: ignore[misc]
+        answer = several_impact(cube, state, contacts, several_contacts_law=law)
+        cost = _best(lambda law=law: several_impact(cube, state, contacts, several_contacts_law=law), 1)  # type: ignore[misc]
         print(
             f"  {law.name:>14} {1e3 * cost:8.2f}   {answer.verdict.name.lower()}, {len(answer.order)} strikes"
         )

@@ -24,7 +24,7 @@ from benchmarks._quotes import quote
 from contact_dynamics.contact_modes import planar_contact_modes
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.judgement import judge_all
-from contact_dynamics.contact_modes.planar.problem import planar_problem
+from contact_dynamics.contact_modes.planar.problem import planar_case
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.tolerances import ACCELERATION_TOLERANCE
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from contact_dynamics.contact_modes.planar.enumeration import Cell
-    from contact_dynamics.contact_modes.planar.problem import PlanarProblem
+    from contact_dynamics.contact_modes.planar.problem import PlanarCase
 
 BODY: Final = PlanarBody(mass=1.0, inertia=1.0)
 AT_REST: Final = PlanarVelocity(v=(0.0, 0.0), w=0.0)
@@ -101,10 +101,10 @@ def best_of(task: Callable[[], object]) -> float:
     return best
 
 
-def problem_of(contacts: list[PlanarContact]) -> PlanarProblem:
+def problem_of(contacts: list[PlanarContact]) -> PlanarCase:
     """Return the problem of a body at rest."""
     at_rest = [(0.0, 0.0)] * len(contacts)
-    return planar_problem(BODY, AT_REST, contacts, at_rest, WRENCH, velocity_tolerance=0.0)
+    return planar_case(BODY, AT_REST, contacts, at_rest, WRENCH, velocity_tolerance=0.0)
 
 
 def enumerate_only(contacts: list[PlanarContact]) -> dict[str, Cell]:

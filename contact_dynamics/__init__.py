@@ -19,13 +19,13 @@ The table of contents, chapters in reading order; everything here needs NumPy an
 - What is refused, and how: `errors`. What counts as zero: `tolerances`.
 """
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.contact import Contact, ContactSet
 from contact_dynamics.contact.curvature import Curvatures
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact_modes import (
-    ConsistentMode,
-    ContactModeAnswer,
     ModeVerdict,
+    PlanarMode,
+    PlanarModeAnswer,
     Refusal,
     RefusedMode,
     planar_contact_modes,
@@ -50,7 +50,7 @@ from contact_dynamics.motion.covariance import propagate_covariance
 from contact_dynamics.motion.free_fit import fit_free_motion
 from contact_dynamics.motion.integrated import motion_of
 from contact_dynamics.motion.integrated_fit import fit_motion
-from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, best_plane, project
+from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, best_plane, project_onto_plane
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.rigid_body.body import (
     BodyState,
@@ -78,9 +78,8 @@ def __getattr__(name: str) -> str:
 __all__ = [
     "Body",
     "BodyState",
-    "ConsistentMode",
+    "Contact",
     "ContactDynamicsError",
-    "ContactModeAnswer",
     "ContactSet",
     "ConvexShape",
     "Curvatures",
@@ -95,6 +94,8 @@ __all__ = [
     "PlanarBody",
     "PlanarContact",
     "PlanarImpact",
+    "PlanarMode",
+    "PlanarModeAnswer",
     "PlanarProblem",
     "PlanarVelocity",
     "PlanarWrench",
@@ -123,7 +124,7 @@ __all__ = [
     "planar_contact_modes",
     "planar_impact",
     "planar_mode_margins",
-    "project",
+    "project_onto_plane",
     "propagate_covariance",
     "several_impact",
     "spatial_contact_modes",

@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact_modes import (
         BodyStatics,
-        ConsistentMode,
-        ContactModeAnswer,
-        ModeMargin,
-        ModeWrenchSet,
+        PlanarMode,
+        PlanarModeAnswer,
+        PlanarModeMargin,
+        PlanarWrenchSet,
         RefusedMode,
         SpatialMode,
         SpatialModeAnswer,
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 def write_planar_answer(
     response: PredictContactMode.Response,
-    answer: ContactModeAnswer,
+    answer: PlanarModeAnswer,
     problem: PlanarProblem,
     partners: tuple[int, ...],
 ) -> None:
@@ -100,14 +100,14 @@ def spatial_modes_to_msgs(modes: Sequence[SpatialMode]) -> list[ContactMode]:
 
 
 def planar_modes_to_msgs(
-    modes: Sequence[ConsistentMode], problem: PlanarProblem, partners: tuple[int, ...]
+    modes: Sequence[PlanarMode], problem: PlanarProblem, partners: tuple[int, ...]
 ) -> list[ContactMode]:
     """Return modes in the plane as messages; contacts share their forces with their mirror images."""
     return [_mode_to_msg(mode, problem, partners) for mode in modes]
 
 
 def write_planar_margins(
-    response: PredictContactMode.Response, margins: Sequence[ModeMargin], plane: PlaneOfMotion
+    response: PredictContactMode.Response, margins: Sequence[PlanarModeMargin], plane: PlaneOfMotion
 ) -> None:
     """Write the margins of the consistent modes into a response that holds those modes, in the same order."""
     for msg, margin in zip(response.modes, margins, strict=True):
@@ -138,7 +138,7 @@ def write_spatial_margins(
         msg.margin_modes = list(margin.modes_beyond)
 
 
-def wrench_set_to_msg(wrenches: ModeWrenchSet, plane: PlaneOfMotion) -> ModeWrenches:
+def wrench_set_to_msg(wrenches: PlanarWrenchSet, plane: PlaneOfMotion) -> ModeWrenches:
     """Return the applied wrenches of one mode."""
     return ModeWrenches(
         mode=wrenches.mode,
@@ -175,7 +175,7 @@ def _wrench_row(wrench: PlanarWrench, plane: PlaneOfMotion) -> FloatArray:
     return np.concatenate([plane.lift(wrench.f), wrench.moment * plane.normal_W])
 
 
-def _mode_to_msg(mode: ConsistentMode, problem: PlanarProblem, partners: tuple[int, ...]) -> ContactMode:
+def _mode_to_msg(mode: PlanarMode, problem: PlanarProblem, partners: tuple[int, ...]) -> ContactMode:
     plane = problem.plane
     return ContactMode(
         mode=mode.mode,

@@ -61,7 +61,7 @@ def spatial_impact_to_msg(
 ) -> ImpactMsg:
     """Return an impact at one contact in space, of a body with the world or with another body."""
     msg = ImpactMsg() if into is None else into
-    msg.restitution_law = int(impact.law)
+    msg.restitution_law = int(impact.restitution_law)
     msg.outcome = int(impact.outcome)
     msg.jams = impact.jams
     msg.converged = True
@@ -110,7 +110,7 @@ def _several_to_msg(
     energy_after = sum(kinetic_energy(one.body, state) for one, state in zip(before, after, strict=True))
     msg = ImpactMsg() if into is None else into
     msg.restitution_law = int(impact.restitution_law)
-    msg.several_contacts_law = int(impact.law)
+    msg.several_contacts_law = int(impact.several_contacts_law)
     msg.outcome = ImpactMsg.NOT_TOLD
     msg.converged = impact.verdict == SeveralVerdict.RESOLVED
     before[0].state_to_msg(after[0], into=msg.state_after)
@@ -233,7 +233,7 @@ def planar_impact_to_msg(
         w_WB_W=before.state.w_WB_W + (impact.velocity.w - problem.velocity.w) * plane.normal_W,
     )
     msg = ImpactMsg() if into is None else into
-    msg.restitution_law = int(impact.law)
+    msg.restitution_law = int(impact.restitution_law)
     msg.outcome = int(impact.outcome)
     msg.jams = impact.jams
     msg.converged = True

@@ -12,10 +12,12 @@ import numpy as np
 import pytest
 
 import contact_dynamics
-from contact_dynamics import applied_wrench, contact_modes, impact, tumbling, uncertainty
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics import contact_modes, impact, tumbling
+from contact_dynamics.contact.contact import Contact, ContactSet
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw, StrikingBodies
+from contact_dynamics.motion import covariance as uncertainty
+from contact_dynamics.motion import forces as applied_wrench
 from contact_dynamics.motion.covariance import PropagationMethod
 from contact_dynamics.motion.forces import WrenchAxes
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
@@ -44,12 +46,7 @@ FLOOR = Surface(
 )
 BOX = Body(name="box", mass_properties=BODY, vertices_B=box_vertices((1.0, 1.0, 1.0)))
 WORLD = World(bodies=(BOX,), surfaces=(FLOOR,), gravity_W=np.array([0.0, 0.0, -9.81]))
-AT = {
-    "p_WC_W": np.array([0.1, 0.0, 0.0]),
-    "n_W": np.array([0.0, 0.0, 1.0]),
-    "friction": 0.3,
-    "restitution": 0.5,
-}
+AT = Contact(p_WC_W=[0.1, 0.0, 0.0], normal_W=[0.0, 0.0, 1.0], friction=0.3, restitution=0.5)
 STRIKING = StrikingBodies(
     masses=1.0,
     inertias_B=0.1 * np.eye(3),
@@ -84,11 +81,11 @@ CALLS: dict[str, Callable[..., Any]] = {
     "planar_several_impact": lambda **law: impact.planar_several_impact(
         PLANAR_BODY, FALLING, [CONTACT], **law
     ),
-    "spatial_impact": lambda **law: impact.spatial_impact(BODY, STATE, **AT, **law),
-    "spatial_pair_impact": lambda **law: impact.spatial_pair_impact(BODY, STATE, BODY, RESTING, **AT, **law),
+    "spatial_impact": lambda **law: impact.spatial_impact(BODY, STATE, AT, **law),
+    "spatial_pair_impact": lambda **law: impact.spatial_pair_impact(BODY, STATE, BODY, RESTING, AT, **law),
     "spatial_impacts": lambda **law: impact.spatial_impacts(STRIKING, **TABLE, **law),
     "spatial_impact_distribution": lambda **law: impact.spatial_impact_distribution(
-        BODY, STATE, covariance=1e-6 * np.eye(12), samples=4, **AT, **law
+        BODY, STATE, AT, covariance=1e-6 * np.eye(12), samples=4, **law
     ),
     "several_impact": lambda **law: impact.several_impact(BODY, STATE, CONTACTS, **law),
     "outcomes_over_orders": lambda **law: impact.outcomes_over_orders(BODY, STATE, CONTACTS, **law),
@@ -105,12 +102,20 @@ CALLS: dict[str, Callable[..., Any]] = {
     "ConstantWrench": applied_wrench.ConstantWrench,
 }
 CHOICES = [
-    *[(name, "law", RestitutionLaw) for name in CALLS if name.startswith(("planar_i", "planar_p"))],
-    *[(name, "law", RestitutionLaw) for name in CALLS if name in {"spatial_impact", "spatial_pair_impact"}],
-    ("spatial_impact_distribution", "law", RestitutionLaw),
-    ("spatial_impacts", "laws", RestitutionLaw),
     *[
-        (name, "law", SeveralContactsLaw)
+        (name, "restitution_law", RestitutionLaw)
+        for name in CALLS
+        if name.startswith(("planar_i", "planar_p"))
+    ],
+    *[
+        (name, "restitution_law", RestitutionLaw)
+        for name in CALLS
+        if name in {"spatial_impact", "spatial_pair_impact"}
+    ],
+    ("spatial_impact_distribution", "restitution_law", RestitutionLaw),
+    ("spatial_impacts", "restitution_laws", RestitutionLaw),
+    *[
+        (name, "several_contacts_law", SeveralContactsLaw)
         for name in ("several_impact", "planar_several_impact", "bodies_impact")
     ],
     *[
@@ -141,7 +146,7 @@ def public_choices() -> set[tuple[str, str]]:
 
 
 def test_no_argument_is_forgotten() -> None:
-    arrays_and_fields = {("spatial_impacts", "laws"), ("ConstantWrench", "axes")}
+    arrays_and_fields = {("spatial_impacts", "restitution_laws"), ("ConstantWrench", "axes")}
     assert public_choices() == {(name, argument) for name, argument, _ in CHOICES} - arrays_and_fields
 
 
@@ -178,14 +183,14 @@ def test_members_are_taken_and_all_else_is_refused_by_name(
     ],
 )
 def test_a_list_of_laws_names_the_row(laws: Any, row: int) -> None:
-    with pytest.raises(InvalidFieldError, match=rf"^laws\[{row}\]: found .* allowed is .*NEWTON"):
-        impact.spatial_impacts(STRIKING, **TABLE, laws=laws)
+    with pytest.raises(InvalidFieldError, match=rf"^restitution_laws\[{row}\]: found .* allowed is .*NEWTON"):
+        impact.spatial_impacts(STRIKING, **TABLE, restitution_laws=laws)
 
 
 def test_a_list_of_laws_may_hold_members_or_values() -> None:
     by_member = impact.spatial_impacts(
-        STRIKING, **TABLE, laws=[RestitutionLaw.NEWTON, RestitutionLaw.POISSON]
+        STRIKING, **TABLE, restitution_laws=[RestitutionLaw.NEWTON, RestitutionLaw.POISSON]
     )
-    by_value = impact.spatial_impacts(STRIKING, **TABLE, laws=np.array([1, 0]))
-    assert by_member.laws.tolist() == by_value.laws.tolist() == [1, 0]
+    by_value = impact.spatial_impacts(STRIKING, **TABLE, restitution_laws=np.array([1, 0]))
+    assert by_member.restitution_laws.tolist() == by_value.restitution_laws.tolist() == [1, 0]
     assert np.array_equal(by_member.impulses_W, by_value.impulses_W)

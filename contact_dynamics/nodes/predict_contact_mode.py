@@ -18,7 +18,7 @@ from contact_dynamics.contact_modes import (
     spatial_statics,
     spatial_wrench_sets,
 )
-from contact_dynamics.contact_modes.planar.problem import MOST_CONTACTS
+from contact_dynamics.contact_modes.planar.problem import MOST_PLANAR_CONTACTS
 from contact_dynamics.contact_modes.spatial.answer import FRICTION_FACETS
 from contact_dynamics.contact_modes.spatial.wrench_sets import WRENCH_FACETS
 from contact_dynamics.errors import InvalidFieldError, OutOfPlaneError, TooLargeError
@@ -74,8 +74,8 @@ def predict_contact_mode(request: Any, response: Any, knowledge: Knowledge) -> N
 def _question(request: Any, knowledge: Knowledge) -> Question:
     subject = subject_of(request, knowledge)
     contacts = contacts_of(request, subject, knowledge)
-    if len(contacts) > MOST_CONTACTS:
-        raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MOST_CONTACTS}")
+    if len(contacts) > MOST_PLANAR_CONTACTS:
+        raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MOST_PLANAR_CONTACTS}")
     force_W = check_array("applied_wrench.force", vector_from_msg(request.applied_wrench.force), (3,))
     return Question(
         subject=subject,

@@ -98,7 +98,7 @@ def predict_impact(request: Any, response: Any, knowledge: Knowledge) -> None:
 def _in_time(request: Any, strike: Strike, knowledge: Knowledge) -> ImpactSequence:
     """Return the strikes from a state on; without one raise `SeparatingContactError` or `NoContactError`."""
     how: dict[str, Any] = {
-        "restitution_law": strike.law,
+        "restitution_law": strike.restitution_law,
         "window": or_configured("strike_window", request.strike_window, STRIKE_WINDOW),
         "most_strikes": request.most_strikes or MOST_STRIKES,
         "hold_step": or_configured("hold_step", request.hold_step, 0.0) or None,
@@ -141,15 +141,21 @@ def _in_space(strike: Strike, msg: ImpactMsg) -> None:
         _of_two(strike, other, msg)
         return
     if len(strike.contacts) == 1:
-        impact = spatial_impact(before.body, strike.state, **strike.one_contact())
+        impact = spatial_impact(
+            before.body,
+            strike.state,
+            strike.contacts[0],
+            restitution_law=strike.restitution_law,
+            velocity_tolerance=strike.velocity_tolerance,
+        )
         spatial_impact_to_msg(impact, before, into=msg)
         return
     several = several_impact(
         before.body,
         strike.state,
         strike.contacts,
-        law=strike.several_law,
-        restitution_law=strike.law,
+        several_contacts_law=strike.several_contacts_law,
+        restitution_law=strike.restitution_law,
         velocity_tolerance=strike.velocity_tolerance,
     )
     several_impact_to_msg(several, before, into=msg)
@@ -160,7 +166,13 @@ def _of_two(strike: Strike, other: Subject, msg: ImpactMsg) -> None:
     other_before = Before(body=other.body.mass_properties, state=other.state, state_to_msg=other.state_to_msg)
     if len(strike.contacts) == 1:
         impact = spatial_pair_impact(
-            before.body, strike.state, other_before.body, other.state, **strike.one_contact()
+            before.body,
+            strike.state,
+            other_before.body,
+            other.state,
+            strike.contacts[0],
+            restitution_law=strike.restitution_law,
+            velocity_tolerance=strike.velocity_tolerance,
         )
         spatial_impact_to_msg(impact, before, other_before, into=msg)
         return
@@ -169,8 +181,8 @@ def _of_two(strike: Strike, other: Subject, msg: ImpactMsg) -> None:
         [strike.state, other.state],
         strike.contacts,
         [(0, 1)] * len(strike.contacts),
-        law=strike.several_law,
-        restitution_law=strike.law,
+        several_contacts_law=strike.several_contacts_law,
+        restitution_law=strike.restitution_law,
         velocity_tolerance=strike.velocity_tolerance,
     )
     pair_impact_to_msg(several, before, other_before, into=msg)
@@ -202,7 +214,7 @@ def _in_plane(request: Any, response: Any, strike: Strike, knowledge: Knowledge)
         problem.body,
         problem.velocity,
         problem.contacts[0],
-        law=strike.law,
+        restitution_law=strike.restitution_law,
         velocity_tolerance=strike.velocity_tolerance,
     )
     planar_impact_to_msg(impact, problem, strike.before, into=response.impact)
@@ -215,8 +227,8 @@ def _several_in_plane(request: Any, strike: Strike, problem: PlanarProblem, msg:
     flat = planar_in_space(problem.body, problem.velocity, problem.contacts, axes_W=problem.plane.axes_W)
     several = several_impact(
         *flat,
-        law=strike.several_law,
-        restitution_law=strike.law,
+        several_contacts_law=strike.several_contacts_law,
+        restitution_law=strike.restitution_law,
         velocity_tolerance=strike.velocity_tolerance,
     )
     velocity = planar_velocity(problem.plane, several.state)
@@ -231,7 +243,7 @@ def _orders(strike: Strike, body: MassProperties, state: BodyState, contacts: Co
         body,
         state,
         contacts,
-        restitution_law=strike.law,
+        restitution_law=strike.restitution_law,
         velocity_tolerance=strike.velocity_tolerance,
     )
 
@@ -246,5 +258,11 @@ def _distribution(strike: Strike) -> ImpactDistribution:
         )
         covariance = flight.covariances[0]
     return spatial_impact_distribution(
-        body, strike.state, covariance=covariance, samples=SAMPLES, **strike.one_contact()
+        body,
+        strike.state,
+        strike.contacts[0],
+        covariance=covariance,
+        restitution_law=strike.restitution_law,
+        velocity_tolerance=strike.velocity_tolerance,
+        samples=SAMPLES,
     )

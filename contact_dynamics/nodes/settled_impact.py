@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.contact_modes import ContactModeAnswer, SpatialModeAnswer
+    from contact_dynamics.contact_modes import PlanarModeAnswer, SpatialModeAnswer
     from contact_dynamics.impact import OrderedOutcomes, SeveralImpact
     from contact_dynamics.nodes.subject import Subject
     from contact_dynamics.plane.projection import PlanarProblem
@@ -84,10 +84,7 @@ def settle_in_space(response: Any, question: Question, verdict: ModeVerdict) -> 
         impact = spatial_impact(
             body,
             state,
-            p_WC_W=contacts.p_WC_W[0],
-            n_W=contacts.normals_W[0],
-            friction=float(contacts.frictions[0]),
-            restitution=float(contacts.restitutions[0]),
+            contacts[0],
             velocity_tolerance=question.velocity_tolerance,
         )
         after, msg = impact.state, spatial_impact_to_msg(impact, question.before)
@@ -131,7 +128,7 @@ def settle_in_plane(
         return
     plane = problem.plane
 
-    def modes_after(velocity: PlanarVelocity) -> ContactModeAnswer:
+    def modes_after(velocity: PlanarVelocity) -> PlanarModeAnswer:
         return planar_contact_modes(
             problem.body,
             velocity,

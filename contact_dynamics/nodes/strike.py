@@ -36,8 +36,8 @@ class Strike:
     seconds: float  # s from the state's stamp
     state: BodyState  # just before
     contacts: ContactSet
-    law: RestitutionLaw
-    several_law: SeveralContactsLaw  # of one instant
+    restitution_law: RestitutionLaw
+    several_contacts_law: SeveralContactsLaw  # of one instant
     velocity_tolerance: float  # m/s
     gravity_W: FloatArray  # (3,), m/s^2, of the flight before
 
@@ -46,17 +46,6 @@ class Strike:
         """What the adapters need of the first body."""
         subject = self.subject
         return Before(body=subject.body.mass_properties, state=self.state, state_to_msg=subject.state_to_msg)
-
-    def one_contact(self) -> dict[str, Any]:
-        """Return the arguments of the laws for one contact in space."""
-        return {
-            "p_WC_W": self.contacts.p_WC_W[0],
-            "n_W": self.contacts.normals_W[0],
-            "friction": float(self.contacts.frictions[0]),
-            "restitution": float(self.contacts.restitutions[0]),
-            "law": self.law,
-            "velocity_tolerance": self.velocity_tolerance,
-        }
 
 
 def strike_of(request: Any, knowledge: Knowledge) -> Strike:
@@ -82,8 +71,8 @@ def strike_of(request: Any, knowledge: Knowledge) -> Strike:
         seconds=seconds,
         state=state,
         contacts=contacts,
-        law=_restitution_law(request.restitution_law),
-        several_law=_several_law(request),
+        restitution_law=_restitution_law(request.restitution_law),
+        several_contacts_law=_several_contacts_law(request),
         velocity_tolerance=velocity_tolerance_of(request, knowledge),
         gravity_W=knowledge.parameters.world.gravity_W,
     )
@@ -121,7 +110,7 @@ def _restitution_law(value: int) -> RestitutionLaw:
         raise InvalidFieldError("restitution_law", value, allowed) from None
 
 
-def _several_law(request: Any) -> SeveralContactsLaw:
+def _several_contacts_law(request: Any) -> SeveralContactsLaw:
     if request.several_contacts_law == request.SEQUENTIAL_IN_TIME:
         return SeveralContactsLaw.SEQUENTIAL  # at one instant
     try:

@@ -11,7 +11,7 @@ import numpy as np
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.errors import InvalidFieldError, NoContactError, TooLargeError
 from contact_dynamics.motion.free_fit import FitResult, fit_free_motion
-from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, best_plane, project
+from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, best_plane, project_onto_plane
 from contact_dynamics.shapes.convex import NO_SHAPE
 from contact_dynamics.validation import check_not_negative
 from contact_dynamics.world import Body
@@ -238,7 +238,7 @@ def planar_problem_of(
         if normal.any()
         else best_plane(body.mass_properties, state, contacts, **inputs)
     )
-    return project(body.mass_properties, state, contacts, plane=plane, **inputs)
+    return project_onto_plane(body.mass_properties, state, contacts, plane=plane, **inputs)
 
 
 def gravity_of(request: Any, knowledge: Knowledge) -> FloatArray:

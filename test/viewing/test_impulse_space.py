@@ -14,7 +14,7 @@ import rerun as rr
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.contact import Contact, ContactSet
 from contact_dynamics.impact.law import ImpactOutcome
 from contact_dynamics.impact.several.orders import several_impact
 from contact_dynamics.impact.spatial.one_contact import spatial_impact, spatial_pair_impact
@@ -211,10 +211,7 @@ def test_between_two_bodies_the_lines_are_those_of_their_relative_motion(
         rod.state,
         bat,
         bat_state,
-        p_WC_W=np.zeros(3),
-        n_W=np.array([0.0, 0.0, 1.0]),
-        friction=2.0,
-        restitution=0.5,
+        Contact(p_WC_W=np.zeros(3), normal_W=np.array([0.0, 0.0, 1.0]), friction=2.0, restitution=0.5),
     )
     assert impact.outcome is ImpactOutcome.STICKS_IN_COMPRESSION
     picture = replace(

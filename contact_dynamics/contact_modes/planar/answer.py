@@ -20,11 +20,11 @@ from contact_dynamics.contact_modes.planar.coincident import coincident
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.judgement import judge_all
 from contact_dynamics.contact_modes.planar.one_contact import single_contact_modes
-from contact_dynamics.contact_modes.planar.problem import contact_velocities, planar_problem
+from contact_dynamics.contact_modes.planar.problem import contact_velocities, planar_case
 from contact_dynamics.contact_modes.planar.result import (
-    ConsistentMode,
-    ContactModeAnswer,
     ModeVerdict,
+    PlanarMode,
+    PlanarModeAnswer,
     RefusedMode,
     verdict_on,
 )
@@ -45,7 +45,7 @@ def planar_contact_modes(
     *,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     acceleration_tolerance: float = ACCELERATION_TOLERANCE,
-) -> ContactModeAnswer:
+) -> PlanarModeAnswer:
     """Return the verdict on a contact set, all consistent modes, and why the others are refused.
 
     Without contacts the one mode is the empty string, free motion.
@@ -53,7 +53,7 @@ def planar_contact_modes(
     Args:
         body: Mass and angular inertia.
         velocity: Of the body.
-        contacts: At most `problem.MOST_CONTACTS`; any may coincide, oppose or repeat another.
+        contacts: At most `problem.MOST_PLANAR_CONTACTS`; any may coincide, oppose or repeat another.
         wrench: Applied to the body besides its contact forces, gravity included.
         velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero.
         acceleration_tolerance: Relative to the applied wrench and the centripetal terms, >= 0: forces and
@@ -61,7 +61,7 @@ def planar_contact_modes(
 
     Raises:
         InvalidFieldError: a tolerance is negative.
-        TooLargeError: more than `problem.MOST_CONTACTS` contacts.
+        TooLargeError: more than `problem.MOST_PLANAR_CONTACTS` contacts.
 
     Source: lecture 26, table and "Basic approach".
     """
@@ -69,7 +69,7 @@ def planar_contact_modes(
     accuracy = check_not_negative("acceleration_tolerance", acceleration_tolerance)
     velocities = contact_velocities(velocity, contacts, v_tolerance)
     approaching = tuple(i for i, (_, v_n) in enumerate(velocities) if v_n < 0.0)
-    modes: list[ConsistentMode] = []
+    modes: list[PlanarMode] = []
     refused: list[RefusedMode] = []
     a_tolerance = 0.0
     if not approaching:
@@ -87,7 +87,7 @@ def planar_contact_modes(
             )
         else:
             same = coincident(contacts, velocities, body.radius_of_gyration)
-            problem = planar_problem(
+            case = planar_case(
                 body,
                 velocity,
                 contacts if same is None else [contacts[i] for i in same.firsts],
@@ -95,13 +95,13 @@ def planar_contact_modes(
                 wrench,
                 velocity_tolerance=v_tolerance,
             )
-            modes, refused = judge_all(problem, kinematic_cells(problem), accuracy)
+            modes, refused = judge_all(case, kinematic_cells(case), accuracy)
             if same is not None:
-                modes = [same.consistent(mode, accuracy * problem.load) for mode in modes]
+                modes = [same.consistent(mode, accuracy * case.load) for mode in modes]
                 refused = [same.refused(mode) for mode in refused]
-            a_tolerance = accuracy * problem.load / body.mass
+            a_tolerance = accuracy * case.load / body.mass
     found = tuple(modes)
-    return ContactModeAnswer(
+    return PlanarModeAnswer(
         verdict=ModeVerdict.IMPACT if approaching else verdict_on(found),
         modes=found,
         refused=tuple(refused),
@@ -123,7 +123,7 @@ def _spin(
 
 def _free_motion(
     body: PlanarBody, contacts: Sequence[PlanarContact], wrench: PlanarWrench, w: float
-) -> ConsistentMode:
+) -> PlanarMode:
     a_x = wrench.f[0] / body.mass
     a_y = wrench.f[1] / body.mass
     alpha = wrench.moment / body.inertia
@@ -134,7 +134,7 @@ def _free_motion(
         c_x = a_x - alpha * r_y - w * w * r_x
         c_y = a_y + alpha * r_x - w * w * r_y
         accelerations.append((c_x * n_y - c_y * n_x, c_x * n_x + c_y * n_y))
-    return ConsistentMode(
+    return PlanarMode(
         mode="s" * len(contacts),
         acceleration=(a_x, a_y),
         angular_acceleration=alpha,

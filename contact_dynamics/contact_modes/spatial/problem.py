@@ -28,7 +28,7 @@ MOST_DYNAMIC_CONTACTS: Final = 32
 """Longest list of touching contacts accepted: a tenth of a second, two where many modes are consistent."""
 
 
-class SpatialMotion:
+class AccelerationMap:
     """Accelerations of the body and of its contact points as affine functions of the contact forces."""
 
     def __init__(
@@ -67,7 +67,7 @@ class SpatialMotion:
 class SpatialCase(NamedTuple):
     """A body with its contacts, none of which approaches."""
 
-    motion: SpatialMotion
+    motion: AccelerationMap
     contacts: ContactSet
     sliding: FloatArray  # (n, 3), m/s, tangential velocities; zero: at rest
     touching: NDArray[np.intp]  # contacts that neither approach nor leave
@@ -101,7 +101,7 @@ def spatial_case(
     w = state.w_WB_W
     if len(r_W) > 0 and np.linalg.norm(w) * _reach(body, r_W, contacts) <= tolerance:
         w = np.zeros(3)
-    motion = SpatialMotion(
+    motion = AccelerationMap(
         body.mass,
         body.inertia_in_world(state.R_WB),
         r_W=r_W,

@@ -22,6 +22,7 @@ Not covered: a resting contact that its own sliding jams.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -304,15 +305,11 @@ class _Sequence:
         return impact.state
 
     def _impact(self, landing: Landing, row: int, *, restitution: float) -> SpatialImpact:
-        contacts = landing.contacts
         return spatial_impact(
             self.body,
             landing.state,
-            p_WC_W=contacts.p_WC_W[row],
-            n_W=contacts.normals_W[row],
-            friction=float(contacts.frictions[row]),
-            restitution=restitution,
-            law=self.law,
+            replace(landing.contacts[row], restitution=restitution),
+            restitution_law=self.law,
             # Half, since the approach was judged by another sum with other rounding.
             velocity_tolerance=0.5 * self.tolerance,
         )

@@ -51,7 +51,7 @@ _OUTCOMES: Final = np.array(
 class PlanarImpacts:
     """The answers to N planar impacts; row i belongs to case i. Meanings as in `PlanarImpact`."""
 
-    law: RestitutionLaw  # the restitution law of all of them
+    restitution_law: RestitutionLaw  # the restitution law of all of them
     outcomes: NDArray[np.int64]  # (N,), values of ImpactOutcome
     v: FloatArray  # (N, 2), m/s, of the centres of mass afterwards, axes of the plane
     w: FloatArray  # (N,), rad/s, afterwards
@@ -85,7 +85,7 @@ def planar_impacts(
     normals: ArrayLike,
     frictions: ArrayLike,
     restitutions: ArrayLike,
-    law: RestitutionLaw = RestitutionLaw.POISSON,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> PlanarImpacts:
     """Return what N planar impacts do; the same as `planar_impact` for each.
@@ -99,7 +99,7 @@ def planar_impacts(
         normals: (N, 2) or (2,), unit, into the bodies.
         frictions: (N,) or one number, >= 0.
         restitutions: (N,) or one number, in [0, 1].
-        law: What the coefficients of restitution mean.
+        restitution_law: What the coefficients of restitution mean.
         velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero.
 
     Raises:
@@ -107,7 +107,7 @@ def planar_impacts(
             first.
         InvalidFieldError: a number is not allowed; the message names the field and the first row.
     """
-    check_choice("law", law, RestitutionLaw)
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     fields = {
         "masses": check_positive_rows("masses", masses),
@@ -127,9 +127,11 @@ def planar_impacts(
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for first in range(0, count, _CHUNK):
             chunk = slice(first, first + _CHUNK)
-            outcomes[chunk] = _strike([x[chunk] for x in columns], results[:, chunk], law, tolerance, first)
+            outcomes[chunk] = _strike(
+                [x[chunk] for x in columns], results[:, chunk], restitution_law, tolerance, first
+            )
     return PlanarImpacts(
-        law=law,
+        restitution_law=restitution_law,
         outcomes=outcomes,
         v=results[:2].T,
         w=results[2],

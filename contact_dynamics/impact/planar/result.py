@@ -14,7 +14,7 @@ from contact_dynamics.plane.types import PlanarVelocity, Vector2
 class PlanarImpact:
     """The answer to one planar impact; contact axes are tangent, normal, and impulses act on the body."""
 
-    law: RestitutionLaw  # the restitution law that was asked for
+    restitution_law: RestitutionLaw  # the restitution law that was asked for
     velocity: PlanarVelocity  # m/s, rad/s, of the body afterwards, axes of the plane
     velocity_before_C: Vector2  # m/s, of the contact before, relative, contact axes; 0: within tolerance
     inverse_inertia: InverseInertia  # 1/kg, the contact's response to impulse

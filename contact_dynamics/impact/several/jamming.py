@@ -146,7 +146,7 @@ def jamming_impact(
         if resolved:
             break
     return SeveralImpact(
-        law=SeveralContactsLaw.SIMULTANEOUS,
+        several_contacts_law=SeveralContactsLaw.SIMULTANEOUS,
         restitution_law=RestitutionLaw.POISSON,
         verdict=SeveralVerdict.RESOLVED if resolved else SeveralVerdict.NOT_CONVERGED,
         state=BodyState(

@@ -14,7 +14,7 @@ from contact_dynamics.validation import FloatArray
 class SpatialImpact:
     """The answer to one impact in space. Impulses act on the body; all arrays are in world axes."""
 
-    law: RestitutionLaw  # the restitution law that was asked for
+    restitution_law: RestitutionLaw  # the restitution law that was asked for
     outcome: ImpactOutcome  # what the contact did
     jams: bool  # whether sliding drove the contact into compression at first
     state: BodyState  # afterwards: the pose of before, new velocities
