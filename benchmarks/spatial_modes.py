@@ -20,7 +20,7 @@ from scipy.optimize import linprog
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.friction import linearised_cone
-from contact_dynamics.contact_modes import spatial_contact_modes, spatial_kinematic_modes
+from contact_dynamics.contact_modes import SpatialContactProblem, contact_modes, spatial_kinematic_modes
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
 if TYPE_CHECKING:
@@ -185,15 +185,15 @@ def run_mechanics() -> None:
         contacts = make(n)
         force = WEIGHT * np.array([share, 0.05 * (share > 0.0), -1.0])
 
-        ask = partial(
-            spatial_contact_modes,
-            BODY,
-            state(),
-            contacts,
+        problem = SpatialContactProblem(
+            body=BODY,
+            state=state(),
+            contacts=contacts,
             force_W=force,
             friction_facets=facets,
             sharpen=False,
         )
+        ask = partial(contact_modes, problem)
         answer = ask()
         seconds = best_of(ask)
         peer = ""
@@ -209,13 +209,15 @@ def run_mechanics() -> None:
     contacts = flush(4)
     print("\na box that slides on a table already, friction exact: ", end="")
     down = (0.0, 0.0, -WEIGHT)
-    seconds = best_of(partial(spatial_contact_modes, BODY, state(1.0), contacts, force_W=down))
+    problem = SpatialContactProblem(body=BODY, state=state(1.0), contacts=contacts, force_W=down)
+    seconds = best_of(partial(contact_modes, problem))
     print(f"{1e3 * seconds:.2f} ms")
     leaning, force = drawn(4), np.array([6.0, 0.5, -WEIGHT])
     for sharpen in (False, True):
-        seconds = best_of(
-            partial(spatial_contact_modes, BODY, state(), leaning, force_W=force, sharpen=sharpen)
+        problem = SpatialContactProblem(
+            body=BODY, state=state(), contacts=leaning, force_W=force, sharpen=sharpen
         )
+        seconds = best_of(partial(contact_modes, problem))
         how = "turned exactly" if sharpen else "on facets"
         print(f"four drawn contacts, friction {how}: {1e3 * seconds:.2f} ms")
 
@@ -226,14 +228,14 @@ def run_answers() -> None:
         f"\n{'answers':>12} {'n':>4} {'what':>22} {'modes':>6} {'one motion':>10} {'tried':>6} {'answer':>12}"
     )
     for n, (what, (x, y, *torque)) in itertools.product(COUNTS[2:], LOADS.items()):
-        ask = partial(
-            spatial_contact_modes,
-            BODY,
-            state(),
-            flush(n),
+        problem = SpatialContactProblem(
+            body=BODY,
+            state=state(),
+            contacts=flush(n),
             force_W=WEIGHT * np.array([x, y, -1.0]),
             torque_W=WEIGHT * np.array(torque),
         )
+        ask = partial(contact_modes, problem)
         answer = ask()
         alone = all(mode.motion_unique for mode in answer.modes)
         print(

@@ -17,7 +17,8 @@ from __future__ import annotations
 import math
 from typing import Final, NamedTuple
 
-from contact_dynamics.contact_modes.planar.result import PlanarMode, Refusal, RefusedMode
+from contact_dynamics.contact_modes.planar.result import PlanarMode
+from contact_dynamics.contact_modes.result import Refusal, RefusedMode
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench, Vector2
 from contact_dynamics.tolerances import LARGEST_NUMBER, ROW_TOLERANCE
 
