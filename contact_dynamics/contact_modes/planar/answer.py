@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from contact_dynamics.contact_modes.letters import SEPARATES
 from contact_dynamics.contact_modes.planar.coincident import coincident
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.judgement import judge_all
@@ -98,7 +99,7 @@ def _free_motion(problem: PlanarContactProblem) -> PlanarMode:
         c_y = a_y + alpha * r_x - w * w * r_y
         accelerations.append((c_x * n_y - c_y * n_x, c_x * n_x + c_y * n_y))
     return PlanarMode(
-        mode="s" * len(contacts),
+        mode=SEPARATES * len(contacts),
         acceleration=(a_x, a_y),
         angular_acceleration=alpha,
         contact_forces=((0.0, 0.0),) * len(contacts),

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from contact_dynamics.contact_modes.letters import PLANAR_LETTERS
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.judgement import judge_all
 from contact_dynamics.contact_modes.planar.problem import touching_case
@@ -64,7 +65,8 @@ def planar_mode_margins(
     consistent = judge_all(case, cells, accuracy)[0] if answer is None else answer.modes
     present = tuple(mode.mode for mode in consistent)
     if len(problem.contacts) == 1:
-        present = tuple(sorted(present, key="slrf".index))  # the order in which `one_contact` tries them
+        # The order in which `one_contact` tries them.
+        present = tuple(sorted(present, key=PLANAR_LETTERS.index))
     found = []
     for mode in present:
         margin, side = _nearest(wrench_set_of(case, mode, cells[mode]), wrench, length)

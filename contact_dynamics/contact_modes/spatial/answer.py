@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
 from contact_dynamics.contact_modes.spatial.exact_friction import Sliding, sharpened
 from contact_dynamics.contact_modes.spatial.least_forces import least_forces, misdirection
@@ -109,15 +110,15 @@ def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool)
     body = motion.free + motion.of_forces @ forces.ravel()
     points = (motion.points @ body).reshape(-1, 3) + motion.turning
     across = points - np.sum(points * contacts.normals_W, axis=1)[:, None] * contacts.normals_W
-    letters = ["s"] * len(contacts)
+    letters = [SEPARATES] * len(contacts)
     directions = np.zeros_like(points)
     for i, letter in zip(touching.tolist(), found.letters, strict=True):
         way = sliding[i] if np.any(sliding[i]) else across[i]
         size = float(np.linalg.norm(way))
         # Without friction one letter stands for both, and the acceleration says which it is.
-        rests = letter.letter == "c" and not np.any(sliding[i]) and size <= STRICT * motion.scale
-        letters[i] = "f" if rests else letter.letter
-        if letters[i] == "c":
+        rests = letter.letter == STAYS and not np.any(sliding[i]) and size <= STRICT * motion.scale
+        letters[i] = STICKS if rests else letter.letter
+        if letters[i] == STAYS:
             directions[i] = way / size
     return SpatialMode(
         mode="".join(letters),

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.contact_modes.letters import STAYS, STICKS
 from contact_dynamics.contact_modes.result import Refusal, RefusedMode
 from contact_dynamics.contact_modes.spatial.kinematic import spatial_kinematic_modes
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
@@ -66,7 +67,7 @@ def spatial_refused_modes(
     if not isinstance(case, SpatialCase):
         return ()
     search = search_of(case, problem.friction_facets)
-    consistent = {mode.mode.replace("f", "c") for mode in answer.modes}
+    consistent = {mode.mode.replace(STICKS, STAYS) for mode in answer.modes}
     metric = np.array([1.0, 1.0, 1.0, length, length, length])
     return tuple(
         _known(case, search, string) or _short(case, search, string, metric)
@@ -78,7 +79,7 @@ def spatial_refused_modes(
 def _known(case: SpatialCase, search: Search, string: str) -> RefusedMode | None:
     """Return the refusal where the forces are known; None: they are not."""
     motion, touching = case.motion, case.touching.tolist()
-    staying = [k for k, i in enumerate(touching) if string[i] == "c"]
+    staying = [k for k, i in enumerate(touching) if string[i] == STAYS]
     if any(len(search.pyramids[k].edges) > 1 for k in staying):
         return None
     normals = np.array([one.normal @ one.point for one in search.touching]).reshape(-1, 7)

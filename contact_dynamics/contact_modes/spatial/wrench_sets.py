@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact_modes.letters import SPATIAL_LETTERS, check_modes
+from contact_dynamics.contact_modes.letters import SEPARATES, SPATIAL_LETTERS, check_modes
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial.statics import MOST_EDGES
 from contact_dynamics.contact_modes.spatial.ways_of_sliding import sliding_range, ways_of
@@ -119,7 +119,7 @@ def spatial_wrench_sets(
 
 
 def _letters(case: SpatialCase, ways: Sequence[Way]) -> str:
-    letters = ["s"] * len(case.contacts)
+    letters = [SEPARATES] * len(case.contacts)
     for i, way in zip(case.touching.tolist(), ways, strict=True):
         letters[i] = way.letter
     return "".join(letters)
