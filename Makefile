@@ -4,7 +4,11 @@ SHELL := /bin/sh
 VENV := .venv
 BIN := $(VENV)/bin
 MADE := $(VENV)/.made
-PIP := $(BIN)/python -m pip --disable-pip-version-check
+INSTALL := setup/install.sh $(VENV)
+
+ifneq ($(words $(VENV)),1)
+$(error VENV: found '$(VENV)', allowed is a folder without spaces in its name)
+endif
 
 # A ROS or a Python environment that the calling shell has sourced stays out of this one.
 unexport AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH LD_LIBRARY_PATH RMW_IMPLEMENTATION
@@ -16,11 +20,11 @@ export PIP_USER := 0
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-slow lint types bench setup venv clean FORCE
+.PHONY: help demo test test-matrix test-slow coverage lint types bench setup venv clean FORCE
 
 help: ## print this
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | while IFS='	' read -r name text; do \
-	    printf '  make %-9s  %s\n' "$$name" "$$text"; done
+	    printf '  make %-11s  %s\n' "$$name" "$$text"; done
 	@echo "  PYTHON=python3.12 chooses the Python (3.10 to 3.14) that $(VENV) is made with."
 
 demo: $(MADE)/package $(MADE)/interfaces ## play a toss and compare predictions with it; VIEW=1 opens the viewer, TOSS=path plays another
@@ -29,8 +33,18 @@ demo: $(MADE)/package $(MADE)/interfaces ## play a toss and compare predictions 
 test: lint types $(MADE)/test ## lint, types and the tests
 	@$(BIN)/python -m pytest
 
+test-matrix: ## the physics with the oldest and newest NumPy and SciPy, on every Python and several kinds of processors
+	@setup/matrix.sh $(VENV)-matrix
+
 test-slow: $(MADE)/test ## the sweeps that are too slow for `make test`
 	@HYPOTHESIS_PROFILE=explore $(BIN)/python -m pytest -m slow
+
+coverage: $(MADE)/test ## which lines the tests do not reach, in coverage_html/ too
+	@$(BIN)/python -m coverage erase
+	@$(BIN)/python -m coverage run -m pytest -q
+	@$(BIN)/python -m coverage combine -q
+	@$(BIN)/python -m coverage html -q -d coverage_html
+	@$(BIN)/python -m coverage report
 
 lint: $(MADE)/test ## ruff: rules and format
 	@$(BIN)/ruff check
@@ -39,14 +53,14 @@ lint: $(MADE)/test ## ruff: rules and format
 types: $(MADE)/test ## mypy
 	@$(BIN)/mypy
 
-bench: $(MADE)/bench ## measure speed and accuracy, peers beside us
-	@$(BIN)/python -m benchmarks
+bench: $(MADE)/bench ## measure speed and accuracy, peers beside us; WRITE=1 renews the numbers in the documents
+	@$(BIN)/python -m benchmarks $(if $(WRITE),--write)
 
 setup: $(MADE)/package $(MADE)/interfaces ## make the environment in .venv and nothing else
 venv: setup
 
-clean: ## remove the environment and what the tools left behind
-	rm -rf $(VENV) build install log *.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache demo_output
+clean: ## remove what make made: the environment, the tools' caches, the demo's output
+	@setup/clean.sh $(VENV)
 
 # Each file in $(MADE) says that a step is done; its prerequisites say what makes the step due again.
 
@@ -56,7 +70,7 @@ $(MADE)/python: FORCE
 RUN := $(addprefix requirements/,core.txt view.txt jazzy.txt build.txt)
 $(MADE)/wheels: $(RUN) requirements/constraints.txt $(MADE)/python
 	@echo "Installing ROS 2 Jazzy and what else runs (about 1 GB; a minute or two)."
-	@$(PIP) install --quiet -c requirements/constraints.txt $(addprefix -r ,$(RUN))
+	@$(INSTALL) -c requirements/constraints.txt $(addprefix -r ,$(RUN))
 	@touch $@
 
 INTERFACES := contact_dynamics_interfaces
@@ -71,22 +85,22 @@ $(MADE)/interfaces: $(addprefix $(INTERFACES)/,CMakeLists.txt package.xml msg sr
 SHARE := $(VENV)/share/contact_dynamics
 INDEX := $(VENV)/share/ament_index/resource_index/packages
 $(MADE)/package: setup.py package.xml pyproject.toml Makefile $(wildcard config launch config/*.yaml launch/*.launch.py) $(MADE)/wheels
-	@$(PIP) install --quiet --no-deps --no-build-isolation --editable .
+	@$(INSTALL) --no-deps --no-build-isolation --editable .
 	@rm -rf $(SHARE)
 	@mkdir -p $(SHARE)/config $(SHARE)/launch $(INDEX)
-	@ln -sf $(CURDIR)/package.xml $(SHARE)/
-	@ln -sf $(CURDIR)/config/*.yaml $(SHARE)/config/
-	@ln -sf $(CURDIR)/launch/*.launch.py $(SHARE)/launch/
-	@ln -sf $(CURDIR)/resource/contact_dynamics $(INDEX)/
-	@ln -sfn $(CURDIR)/executables $(VENV)/lib/contact_dynamics
+	@ln -sf "$(CURDIR)"/package.xml $(SHARE)/
+	@ln -sf "$(CURDIR)"/config/*.yaml $(SHARE)/config/
+	@ln -sf "$(CURDIR)"/launch/*.launch.py $(SHARE)/launch/
+	@ln -sf "$(CURDIR)"/resource/contact_dynamics $(INDEX)/
+	@ln -sfn "$(CURDIR)"/executables $(VENV)/lib/contact_dynamics
 	@touch $@
 
 $(MADE)/test: requirements/test.txt $(MADE)/package $(MADE)/interfaces
 	@echo "Installing what the tests need."
-	@$(PIP) install --quiet -c requirements/constraints.txt -r requirements/test.txt
+	@$(INSTALL) -c requirements/constraints.txt -r requirements/test.txt
 	@touch $@
 
 $(MADE)/bench: requirements/bench.txt $(MADE)/test
 	@echo "Installing what the benchmarks need."
-	@$(PIP) install --quiet -c requirements/constraints.txt -r requirements/bench.txt
+	@$(INSTALL) -c requirements/constraints.txt -r requirements/bench.txt
 	@touch $@

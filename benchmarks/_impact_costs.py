@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from benchmarks._quotes import quote
 from contact_dynamics.contact.contact import Contact, ContactSet
 from contact_dynamics.impact import (
     ImpactOutcome,
@@ -47,16 +48,26 @@ REPEATS: Final = 5
 def run() -> None:
     """Print costs in the plane, in space, and of several contacts."""
     print("One planar impact, us (target: 2)")
-    for law in RestitutionLaw:
-        print(f"  {law.name:>10}  path {_path(law):5.2f}   whole answer {_planar(law):5.2f}")
-    print(f"  {'beside it':>10}  projected Gauss-Seidel to 1e-9 {_gauss_seidel():5.1f}")
+    paths, answers = [_path(law) for law in RestitutionLaw], [_planar(law) for law in RestitutionLaw]
+    for law, path, answer in zip(RestitutionLaw, paths, answers, strict=True):
+        print(f"  {law.name:>10}  path {path:5.2f}   whole answer {answer:5.2f}")
+    quote("impact.planar.path", min(paths), "µs")
+    quote("impact.planar", min(answers), "µs")
+    peer = _gauss_seidel()
+    print(f"  {'beside it':>10}  projected Gauss-Seidel to 1e-9 {peer:5.1f}")
+    quote("impact.planar.gauss_seidel", peer, "µs")
     if importlib.util.find_spec("mujoco"):
-        print(f"  {'':>10}  one step of MuJoCo, of many in an impact {_mujoco_step():5.1f}")
+        step = _mujoco_step()
+        print(f"  {'':>10}  one step of MuJoCo, of many in an impact {step:5.1f}")
+        quote("impact.space.mujoco_step", step, "µs")
     print(f"\nBatches of {CASES} planar impacts, ns a case (target: 150), and cases a second")
+    costs = []
     for text, normals in (("one normal", False), ("a normal a case", True)):
         for law in RestitutionLaw:
             seconds = _batch(law, normals=normals) / CASES
+            costs.append(1e6 * seconds)
             print(f"  {law.name:>10}  {text:>16} {1e9 * seconds:6.0f} {1.0 / seconds:12.2e}")
+    quote("impact.planar.batch", costs, "µs")
     print(f"\nOne impact in space, us, over {DRAWS} random bodies and contacts: median, 90 %, worst")
     _spatial()
     print("\nBatches in space, us a case, and cases a second for the largest; random bodies and contacts")
@@ -202,6 +213,8 @@ def _spatial() -> None:
         for kind, spent_on in sorted(seconds.items(), key=lambda item: str(item[0])):
             name = kind.name if isinstance(kind, ImpactOutcome) else kind
             median, high, worst = 1e6 * np.percentile(spent_on, [50.0, 90.0, 100.0])
+            if kind == "all" and law is RestitutionLaw.POISSON:
+                quote("impact.space", 1e-3 * median, "ms")
             print(f"  {law.name:>10} {name:>24} {len(spent_on):5d} x {median:7.0f} {high:7.0f} {worst:7.0f}")
 
 
@@ -241,6 +254,8 @@ def _print_batches(
         seconds = _best(lambda: spatial_impacts(bodies, restitution_laws=law, **chosen), 1)  # noqa: B023
         costs.append(seconds / count)
     numbers = " ".join(f"{1e6 * cost:8.1f}" for cost in costs)
+    if law is RestitutionLaw.POISSON and text in {"any", "balls"}:
+        quote(f"impact.space.batch.{text}", 1e6 * costs[-1], "µs")
     print(f"  {law.name:>10} {text:>12} {numbers} {1.0 / costs[-1]:12.2e}")
 
 

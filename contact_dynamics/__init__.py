@@ -1,6 +1,6 @@
 """Contact modes, impacts and free tumbling of rigid bodies (Mason's lectures 24 to 27).
 
-The table of contents, chapters in reading order; everything here is plain NumPy and knows no ROS.
+The table of contents, chapters in reading order; everything here needs NumPy and SciPy, and knows no ROS.
 
 - Lecture 24, 25, rigid bodies: `MassProperties`, `BodyState`, momenta and energies (`rigid_body`).
 - Lecture 24, 25, mass properties from particles, shapes and meshes: `MassDistribution` (`inertia`).
@@ -14,7 +14,8 @@ The table of contents, chapters in reading order; everything here is plain NumPy
   (`find_contacts`); `PlanarContact` and its kin in the plane (`planar`), reached from space by a
   `PlaneOfMotion`.
 - Lecture 26, contact modes: `PlanarContactProblem`, `SpatialContactProblem` (`contact_modes`).
-- Lecture 27, impact: `planar_impact`, `spatial_impact`, strikes in time `impact_sequence` (`impact`).
+- Lecture 27, impact: `planar_impact`, `spatial_impact`, several contacts at once `several_impact`, strikes in
+  time `impact_sequence` (`impact`).
 - What is refused, and how: `errors`. What counts as zero: `tolerances`.
 """
 
@@ -49,6 +50,7 @@ from contact_dynamics.motion.integrated import motion_of
 from contact_dynamics.motion.integrated_fit import fit_motion
 from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, best_plane, project_onto_plane
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import (
     BodyState,
     MassProperties,
@@ -61,6 +63,16 @@ from contact_dynamics.shapes.convex import ConvexShape
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.tumbling import FreeMotion, Regime, Trajectory, free_motion, states_of_many
 from contact_dynamics.world import Body, Surface, World, box_vertices
+
+
+def __getattr__(name: str) -> str:
+    """Return ``__version__``, which is looked up where it is asked for."""
+    if name == "__version__":
+        from contact_dynamics.version import version_of_this_package
+
+        return version_of_this_package()
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
 
 __all__ = [
     "Body",
@@ -106,6 +118,7 @@ __all__ = [
     "fit_motion",
     "free_motion",
     "impact_sequence",
+    "inertia",
     "kinetic_energy",
     "momentum",
     "motion_of",

@@ -6,31 +6,51 @@ import argparse
 import sys
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Final, NamedTuple
+
+from contact_dynamics.nodes.arguments import check_arguments
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
 class Verb(NamedTuple):
-    """One verb: where its `main(arguments) -> exit code` is, and what it does."""
+    """One verb: where its `main(arguments) -> exit code` is, where its parser, and what it does."""
 
     module: str
+    parser: str  # module:function; neither needs ROS, so that `--help` works everywhere
+    needs: tuple[str, ...]  # modules that `pip install .` does not bring
     help: str
+
+
+_ROS: Final = ("rclpy", "geometry_msgs.msg", "nav_msgs.msg", "contact_dynamics_interfaces.srv")
 
 
 VERBS: Final = {
     "demo": Verb(
         "contact_dynamics.demo.run",
+        "contact_dynamics.demo.arguments:demo_parser",
+        (*_ROS, "rerun"),
         "play a recorded toss, ask the server about it, compare with what was measured",
     ),
-    "server": Verb("contact_dynamics.nodes.server", "serve contact modes, impacts and tumbling over ROS 2"),
+    "server": Verb(
+        "contact_dynamics.nodes.server",
+        "contact_dynamics.nodes.arguments:server_parser",
+        _ROS,
+        "serve contact modes, impacts and tumbling over ROS 2",
+    ),
     "visualizer": Verb(
         "contact_dynamics.nodes.visualizer",
+        "contact_dynamics.nodes.arguments:visualizer_parser",
+        (*_ROS, "rerun"),
         "show bodies, contacts and predictions in rerun, live or to a file",
     ),
     "toss_publisher": Verb(
-        "contact_dynamics.demo.toss_publisher", "publish a recorded toss as a body's states"
+        "contact_dynamics.demo.toss_publisher",
+        "contact_dynamics.demo.arguments:toss_publisher_parser",
+        _ROS,
+        "publish a recorded toss as a body's states",
     ),
 }
 
@@ -46,21 +66,38 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return _run(given[0], given[1:])
 
 
-def _run(verb: str, arguments: list[str]) -> int:
-    try:
-        module = import_module(VERBS[verb].module)
-    except ModuleNotFoundError as error:
-        if (error.name or "").split(".")[0] in {"contact_dynamics", "msg_adapters"}:
-            raise
-        print(
-            f"contact-dynamics {verb} needs {error.name!r}, which is not installed.\n"
-            "With ROS 2: source it and a workspace with its interface package. Without: `make setup` in\n"
-            "the project's folder installs ROS's own Python packages into .venv (see README.md).",
-            file=sys.stderr,
-        )
+def _run(name: str, arguments: list[str]) -> int:
+    verb = VERBS[name]
+    module, _, function = verb.parser.partition(":")
+    check_arguments(getattr(import_module(module), function)(), arguments)
+    missing = [needed.partition(".")[0] for needed in verb.needs if not _is_installed(needed)]
+    if missing:
+        print(_remedy(name, missing), file=sys.stderr)
         return 3
-    exit_code: int = module.main(arguments)
+    exit_code: int = import_module(verb.module).main(arguments)
     return exit_code
+
+
+def _is_installed(module: str) -> bool:
+    """Return whether a module can be found; a folder without code, as `srv` of the sources is, is none."""
+    try:
+        spec = find_spec(module)
+    except ModuleNotFoundError:
+        return False
+    return spec is not None and spec.origin is not None
+
+
+def _remedy(verb: str, missing: list[str]) -> str:
+    lines = [f"contact-dynamics {verb} needs what is not installed: {', '.join(missing)}."]
+    if "rerun" in missing:
+        lines.append("rerun: the extra [view] brings it. In the project's folder: pip install '.[view]'")
+    if set(missing) - {"rerun"}:
+        lines.append(
+            "ROS 2 Jazzy and the project's interface package. With an installed ROS: source it, and a\n"
+            "workspace in which colcon has built the project. Without: `make setup` in the project's\n"
+            "folder installs all of it into .venv (see README.md)."
+        )
+    return "\n".join(lines)
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -45,6 +45,19 @@ class Body:
     )  # (k, 3), m, corners of the shape, body axes; given, they are short for the polyhedron of these corners
     shape: ConvexShape = NO_SHAPE  # what can touch, body axes
 
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            name: str,
+            mass_properties: MassProperties,
+            p_FB_F: ArrayLike = ...,
+            vertices_B: ArrayLike = ...,
+            shape: ConvexShape = ...,
+        ) -> None:
+            """Take whatever NumPy makes arrays of."""
+
     def __post_init__(self) -> None:
         """Check the arrays, and make corners and shape say the same."""
         object.__setattr__(self, "p_FB_F", check_array("center_of_mass", self.p_FB_F, (3,)))
@@ -102,6 +115,13 @@ class Surface:
     friction: float  # Coulomb's mu, >= 0, between this surface and any body
     restitution: float  # e, in [0, 1], likewise
 
+    if TYPE_CHECKING:
+
+        def __init__(
+            self, *, name: str, p_WS_W: ArrayLike, normal_W: ArrayLike, friction: float, restitution: float
+        ) -> None:
+            """Take whatever NumPy makes arrays of."""
+
     def __post_init__(self) -> None:
         """Check all fields."""
         object.__setattr__(self, "p_WS_W", check_array("point", self.p_WS_W, (3,)))
@@ -128,6 +148,17 @@ class World:
     gravity_W: FloatArray = field(
         default_factory=lambda: np.array(STANDARD_GRAVITY_W)
     )  # (3,), m/s^2, world axes
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            bodies: tuple[Body, ...] = ...,
+            surfaces: tuple[Surface | Obstacle, ...] = ...,
+            gravity_W: ArrayLike = ...,
+        ) -> None:
+            """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
         """Check gravity and that names are unique."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,10 +29,14 @@ if TYPE_CHECKING:
     from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion
     from contact_dynamics.plane.types import PlanarWrench, Vector2
     from contact_dynamics.validation import FloatArray
+    from contact_dynamics_interfaces.srv import PredictContactMode
 
 
 def write_planar_answer(
-    response: Any, answer: PlanarModeAnswer, problem: PlanarProblem, partners: tuple[int, ...]
+    response: PredictContactMode.Response,
+    answer: PlanarModeAnswer,
+    problem: PlanarProblem,
+    partners: tuple[int, ...],
 ) -> None:
     """Write an answer in the plane into a `PredictContactMode` response, in world axes.
 
@@ -50,7 +54,7 @@ def write_planar_answer(
 
 
 def write_spatial_answer(
-    response: Any,
+    response: PredictContactMode.Response,
     answer: SpatialModeAnswer,
     *,
     kinematic_modes: Sequence[str],
@@ -68,7 +72,7 @@ def write_spatial_answer(
     response.friction_facets = answer.friction_facets
 
 
-def write_refused(response: Any, modes: Sequence[RefusedMode]) -> None:
+def write_refused(response: PredictContactMode.Response, modes: Sequence[RefusedMode]) -> None:
     """Write into a response which modes mechanics refuses, and why."""
     response.refused_modes = [refused.mode for refused in modes]
     response.refusals = [int(refused.refusal) for refused in modes]
@@ -102,7 +106,9 @@ def planar_modes_to_msgs(
     return [_mode_to_msg(mode, problem, partners) for mode in modes]
 
 
-def write_planar_margins(response: Any, margins: Sequence[PlanarModeMargin], plane: PlaneOfMotion) -> None:
+def write_planar_margins(
+    response: PredictContactMode.Response, margins: Sequence[PlanarModeMargin], plane: PlaneOfMotion
+) -> None:
     """Write the margins of the consistent modes into a response that holds those modes, in the same order."""
     for msg, margin in zip(response.modes, margins, strict=True):
         msg.margin = margin.margin
@@ -112,7 +118,7 @@ def write_planar_margins(response: Any, margins: Sequence[PlanarModeMargin], pla
         msg.margin_modes = list(margin.modes_beyond)
 
 
-def write_statics(response: Any, statics: BodyStatics) -> None:
+def write_statics(response: PredictContactMode.Response, statics: BodyStatics) -> None:
     """Write the answers to the static questions into a response."""
     response.equilibrium = int(statics.equilibrium)
     response.jammed = int(statics.jammed)
@@ -120,7 +126,9 @@ def write_statics(response: Any, statics: BodyStatics) -> None:
     response.stable_disturbance = statics.stable_disturbance
 
 
-def write_spatial_margins(response: Any, margins: Sequence[SpatialModeMargin]) -> None:
+def write_spatial_margins(
+    response: PredictContactMode.Response, margins: Sequence[SpatialModeMargin]
+) -> None:
     """Write the margins of the consistent modes into a response that holds those modes, in the same order."""
     for msg, margin in zip(response.modes, margins, strict=True):
         msg.margin = margin.margin

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from contact_dynamics.impact import SequenceEnd, SeveralVerdict
+from contact_dynamics.impact.energy import created
 from contact_dynamics.rigid_body.body import kinetic_energy
-from contact_dynamics.tolerances import ENERGY_TOLERANCE
 from contact_dynamics_interfaces.msg import Impact as ImpactMsg
 from contact_dynamics_interfaces.srv import PredictImpact
 from msg_adapters.contacts import flat
@@ -119,7 +119,7 @@ def _several_to_msg(
     msg.contact_velocities_after = flat(impact.velocities_after_W)
     msg.kinetic_energy_before = energy_before
     msg.kinetic_energy_after = energy_after
-    msg.creates_energy = energy_after - energy_before > ENERGY_TOLERANCE * energy_before
+    msg.creates_energy = created(energy_after - energy_before, energy_before)
     if impact.strikes:
         _add_strikes(msg, impact.strikes, len(impact.impulses_W))
     return msg

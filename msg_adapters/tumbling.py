@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from contact_dynamics.tumbling.flips import Flips
     from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves
     from contact_dynamics.validation import FloatArray
+    from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 
 
 def trajectory_to_msg(
@@ -51,7 +52,7 @@ def write_covariances(msg: TrajectoryMsg, carried: CarriedCovariance) -> None:
     msg.covariances_trusted = carried.trusted.tolist()
 
 
-def write_fit(response: Any, fit: FitResult | None) -> None:
+def write_fit(response: PredictImpact.Response | PredictTumbling.Response, fit: FitResult | None) -> None:
     """Write into a response which fit its state came from."""
     if fit is not None:
         response.fit_count = fit.count

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # ruff: noqa: T201
-"""Make the recording of a tossed brick that the demo plays: contact_dynamics/demo/tosses/brick.csv.
+"""Make the recording of a tossed brick that the demo plays: contact_dynamics/measured/tosses/brick.csv.
 
 The motion comes from MuJoCo, so that a prediction of ours is compared with an engine that is not ours; the
 measurement from a model of optical motion capture. `pip install mujoco` first: it is needed for this script

@@ -3,8 +3,8 @@
 # usage: build_interfaces.sh VENV
 set -eu
 
-here=$(cd "$(dirname "$0")/.." && pwd)
-venv=$(cd "$1" && pwd)
+here=$(cd "$(dirname "$0")/.." && pwd -P)
+venv=$(cd "$1" && pwd -P)
 source=$here/contact_dynamics_interfaces
 build=$venv/build/contact_dynamics_interfaces
 log=$build/build.log
@@ -15,7 +15,7 @@ program() { # name, oldest version that serves, requirement for pip
     if [ -n "$found" ] && printf '%s\n%s\n' "$2" "$found" | sort -V -C; then
         command -v "$1"
     else
-        [ -x "$venv/bin/$1" ] || "$venv/bin/python" -m pip install --quiet --disable-pip-version-check "$3" >&2
+        [ -x "$venv/bin/$1" ] || "$here/setup/install.sh" "$venv" "$3" >&2
         echo "$venv/bin/$1"
     fi
 }
@@ -32,7 +32,7 @@ run() {
 cmake=$(program cmake 3.21 'cmake>=3.28,<4')
 ninja=$(program ninja 1.10 'ninja>=1.11')
 
-echo "Building contact_dynamics_interfaces."
+echo "Building contact_dynamics_interfaces (about half a minute)."
 mkdir -p "$build"
 : >"$log"
 export AMENT_PREFIX_PATH="$venv" CMAKE_PREFIX_PATH="$venv"

@@ -56,8 +56,11 @@ raise SystemExit(not (ordinary and version >= [2, 28]))'
         *) refuse "$python is Python $version; 3.10 to 3.14 are supported. To name another one: make PYTHON=python3.12 ..." ;;
     esac
 else
-    lacks "$python does not run. Python 3.10 to 3.14 is needed; to name one: make PYTHON=python3.12 ..." \
-        "python3-dev python3-venv" python3-devel
+    # A shim of pyenv or asdf says here that no version is active that has the command.
+    reason=$("$python" -c 'pass' 2>&1 | sed '/^$/d; s/^/      /')
+    lacks "$python does not run${reason:+, and says:
+$reason
+   } Python 3.10 to 3.14 is needed; to name one: make PYTHON=python3.12 ..." "python3-dev python3-venv" python3-devel
 fi
 
 if ! compiles "${CC:-cc}" c; then

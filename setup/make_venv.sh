@@ -12,7 +12,7 @@ version_of() {
 }
 
 # The programs inside name their folder, so an environment that was moved or copied does not serve.
-if [ -e "$stamp" ] && [ "$(cat "$stamp")" = "$(cd "$venv" && pwd)" ]; then
+if [ -e "$stamp" ] && [ "$(cat "$stamp")" = "$(cd "$venv" && pwd -P)" ]; then
     present=$(version_of "$venv/bin/python")
     # An interpreter that was not asked for by name is only the first environment's default.
     wanted=${asked:+$(version_of "$asked")}
@@ -34,4 +34,4 @@ fi
 echo "Making $venv with Python $(version_of "${asked:-python3}")."
 mkdir -p "$venv/.made"
 "${asked:-python3}" -m venv "$venv"
-(cd "$venv" && pwd) >"$stamp"
+(cd "$venv" && pwd -P) >"$stamp"

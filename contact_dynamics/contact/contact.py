@@ -28,6 +28,9 @@ from contact_dynamics.validation import (
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
 MOST_CONTACTS: Final = 10_000
 """Longest list of contacts accepted: far above any real contact set, far below what would stall a service."""
 

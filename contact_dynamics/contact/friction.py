@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.numerics.vectors import tangents_towards
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
@@ -32,25 +32,7 @@ def linearised_cone(
     """
     if facets < 3:
         raise InvalidFieldError("friction_facets", facets, "a whole number >= 3")
-    one, two = tangents(normal, towards)
+    one, two = tangents_towards(normal, towards)
     angles = 2.0 * math.pi * np.arange(facets) / facets
     edges: FloatArray = normal + friction * (np.outer(np.cos(angles), one) + np.outer(np.sin(angles), two))
     return edges
-
-
-def tangents(normal: FloatArray, towards: FloatArray | None = None) -> tuple[FloatArray, FloatArray]:
-    """Return two unit tangents, (3,) each, that make a right-handed frame (one, two, normal).
-
-    The first leans towards the direction ``towards``, (3,), unless that is along the normal or not given.
-    """
-    if towards is not None:
-        one: FloatArray = towards - np.dot(towards, normal) * normal
-        size = float(np.linalg.norm(one))
-        if size > ROW_TOLERANCE * float(np.linalg.norm(towards)):
-            one = one / size
-            return one, np.cross(normal, one)
-    least = np.zeros(3)
-    least[int(np.abs(normal).argmin())] = 1.0
-    one = np.cross(least, normal)
-    one = one / np.linalg.norm(one)
-    return one, np.cross(normal, one)

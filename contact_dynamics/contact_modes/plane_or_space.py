@@ -158,6 +158,7 @@ def wrench_sets(
 
     Raises:
         InvalidFieldError: not a problem, or modes that are not strings of its letters.
+        UndecidedError: in space, contacts so nearly the same that rounding decides the sets.
         TooLargeError: in space, too many contacts, edges of friction pyramids, ways of sliding or sets.
 
     Source: lecture 26, "Force dual for dynamic contact problem" and "Contact modes for wrench in tray".
@@ -180,6 +181,7 @@ def statics(
 
     Raises:
         InvalidFieldError: not a problem, or the length is not > 0.
+        UndecidedError: in space, contacts so nearly the same that rounding decides the answer.
         TooLargeError: as for `contact_modes`; or, in space, more than 128 edges of all friction pyramids.
     """
     if isinstance(problem, PlanarContactProblem):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 STOP_PATIENCE_S: Final = 10.0
 """How long a process may take to finish its files after SIGINT before it is killed."""
 
+_COMPLAINT: Final = re.compile(r"\b(?:WARN|ERROR|FATAL)\b|^Traceback")
+_LEVEL: Final = re.compile(r"^\[")  # what begins a message of ROS's or rerun's log
+
 
 class Processes:
     """Child processes of one run; leaving the context stops all of them, the newest first."""
@@ -29,6 +33,7 @@ class Processes:
         """Give every child the same ROS domain on this machine alone, and a file for what it prints."""
         self._log_folder = log_folder
         self._running: list[tuple[str, subprocess.Popen[bytes]]] = []
+        self._heard: dict[str, int] = {}  # bytes of what each has printed that were looked at for complaints
         self.ros_environment = {
             "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
             "ROS_DOMAIN_ID": str(claim_domain()),
@@ -59,6 +64,7 @@ class Processes:
                 start_new_session=True,
             )
         self._running.append((verb, process))
+        self._heard[verb] = 0
         return process
 
     def all_alive(self) -> bool:
@@ -73,6 +79,28 @@ class Processes:
     def printed_by(self, verb: str) -> str:
         """Return what a process that is not shown has printed so far."""
         return (self._log_folder / f"{verb}.txt").read_text(encoding="utf-8", errors="replace")
+
+    def new_complaints(self) -> list[str]:
+        """Return what the processes have warned of since the last time, whole lines, each with its verb.
+
+        A message may have several lines: those that follow a complaint up to the next message are its own.
+        """
+        found = []
+        for verb, heard in self._heard.items():
+            path = self._log_folder / f"{verb}.txt"
+            if path.stat().st_size == heard:
+                continue
+            with path.open("rb") as printed:
+                printed.seek(heard)
+                new = printed.read()
+            new = new[: new.rfind(b"\n") + 1]  # the rest is still being written
+            self._heard[verb] = heard + len(new)
+            complains = False
+            for line in new.decode(errors="replace").splitlines():
+                complains = bool(_COMPLAINT.search(line)) or (complains and not _LEVEL.match(line))
+                if complains:
+                    found.append(f"{verb}: {line}")
+        return found
 
     def stop(self) -> None:
         """Ask each process to finish, wait, and kill the one that does not."""

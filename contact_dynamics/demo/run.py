@@ -6,9 +6,9 @@ stopped at the end, however it comes.
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import os
+import shlex
 import sys
 import time
 from datetime import datetime, timezone
@@ -18,16 +18,19 @@ from typing import TYPE_CHECKING, Final
 import rclpy
 from rclpy.signals import SignalHandlerOptions
 
+from contact_dynamics.demo.arguments import demo_parser
 from contact_dynamics.demo.comparison import print_table
 from contact_dynamics.demo.parameters import write_parameters
 from contact_dynamics.demo.processes import Processes
 from contact_dynamics.demo.questioner import Questioner
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.measured.events import measure_events
-from contact_dynamics.measured.read_toss import DEFAULT_RECORDING, read_toss
+from contact_dynamics.measured.read_toss import read_toss
+from contact_dynamics.nodes.ros_log_directory import ensure_ros_log_directory
 from contact_dynamics.nodes.running import stop_signals
 
 if TYPE_CHECKING:
+    import argparse
     import threading
 
     from contact_dynamics.measured.recorded_toss import Toss
@@ -35,12 +38,14 @@ if TYPE_CHECKING:
 LISTENERS: Final = 3
 """Subscriptions that the toss waits for: the server's, the visualizer's and this process's."""
 
+PICTURE: Final = "toss.rrd"
+
 _DRAIN_S: Final = 0.5  # for what is still on its way to log and picture when the toss is over
 
 
 def main(arguments: list[str]) -> int:
     """Run the demo; return the exit code."""
-    given = _arguments(arguments)
+    given = demo_parser().parse_args(arguments)
     try:
         toss = read_toss(given.toss)
     except (ContactDynamicsError, OSError) as error:
@@ -51,9 +56,12 @@ def main(arguments: list[str]) -> int:
     except OSError as error:
         print(f"--output: found {given.output!r}, allowed is a folder to write in ({error})", file=sys.stderr)
         return 2
+    ensure_ros_log_directory()
     try:
         with stop_signals() as stop, Processes(folder) as processes:
             asked = _play(toss, given, folder, processes, stop)
+            processes.stop()
+            _tell(processes)
     except KeyboardInterrupt:
         print("\nstopped", file=sys.stderr)
         return 130
@@ -62,8 +70,9 @@ def main(arguments: list[str]) -> int:
         return 1
     if not given.quiet:
         print_table(toss, measure_events(toss), asked)
+    print(f"\nto look at the picture: {_opening(folder / PICTURE)}")
     print(f"\nlog and picture ({asked.received} states):")
-    for path in (*sorted(folder.glob("*/*.mcap")), folder / "toss.rrd"):
+    for path in (*sorted(folder.glob("*/*.mcap")), folder / PICTURE):
         print(path)
     return 0
 
@@ -74,13 +83,15 @@ def _play(
     def go_on() -> bool:
         if stop.is_set():
             raise KeyboardInterrupt
-        return processes.all_alive()
+        processes.all_alive()
+        _tell(processes)
+        return True
 
     print(f"playing {toss.source}: {len(toss)} states at {toss.rate:g} Hz", flush=True)
     parameters = folder / "parameters.yaml"
     write_parameters(parameters, toss, log_directory=folder)
     processes.start("server", ["--params-file", str(parameters)])
-    picture = ["-p", f"rrd_path:={folder / 'toss.rrd'}", "-p", f"spawn:={'true' if given.view else 'false'}"]
+    picture = ["-p", f"rrd_path:={folder / PICTURE}", "-p", f"spawn:={'true' if given.view else 'false'}"]
     processes.start("visualizer", ["--params-file", str(parameters), "--ros-args", *picture])
     publisher = processes.start("toss_publisher", ["--toss", given.toss, "--listeners", str(LISTENERS)])
     os.environ.update(processes.ros_environment)
@@ -98,26 +109,21 @@ def _play(
     return questioner
 
 
-def _arguments(arguments: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="contact-dynamics demo",
-        description="Play a recorded toss, ask the server about it, compare with what was measured.",
-    )
-    parser.add_argument(
-        "--toss",
-        default=str(DEFAULT_RECORDING),
-        metavar="PATH",
-        help="recording: a .csv like the package's own, or measured cube tosses, .npz#INDEX",
-    )
-    parser.add_argument("--view", action="store_true", help="open rerun's viewer and watch live")
-    parser.add_argument(
-        "--output",
-        default="demo_output",
-        metavar="FOLDER",
-        help="where the run's folder goes (default: %(default)s)",
-    )
-    parser.add_argument("--quiet", action="store_true", help="no table")
-    return parser.parse_args(arguments)
+def _tell(processes: Processes) -> None:
+    for complaint in processes.new_complaints():
+        print(complaint, file=sys.stderr, flush=True)
+
+
+def _opening(picture: Path) -> str:
+    """Return the command, for a shell, that opens a picture from the folder where the demo was started."""
+    rerun = Path(sys.executable).with_name("rerun")
+    command = [_from_here(rerun) if rerun.exists() else "rerun", _from_here(picture)]
+    return shlex.join(command)
+
+
+def _from_here(path: Path) -> str:
+    here = Path.cwd()
+    return str(path.relative_to(here) if path.is_relative_to(here) else path)
 
 
 def _new_folder(output: str) -> Path:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 import time
 from typing import Final
@@ -13,9 +12,11 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
+from contact_dynamics.demo.arguments import toss_publisher_parser
 from contact_dynamics.errors import ContactDynamicsError
-from contact_dynamics.measured.read_toss import DEFAULT_RECORDING, read_toss
+from contact_dynamics.measured.read_toss import read_toss
 from contact_dynamics.measured.recorded_toss import Toss
+from contact_dynamics.nodes.ros_log_directory import ensure_ros_log_directory
 from msg_adapters.odometry import odometry_from_body_state
 
 WORLD_FRAME: Final = "world"
@@ -74,24 +75,13 @@ class TossPublisher(Node):
 
 def main(arguments: list[str]) -> int:
     """Publish one toss; return the exit code."""
-    parser = argparse.ArgumentParser(
-        prog="contact-dynamics toss_publisher", description="Publish a recorded toss as a body's states."
-    )
-    parser.add_argument(
-        "--toss",
-        default=DEFAULT_RECORDING,
-        metavar="PATH",
-        help="recording: our .csv, or cube tosses .npz#INDEX",
-    )
-    parser.add_argument(
-        "--listeners", type=int, default=1, metavar="N", help="wait for so many subscriptions"
-    )
-    given = parser.parse_args(arguments)
+    given = toss_publisher_parser().parse_args(arguments)
     try:
         toss = read_toss(given.toss)
     except (ContactDynamicsError, OSError) as error:
         print(error, file=sys.stderr)
         return 2
+    ensure_ros_log_directory()
     rclpy.init(args=[])
     publisher = TossPublisher(toss)
     try:

@@ -20,8 +20,9 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.impact.planar.batch import planar_impacts
 from contact_dynamics.impact.spatial.batch import StrikingBodies, spatial_impacts
+from contact_dynamics.rotations.many import products, quaternions_of, rotated
 from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, VELOCITY_TOLERANCE
-from contact_dynamics.validation import FloatArray, check_array
+from contact_dynamics.validation import FloatArray, check_array, check_choice
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -128,9 +129,10 @@ def spatial_impact_distribution(
         InvalidFieldError: as `spatial_impact`; or the covariance is not symmetric and positive semidefinite,
             or the number of samples is odd or outside [2, 1 000 000].
     """
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
     draws = _draw(covariance, 12, samples, seed)
-    turns = _rotation_quaternions(draws[:, 3:6])
-    arms, normal = _rotated(turns, contact.p_WC_W - state.p_WB_W), contact.normal_W
+    turns = quaternions_of(draws[:, 3:6])
+    arms, normal = rotated(turns, contact.p_WC_W - state.p_WB_W), contact.normal_W
     after = np.concatenate((state.v_WB_W, state.w_WB_W)) + draws[:, 6:]
     v_n = (after[:, :3] + np.cross(after[:, 3:], arms)) @ normal
     # Half, as in the plane.
@@ -141,7 +143,7 @@ def spatial_impact_distribution(
             StrikingBodies(
                 masses=np.array(body.mass),
                 inertias_B=body.I_B,
-                q_WB=_quaternion_products(turns[strikes], state.q_WB),
+                q_WB=products(turns[strikes], state.q_WB),
                 v_WB_W=after[strikes, :3],
                 w_WB_W=after[strikes, 3:],
                 r_W=arms[strikes],
@@ -182,23 +184,3 @@ def _distribution(after: FloatArray, whole: FloatArray, outcomes: np.ndarray) ->
         missed=1.0 - len(outcomes) / samples,
         samples=samples,
     )
-
-
-def _rotation_quaternions(vectors: FloatArray) -> FloatArray:
-    """Return the quaternions x, y, z, w, (n, 4), of rotation vectors, (n, 3), rad."""
-    angles = np.linalg.norm(vectors, axis=1)
-    halves = 0.5 * np.sinc(angles / (2.0 * np.pi))
-    return np.column_stack((halves[:, None] * vectors, np.cos(0.5 * angles)))
-
-
-def _quaternion_products(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return the rotation ``b``, (4,), followed by each of ``a``, (n, 4), quaternions x, y, z, w."""
-    vectors = a[:, 3:] * b[:3] + b[3] * a[:, :3] + np.cross(a[:, :3], b[:3])
-    return np.column_stack((vectors, a[:, 3] * b[3] - a[:, :3] @ b[:3]))
-
-
-def _rotated(quaternions: FloatArray, vector: FloatArray) -> FloatArray:
-    """Return ``vector``, (3,), turned by each of the quaternions, (n, 4)."""
-    twice = 2.0 * np.cross(quaternions[:, :3], vector)
-    rotated: FloatArray = vector + quaternions[:, 3:] * twice + np.cross(quaternions[:, :3], twice)
-    return rotated

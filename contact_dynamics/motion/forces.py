@@ -9,11 +9,14 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass, field
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.validation import FloatArray, check_array, check_not_negative
+from contact_dynamics.validation import FloatArray, check_array, check_choice, check_not_negative
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 
 class WrenchAxes(enum.IntEnum):
@@ -28,17 +31,25 @@ class ConstantWrench:
     """A force through the centre of mass and a torque about it that stay as they are.
 
     Raises:
-        InvalidFieldError: not three finite numbers each.
+        InvalidFieldError: not three finite numbers each, or axes that are none of `WrenchAxes`.
     """
 
     force: FloatArray = field(default_factory=lambda: np.zeros(3))  # (3,), N, in `axes`
     torque: FloatArray = field(default_factory=lambda: np.zeros(3))  # (3,), N m, in `axes`
     axes: WrenchAxes = WrenchAxes.WORLD
 
+    if TYPE_CHECKING:
+
+        def __init__(
+            self, *, force: ArrayLike = ..., torque: ArrayLike = ..., axes: WrenchAxes = ...
+        ) -> None:
+            """Take whatever NumPy makes arrays of."""
+
     def __post_init__(self) -> None:
-        """Check both arrays."""
+        """Check all fields."""
         object.__setattr__(self, "force", check_array("force", self.force, (3,)))
         object.__setattr__(self, "torque", check_array("torque", self.torque, (3,)))
+        check_choice("axes", self.axes, WrenchAxes)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

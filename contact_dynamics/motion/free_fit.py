@@ -7,8 +7,9 @@ by Gauss's and Newton's method with the exact derivative of the motion (`free_de
 no single velocity decides: L is constant, so it is averaged over all neighbouring pairs (where that fits
 worse than the last turn alone, as for needles, from that).
 
-Not covered: windows in which something touched the body, drag, outliers, noise that is correlated from state
-to state, unknown mass properties; half a turn or more between neighbouring states.
+Not covered: windows in which something touched the body, torque and drag (`forced_motion_fit`), outliers,
+noise that is correlated from state to state, unknown mass properties; half a turn or more between
+neighbouring states.
 """
 
 from __future__ import annotations

@@ -12,9 +12,9 @@ therefore exact. SciPy's DOP853 (Hairer, Norsett and Wanner, Solving Ordinary Di
 steps them, in both directions of time and as far as is asked for; what has been stepped is kept.
 
 Accuracy, against the closed form at zero torque: 1e-12 rad after 10 revolutions of a compact body and 5e-11
-after 100, growing with the square of time; a rod of 1 to 20, or spin near the middle axis, is ten times as
-sensitive. Cost: some 15 ms a revolution. Where nothing acts the closed form is better in all respects:
-`motion_of` chooses.
+after 100, growing with the square of time; a rod of 1 to 20 is ten times as sensitive, and spin near the
+middle axis as much more as `poinsot` says of any error of its state. Cost: some 15 ms a revolution. Where
+nothing acts the closed form is better in all respects: `motion_of` chooses.
 
 Not covered: forces that jump (each jump costs small steps), impacts, wind, lift, added mass.
 """

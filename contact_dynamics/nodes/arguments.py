@@ -1,29 +1,100 @@
-"""The arguments that every node of ours takes on the command line, besides ROS's own."""
+"""The arguments that every node of ours takes on the command line, besides ROS's own.
+
+This file imports no ROS, so that `--help` works without it.
+"""
 
 from __future__ import annotations
 
 import argparse
+from typing import Final
+
+VISUALIZER_PARAMETERS: Final = {
+    "server": "full name of the server node whose answers are drawn",
+    "rrd_path": "file to draw into, which is replaced",
+    "from_log": "log of the server to draw instead of listening: a folder or an .mcap file",
+    "spawn": "true: start rerun's viewer",
+    "serve": "true: serve the picture at the port, for viewers that connect",
+    "connect": "URL of a viewer that is open already",
+    "port": "port of this machine for spawn and serve",
+    "surface_side": "side of the square that a surface is drawn as, m",
+}
+"""The parameters that the visualizer has besides the server's, with what `--help` says about each."""
+
+SERVER_PARAMETERS: Final = {
+    "bodies": "names of the bodies; each is described by body.NAME.mass, .inertia, .odometry_topic, ...",
+    "surfaces": "names of the surfaces; each is described by surface.NAME.point, .normal, .friction, ...",
+    "gravity": "acceleration of gravity: x, y, z, m/s^2",
+    "world_frame": "frame of states and answers",
+    "state_timeout": "age, s, from which on the newest state is too old",
+    "state_history": "how long states are kept, s",
+    "velocity_tolerance": "speed below which a contact counts as at rest, m/s",
+    "distance_tolerance": "gap below which a body counts as touching, m",
+    "out_of_plane_tolerance": "speed out of the plane that still counts as planar, m/s",
+    "horizon": "how far ahead a first contact is looked for, s",
+    "rate": "samples a second of trajectories, Hz",
+    "log": "false: write no log",
+    "log_directory": "folder to put the log's folder into",
+}
+"""The parameters that the server has, with what `--help` says about each."""
 
 
-def ros_arguments(verb: str, description: str, arguments: list[str]) -> list[str]:
+def server_parser() -> argparse.ArgumentParser:
+    """Return the parser of `contact-dynamics server`."""
+    return _parser(
+        "server",
+        "Serve contact modes, impacts and tumbling over ROS 2.",
+        f"parameters, which config/server.yaml explains:\n{_listed(SERVER_PARAMETERS)}",
+    )
+
+
+def visualizer_parser() -> argparse.ArgumentParser:
+    """Return the parser of `contact-dynamics visualizer`."""
+    return _parser(
+        "visualizer",
+        "Show bodies, contacts and predictions in rerun, live or to a file.",
+        "parameters, which config/visualizer.yaml explains, besides those of the server (`server --help`):\n"
+        f"{_listed(VISUALIZER_PARAMETERS)}\n\n"
+        "It needs somewhere to draw to: rrd_path, spawn, serve or connect.",
+    )
+
+
+def ros_arguments(parser: argparse.ArgumentParser, arguments: list[str]) -> list[str]:
     """Return what `rclpy.init` takes; `--help` and mistakes end the process here.
 
     Args:
-        verb: the verb of the command line that the node is.
-        description: what it does.
+        parser: the verb's, from this file.
         arguments: all that follows the verb; what comes after `--ros-args` is ROS's.
     """
-    parser = argparse.ArgumentParser(
-        prog=f"contact-dynamics {verb}",
-        description=description,
-        epilog="ROS's own arguments follow --ros-args: -p name:=value sets a parameter, -r from:=to remaps.",
-    )
-    parser.add_argument(
-        "--params-file", metavar="FILE", help="YAML file of parameters, such as config/server.yaml"
-    )
-    split = arguments.index("--ros-args") if "--ros-args" in arguments else len(arguments)
+    split = _end_of_ours(arguments)
     mine = parser.parse_args(arguments[:split])
     of_ros = arguments[split:]
     if mine.params_file:
         of_ros = ["--ros-args", "--params-file", mine.params_file, *of_ros[1:]]
     return of_ros
+
+
+def check_arguments(parser: argparse.ArgumentParser, arguments: list[str]) -> None:
+    """Let `--help` and mistakes end the process; what follows `--ros-args` is ROS's to judge."""
+    parser.parse_args(arguments[: _end_of_ours(arguments)])
+
+
+def _end_of_ours(arguments: list[str]) -> int:
+    return arguments.index("--ros-args") if "--ros-args" in arguments else len(arguments)
+
+
+def _listed(parameters: dict[str, str]) -> str:
+    return "\n".join(f"  {name:22} {text}" for name, text in parameters.items())
+
+
+def _parser(verb: str, description: str, parameters: str) -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog=f"contact-dynamics {verb}",
+        description=description,
+        epilog=f"{parameters}\n\n"
+        "ROS's own arguments follow --ros-args: -p name:=value sets a parameter, -r from:=to remaps.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "--params-file", metavar="FILE", help="YAML file of parameters, such as config/server.yaml"
+    )
+    return parser

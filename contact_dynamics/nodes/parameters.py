@@ -5,8 +5,10 @@ The commented file `config/server.yaml` is what a user edits; a test holds the t
 
 from __future__ import annotations
 
+import difflib
+import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
@@ -22,11 +24,13 @@ from contact_dynamics.validation import check_array, check_positive
 from contact_dynamics.world import Body, Surface, World
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from rclpy.node import Node
 
 T = TypeVar("T")
+
+_OF_ROS: Final = re.compile(r"use_sim_time|start_type_description_service|qos_overrides\..*")
 
 
 class ConfigurationError(ContactDynamicsError):
@@ -92,7 +96,7 @@ def read_server_parameters(node: Node) -> ServerParameters:
         state_timeout=reader.read(
             "state_timeout",
             0.5,
-            "Oldest newest state, s, that a question about now is answered with.",
+            "How old the newest state may be, s, for a question about now.",
             (1e-3, 1e6),
         ),
         state_history=reader.read(
@@ -123,6 +127,36 @@ def read_server_parameters(node: Node) -> ServerParameters:
             "log_directory", "", "Folder to put the log's folder into. Empty: where the server starts."
         ),
     )
+
+
+def refuse_unknown_parameters(node: Node, *, also_known: Iterable[str] = ()) -> None:
+    """Refuse what a file or the command line sets and the node has not declared; ROS would ignore it.
+
+    Args:
+        node: with all of its own parameters declared.
+        also_known: parameters of another node that reads the same file.
+
+    Raises:
+        ConfigurationError: each such parameter is named, with the nearest one that there is.
+    """
+    # rclpy has no public way to ask what was given and not declared.
+    known = {*node._parameters, *also_known}  # noqa: SLF001
+    given = sorted(name for name in node._parameter_overrides if not _OF_ROS.fullmatch(name))  # noqa: SLF001
+    unknown = [name for name in given if name not in known]
+    if unknown:
+        raise ConfigurationError("\n".join(_unknown(name, known, node) for name in unknown))
+
+
+def _unknown(name: str, known: set[str], node: Node) -> str:
+    kind, _, rest = name.partition(".")
+    listing = {"body": "bodies", "surface": "surfaces"}.get(kind)
+    if listing and rest:
+        own_name = rest.rpartition(".")[0] or rest
+        listed = [each for each in node.get_parameter(listing).value if each]
+        if own_name not in listed:
+            return f"{name}: found {kind} {own_name!r}, allowed is one that {listing} lists: {listed}"
+    nearest = difflib.get_close_matches(name, known, n=1, cutoff=0.0)
+    return f"{name}: there is no such parameter; the nearest is {nearest[0]}"
 
 
 def _read_body(reader: _Reader, name: str) -> tuple[Body, StateTopics]:

@@ -120,7 +120,9 @@ def _in_time(request: Any, strike: Strike, knowledge: Knowledge) -> ImpactSequen
         raise NoContactError(message)
     if not sequence.strikes:
         raise SeparatingContactError(
-            "contacts", "none that strikes", f"one that approaches or comes back within {how['window']:g} s"
+            "contacts",
+            "none that strikes",
+            f"one that approaches or comes back within the strike_window of {how['window']:g} s",
         )
     return sequence
 

@@ -22,8 +22,10 @@ from rclpy.signals import SignalHandlerOptions
 
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes.arguments import ros_arguments
+from contact_dynamics.nodes.ros_log_directory import ensure_ros_log_directory
 
 if TYPE_CHECKING:
+    import argparse
     from collections.abc import Callable, Iterable, Iterator
 
     from rclpy.service import Service
@@ -47,7 +49,7 @@ class RunnableNode(Protocol):
 
 
 def run_node(
-    make_node: Callable[[], RunnableNode], *, verb: str, description: str, arguments: list[str]
+    make_node: Callable[[], RunnableNode], *, verb: str, parser: argparse.ArgumentParser, arguments: list[str]
 ) -> int:
     """Run a node until it is told to stop; return the exit code.
 
@@ -56,10 +58,11 @@ def run_node(
     Args:
         make_node: the node's class; it may raise `ContactDynamicsError` or `OSError`.
         verb: the verb of the command line that the node is.
-        description: what it does, for `--help`.
+        parser: of the verb's arguments.
         arguments: all that follows the verb.
     """
-    args = ros_arguments(verb, description, arguments)
+    args = ros_arguments(parser, arguments)
+    ensure_ros_log_directory()
     with stop_signals() as stop:
         try:
             rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)

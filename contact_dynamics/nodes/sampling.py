@@ -79,7 +79,8 @@ def times_of(
     elif request.sampling == request.UNTIL_PLANE:
         event = _plane_reached(request, response, subject, motion, duration)
     else:
-        raise InvalidFieldError("sampling", request.sampling, "AT_TIMES (0) to UNTIL_PLANE (4)")
+        allowed = "AT_TIMES (0), AT_STAMPS (1), AT_RATE (2), UNTIL_CONTACT (3) or UNTIL_PLANE (4)"
+        raise InvalidFieldError("sampling", request.sampling, allowed)
     return _at_rate(rate, duration, None if event is None else event.seconds), event
 
 

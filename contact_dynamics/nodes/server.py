@@ -7,27 +7,33 @@ publishes.
 
 from __future__ import annotations
 
+import platform
 import time
 import traceback
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+import scipy
 from nav_msgs.msg import Path
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
 from rclpy.node import Node
-from rclpy.qos import QoSProfile
+from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.service_introspection import ServiceIntrospectionState
+from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.nodes.arguments import VISUALIZER_PARAMETERS, server_parser
+from contact_dynamics.nodes.call_times import CallTimes
 from contact_dynamics.nodes.log import Log
-from contact_dynamics.nodes.parameters import read_server_parameters
+from contact_dynamics.nodes.parameters import read_server_parameters, refuse_unknown_parameters
 from contact_dynamics.nodes.predict_contact_mode import predict_contact_mode
 from contact_dynamics.nodes.predict_impact import predict_impact
 from contact_dynamics.nodes.predict_tumbling import predict_tumbling
 from contact_dynamics.nodes.running import run_node
-from contact_dynamics.nodes.state_store import StateStore
 from contact_dynamics.nodes.state_subscriptions import STATE_QOS, subscribe_to_states
 from contact_dynamics.nodes.subject import Knowledge
+from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.path import path_from_trajectory
 from msg_adapters.status import report_error
@@ -36,11 +42,15 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 NODE_NAME = "contact_dynamics"
-EVENT_QOS = QoSProfile(depth=1000)
-"""Of the service events. Deep, because the log must lose none while a long answer keeps this process busy."""
-
 SERVICE_QOS = QoSProfile(depth=1000)
 """Of the services. With the usual depth of 10, replies get lost when several clients ask at once."""
+
+EVENT_QOS = QoSProfile(depth=10 * SERVICE_QOS.depth)
+"""The queue of the service events is this deep. The log must lose none of them, and all requests that wait
+are answered, each with two events, before the first of these events is taken."""
+
+CLOCK_QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
+"""Of the simulated time: matches every publisher, as the subscription by which the node itself hears it."""
 
 PATH_QOS = QoSProfile(depth=1)
 """Of the newest predicted trajectory as a path: a picture, of which the last one matters."""
@@ -59,10 +69,12 @@ class Server(Node):
         """Read the parameters, begin the log, subscribe and serve.
 
         Raises:
-            ConfigurationError: a parameter is missing or not allowed.
+            ConfigurationError: a parameter is missing, unknown or not allowed.
         """
         super().__init__(NODE_NAME, **node_options)
         parameters = read_server_parameters(self)
+        # One file may configure both nodes.
+        refuse_unknown_parameters(self, also_known=VISUALIZER_PARAMETERS)
         states = StateStore(history=parameters.state_history, timeout=parameters.state_timeout)
         # A simulation or a log that is played again: without this its new states would count as old ones.
         set_back = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
@@ -86,6 +98,7 @@ class Server(Node):
             )
             for topic, type_name in types.items():
                 self._log.add_topic(topic, type_name, STATE_QOS)
+        self._log_clock()
         self._path = self.create_publisher(Path, "~/predicted_path", PATH_QOS)
         for service in _SERVICES:
             self._serve(*service)
@@ -99,7 +112,10 @@ class Server(Node):
         return True
 
     def _serve(self, service_type: type[Any], type_name: str, name: str, answer: Callable[..., None]) -> None:
+        times = CallTimes(lambda: self.get_clock().now().nanoseconds)
+
         def handle(request: Any, response: Any) -> Any:
+            times.begin()
             start = time.perf_counter()
             try:
                 answer(request, response, self._knowledge)
@@ -113,15 +129,28 @@ class Server(Node):
             response.computation_time = time.perf_counter() - start
             if service_type is PredictTumbling and response.status == response.OK:
                 self._publish_path(response.trajectory)
+            times.end()
             return response
+
+        def record(data: bytes) -> None:
+            self._log.record(events, data, log_time_ns=times.log_time_ns(data))
 
         service = self.create_service(service_type, f"~/{name}", handle, qos_profile=SERVICE_QOS)
         service.configure_introspection(self.get_clock(), EVENT_QOS, ServiceIntrospectionState.CONTENTS)
         events = f"{service.service_name}/_service_event"
         self._log.add_topic(events, f"contact_dynamics_interfaces/srv/{type_name}_Event", EVENT_QOS)
-        self.create_subscription(
-            service_type.Event, events, lambda data: self._log.record(events, data), EVENT_QOS, raw=True
-        )
+        self.create_subscription(service_type.Event, events, record, EVENT_QOS, raw=True)
+
+    def _log_clock(self) -> None:
+        """Log the simulated time, which the stamps of states and events are of, where there is one."""
+        if not self._parameters["use_sim_time"].value:
+            return
+
+        def record(data: bytes) -> None:
+            self._log.record(topic, data)
+
+        topic: str = self.create_subscription(Clock, "/clock", record, CLOCK_QOS, raw=True).topic_name
+        self._log.add_topic(topic, "rosgraph_msgs/msg/Clock", CLOCK_QOS)
 
     def _publish_path(self, trajectory: Any) -> None:
         """Publish the newest trajectory for RViz, if somebody listens."""
@@ -129,11 +158,16 @@ class Server(Node):
             self._path.publish(path_from_trajectory(trajectory))
 
     def _run_description(self) -> dict[str, str]:
+        """Return every parameter, and the versions that the last bits of an answer depend on."""
+        versions = {
+            "python": platform.python_version(),
+            "numpy": np.__version__,
+            "scipy": scipy.__version__,
+        }
         names = sorted(self._parameters)
-        return {name: str(self._parameters[name].value) for name in names}
+        return {**versions, **{name: str(self._parameters[name].value) for name in names}}
 
 
 def main(arguments: list[str]) -> int:
     """Run the server until it is told to stop; return the exit code."""
-    description = "Serve contact modes, impacts and tumbling over ROS 2."
-    return run_node(Server, verb="server", description=description, arguments=arguments)
+    return run_node(Server, verb="server", parser=server_parser(), arguments=arguments)

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.nodes.parameters import ServerParameters
-    from contact_dynamics.nodes.state_store import StateStore
+    from contact_dynamics.questions.state_store import StateStore
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
     from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg

@@ -14,11 +14,11 @@ import signal
 import sys
 import time
 import traceback
+import warnings
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import rerun as rr
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
@@ -26,7 +26,12 @@ from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 from service_msgs.msg import ServiceEventInfo
 
-from contact_dynamics.nodes.parameters import ConfigurationError, read_server_parameters
+from contact_dynamics.nodes.arguments import visualizer_parser
+from contact_dynamics.nodes.parameters import (
+    ConfigurationError,
+    read_server_parameters,
+    refuse_unknown_parameters,
+)
 from contact_dynamics.nodes.pictured_answers import (
     IMPACT,
     TUMBLING,
@@ -37,11 +42,11 @@ from contact_dynamics.nodes.pictured_answers import (
 )
 from contact_dynamics.nodes.pictured_contact_modes import CONTACT_MODE, show_contact_modes
 from contact_dynamics.nodes.running import run_node
-from contact_dynamics.nodes.state_store import StateStore
 from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
-from contact_dynamics.recording import BagReader
+from contact_dynamics.questions.state_store import StateStore
+from contact_dynamics.recording import BagReader, DamagedLogWarning
 from contact_dynamics.viewing.picture import Picture
-from contact_dynamics.viewing.sinks import DEFAULT_PORT, OpenRecording, Sinks, ViewerMode
+from contact_dynamics.viewing.sinks import DEFAULT_PORT, OpenRecording, Sinks, ViewerMode, raise_errors
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg
 
@@ -54,8 +59,8 @@ if TYPE_CHECKING:
 
 NODE_NAME: Final = "contact_dynamics_visualizer"
 
-EVENT_QOS: Final = QoSProfile(depth=1000)
-"""Of the service events: deep, so that a burst of questions is drawn in full."""
+EVENT_QOS: Final = QoSProfile(depth=10_000)
+"""Of the service events: as deep as the server's, so that a burst of questions is drawn in full."""
 
 DRAW_PERIOD_S: Final = 0.05
 """States are drawn in batches, because a batch costs what a single state does."""
@@ -86,16 +91,18 @@ class Visualizer(Node):
             node_options: of `rclpy.node.Node`.
 
         Raises:
-            ConfigurationError: a parameter is missing or not allowed.
+            ConfigurationError: a parameter is missing, unknown or not allowed.
+            NowhereToDrawError: a viewer was asked for alone, and there is none.
             OSError: the file cannot be written.
         """
         super().__init__(NODE_NAME, **node_options)
-        rr.set_strict_mode(True)
+        raise_errors()
         self._strict = strict
         self._told: set[str] = set()
         parameters = read_server_parameters(self)
         self._world = parameters.world
         server, surface_side, self.log_path, self._sinks = _read_own_parameters(self)
+        refuse_unknown_parameters(self)
         self._recording = OpenRecording(self._sinks, on_problem=self.get_logger().warning)
         self._picture = Picture(self._recording.stream, self._world, surface_side=surface_side)
         self._states = _WaitingStates()
@@ -118,17 +125,22 @@ class Visualizer(Node):
         self.get_logger().info(f"ready: draws {server} to {self._recording.description}")
 
     def draw_log(self) -> None:
-        """Draw the states and answers of the log that the parameters name.
+        """Draw the states and answers of the log that the parameters name, and tell what of it is damaged.
 
         Raises:
             NotALogError: there is none.
         """
         count = 0
-        for count, message in enumerate(BagReader(self.log_path).messages(set(self._receivers)), start=1):
-            self._receivers[message.topic](message.data)
-            if count % LOGGED_AT_ONCE == 0:
-                self.draw_states()
+        log = BagReader(self.log_path)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DamagedLogWarning)  # told below, where all else is told
+            for count, message in enumerate(log.messages(set(self._receivers)), start=1):
+                self._guarded(message.topic, partial(self._receivers[message.topic], message.data))
+                if count % LOGGED_AT_ONCE == 0:
+                    self.draw_states()
         self.draw_states()
+        if log.damage is not None:
+            self.get_logger().warning(log.damage)
         self.get_logger().info(f"drew {count} messages of {self.log_path}")
 
     def draw_states(self) -> None:
@@ -141,7 +153,9 @@ class Visualizer(Node):
         self.draw_states()
         if self._sinks.viewer is ViewerMode.NONE:
             self._guarded("the last look", self._picture.frame_all)
-        return self._recording.close()
+        took_all = self._recording.close()
+        # Who listens goes on with the file. Who draws a log wants to see it.
+        return took_all and not (self.log_path and self._recording.viewer_failed)
 
     def _wait_for_server(self, server: str, events: list[Subscription], patience: float) -> None:
         """Wait for the server's events, so that nothing is missed by who plays states to their listeners."""
@@ -255,7 +269,7 @@ def main(arguments: list[str]) -> int:
     exit_code = run_node(
         _make_visualizer,
         verb="visualizer",
-        description="Show bodies, contacts and predictions in rerun, live or to a file.",
+        parser=visualizer_parser(),
         arguments=arguments,
     )
     if exit_code == 1:

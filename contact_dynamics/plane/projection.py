@@ -29,6 +29,8 @@ from contact_dynamics.validation import FloatArray, check_unit
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from numpy.typing import ArrayLike
+
 _STEEP: Final = 0.8
 """Cosine to the world's up above which a normal counts as upright: it is then over 36 degrees off x."""
 
@@ -44,6 +46,11 @@ class PlaneOfMotion:
     normal_W: FloatArray  # (3,), unit, world axes
     # x and y, (2, 3), world axes: y is the world's up as seen in the plane; its x where up is the normal
     axes_W: FloatArray = field(init=False)
+
+    if TYPE_CHECKING:
+
+        def __init__(self, *, normal_W: ArrayLike) -> None:
+            """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
         """Check the normal, and complete the axes."""

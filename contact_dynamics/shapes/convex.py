@@ -57,6 +57,13 @@ class ConvexShape:
     rims: tuple[Rim, ...] = ()  # body axes
     rounding: float = 0.0  # m, >= 0, the ball's radius
 
+    if TYPE_CHECKING:
+
+        def __init__(
+            self, *, vertices: ArrayLike = ..., rims: tuple[Rim, ...] = ..., rounding: float = ...
+        ) -> None:
+            """Take whatever NumPy makes arrays of."""
+
     def __post_init__(self) -> None:
         """Check all fields."""
         vertices = check_array("vertices", self.vertices, (None, 3))

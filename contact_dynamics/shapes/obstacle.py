@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,6 +11,9 @@ from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.shapes.convex import MOST_VERTICES
 from contact_dynamics.shapes.hull_features import Features, hull_features
 from contact_dynamics.validation import FloatArray, check_array, check_not_negative, check_within
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -26,6 +30,11 @@ class Obstacle:
     friction: float  # Coulomb's mu, >= 0, between this obstacle and any body
     restitution: float  # e, in [0, 1], likewise
     features: Features = field(init=False)
+
+    if TYPE_CHECKING:
+
+        def __init__(self, *, name: str, vertices_W: ArrayLike, friction: float, restitution: float) -> None:
+            """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
         """Check all fields and find faces and edges."""

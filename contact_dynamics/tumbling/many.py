@@ -14,7 +14,7 @@ import numpy as np
 from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.arithmetic import ARRAYS, FloatArray
-from contact_dynamics.rotations.many import matrices_of
+from contact_dynamics.rotations.many import matrices_of, products
 from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, UNIT_LENGTH_TOLERANCE
 from contact_dynamics.tumbling.attitude_form import SWITCH, bumps, harmonics, zeros
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
@@ -73,9 +73,7 @@ def states_of_many(
     turn, w_P = rotations_of_many(moments, np.einsum("nij,ni->nj", R_WP, w), times)
     # The turn is in principal axes at time 0; as a rotation of the world it is R_WP turn R_WP^T.
     onto_W = np.einsum("nij,nj->ni", R_WP, turn[:, :3])
-    x, s = onto_W, turn[:, 3:]
-    u, c = q[:, :3], q[:, 3:]
-    then = np.hstack([s * u + c * x + np.cross(x, u), s * c - np.einsum("ni,ni->n", x, u)[:, None]])
+    then = products(np.column_stack([onto_W, turn[:, 3]]), q)
     w_then = np.einsum("nij,nj->ni", matrices_of(then) @ R_BP, w_P)
     gravity = check_array("gravity", gravity_W, (3,))
     elapsed = times[:, None]

@@ -6,12 +6,8 @@ takes nothing with it: what is drawn goes on into the file, and closing waits fo
 
 from __future__ import annotations
 
-import os
 import socket
-import subprocess
-import sys
 import threading
-import time
 from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Final
@@ -19,16 +15,14 @@ from urllib.parse import urlsplit
 
 import rerun as rr
 
+from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.viewing.viewer_process import LOCAL, ViewerProcess, connection_problem
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 APPLICATION: Final = "contact_dynamics"
-LOCAL: Final = "127.0.0.1"
 DEFAULT_PORT: Final = 9876
-
-_START_S: Final = 15.0
-_CONNECT_S: Final = 1.0
-_POLL_S: Final = 0.05
 
 
 class ViewerMode(Enum):
@@ -50,6 +44,10 @@ class Sinks:
     url: str = ""  # of the viewer to connect to, as rerun+http://127.0.0.1:9876/proxy
 
 
+class NowhereToDrawError(ContactDynamicsError):
+    """A viewer was asked for and no file, and the viewer cannot be reached; the message says why."""
+
+
 class OpenRecording:
     """A recording that is open to its sinks."""
 
@@ -58,10 +56,23 @@ class OpenRecording:
 
         Raises:
             OSError: the file cannot be written.
+            NowhereToDrawError: a viewer was asked for alone, and there is none.
         """
         self.stream = rr.RecordingStream(APPLICATION)
         self._on_problem = on_problem
+        self._viewer: ViewerProcess | None = None
+        self._problem = ""
         self.description = ", ".join(self._open(sinks)) or "nowhere"
+        if self._problem and not sinks.rrd_path:
+            message = f"nowhere to draw to: {self._problem}"
+            raise NowhereToDrawError(message)
+        if self._problem:
+            on_problem(self._problem)
+
+    @property
+    def viewer_failed(self) -> bool:
+        """Whether the viewer that was asked for could not be reached, or has failed since."""
+        return bool(self._problem) or (self._viewer is not None and self._viewer.failed)
 
     def close(self, *, timeout: float = 5.0) -> bool:
         """Write what is left and let go of the viewer, which stays open; return whether it took all.
@@ -84,11 +95,13 @@ class OpenRecording:
         if sinks.rrd_path:
             with open(sinks.rrd_path, "wb"):  # noqa: PTH123  rerun itself only logs that it cannot write
                 pass
-            opened.append(rr.FileSink(sinks.rrd_path))
+            # The footer, an index of all that was drawn, stays in memory until the end: 50 KB an answer.
+            opened.append(rr.FileSink(sinks.rrd_path, write_footer=False))
             names.append(sinks.rrd_path)
         url = self._viewer_url(sinks)
-        if sinks.viewer is ViewerMode.SERVE and _listens(LOCAL, sinks.port):
-            self._on_problem(f"port {sinks.port} is taken: the picture is not served")
+        problem = _serving_problem(sinks.port) if sinks.viewer is ViewerMode.SERVE else ""
+        if problem:
+            self._problem = f"the picture is not served at port {sinks.port}: {problem}"
         elif sinks.viewer is ViewerMode.SERVE:
             opened.append(rr.GrpcServerSink(bind_ip=LOCAL, port=sinks.port))
             names.append(f"served at {_local_url(sinks.port)}")
@@ -103,45 +116,32 @@ class OpenRecording:
         """Return the URL of a viewer that listens, or nothing after having told why there is none."""
         if sinks.viewer is ViewerMode.CONNECT:
             parts = urlsplit(sinks.url)
-            if _listens(parts.hostname or LOCAL, parts.port or DEFAULT_PORT):
-                return sinks.url
-            self._on_problem(f"no viewer listens at {sinks.url}")
-        elif sinks.viewer is ViewerMode.SPAWN:
-            problem = _start_viewer(sinks.port)
+            problem = connection_problem(parts.hostname or LOCAL, parts.port or DEFAULT_PORT)
             if not problem:
+                return sinks.url
+            self._problem = f"no viewer listens at {sinks.url}: {problem}"
+        elif sinks.viewer is ViewerMode.SPAWN:
+            self._viewer = ViewerProcess(sinks.port, on_problem=self._on_problem)
+            if not self._viewer.problem:
                 return _local_url(sinks.port)
-            self._on_problem(problem)
+            self._problem = self._viewer.problem
         return ""
 
 
-def _start_viewer(port: int) -> str:
-    """Start a viewer of its own session, unless one listens already; return what went wrong, or nothing."""
-    if _listens(LOCAL, port):
-        return ""
-    viewer = subprocess.Popen(  # noqa: S603  our own program
-        [sys.executable, "-m", "rerun", "--bind", LOCAL, "--port", str(port), "--expect-data-soon"],
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-        env={**os.environ, "RERUN_APP_ONLY": "true"},
-    )
-    deadline = time.monotonic() + _START_S
-    while time.monotonic() < deadline:
-        if _listens(LOCAL, port):
-            return ""
-        if viewer.poll() is not None:
-            return f"the viewer ended at once with exit code {viewer.returncode}: is there a display?"
-        time.sleep(_POLL_S)
-    return f"the viewer did not listen at port {port} within {_START_S:g} s"
+def raise_errors() -> None:
+    """Let rerun raise where it is given what it cannot draw, which it would only warn of."""
+    rr.set_strict_mode(True)
 
 
-def _listens(host: str, port: int) -> bool:
+def _serving_problem(port: int) -> str:
+    """Return why a port cannot be served at, in the system's words, or nothing where it can."""
     try:
-        with socket.create_connection((host, port), timeout=_CONNECT_S):
-            return True
-    except OSError:
-        return False
+        with socket.socket() as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # as rerun does
+            probe.bind((LOCAL, port))
+            return ""
+    except OSError as error:
+        return str(error)
 
 
 def _local_url(port: int) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -162,6 +163,24 @@ def test_it_ends_well_and_its_last_lines_are_the_log_and_the_picture(run: Run) -
     assert run.errors == ""
 
 
+def test_the_command_that_opens_the_picture_works(run: Run) -> None:
+    (command,) = re.findall(r"^to look at the picture: (.*)$", run.printed, re.MULTILINE)
+    rerun, picture = shlex.split(command)
+    assert (ROOT / picture).samefile(run.paths[-1])
+    # The same program reads the same file, without a window. `rrd verify` would want a footer, which grows in
+    # the memory of who writes.
+    done = subprocess.run(
+        [rerun if rerun == "rerun" else ROOT / rerun, "rrd", "stats", picture],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT_S,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "num_chunks" in done.stdout
+
+
 def test_it_leaves_no_process_behind(run: Run) -> None:
     assert run.left_over == []
 
@@ -290,6 +309,21 @@ def test_stopped_in_the_middle_it_stops_all_and_closes_the_log(tmp_path: Path) -
         assert reader.message_count == summary.statistics.message_count
 
 
+def test_a_viewer_that_does_not_open_is_told_where_the_demo_was_started(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At the port of rerun's viewer, where none may be open."""
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"):
+        monkeypatch.delenv(name, raising=False)
+    with demo("--view", "--quiet", output=tmp_path) as (process, mark):
+        run = finished(process, mark, toss=read_toss(), output=tmp_path)
+    assert run.exit_code == 0, run.errors
+    (told,) = run.errors.splitlines()
+    assert told.startswith("visualizer: [WARN] ")
+    assert "neither WAYLAND_DISPLAY nor WAYLAND_SOCKET nor DISPLAY is set" in told
+    assert run.paths[1].stat().st_size > 10_000  # the picture is in the file
+
+
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP], ids=lambda number: number.name)
 def test_stopped_at_the_start_it_stops_all(tmp_path: Path, number: signal.Signals) -> None:
     """While its processes start, by `kill` or by a terminal that is closed."""
@@ -320,8 +354,8 @@ def test_help_of_the_command_names_every_verb() -> None:
         timeout=TIMEOUT_S,
         check=True,
     )
-    for verb, (_, description) in VERBS.items():
-        assert re.search(rf"^  {verb} +{re.escape(description)}$", done.stdout, re.MULTILINE)
+    for name, verb in VERBS.items():
+        assert re.search(rf"^  {name} +{re.escape(verb.help)}$", done.stdout, re.MULTILINE)
 
 
 @pytest.mark.parametrize(

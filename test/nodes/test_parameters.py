@@ -17,8 +17,9 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from contact_dynamics.nodes import server, visualizer
+from contact_dynamics.nodes.arguments import SERVER_PARAMETERS, VISUALIZER_PARAMETERS
 from contact_dynamics.nodes.log import Log
-from running_server import DOMAIN_ID, PATIENCE_S, ROOT, environment
+from running_server import DOMAIN_ID, PATIENCE_S, ROOT, environment, process, wait_for
 
 CONFIG = ROOT / "config"
 SERVER_FILE = CONFIG / "server.yaml"
@@ -133,6 +134,12 @@ def test_every_parameter_has_a_comment_that_says_its_default(
         said = WORDS[word] if word else type(default)(re.split(r"[,;.]?(?: |$)", text)[0])
         assert said == default, f"{name}: the file says {text!r}, declared is {default!r}"
         assert descriptor.read_only
+
+
+def test_help_lists_every_parameter() -> None:
+    single = {name for name in values_of(SERVER_FILE) if "." not in name}
+    assert single == set(SERVER_PARAMETERS)
+    assert set(values_of(VISUALIZER_FILE)) == set(VISUALIZER_PARAMETERS)
 
 
 def test_every_parameter_is_described(declared: dict[str, dict[str, Any]]) -> None:
@@ -278,6 +285,60 @@ def test_a_wrong_value_ends_the_visualizer_and_is_named(
 def test_a_file_that_cannot_be_read_is_named(capfd: pytest.CaptureFixture[str], path: Path) -> None:
     assert server.main(["--params-file", str(path)]) == 2
     assert str(path) in capfd.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("mesh", "mesh: there is no such parameter; the nearest is"),
+        ("velocity_tolerence", "the nearest is velocity_tolerance"),
+        ("body.brick.odometry_topc", "the nearest is body.brick.odometry_topic"),
+        ("body.brick.mesh", "body.brick.mesh: there is no such parameter"),
+        ("surface.floor.fricton", "the nearest is surface.floor.friction"),
+        ("body.cube.mass", "found body 'cube', allowed is one that bodies lists: ['brick']"),
+        ("surface.table.friction", "found surface 'table', allowed is one that surfaces lists: ['floor']"),
+    ],
+)
+@pytest.mark.parametrize("verb", ["server", "visualizer"])
+def test_a_process_refuses_an_unknown_parameter_of_its_file(
+    tmp_path: Path, verb: str, name: str, words: str
+) -> None:
+    path = parameters_file(tmp_path, {**values_of(SERVER_FILE), "log": False, name: 0.1})
+    more = [] if verb == "server" else ["--ros-args", "-p", f"rrd_path:={tmp_path / 'picture.rrd'}"]
+    done = subprocess.run(
+        [sys.executable, "-m", "contact_dynamics", verb, "--params-file", path, *more],
+        cwd=ROOT,
+        env=environment(),
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert name in done.stderr
+    assert not (tmp_path / "picture.rrd").exists()
+
+
+def test_the_server_takes_a_file_that_configures_the_visualizer_too(tmp_path: Path) -> None:
+    values = {**values_of(SERVER_FILE), **values_of(VISUALIZER_FILE), "log": False, "use_sim_time": True}
+    with process("server", "--params-file", str(parameters_file(tmp_path, values)), ready="ready"):
+        pass
+
+
+def test_ros_logs_elsewhere_where_home_cannot_be_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    home = tmp_path / "home"
+    home.touch()  # not even root can make a folder in a file
+    monkeypatch.setenv("HOME", str(home))
+    monkeypatch.delenv("ROS_LOG_DIR", raising=False)
+    monkeypatch.delenv("ROS_HOME", raising=False)
+    with process("server", "--ros-args", "-p", "log:=false") as started:
+        printed = wait_for(started, "ready")
+    assert f"because {home}/.ros/log cannot be written" in printed
+    (folder,) = re.findall(r"ROS's log files go to (\S+),", printed)
+    assert list(Path(folder).iterdir())
 
 
 def test_the_process_ends_with_2_and_one_line() -> None:

@@ -61,6 +61,14 @@ def test_a_python_that_does_not_serve_is_refused(tmp_path: Path, pretence: str, 
     assert "Nothing was installed" in answer.stderr
 
 
+def test_what_a_shim_says_is_shown(tmp_path: Path) -> None:
+    shim = script(tmp_path / "python3.12", "echo 'pyenv: python3.12: command not found' >&2; exit 127")
+    answer = check(shim)
+    assert answer.returncode == 1
+    assert f"{shim} does not run, and says:" in answer.stderr
+    assert "pyenv: python3.12: command not found" in answer.stderr
+
+
 def test_another_platform_is_refused(tmp_path: Path) -> None:
     script(tmp_path / "uname", '[ "$1" = -s ] && echo Darwin || echo arm64')
     answer = check(sys.executable, PATH=f"{tmp_path}:{os.environ['PATH']}")
@@ -102,6 +110,14 @@ def test_an_environment_is_made_once(maker: Maker) -> None:
     for again in ([maker.python(12)], []):
         assert maker(*again).stdout == ""
     assert (maker.venv / ".made" / "python").stat().st_mtime_ns == made
+
+
+def test_an_environment_reached_through_a_link_is_not_made_anew(maker: Maker, tmp_path: Path) -> None:
+    maker(maker.python(12))
+    link = tmp_path / "a link"
+    link.symlink_to(maker.venv.parent)
+    maker.venv = link / maker.venv.name
+    assert maker(maker.python(12)).stdout == ""
 
 
 def test_an_environment_of_another_python_than_asked_is_made_anew(maker: Maker) -> None:

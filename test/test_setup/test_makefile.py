@@ -44,6 +44,9 @@ class Checkout:
             shutil.copytree(ROOT / name, folder / name)
         for name in ("Makefile", "setup.py", "package.xml", "pyproject.toml"):
             shutil.copy(ROOT / name, folder)
+        (folder / "setup").mkdir()
+        for name in ("setup/install.sh", "setup/clean.sh"):
+            shutil.copy(ROOT / name, folder / "setup")
         for name in ("config/server.yaml", "launch/server.launch.py"):
             self.write(name)
         for name in ("CMakeLists.txt", "package.xml", "msg/One.msg", "msg/Two.msg", "srv/Ask.srv"):
@@ -85,11 +88,13 @@ class Checkout:
 
 @pytest.fixture
 def checkout(tmp_path: Path) -> Checkout:
-    """A checkout in which `make setup` was run."""
-    made = Checkout(tmp_path)
+    """A checkout in which `make setup` was run, in a folder whose name a shell would take apart."""
+    folder = tmp_path / "Bob's work (new) & more"
+    folder.mkdir()
+    made = Checkout(folder)
     assert len(made.make("setup")) == 3
     # What a test changes is then newer by more than a clock tick.
-    made.age((tmp_path / ".venv" / ".made").iterdir(), seconds=50)
+    made.age((folder / ".venv" / ".made").iterdir(), seconds=50)
     return made
 
 
@@ -159,6 +164,53 @@ def test_a_sourced_ros_stays_outside(checkout: Checkout) -> None:
     checkout.make("demo", **dict.fromkeys(names, "/opt/ros/jazzy"))
     inside = (checkout.folder / "environment").read_text(encoding="utf-8")
     assert not re.search(f"^({'|'.join(names)})=", inside, flags=re.MULTILINE)
+
+
+def test_an_environment_with_a_space_in_its_name_is_refused(checkout: Checkout) -> None:
+    with pytest.raises(subprocess.CalledProcessError):
+        checkout.make("setup", "VENV=my env")
+
+
+def test_clean_removes_what_make_made(checkout: Checkout) -> None:
+    checkout.make("setup", "VENV=.venv-3.13")
+    for name in (
+        ".pytest_cache/CACHEDIR.TAG",
+        "contact_dynamics.egg-info/PKG-INFO",
+        "demo_output/2026-11-22_10-00-00/parameters.yaml",
+        "demo_output/2026-11-22_10-00-00/toss_publisher.txt",
+    ):
+        checkout.write(name)
+    checkout.make("clean")
+    for name in (".venv", ".pytest_cache", "contact_dynamics.egg-info", "demo_output"):
+        assert not (checkout.folder / name).exists(), name
+    assert (checkout.folder / ".venv-3.13").exists()
+    checkout.make("clean", "VENV=.venv-3.13")
+    assert not (checkout.folder / ".venv-3.13").exists()
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "build/work.txt",
+        "install/setup.bash",
+        "log/latest_build",
+        "other.egg-info/PKG-INFO",
+        "demo_output/mine.txt",
+        "demo_output/2026-11-22_10-00-00/mine.txt",
+        "an environment/bin/python",
+    ],
+)
+def test_clean_leaves_what_make_did_not_make(checkout: Checkout, name: str) -> None:
+    mine = checkout.write(name, "mine")
+    checkout.make("clean")
+    assert mine.read_text(encoding="utf-8") == "mine"
+
+
+def test_clean_leaves_an_environment_that_make_did_not_make(checkout: Checkout) -> None:
+    mine = checkout.write("my_env/bin/python", "mine")
+    checkout.make("clean", "VENV=my_env")
+    assert mine.exists()
+    assert "my_env stays: it was not made by this Makefile" in checkout.output
 
 
 def test_help_explains_every_command(checkout: Checkout) -> None:

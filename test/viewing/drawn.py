@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -46,7 +47,9 @@ class Drawn:
 
 def read_drawn(path: Path) -> Drawn:
     values: dict[tuple[str, str], list[tuple[int, Any]]] = {}
-    reader = RrdReader(path)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "RRD file has no footer")  # it is read from its beginning
+        reader = RrdReader(path)
     for chunk in reader.stream():
         batch = chunk.to_record_batch()
         names = batch.schema.names

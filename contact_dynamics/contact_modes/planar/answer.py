@@ -1,14 +1,15 @@
 """Contact modes of one planar body: every mode that is consistent with mechanics (Mason, lecture 26).
 
-Model: a rigid body in the plane, points of which touch flats of the fixed world with Coulomb friction, under
-an applied wrench. A mode hypothesis fixes which contact equations hold; the accelerations that follow are
+Model: a rigid body in the plane that touches the fixed world with Coulomb friction, under an applied wrench.
+A contact is a point of the body on a flat of the world, unless its curvatures say otherwise
+(`PlanarContact`). A mode hypothesis fixes which contact equations hold; the accelerations that follow are
 kept if they contradict no letter. The lecture's table decides, with its strictness: zero normal force is
 allowed, `s` needs v_n > 0 or a_n > 0.
 
 A contact's velocity within `velocity_tolerance` counts as zero, and so does an angular velocity that moves no
 contact relative to the centre of mass by more than that.
 
-Does not cover: a flat of the body on a point of the world, moving surfaces, elastic contacts.
+Does not cover: moving surfaces, elastic contacts.
 """
 
 from __future__ import annotations

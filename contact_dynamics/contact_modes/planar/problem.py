@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.errors import TooLargeError
-from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, without
+from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, tangents, without
 from contact_dynamics.plane.types import PlanarVelocity
 from contact_dynamics.tolerances import (
     ACCELERATION_TOLERANCE,
@@ -213,9 +213,7 @@ def _unhindered(twist: Vector3, resting: list[Vector3]) -> Vector3:
 
 def _lift(twist: Vector3, scale: float) -> Lift:
     line = normalised(twist)
-    least = min(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), key=lambda axis: abs(dot(axis, line)))
-    one = normalised(cross(line, least))
-    return Lift(line, (one, cross(line, one)), scale)
+    return Lift(line, tangents(line), scale)
 
 
 def _divided(a: Vector3, by: float) -> Vector3:

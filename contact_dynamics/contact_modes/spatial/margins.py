@@ -71,8 +71,8 @@ def spatial_mode_margins(
         TooLargeError: as for `spatial_contact_modes`, or more than `MOST_EDGES` edges of all pyramids.
     """
     body, wrench, friction_facets = problem.body, problem.wrench_W, problem.friction_facets
-    gyration = math.sqrt(float(np.trace(body.I_B)) / (3.0 * body.mass))
-    length = gyration if margin_length is None else check_positive("margin_length", margin_length)
+    own = body.mean_radius_of_gyration
+    length = own if margin_length is None else check_positive("margin_length", margin_length)
     case = spatial_case(problem)
     if not isinstance(case, SpatialCase):
         return ()

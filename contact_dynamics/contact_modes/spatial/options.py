@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact.friction import linearised_cone, tangents
+from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
+from contact_dynamics.numerics.vectors import tangents_towards
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -83,7 +84,7 @@ def pyramid_of(
     if speed > 0.0:
         return Pyramid((normal - friction * sliding / speed)[None, :], None, first)
     edges = linearised_cone(normal, friction, facets, towards=-free)
-    return Pyramid(edges, tangents(normal, -free), first)
+    return Pyramid(edges, tangents_towards(normal, -free), first)
 
 
 def any_letter(pyramid: Pyramid, point: FloatArray, normal_name: int) -> Option:

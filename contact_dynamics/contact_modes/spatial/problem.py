@@ -15,6 +15,8 @@ import numpy as np
 from contact_dynamics.contact.kinds import velocity_accelerations
 from contact_dynamics.contact_modes.spatial.search import Search, Touching
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.numerics.vectors import point_jacobians
+from contact_dynamics.rigid_body.body import inverse_mass_matrix
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_not_negative
 
@@ -107,15 +109,9 @@ class AccelerationMap:
         wrench_W: FloatArray,
         rolling_W: FloatArray,
     ) -> None:
-        n = len(r_W)
         # J maps (a, alpha) to the accelerations of the contact points, its transpose forces to wrenches.
-        J = np.zeros((3 * n, 6))
-        for i, (x, y, z) in enumerate(r_W):
-            J[3 * i : 3 * i + 3, :3] = np.eye(3)
-            J[3 * i : 3 * i + 3, 3:] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
-        inverse = np.zeros((6, 6))
-        inverse[:3, :3] = np.eye(3) / mass
-        inverse[3:, 3:] = np.linalg.inv(inertia)
+        J = point_jacobians(r_W).reshape(-1, 6)
+        inverse = inverse_mass_matrix(mass, inertia)
         self.mass = mass
         self.inertia = inertia
         self.points = J

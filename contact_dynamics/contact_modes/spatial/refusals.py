@@ -13,13 +13,13 @@ where loads are shared, that differs from one sharing to the next.
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import STAYS, STICKS
 from contact_dynamics.contact_modes.result import Refusal, RefusedMode
+from contact_dynamics.contact_modes.spatial.cone import nearest_sum
 from contact_dynamics.contact_modes.spatial.kinematic import spatial_kinematic_modes
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial.wrenches import Way, wrench_generators
@@ -61,8 +61,8 @@ def spatial_refused_modes(
         TooLargeError: more contacts than `spatial_contact_modes` accepts.
     """
     body, tolerance = problem.body, problem.velocity_tolerance
-    gyration = math.sqrt(float(np.trace(body.I_B)) / (3.0 * body.mass))
-    length = gyration if margin_length is None else check_positive("margin_length", margin_length)
+    own = body.mean_radius_of_gyration
+    length = own if margin_length is None else check_positive("margin_length", margin_length)
     case = spatial_case(problem)
     if not isinstance(case, SpatialCase):
         return ()
@@ -109,15 +109,13 @@ def _known(case: SpatialCase, search: Search, string: str) -> RefusedMode | None
 
 
 def _short(case: SpatialCase, search: Search, string: str, metric: FloatArray) -> RefusedMode:
-    from scipy.optimize import nnls
-
     ways = [Way(string[i], -1) for i in case.touching.tolist()]
     generators = wrench_generators(case, search, ways, metric)
     unit = case.motion.mass * case.motion.scale  # N; wrenches are divided by it
     target = np.append(case.motion.wrench / metric / unit, 1.0)
-    columns = np.vstack([generators.rays, generators.lines, -generators.lines]).T
+    spans = np.vstack([generators.rays, generators.lines, -generators.lines])
     heights = np.append(np.ones(6), _EXACT)
-    left = float(nnls(heights[:, None] * columns, heights * target)[1])
+    left = nearest_sum(spans * heights, heights * target)[1]
     if left <= _NOTHING * float(np.linalg.norm(target[:6])):
         return RefusedMode(mode=string, refusal=Refusal.WRONG_MOTION, contact=-1, amount=0.0)
     return RefusedMode(mode=string, refusal=Refusal.NO_SOLUTION, contact=-1, amount=left * unit)

@@ -41,12 +41,13 @@ def spatial_statics(problem: SpatialContactProblem, *, margin_length: float | No
 
     Raises:
         InvalidFieldError: the length is not > 0.
+        UndecidedError: contacts so nearly the same that rounding decides the answer.
         TooLargeError: more than `MOST_EDGES` edges, or more contacts than `spatial_contact_modes` accepts.
     """
     body, state, contacts = problem.body, problem.state, problem.contacts
     force, torque, friction_facets = problem.force_W, problem.torque_W, problem.friction_facets
-    gyration = math.sqrt(float(np.trace(body.I_B)) / (3.0 * body.mass))
-    length = gyration if margin_length is None else check_positive("margin_length", margin_length)
+    own = body.mean_radius_of_gyration
+    length = own if margin_length is None else check_positive("margin_length", margin_length)
     if len(contacts) * friction_facets > MOST_EDGES:
         found = f"{len(contacts)} contacts of {friction_facets} edges"
         raise TooLargeError("contacts", found, f"at most {MOST_EDGES} edges together")

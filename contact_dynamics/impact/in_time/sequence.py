@@ -6,7 +6,7 @@ motion in closed form (`tumbling`), and the next strike is found to rounding (`f
 stepped. Contacts of one instant are struck one after the other, the fastest approach first, as the sequential
 law does (`several`); there the order is a choice, between instants it is not.
 
-The sequence ends where nothing strikes any more within a window, where a contact stays, or where strikes
+The sequence ends where nothing strikes within a window, where a contact stays, or where strikes
 accumulate: rebounds that shrink by a ratio r < 1 have all ended d / (1 - r) after a strike whose rebound
 takes d (Zeno). Then free flight is over, and which contacts stay, slide or roll is a question
 of contact modes, not of impacts.
@@ -37,7 +37,7 @@ from contact_dynamics.impact.spatial.one_contact import spatial_impact
 from contact_dynamics.rotations.one import cross_matrix
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.tumbling import Precision, free_motion
-from contact_dynamics.validation import check_array, check_not_negative, check_positive
+from contact_dynamics.validation import check_array, check_choice, check_not_negative, check_positive
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -104,7 +104,9 @@ def impact_sequence(
 
     Raises:
         InvalidFieldError: a number that is not allowed.
+        NoContactError: the body has no shape that could touch anything.
     """
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     held = None if hold_step is None else check_positive("hold_step", hold_step)
     meetings = FoundMeetings(
@@ -156,6 +158,7 @@ def impact_sequence_of(
     Raises:
         InvalidFieldError: a number that is not allowed, or a contact with curvature: it is no fixed point.
     """
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     held = None if hold_step is None else check_positive("hold_step", hold_step)
     if contacts.body_curvatures is not None or contacts.surface_curvatures is not None:
@@ -196,9 +199,12 @@ class _Sequence:
     def run(self, state: BodyState, window: float, most_strikes: int) -> ImpactSequence:
         most = round(check_positive("most_strikes", most_strikes))
         end = self._strike_on(state, window, most)
+        if end == SequenceEnd.NOTHING_STRIKES and not self.strikes:
+            end = SequenceEnd.WINDOW_ENDED
         stays = end in {SequenceEnd.STAYS, SequenceEnd.CHATTERS}
         return ImpactSequence(
             restitution_law=self.law,
+            window=window,
             contacts=self.meetings.contacts,
             strikes=tuple(self.strikes),
             end=end,

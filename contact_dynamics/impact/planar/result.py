@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from contact_dynamics.impact.energy import energy_change, law_created
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.impact.planar.routh import ImpulsePath, InverseInertia
 from contact_dynamics.plane.types import PlanarVelocity, Vector2
-from contact_dynamics.tolerances import ENERGY_TOLERANCE
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,14 +77,9 @@ class PlanarImpact:
     @property
     def energy_change(self) -> float:
         """Return the change of kinetic energy, J: the impulse times the contact's mean velocity."""
-        path = self.contact_path
-        v_t, v_n = self.velocity_before_C
-        return 0.5 * (path.t_end * (v_t + path.v_t) + path.p_end * (v_n + path.v_n))
+        return energy_change(self.impulse_C, self.velocity_before_C, self.velocity_after_C)
 
     @property
     def creates_energy(self) -> bool:
         """Return whether the law gave the body energy, beyond rounding. Only Newton's can."""
-        path = self.contact_path
-        v_t, v_n = self.velocity_before_C
-        exchanged = abs(path.t_end) * (abs(v_t) + abs(path.v_t)) + path.p_end * (abs(v_n) + path.v_n)
-        return self.energy_change > ENERGY_TOLERANCE * exchanged
+        return bool(law_created(self.impulse_C, self.velocity_before_C, self.velocity_after_C))

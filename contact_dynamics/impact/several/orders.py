@@ -29,7 +29,7 @@ from contact_dynamics.impact.several.result import (
 )
 from contact_dynamics.impact.several.sequential import Touching, bodies_impact, check_touching, strike_in_turn
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_positive
+from contact_dynamics.validation import check_choice, check_positive
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -110,6 +110,7 @@ def outcomes_over_orders(
         SeparatingContactError: every contact separates.
         InvalidFieldError: no contacts, or a tolerance that is not > 0.
     """
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     touching = Touching([body], contacts, [(0, None)] * len(contacts), restitution_law, tolerance)
     check_touching(touching, [state])

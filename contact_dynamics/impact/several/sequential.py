@@ -23,8 +23,10 @@ from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import BodiesImpact, SeveralContactsLaw, SeveralVerdict
 from contact_dynamics.impact.several.simultaneous import simultaneous_impulses
 from contact_dynamics.impact.spatial.one_contact import spatial_impact, spatial_pair_impact
+from contact_dynamics.numerics.vectors import point_jacobians
+from contact_dynamics.rigid_body.body import inverse_mass_matrix
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_positive
+from contact_dynamics.validation import check_choice, check_positive
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -66,6 +68,8 @@ def bodies_impact(
         InvalidFieldError: no contacts, lists of unequal length, an index that is none, a tolerance that is
             not > 0, or ENERGETIC with SIMULTANEOUS.
     """
+    check_choice("several_contacts_law", several_contacts_law, SeveralContactsLaw)
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     _check_pairs(bodies, states, contacts, pairs)
     touching = Touching(bodies, contacts, pairs, restitution_law, tolerance)
@@ -174,15 +178,12 @@ def _strike_at_once(
     for i, pair in enumerate(pairs):
         for index, sign in zip(pair, (1.0, -1.0), strict=True):
             if index is not None:
-                x, y, z = (contacts.p_WC_W[i] - states[index].p_WB_W).tolist()
-                jacobian[i, :, 6 * index : 6 * index + 6] = sign * np.array(
-                    [[1, 0, 0, 0, z, -y], [0, 1, 0, -z, 0, x], [0, 0, 1, y, -x, 0]]
-                )
+                arm = contacts.p_WC_W[i] - states[index].p_WB_W
+                jacobian[i, :, 6 * index : 6 * index + 6] = sign * point_jacobians(arm[None])[0]
     inverse_mass = np.zeros((size, size))
     for index, (body, state) in enumerate(zip(bodies, states, strict=True)):
-        at = 6 * index
-        inverse_mass[at : at + 3, at : at + 3] = np.eye(3) / body.mass
-        inverse_mass[at + 3 : at + 6, at + 3 : at + 6] = np.linalg.inv(body.inertia_in_world(state.R_WB))
+        own = slice(6 * index, 6 * index + 6)
+        inverse_mass[own, own] = inverse_mass_matrix(body.mass, body.inertia_in_world(state.R_WB))
     twist = np.concatenate([part for state in states for part in (state.v_WB_W, state.w_WB_W)])
     impulses, converged = simultaneous_impulses(
         contacts,

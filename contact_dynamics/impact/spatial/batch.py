@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from contact_dynamics.errors import SeparatingContactError
+from contact_dynamics.impact.energy import energy_change, law_created
 from contact_dynamics.impact.law import RestitutionLaw, check_law_rows
 from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
 from contact_dynamics.impact.spatial.batch_paths import trace_all
@@ -24,7 +25,6 @@ from contact_dynamics.impact.spatial.response import (
 )
 from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
 from contact_dynamics.tolerances import (
-    ENERGY_TOLERANCE,
     SYMMETRY_TOLERANCE,
     TRIANGLE_TOLERANCE,
     VELOCITY_TOLERANCE,
@@ -60,6 +60,20 @@ class StrikingBodies:
     v_WB_W: FloatArray  # (N, 3) or (3,), m/s, of the centres of mass, world axes
     w_WB_W: FloatArray  # (N, 3) or (3,), rad/s, world axes
     r_W: FloatArray  # (N, 3) or (3,), m, from the centres of mass to the contacts, world axes
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            masses: ArrayLike,
+            inertias_B: ArrayLike,
+            q_WB: ArrayLike,
+            v_WB_W: ArrayLike,
+            w_WB_W: ArrayLike,
+            r_W: ArrayLike,
+        ) -> None:
+            """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
         """Check all fields and make arrays with a leading axis of them."""
@@ -104,17 +118,16 @@ class SpatialImpacts:
     @property
     def energy_changes(self) -> FloatArray:
         """Return the changes of kinetic energy, (N,), J."""
-        speeds = self.velocities_before_W + self.velocities_after_W
-        changes: FloatArray = 0.5 * np.einsum("ij,ij->i", self.impulses_W, speeds)
-        return changes
+        return energy_change(*self._at_contacts())
 
     @property
     def creates_energy(self) -> NDArray[np.bool_]:
         """Return which of them the law gave energy, (N,), beyond rounding. Only Newton's can."""
-        speeds = abs(self.velocities_before_W) + abs(self.velocities_after_W)
-        exchanged = np.einsum("ij,ij->i", abs(self.impulses_W), speeds)
-        created: NDArray[np.bool_] = self.energy_changes > ENERGY_TOLERANCE * exchanged
+        created: NDArray[np.bool_] = law_created(*self._at_contacts())
         return created
+
+    def _at_contacts(self) -> tuple[list[FloatArray], ...]:
+        return list(self.impulses_W.T), list(self.velocities_before_W.T), list(self.velocities_after_W.T)
 
 
 def spatial_impacts(

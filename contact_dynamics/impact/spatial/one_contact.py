@@ -33,7 +33,10 @@ from contact_dynamics.impact.spatial.response import (
 from contact_dynamics.impact.spatial.result import SpatialImpact
 from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_not_negative
+from contact_dynamics.validation import (
+    check_choice,
+    check_not_negative,
+)
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import Contact
@@ -110,6 +113,7 @@ def _impact(
     velocity_tolerance: float,
 ) -> SpatialImpact:
     """Return the impact of a body on ``other``; None is the fixed world."""
+    check_choice("restitution_law", law, RestitutionLaw)
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
 
     first, second = _responding(body, state, contact.p_WC_W), None

@@ -1,0 +1,69 @@
+"""When each request came and each answer left, for the service events that tell of them only afterwards.
+
+A service publishes its events while it works, and this process takes them when the answer is out. Their own
+stamps are of the node's clock, which stands still between two ticks of a simulation. So the log takes the
+times that are noted here, by this machine's clock.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.recording.cdr_stamp import EventType, event_info
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_MOST_OPEN: Final = 10_000  # calls whose events may still come; an event that got lost leaves its call open
+
+
+@dataclass(slots=True, kw_only=True)
+class _Call:
+    node_clock_ns: int  # when it came, by the clock that stamps the events
+    received_ns: int  # the same by this machine's clock, ns since the epoch
+    sent_ns: int = 0  # when its answer left
+
+
+class CallTimes:
+    """The times of the calls of one service, all of whose callbacks run in one thread."""
+
+    def __init__(self, node_clock_ns: Callable[[], int]) -> None:
+        """Note times beside those of the clock that stamps the events."""
+        self._node_clock_ns = node_clock_ns
+        self._unclaimed: deque[_Call] = deque(maxlen=_MOST_OPEN)  # no event told of the request yet
+        self._answered: dict[tuple[bytes, int], _Call] = {}  # no event told of the answer yet
+
+    def begin(self) -> None:
+        """Note that a request has come."""
+        self._unclaimed.append(_Call(node_clock_ns=self._node_clock_ns(), received_ns=time.time_ns()))
+
+    def end(self) -> None:
+        """Note that the answer to it leaves."""
+        self._unclaimed[-1].sent_ns = time.time_ns()
+
+    def log_time_ns(self, event: bytes) -> int:
+        """Return when that which an event tells of happened, ns since the epoch by this machine's clock.
+
+        That is now for an event of a client, which tells of what happened elsewhere, and for bytes that are
+        no event.
+        """
+        try:
+            info = event_info(event)
+        except InvalidFieldError:
+            return time.time_ns()
+        key = (info.client_gid, info.sequence_number)
+        if info.event_type is EventType.REQUEST_RECEIVED:
+            while self._unclaimed:
+                call = self._unclaimed.popleft()
+                if call.node_clock_ns >= info.stamp_ns:  # else the event of this call got lost
+                    self._answered[key] = call
+                    while len(self._answered) > _MOST_OPEN:
+                        del self._answered[next(iter(self._answered))]
+                    return call.received_ns
+        elif info.event_type is EventType.RESPONSE_SENT and key in self._answered:
+            return self._answered.pop(key).sent_ns
+        return time.time_ns()

@@ -1,0 +1,133 @@
+"""How the library's values show themselves: a short `repr`, a readable `str`, a `dict` that JSON takes."""
+
+from __future__ import annotations
+
+import dataclasses
+import enum
+import math
+from collections.abc import Iterable, Mapping
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any, Final
+
+import numpy as np
+
+_DIGITS: Final = 6
+"""Significant digits of a number that is shown. `to_dict` keeps all of them."""
+
+_MOST_SHOWN: Final = 8
+"""Elements of an array or a list that is shown in one line; of longer ones the shape is told."""
+
+
+_NUMBERS: Final = (float, Decimal, Fraction, np.floating)
+
+
+class NamedInt(enum.IntEnum):
+    """An enumeration of whole numbers, as messages have them, that prints as its name on every Python."""
+
+    def __str__(self) -> str:
+        """Return the name."""
+        return self.name
+
+    def __format__(self, spec: str) -> str:
+        """Return the name, laid out as a string is."""
+        return format(self.name, spec)
+
+
+class Record:
+    """A value of named fields, made by `dataclasses.dataclass` with ``repr=False``."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        """Return the fields in one line: short numbers, names of enumerations, shapes of long arrays."""
+        shown = ", ".join(f"{name}={_short(value)}" for name, value in _fields(self))
+        return f"{type(self).__name__}({shown})"
+
+    def __str__(self) -> str:
+        """Return the fields one below the other."""
+        return "\n".join([type(self).__name__, *_lines(self, "  ")])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the fields by name, as plain numbers, strings, lists and dicts that JSON takes.
+
+        Enumerations stand by name. Numbers that are not finite, which JSON does not have, are the strings
+        "nan", "inf" and "-inf", which `float` takes.
+        """
+        return {name: _plain(value) for name, value in _fields(self)}
+
+
+def _fields(record: object) -> list[tuple[str, Any]]:
+    """Return the public fields and their values, without functions."""
+    if isinstance(record, tuple):
+        return list(record._asdict().items())  # type: ignore[attr-defined]  # a NamedTuple
+    return [
+        (field.name, value)
+        for field in dataclasses.fields(record)  # type: ignore[arg-type]
+        if not field.name.startswith("_") and not callable(value := getattr(record, field.name))
+    ]
+
+
+def _has_fields(value: object) -> bool:
+    return (dataclasses.is_dataclass(value) and not isinstance(value, type)) or hasattr(value, "_asdict")
+
+
+def _plain(value: Any) -> Any:
+    """Return a value as JSON has it."""
+    plain: Any
+    if isinstance(value, enum.Enum):
+        plain = value.name
+    elif value is None or isinstance(value, str | bool | int):
+        plain = value
+    elif isinstance(value, _NUMBERS):
+        number = float(value)
+        plain = number if math.isfinite(number) else str(number)
+    elif isinstance(value, np.ndarray | np.generic):
+        plain = _plain(value.tolist())
+    elif _has_fields(value):
+        plain = {name: _plain(inner) for name, inner in _fields(value)}
+    elif isinstance(value, Mapping):
+        plain = {str(_plain(key)): _plain(inner) for key, inner in value.items()}
+    elif isinstance(value, Iterable):
+        plain = [_plain(inner) for inner in value]
+    else:
+        plain = str(value)
+    return plain
+
+
+def _short(value: Any) -> str:
+    """Return a value in a few words."""
+    if isinstance(value, enum.Enum):
+        shown = value.name
+    elif isinstance(value, _NUMBERS):
+        shown = f"{float(value):.{_DIGITS}g}"
+    elif isinstance(value, np.ndarray):
+        shown = _short(value.tolist()) if value.size <= _MOST_SHOWN else f"array of shape {value.shape}"
+    elif _has_fields(value) and not isinstance(value, Record):
+        shown = f"{type(value).__name__}(...)"
+    elif isinstance(value, list | tuple | frozenset | set | Mapping) and len(value) > _MOST_SHOWN:
+        shown = f"{len(value)} entries"
+    elif isinstance(value, tuple):
+        shown = "(" + ", ".join(map(_short, value)) + ")"
+    elif isinstance(value, list):
+        shown = "[" + ", ".join(map(_short, value)) + "]"
+    else:
+        shown = repr(value)
+    return shown
+
+
+def _lines(record: object, indent: str) -> list[str]:
+    """Return a line a field; fields of fields are indented."""
+    named = _fields(record)
+    width = max((len(name) for name, _ in named), default=0)
+    lines = []
+    for name, value in named:
+        if isinstance(value, Record):
+            lines += [f"{indent}{name}: {type(value).__name__}", *_lines(value, indent + "  ")]
+        elif isinstance(value, tuple | list) and value and all(isinstance(each, Record) for each in value):
+            lines.append(f"{indent}{name}:")
+            for i, each in enumerate(value):
+                lines += [f"{indent}  [{i}] {type(each).__name__}", *_lines(each, indent + "    ")]
+        else:
+            lines.append(f"{indent}{name:{width}}  {_short(value)}")
+    return lines

@@ -1,0 +1,168 @@
+"""rerun's viewer as a process of its own: how it is started, and what it says when it fails.
+
+The executable of rerun's wheel is started itself. `python -m rerun` would fail with an ImportError where
+`RERUN_APP_ONLY` is set (rerun 0.39 to 0.41), and `rerun` need not be on the PATH.
+
+The viewer listens before it has a window, so it counts as open once it draws. What it prints goes to a file
+without a name, because it stays open when this process ends.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import socket
+import subprocess
+import tempfile
+import threading
+import time
+from importlib.util import find_spec
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Final
+
+import rerun as rr
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+LOCAL: Final = "127.0.0.1"
+
+_START_S: Final = 15.0
+_WINDOW_S: Final = 5.0  # a viewer that has listened for so long and still lives is taken to be open
+_CONNECT_S: Final = 1.0
+_POLL_S: Final = 0.05
+_DRAWS: Final = "wgpu adapter"  # what the viewer logs once it has a window and has found what to draw with
+_MOST_WORDS: Final = 4  # lines of the viewer that are told
+_COLORS: Final = re.compile(r"\x1b\[[0-9;]*m")
+_LOGGED: Final = re.compile(r"^\S+ +(?:TRACE|DEBUG|INFO|WARN|ERROR) ")
+_HTTP2_GREETING: Final = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + bytes([0, 0, 0, 4, 0, 0, 0, 0, 0])
+_SETTINGS: Final = 4  # type of the frame that an HTTP/2 server begins with (RFC 9113, 3.4 and 6.5)
+
+
+class ViewerProcess:
+    """A viewer that was started, or that listened already."""
+
+    def __init__(self, port: int, *, on_problem: Callable[[str], object]) -> None:
+        """Start a viewer, unless one listens at the port; wait until it is open.
+
+        ``problem`` says then why there is none, and is empty where there is one. ``on_problem`` is told what
+        happens to it later.
+        """
+        self._port = port
+        self._on_problem = on_problem
+        self._failed = False
+        self.problem = self._start()
+
+    @property
+    def failed(self) -> bool:
+        """Whether it could not be started, or has failed since."""
+        return bool(self.problem) or self._failed
+
+    def _start(self) -> str:
+        if not connection_problem(LOCAL, self._port):
+            if _speaks_http2(self._port):
+                return ""
+            return f"port {self._port} is taken by something that does not answer as rerun's viewer does"
+        executable = viewer_executable()
+        output = tempfile.TemporaryFile()  # noqa: SIM115  the viewer's, for as long as it lives
+        try:
+            self._tell_other_version(executable)
+            process = subprocess.Popen(  # noqa: S603  rerun's own program
+                [executable, "--bind", LOCAL, "--port", str(self._port), "--expect-data-soon"],
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+                env={**os.environ, "RERUN_APP_ONLY": "true", "RUST_LOG": "info"},  # what we wait for is info
+            )
+        except OSError as error:
+            output.close()
+            return f"rerun's viewer cannot be started: {error}"
+        problem = self._wait(process, output)
+        if problem:
+            output.close()
+        else:
+            threading.Thread(target=self._watch, args=[process, output], daemon=True).start()
+        return problem
+
+    def _wait(self, process: subprocess.Popen[bytes], output: IO[bytes]) -> str:
+        deadline = time.monotonic() + _START_S
+        listens_since: float | None = None
+        while time.monotonic() < deadline:
+            if process.poll() is not None:
+                return _how_it_ended(process, output)
+            now = time.monotonic()
+            if listens_since is None:
+                listens_since = None if connection_problem(LOCAL, self._port) else now
+            elif _DRAWS in _printed(output) or now - listens_since > _WINDOW_S:
+                return ""
+            time.sleep(_POLL_S)
+        process.kill()
+        process.wait()
+        return f"rerun's viewer did not listen at port {self._port} within {_START_S:g} s: {_words(output)}"
+
+    def _watch(self, process: subprocess.Popen[bytes], output: IO[bytes]) -> None:
+        with output:
+            if process.wait() != 0:  # 0: whoever looked has closed it
+                self._failed = True
+                self._on_problem(_how_it_ended(process, output))
+
+    def _tell_other_version(self, executable: str) -> None:
+        command = [executable, "--version"]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603  the same
+        found = re.search(r"\d+\.\d+\.\d+\S*", done.stdout)
+        if found and found.group() != rr.__version__:
+            self._on_problem(
+                f"{executable} is rerun {found.group()} and is drawn to by rerun-sdk {rr.__version__}:"
+                " it may not understand all of it"
+            )
+
+
+def _how_it_ended(process: subprocess.Popen[bytes], output: IO[bytes]) -> str:
+    return f"rerun's viewer ended with exit code {process.returncode}: {_words(output)}"
+
+
+def _printed(output: IO[bytes]) -> str:
+    # The viewer writes where this file's offset is, so it must not be moved.
+    size = os.fstat(output.fileno()).st_size
+    return _COLORS.sub("", os.pread(output.fileno(), size, 0).decode(errors="replace"))
+
+
+def _words(output: IO[bytes]) -> str:
+    """Return what the viewer says of its end, in its own words."""
+    lines = [line.strip() for line in _printed(output).splitlines() if line.strip()]
+    begins = [i for i, line in enumerate(lines) if line.startswith(("Error:", "thread '"))]
+    if begins:
+        lines = [line for line in lines[begins[-1] :] if not _LOGGED.match(line)]
+        return " ".join(lines[:_MOST_WORDS])
+    return " ".join(lines[-_MOST_WORDS:]) or "it printed nothing"
+
+
+def viewer_executable() -> str:
+    """Return the path of the viewer in rerun's wheel, or what `RERUN_CLI_PATH` names, as rerun does."""
+    named = os.environ.get("RERUN_CLI_PATH")
+    if named:
+        return named
+    spec = find_spec("rerun_cli")
+    folders = (spec.submodule_search_locations if spec else None) or ["rerun_cli"]
+    return str(Path(folders[0]) / "rerun")
+
+
+def connection_problem(host: str, port: int) -> str:
+    """Return why nothing can be reached at a port, in the system's words, or nothing where something can."""
+    try:
+        with socket.create_connection((host, port), timeout=_CONNECT_S):
+            return ""
+    except OSError as error:
+        return str(error)
+
+
+def _speaks_http2(port: int) -> bool:
+    """Return whether what listens there greets as gRPC's servers do, of which rerun's viewer is one."""
+    try:
+        with socket.create_connection((LOCAL, port), timeout=_CONNECT_S) as connection:
+            connection.sendall(_HTTP2_GREETING)
+            header = connection.recv(9)
+    except OSError:
+        return False
+    return len(header) > 3 and header[3] == _SETTINGS

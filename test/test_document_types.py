@@ -1,0 +1,145 @@
+"""The documents' code passes mypy as a user's own would; a complaint names the document and the line."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import re
+from dataclasses import MISSING, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mypy import api
+
+from contact_dynamics import BodyState, MassProperties
+from running_server import ROOT
+
+PAGES = ("README.md", "docs/*.md", "contact_dynamics_interfaces/README.md")
+BLOCK = re.compile(r"```python\n(.*?)```", re.DOTALL)
+
+
+def blocks() -> dict[str, str]:
+    """Each block below as many empty lines as stand before it, by the document and that number."""
+    found = {}
+    for page in (page for pattern in PAGES for page in sorted(ROOT.glob(pattern))):
+        text = page.read_text(encoding="utf-8")
+        for block in BLOCK.finditer(text):
+            before = text.count("\n", 0, block.start(1))
+            found[f"{page.relative_to(ROOT)}:{before}"] = "\n" * before + block.group(1)
+    return found
+
+
+def complaints(sources: dict[str, str], folder: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """What mypy says of sources by document, with no settings but its own and the package's types."""
+    for i, source in enumerate(sources.values()):
+        (folder / f"block_{i}.py").write_text(source, encoding="utf-8")
+    monkeypatch.chdir(folder)
+    monkeypatch.setenv("MYPYPATH", str(ROOT))
+    # What mypy thinks of installed packages is not the user's concern; from MYPYPATH it would say it.
+    files = [f"block_{i}.py" for i in range(len(sources))]
+    report, trouble, _ = api.run(["--config-file=", "--strict", "--follow-imports=silent", *files])
+    assert not trouble
+    pages = [name.split(":")[0] for name in sources]
+    return re.sub(r"block_(\d+)\.py", lambda match: pages[int(match.group(1))], report)
+
+
+def test_the_code_in_the_documents_has_no_type_errors(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = blocks()
+    assert {name.split(":")[0] for name in found} >= {"README.md", "docs/tumbling.md", "docs/impact.md"}
+    assert complaints(found, tmp_path, monkeypatch).startswith("Success")
+
+
+def test_a_complaint_names_document_and_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    source = '\n\nfrom contact_dynamics import MassProperties\nMassProperties(mass="1", I_B=[[1]])\n'
+    text = complaints({"docs/some.md:2": source}, tmp_path, monkeypatch)
+    assert text.startswith('docs/some.md:4: error: Argument "mass" to "MassProperties" has incompatible type')
+
+
+def typed_constructors() -> list[tuple[str, str, list[str]]]:
+    """Constructors that are written for type checkers: module, class, arguments, with `?` for a default."""
+    found = []
+    for path in sorted((ROOT / "contact_dynamics").rglob("*.py")):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        for owner in (node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)):
+            for block in (node for node in owner.body if isinstance(node, ast.If)):
+                (init,) = (node for node in block.body if isinstance(node, ast.FunctionDef))
+                pairs = zip(init.args.kwonlyargs, init.args.kw_defaults, strict=True)
+                arguments = [f"{one.arg}{'' if default is None else '?'}" for one, default in pairs]
+                module = ".".join(path.relative_to(ROOT).with_suffix("").parts)
+                found.append((module, owner.name, arguments))
+    return found
+
+
+@pytest.mark.parametrize(("module", "name", "arguments"), typed_constructors())
+def test_what_type_checkers_see_of_a_constructor_is_what_it_takes(
+    module: str, name: str, arguments: list[str]
+) -> None:
+    owner = getattr(importlib.import_module(module), name)
+    taken = []
+    for one in fields(owner):
+        if one.init:
+            optional = one.default is not MISSING or one.default_factory is not MISSING
+            taken.append(f"{one.name}{'?' if optional else ''}")
+    assert sorted(arguments) == sorted(taken)
+
+
+EYE = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+BODY = {"mass": 1, "I_B": EYE}
+AT_REST = {"p_WB_W": [0, 0, 0], "q_WB": [0, 0, 0, 1], "v_WB_W": [0, 0, 0], "w_WB_W": [0, 0, 0]}
+TRIANGLE = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+SURFACE = {"friction": 0, "restitution": 0}
+ONE_CONTACT = {"p_WC_W": [[0, 0, 0]], "normals_W": [[0, 0, 1]], "frictions": [0], "restitutions": [0]}
+LISTS: dict[str, dict[str, Any]] = {
+    "BodyState": AT_REST,
+    "Body": {
+        "name": "body",
+        "mass_properties": MassProperties(mass=1, I_B=EYE),
+        "p_FB_F": [0, 0, 0],
+        "vertices_B": TRIANGLE,
+    },
+    "ConstantWrench": {"force": [0, 0, 1], "torque": [0, 0, 1]},
+    "ContactSet": ONE_CONTACT,
+    "ConvexShape": {"vertices": TRIANGLE},
+    "Curvatures": {"along": [1], "across": [0], "directions_W": [[1, 0, 0]]},
+    "MassProperties": BODY,
+    "Obstacle": {"name": "obstacle", "vertices_W": TRIANGLE, **SURFACE},
+    "PlaneOfMotion": {"normal_W": [0, -1, 0]},
+    "StrikingBodies": {
+        "masses": [1],
+        "inertias_B": [EYE],
+        "q_WB": [[0, 0, 0, 1]],
+        "v_WB_W": [[0, 0, -1]],
+        "w_WB_W": [[0, 0, 0]],
+        "r_W": [[0, 0, -1]],
+    },
+    "Surface": {"name": "floor", "p_WS_W": [0, 0, 0], "normal_W": [0, 0, 1], **SURFACE},
+    "World": {"gravity_W": [0, 0, -1]},
+    "Contact": {"p_WC_W": [0, 0, 0], "normal_W": [0, 0, 1], "friction": 0},
+    "TumblingQuestion": {"body": "brick", "gravity_W": [0, 0, -1]},
+    "ContactModeQuestion": {
+        "body": "brick",
+        "force_W": [0, 0, 1],
+        "torque_W": [0, 0, 1],
+        "gravity_W": [0, 0, -1],
+    },
+    "AtTimes": {"times": [0, 1]},
+    "AtStamps": {"stamps_ns": (0, 1)},
+    "UntilPlane": {"plane_point": [0, 0, 0], "plane_normal": [0, 0, 1], "body_point": [0, 0, 0]},
+    "UncertainState": {"state": BodyState(**AT_REST), "covariance": np.eye(12).tolist()},
+}
+
+
+@pytest.mark.parametrize(("module", "name", "arguments"), typed_constructors())
+def test_what_is_typed_as_array_like_may_be_a_list(module: str, name: str, arguments: list[str]) -> None:
+    given = LISTS[name]
+    assert set(given) <= {argument.removesuffix("?") for argument in arguments}
+    made = getattr(importlib.import_module(module), name)(**given)
+    for field in (field for field, value in given.items() if isinstance(value, list)):
+        array = getattr(made, field)
+        assert array.dtype == np.float64
+        assert not array.flags.writeable
+        assert np.array_equal(array, given[field])
