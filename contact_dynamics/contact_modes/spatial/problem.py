@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.contact.friction import check_facets
 from contact_dynamics.contact.kinds import velocity_accelerations
 from contact_dynamics.contact_modes.spatial.search import Search, Touching
-from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.errors import TooLargeError
 from contact_dynamics.numerics.vectors import point_jacobians
 from contact_dynamics.rigid_body.body import inverse_mass_matrix
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
@@ -46,7 +47,8 @@ class SpatialContactProblem:
     (`dataclasses.replace`). Statics take 128 edges in all.
 
     Raises:
-        InvalidFieldError: a wrench that is not finite, a negative tolerance, fewer than 3 facets.
+        InvalidFieldError: a wrench that is not finite, a negative tolerance, fewer than 3 facets or
+            more than 1000.
     """
 
     body: MassProperties  # mass and angular inertia
@@ -87,8 +89,7 @@ class SpatialContactProblem:
         object.__setattr__(self, "torque_W", check_array("torque_W", self.torque_W, (3,)))
         tolerance = check_not_negative("velocity_tolerance", self.velocity_tolerance)
         object.__setattr__(self, "velocity_tolerance", tolerance)
-        if self.friction_facets < 3:
-            raise InvalidFieldError("friction_facets", self.friction_facets, "a whole number >= 3")
+        object.__setattr__(self, "friction_facets", check_facets(self.friction_facets))
 
     @property
     def wrench_W(self) -> FloatArray:
