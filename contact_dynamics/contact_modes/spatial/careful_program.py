@@ -9,7 +9,7 @@ table is then made from nothing, in NumPy's longest floating-point numbers.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
@@ -33,7 +33,7 @@ _LEAST_PIVOT: Final = 1e-13
 class CarefulProgram:
     """Edge forces that satisfy some conditions, with the methods of `Program`."""
 
-    __slots__ = ("_names", "_named", "_motion", "_raised", "_solved", "_tagged", "_zeroed", "doubtful")
+    __slots__ = ("_motion", "_named", "_names", "_raised", "_solved", "_tagged", "_zeroed", "doubtful")
 
     def __init__(self, motion: FloatArray, named: FloatArray, names: Sequence[int]) -> None:
         """Take what `Program.stated` takes."""
@@ -114,7 +114,7 @@ class CarefulProgram:
             return None
         count = self._motion.shape[1] - 1
         keep = [j for j in range(count) if j not in self._zeroed]
-        motion = self._motion[:, [*keep, count]].astype(np.longdouble)
+        motion = cast("FloatArray", self._motion[:, [*keep, count]].astype(np.longdouble))
         rows = np.vstack([equations, *positive])
         program = Program.stated(motion, rows, range(count, count + len(rows)))
         return program.renamed(keep, len(equations))
@@ -128,9 +128,10 @@ def merged(rows: FloatArray) -> FloatArray | None:
     """
     if len(rows) == 0:
         return rows
-    left, sizes, basis = np.linalg.svd(rows[:, :-1])
+    left, sizes, basis = np.linalg.svd(rows[:, :-1], full_matrices=False)
     seen = int((sizes > ROW_TOLERANCE * max(1.0, float(sizes.max(initial=0.0)))).sum())
+    left = left[:, :seen]
     constants = left.T @ rows[:, -1]
-    if np.abs(constants[seen:]).max(initial=0.0) > _UNMET:
+    if np.abs(rows[:, -1] - left @ constants).max() > _UNMET:
         return None
-    return np.column_stack([basis[:seen], constants[:seen] / sizes[:seen]])
+    return np.column_stack([basis[:seen], constants / sizes[:seen]])

@@ -39,3 +39,4 @@ class SpatialModeAnswer:
     velocity_tolerance: float  # m/s, below which a contact's velocity counted as zero
     friction_facets: int  # edges of the pyramids
     examined: int  # letters, and groups of them, that were tried
+    undecided: str = ""  # what could not be made out, and why; empty unless the verdict is UNDECIDED

@@ -189,7 +189,7 @@ class Search:
             for p, letter in zip(self.pyramids, found.letters, strict=True)
         ]
 
-    def _holds(self, program: Program) -> bool:
+    def _holds(self, program: AnyProgram) -> bool:
         self.examined += 1
         if self.examined > MOST_EXAMINED:
             raise TooLargeError(
@@ -207,7 +207,9 @@ class Search:
             self.doubtful = True
         return holds
 
-    def _narrowed(self, program: AnyProgram, at: int, letters: Option, *, staying: bool = False) -> AnyProgram:
+    def _narrowed(
+        self, program: AnyProgram, at: int, letters: Option, *, staying: bool = False
+    ) -> AnyProgram:
         zeroed = letters.zeroed
         if staying:
             zeroed |= {self._first_normal + at}
@@ -291,7 +293,9 @@ class Search:
         names = np.array([one.first for one in pyramids])[:, None] + np.arange(len(pyramids[0].edges))
         return Common(image, open_ones, pyramids, names, gains)
 
-    def _decide_within(self, region: Region, program: AnyProgram, trials: list[Option], common: Common) -> bool:
+    def _decide_within(
+        self, region: Region, program: AnyProgram, trials: list[Option], common: Common
+    ) -> bool:
         """Find the modes within a region; False: there is none, whichever of the contacts slide."""
         if self._goal in self._settled:
             return True
