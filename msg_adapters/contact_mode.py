@@ -62,6 +62,7 @@ def write_spatial_answer(
 ) -> None:
     """Write an answer in space into a `PredictContactMode` response."""
     response.verdict = int(answer.verdict)
+    response.message = answer.undecided
     response.modes = spatial_modes_to_msgs(answer.modes)
     response.approaching_contacts = list(answer.approaching)
     response.contact_velocities = flat(contact_velocities_W)

@@ -22,6 +22,7 @@ import numpy as np
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
 from contact_dynamics.contact_modes.spatial.exact_friction import Sliding, sharpened
+from contact_dynamics.contact_modes.spatial.exact_letters import forces_with_letters, letters_near
 from contact_dynamics.contact_modes.spatial.least_forces import least_forces, misdirection
 from contact_dynamics.contact_modes.spatial.one_contact import modes_of_one
 from contact_dynamics.contact_modes.spatial.options import STRICT
@@ -45,6 +46,15 @@ _SAME: Final = 1e-6
 
 _STRAIGHT: Final = 1e-8
 """rad, misdirection of friction that is rounding."""
+
+_MOST_SOUGHT_TWICE: Final = 4
+"""Contacts whose modes are sought with finer pyramids too."""
+
+_FINER: Final = 4
+"""Times as many edges as asked for."""
+
+_OBLIQUE: Final = 1e-3
+"""rad: surfaces that lean less are flush. Several modes are rare there with usual friction."""
 
 _MOST_FACETS: Final = 128
 """Edges of the finest pyramid that is searched where friction could not be turned against the sliding."""
@@ -113,7 +123,26 @@ def evidenced(case: SpatialCase, search: Search, *, facets: int) -> Evidence:
         return Evidence(kept, undecided)
     if len(case.touching) == 1 and search.touching[0].friction > 0.0:
         return Evidence(_of_one_contact(case, search, kept), "")
-    return _with_rest(case, search, _refined(case, Evidence(kept, undecided), facets))
+    refined = _refined(case, search, Evidence(kept, undecided), facets)
+    if 2 <= len(search.touching) <= _MOST_SOUGHT_TWICE and _are_oblique(search):
+        refined = _with_those_between(case, refined, facets)
+    return _with_rest(case, search, refined)
+
+
+def _are_oblique(search: Search) -> bool:
+    normals = np.array([one.normal for one in search.touching])
+    return bool(np.abs(normals - normals[0]).max() > _OBLIQUE)
+
+
+def _with_those_between(case: SpatialCase, found: Evidence, facets: int) -> Evidence:
+    """Return the modes with those that need friction between the edges of the pyramids."""
+    finer = search_of(case, min(_FINER * facets, _MOST_FACETS))
+    try:
+        further = _by_letters(case, finer, found_by(case, finer, sharpen=True))
+    except TooLargeError:
+        return found
+    exact = [(mode, None) for mode, _ in further if mode.motion_unique and _is_exact(mode)]
+    return found._replace(modes=_without_twins([*found.modes, *exact]))
 
 
 def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[tuple[SpatialMode, Found | None]]:
@@ -145,9 +174,9 @@ def _is_exact(mode: SpatialMode) -> bool:
     return not mode.motion_unique or mode.misdirection <= _STRAIGHT
 
 
-def _refined(case: SpatialCase, found: Evidence, facets: int) -> Evidence:
+def _refined(case: SpatialCase, search: Search, found: Evidence, facets: int) -> Evidence:
     """Return the modes with those of finer pyramids in place of any whose friction could not be turned."""
-    modes = found.modes
+    modes = _by_letters(case, search, found.modes)
     while not all(_is_exact(mode) for mode, _ in modes):
         facets *= 2
         exact = [pair for pair in modes if _is_exact(pair[0])]
@@ -159,10 +188,29 @@ def _refined(case: SpatialCase, found: Evidence, facets: int) -> Evidence:
             further = found_by(case, finer, sharpen=True)
         except TooLargeError:
             return Evidence(modes, found.undecided or _TURNED.format(turned))
-        modes = _without_twins([*exact, *((mode, None) for mode, _ in further)])
+        further = [(mode, None) for mode, _ in _by_letters(case, finer, further)]
+        modes = _without_twins([*exact, *further])
         if finer.doubtful:
             return Evidence(modes, _DOUBT)
     return Evidence(modes, found.undecided)
+
+
+def _by_letters(
+    case: SpatialCase, search: Search, found: list[tuple[SpatialMode, Found | None]]
+) -> list[tuple[SpatialMode, Found | None]]:
+    """Return the modes with exact ones in place of those whose friction could not be turned."""
+    kept: list[tuple[SpatialMode, Found | None]] = []
+    for mode, one in found:
+        near: list[tuple[SpatialMode, Found | None]] = []
+        if not _is_exact(mode):
+            own = mode.contact_forces_W[case.touching] / case.motion.scale
+            letters = "".join(mode.mode[i] for i in case.touching.tolist())
+            for trial in letters_near(search, letters):
+                forces = forces_with_letters(search, trial, own)
+                if forces is not None:
+                    near.append((_mode(case, trial, forces, forces_unique=True, motion_unique=True), None))
+        kept += near or [(mode, one)]
+    return _without_twins(kept)
 
 
 def _of_one_contact(
@@ -185,11 +233,18 @@ def _of_one_contact(
     return sorted(kept, key=lambda pair: order.index(pair[0]) if pair[1] is not None else len(order))
 
 
+def _all_stick(case: SpatialCase, search: Search, mode: SpatialMode) -> bool:
+    return all(
+        mode.mode[i] == STICKS or (contact.friction == 0.0 and mode.mode[i] == STAYS)
+        for i, contact in zip(case.touching.tolist(), search.touching, strict=True)
+    )
+
+
 def _with_rest(case: SpatialCase, search: Search, found: Evidence) -> Evidence:
     """Return the modes with the one in which all contacts stick, if the round cones hold it."""
     letters = "".join(STICKS if one.friction > 0.0 else STAYS for one in search.touching)
     undecided = found.undecided
-    if all("".join(of.letter for of in one.letters) != letters for _, one in found.modes if one is not None):
+    if not any(_all_stick(case, search, mode) for mode, _ in found.modes):
         rows = sticking(search)
         held = held_by_round_cones(search, rows)
         if held.forces is not None:
