@@ -27,7 +27,7 @@ _HELD: Final = 1e-11
 _NO_HELP: Final = 1e-12
 """Cosine, of a force's effect to what is left over, below which it is rounding."""
 
-_MOST_FORCE: Final = 1e7
+_MOST_FORCE: Final = 1e3
 """Times the load: a motion separates if only larger forces could take its power."""
 
 _MOST_EDGES: Final = 400
