@@ -7,8 +7,9 @@ the pyramid friction does the most it can against the sliding: a contact that sl
 opposite to an edge has its force on that edge, one that slides on a sector's border has it on the side
 between two edges. Letters are s (separates), f (sticks) and c (stays and slides); the sector or border
 belongs to the mode. All of them are found (`search`); then friction is turned exactly against the
-sliding where that has a solution (`exact_friction`). A contact without friction is one letter, sliding or
-not.
+sliding where that has a solution (`exact_friction`, `exact_letters`), and finer pyramids are tried where it
+has none. One contact at rest is solved exactly (`one_contact`), and round cones decide whether all contacts
+can stick (`round_cones`). A contact without friction is one letter, sliding or not.
 
 Does not cover: margins (`spatial.margins`).
 """
@@ -30,6 +31,7 @@ from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_o
 from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial.round_cones import (
     held_by_round_cones,
+    polished,
     rests_in_one_way,
     sticking,
 )
@@ -58,6 +60,11 @@ _OBLIQUE: Final = 1e-3
 
 _MOST_FACETS: Final = 128
 """Edges of the finest pyramid that is searched where friction could not be turned against the sliding."""
+
+_RESTS: Final = 1e-12
+"""Relative to the load: what forces that hold a body may leave over."""
+
+_BETTER: Final = 1e-2
 
 _DOUBT: Final = "rounding decides whether some modes are consistent: contacts or normals are nearly the same"
 
@@ -249,7 +256,8 @@ def _with_rest(case: SpatialCase, search: Search, found: Evidence) -> Evidence:
         held = held_by_round_cones(search, rows)
         if held.forces is not None:
             unique = rests_in_one_way(search, rows)
-            mode = _mode(case, letters, held.forces, forces_unique=unique.forces, motion_unique=unique.motion)
+            own = polished(search, rows, held.forces)
+            mode = _mode(case, letters, own, forces_unique=unique.forces, motion_unique=unique.motion)
             return Evidence([*found.modes, (mode, None)], undecided)
         if not held.certain:
             undecided = _AT_REST
@@ -281,8 +289,24 @@ def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool)
     if not forces_unique:
         own = least_forces(search.of_forces, own, acting)
     letters = "".join(one.letter for one in found.letters)
+    if set(letters) == {STICKS}:
+        own = _rested(search, own)
     unique = motion_unique or forces_unique
     return _mode(case, letters, own, forces_unique=forces_unique, motion_unique=unique)
+
+
+def _rested(search: Search, forces: FloatArray) -> FloatArray:
+    """Return forces under which a body rests that does so but for what is left of merged conditions."""
+
+    def left(forces: FloatArray) -> float:
+        """Return the size of the wrench that forces leave over."""
+        return float(np.linalg.norm(search.mass @ (search.motion[:, -1] + search.of_forces @ forces.ravel())))
+
+    before = left(forces)
+    if before <= _RESTS * left(np.zeros_like(forces)):
+        return forces
+    better = polished(search, sticking(search), forces)
+    return better if left(better) <= _BETTER * before else forces
 
 
 def _mode(

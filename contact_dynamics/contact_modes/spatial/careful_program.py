@@ -120,16 +120,17 @@ class CarefulProgram:
         return program.renamed(keep, len(equations))
 
 
-def merged(rows: FloatArray) -> FloatArray | None:
+def merged(rows: FloatArray, tolerance: float = ROW_TOLERANCE) -> FloatArray | None:
     """Return equations, (k, 7), with orthonormal rows of a motion; None: there is no such motion.
 
     Args:
         rows: (m, 7), about unit; each says that it vanishes on the motion and 1.
+        tolerance: Rows that differ by no more are one.
     """
     if len(rows) == 0:
         return rows
     left, sizes, basis = np.linalg.svd(rows[:, :-1], full_matrices=False)
-    seen = int((sizes > ROW_TOLERANCE * max(1.0, float(sizes.max(initial=0.0)))).sum())
+    seen = int((sizes > tolerance * max(1.0, float(sizes.max(initial=0.0)))).sum())
     left = left[:, :seen]
     constants = left.T @ rows[:, -1]
     if np.abs(rows[:, -1] - left @ constants).max() > _UNMET:

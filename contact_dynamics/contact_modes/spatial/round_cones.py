@@ -16,13 +16,14 @@ import numpy as np
 
 from contact_dynamics.contact_modes.spatial.careful_program import merged
 from contact_dynamics.numerics.linear_spaces import row_space
+from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
 _HELD: Final = 1e-11
-"""Relative to the largest acceleration: what forces may leave over that hold the contacts."""
+"""Relative to the load: what forces may leave over that hold the contacts."""
 
 _NO_HELP: Final = 1e-12
 """Cosine, of a force's effect to what is left over, below which it is rounding."""
@@ -34,6 +35,12 @@ _MOST_EDGES: Final = 400
 """Edges of cones that are tried. Some dozen are enough but on a cone's very border."""
 
 _INDEPENDENT: Final = 1e-15
+
+_APART: Final = 1e-13
+"""Dimensionless, on rows of unit length: those that differ by more do so by more than rounding."""
+
+_ON_CONE: Final = 1e-12
+"""Relative to the largest force."""
 
 _REACHED: Final = 1e-10
 """Relative: what all forces together do less than that in some direction is nothing."""
@@ -66,15 +73,32 @@ def held_by_round_cones(search: Search, rows: FloatArray) -> Held:
         search: The case. What slides already counts as at rest.
         rows: (k, 7), about unit.
     """
-    equations = merged(rows)
-    if equations is None:
-        return Held(None, certain=True)
-    target = -(equations[:, :-1] @ search.motion[:, -1] + equations[:, -1])
-    if len(search.touching) == 0:
-        return Held(np.zeros((0, 3)) if float(np.linalg.norm(target)) <= _HELD else None, certain=True)
-    effects = equations[:, :-1] @ search.of_forces
-    images = np.ascontiguousarray(effects.reshape(len(target), -1, 3).transpose(1, 0, 2))
-    return _nearest(images, search, target)
+    demand = _demand(search, rows)
+    return Held(None, certain=True) if demand is None else _nearest(demand, search)
+
+
+def polished(search: Search, rows: FloatArray, forces: FloatArray) -> FloatArray:
+    """Return forces, (n, 3), that do to rounding what some in round cones do to a tolerance, as theirs allow.
+
+    Args:
+        search: As for `held_by_round_cones`.
+        rows: Likewise.
+        forces: (n, 3), in the units of the motion.
+    """
+    demand = _demand(search, rows, _APART)
+    if demand is None or demand.images.size == 0:
+        return forces
+    effects = np.hstack(list(demand.images))
+    found = forces
+    for _ in range(2):
+        rest = demand.target - effects @ found.ravel()
+        found = found + np.linalg.lstsq(effects, rest, rcond=_INDEPENDENT)[0].reshape(-1, 3)
+    for contact, force in zip(search.touching, found, strict=True):
+        pressing = float(contact.normal @ force)
+        across = float(np.linalg.norm(force - pressing * contact.normal))
+        if across > contact.friction * pressing + _ON_CONE * float(np.abs(found).max()):
+            return forces
+    return found
 
 
 class Unique(NamedTuple):
@@ -91,17 +115,40 @@ def rests_in_one_way(search: Search, rows: FloatArray) -> Unique:
     return Unique(forces=seen == of_forces.shape[1], motion=seen == moved)
 
 
-def _nearest(images: FloatArray, search: Search, target: FloatArray) -> Held:
-    """Return forces whose images, (n, k, 3) for unit ones, sum to a target, (k,)."""
-    # Nearly the same contacts do little in some directions. In these units they do as much in all.
-    units, sizes, _ = np.linalg.svd(np.hstack(list(images)), full_matrices=False)
-    sizes = np.where(sizes > _REACHED * sizes.max(initial=0.0), sizes, 0.0)
-    beyond = target - units @ ((sizes > 0.0) * (units.T @ target))
-    if float(np.linalg.norm(beyond)) > _HELD:
-        return Held(None, certain=True)
-    units, sizes = units[:, sizes > 0.0], sizes[sizes > 0.0]
-    images = (units.T / sizes[:, None]) @ images
-    target = units.T @ target / sizes
+class _Demand(NamedTuple):
+    """What forces must sum to, in units in which all contacts together do as much in every direction."""
+
+    images: FloatArray  # (n, k, 3), of unit forces
+    target: FloatArray  # (k,)
+    sizes: FloatArray  # (k,), of the units, in parts of the load
+
+
+def _demand(search: Search, rows: FloatArray, tolerance: float = ROW_TOLERANCE) -> _Demand | None:
+    """Return what makes rows of the motion vanish, merged within a tolerance; None: no forces do."""
+    equations = merged(rows, tolerance)
+    if equations is None:
+        return None
+    n = len(search.touching)
+    start = search.motion[:, -1] + equations[:, :-1].T @ equations[:, -1]
+    # Where the whole motion vanishes, wrenches are compared, and not accelerations of very unequal size.
+    units = search.mass if len(equations) == len(start) else equations[:, :-1]
+    target, effects = -(units @ start), units @ search.of_forces
+    load = float(np.linalg.norm(target))
+    # Nearly the same contacts do little in some directions, and are asked for little there.
+    units, sizes, _ = np.linalg.svd(effects, full_matrices=False)
+    reached = sizes > _REACHED * sizes.max(initial=0.0)
+    units, sizes = units[:, reached], sizes[reached]
+    if float(np.linalg.norm(target - units @ (units.T @ target))) > _HELD * load:
+        return None
+    images = ((units.T / sizes[:, None]) @ effects).reshape(len(sizes), n, 3).transpose(1, 0, 2)
+    return _Demand(
+        np.ascontiguousarray(images), units.T @ target / sizes, sizes / load if load > 0.0 else sizes
+    )
+
+
+def _nearest(demand: _Demand, search: Search) -> Held:
+    """Return forces within the round cones whose images sum to the target, or are nearest to it."""
+    images, target, sizes = demand
     load = float(np.linalg.norm(target))
     normals = np.array([one.normal for one in search.touching]).reshape(-1, 3)
     frictions = np.array([one.friction for one in search.touching])
@@ -111,7 +158,7 @@ def _nearest(images: FloatArray, search: Search, target: FloatArray) -> Held:
     rest = target
     for _ in range(_MOST_EDGES):
         left = float(np.linalg.norm(rest))
-        if float(np.linalg.norm(sizes * rest)) <= _HELD or left <= _ROUNDING * load:
+        if left <= _ROUNDING * load or float(np.linalg.norm(sizes * rest)) <= _HELD:
             forces = np.zeros_like(normals)
             for i, edge, share in zip(owners, edges, shares.tolist(), strict=True):
                 forces[i] += share * edge

@@ -141,7 +141,7 @@ class Search:
         self._normals = np.array([c.normal @ c.point for c in touching]).reshape(-1, 7)
         named = self._normals
         names = [first + i for i in range(len(touching))]
-        self._mass = mass
+        self.mass = mass
         self._power = mass @ free if at_rest and np.any(free) else None
         if self._power is not None:
             named = np.vstack([named, np.append(self._power / np.linalg.norm(self._power), 0.0)])
@@ -156,7 +156,7 @@ class Search:
         self._ways: dict[tuple[int, tuple[int, int] | None], tuple[Option, ...]] = {}
         self._found: dict[tuple[tuple[str, int], ...], Found] = {}
         self._grouped = False
-        self._careful = False
+        self.careful = False  # whether the modes were sought with care, contacts being nearly the same
         self._goal = ""  # the letters that are sought, where all are known
         self._settled: set[str] = set()  # letters that need no further mode
 
@@ -172,8 +172,8 @@ class Search:
             self._search()
         except _DoubtError:
             self._found.clear()
-        if not self._found and not self._careful:
-            self._careful, self._root, self._goal = True, self._careful_root, ""
+        if not self._found and not self.careful:
+            self.careful, self._root, self._goal = True, self._careful_root, ""
             self._settled.clear()
             self._search()
         return list(self._found.values())
@@ -202,7 +202,7 @@ class Search:
     def _trusted(self, program: AnyProgram, *, holds: bool) -> bool:
         """Return what a program came to; if that is in doubt, all starts again with care."""
         if program.doubtful:
-            if not self._careful:
+            if not self.careful:
                 raise _DoubtError
             self.doubtful = True
         return holds
@@ -286,7 +286,7 @@ class Search:
         gains = None
         if self._power is not None:
             # Seen motions with which unseen ones have no kinetic energy in common: those gain on their own.
-            unseen = image.unseen @ self._mass
+            unseen = image.unseen @ self.mass
             rest = np.linalg.solve(unseen @ image.unseen.T, image.unseen @ self._power)
             gains = image.coordinates @ (self._power - rest @ unseen)
         pyramids = [self.pyramids[i] for i in open_ones]
