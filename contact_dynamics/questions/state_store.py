@@ -5,12 +5,11 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right, insort
 from typing import TYPE_CHECKING
 
+from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.errors import NoStateError, StaleStateError
 
 if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
-
-_NS_PER_S = 1e9
 
 
 class StateStore:
@@ -18,8 +17,8 @@ class StateStore:
 
     def __init__(self, *, history: float, timeout: float) -> None:
         """Keep ``history`` seconds of states; refuse one older than ``timeout`` seconds when asked about."""
-        self._history_ns = round(history * _NS_PER_S)
-        self._timeout_ns = round(timeout * _NS_PER_S)
+        self._history_ns = round(history * NS_PER_S)
+        self._timeout_ns = round(timeout * NS_PER_S)
         self._states: dict[str, list[BodyState]] = {}
 
     def add(self, body_name: str, state: BodyState) -> None:
@@ -34,8 +33,8 @@ class StateStore:
         """Forget all states: the clock was set back, and what they are stamped with has not come yet."""
         self._states.clear()
 
-    def newest(self, body_name: str, *, now_ns: int) -> BodyState:
-        """Return the newest state.
+    def newest(self, body_name: str, *, now_ns: int | None = None) -> BodyState:
+        """Return the newest state; without the present time, ns, however old it is.
 
         Raises:
             NoStateError: none was published yet.
@@ -45,12 +44,12 @@ class StateStore:
         if not states:
             message = f"state of {body_name!r}: none was published yet"
             raise NoStateError(message)
-        return self._fresh(body_name, states[-1], now_ns)
+        return states[-1] if now_ns is None else self._fresh(body_name, states[-1], now_ns)
 
     def window(self, body_name: str, newest: BodyState, seconds: float) -> list[BodyState]:
         """Return the states of the last ``seconds`` up to ``newest``, in order of time, one a stamp."""
         states = self._states.get(body_name, [])
-        first = bisect_left(states, newest.stamp_ns - round(seconds * _NS_PER_S), key=_stamp)
+        first = bisect_left(states, newest.stamp_ns - round(seconds * NS_PER_S), key=_stamp)
         last = bisect_right(states, newest.stamp_ns, key=_stamp)
         return list({state.stamp_ns: state for state in states[first:last]}.values())
 
@@ -73,8 +72,8 @@ class StateStore:
         age_ns = asked_ns - state.stamp_ns
         if age_ns > self._timeout_ns:
             message = (
-                f"state of {body_name!r}: the newest is {age_ns / _NS_PER_S:.3f} s old, "
-                f"allowed is at most {self._timeout_ns / _NS_PER_S:g} s (parameter state_timeout)"
+                f"state of {body_name!r}: the newest is {age_ns / NS_PER_S:.3f} s old, "
+                f"allowed is at most {self._timeout_ns / NS_PER_S:g} s (parameter state_timeout)"
             )
             raise StaleStateError(message)
         return state
