@@ -20,11 +20,11 @@ export PIP_USER := 0
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-slow lint types bench setup venv clean FORCE
+.PHONY: help demo test test-matrix test-slow coverage lint types bench setup venv clean FORCE
 
 help: ## print this
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | while IFS='	' read -r name text; do \
-	    printf '  make %-9s  %s\n' "$$name" "$$text"; done
+	    printf '  make %-11s  %s\n' "$$name" "$$text"; done
 	@echo "  PYTHON=python3.12 chooses the Python (3.10 to 3.14) that $(VENV) is made with."
 
 demo: $(MADE)/package $(MADE)/interfaces ## play a toss and compare predictions with it; VIEW=1 opens the viewer, TOSS=path plays another
@@ -33,8 +33,18 @@ demo: $(MADE)/package $(MADE)/interfaces ## play a toss and compare predictions 
 test: lint types $(MADE)/test ## lint, types and the tests
 	@$(BIN)/python -m pytest
 
+test-matrix: ## the physics with the oldest and newest NumPy and SciPy, on every Python and several kinds of processors
+	@setup/matrix.sh $(VENV)-matrix
+
 test-slow: $(MADE)/test ## the sweeps that are too slow for `make test`
 	@HYPOTHESIS_PROFILE=explore $(BIN)/python -m pytest -m slow
+
+coverage: $(MADE)/test ## which lines the tests do not reach, in coverage_html/ too
+	@$(BIN)/python -m coverage erase
+	@$(BIN)/python -m coverage run -m pytest -q
+	@$(BIN)/python -m coverage combine -q
+	@$(BIN)/python -m coverage html -q -d coverage_html
+	@$(BIN)/python -m coverage report
 
 lint: $(MADE)/test ## ruff: rules and format
 	@$(BIN)/ruff check
@@ -43,8 +53,8 @@ lint: $(MADE)/test ## ruff: rules and format
 types: $(MADE)/test ## mypy
 	@$(BIN)/mypy
 
-bench: $(MADE)/bench ## measure speed and accuracy, peers beside us
-	@$(BIN)/python -m benchmarks
+bench: $(MADE)/bench ## measure speed and accuracy, peers beside us; WRITE=1 renews the numbers in the documents
+	@$(BIN)/python -m benchmarks $(if $(WRITE),--write)
 
 setup: $(MADE)/package $(MADE)/interfaces ## make the environment in .venv and nothing else
 venv: setup

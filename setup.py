@@ -13,7 +13,6 @@ from setuptools import find_packages, setup
 # colcon may run this file through a link in its build folder, beside which requirements/ is missing.
 HERE = Path(__file__).resolve().parent
 MANIFEST = ET.parse(HERE / "package.xml").getroot()
-MAINTAINER = MANIFEST.find("maintainer")
 NAME = MANIFEST.findtext("name")
 
 
@@ -32,9 +31,20 @@ setup(
     name=NAME,
     version=MANIFEST.findtext("version"),
     description=MANIFEST.findtext("description"),
-    maintainer=MAINTAINER.text,
-    maintainer_email=MAINTAINER.get("email"),
+    long_description=(HERE / "README.md").read_text(encoding="utf-8"),
+    long_description_content_type="text/markdown",
     license=MANIFEST.findtext("license"),
+    keywords=["contact mechanics", "friction", "impact", "rigid body", "robotics", "ROS 2"],
+    classifiers=[
+        "Development Status :: 4 - Beta",
+        "Intended Audience :: Science/Research",
+        "Operating System :: POSIX :: Linux",
+        "Programming Language :: Python :: 3",
+        "Programming Language :: Python :: 3 :: Only",
+        *(f"Programming Language :: Python :: 3.{minor}" for minor in range(10, 15)),
+        "Topic :: Scientific/Engineering :: Physics",
+        "Typing :: Typed",
+    ],
     python_requires=">=3.10",
     packages=find_packages(include=[f"{NAME}*", "msg_adapters*"], exclude=[f"{NAME}_interfaces*"]),
     package_data={"": ["py.typed", "*.csv", "*.npz"]},

@@ -7,6 +7,8 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
+from benchmarks._quotes import print_beside, write, write_documents
+
 
 def main() -> int:
     """Run the benchmarks that are asked for; return the exit code."""
@@ -16,14 +18,40 @@ def main() -> int:
         prog="python -m benchmarks", description="Measure speed and accuracy, peers beside us."
     )
     parser.add_argument("names", nargs="*", metavar="name", help=f"which, default all: {', '.join(names)}")
-    chosen = parser.parse_args().names or names
+    parser.add_argument(
+        "--write",
+        action="store_true",
+        help="write what was measured into benchmarks/measured.json, and from there into the documents",
+    )
+    parser.add_argument(
+        "--documents",
+        action="store_true",
+        help="measure nothing; write benchmarks/measured.json into the documents",
+    )
+    asked = parser.parse_args()
+    chosen = asked.names or names
     unknown = sorted(set(chosen) - set(names))
     if unknown:
         parser.error(f"found {', '.join(unknown)}, allowed are {', '.join(names)}")
+    if asked.documents:
+        write_documents()
+        return 0
+    lacking = set()
     for name in chosen:
         print(f"\n== {name} ==", flush=True)
         import_module(f"benchmarks.{name}").run()
-    return 0
+        print_beside(name)
+        if asked.write:
+            lacking |= write(name)
+    if asked.write:
+        write_documents()
+    if lacking:
+        print(
+            f"not written, because documents quote what was not measured: {', '.join(sorted(lacking))}\n"
+            "Is every peer of requirements/bench.txt installed, and does CUBE_TOSSES name the recordings?",
+            file=sys.stderr,
+        )
+    return 1 if lacking else 0
 
 
 sys.exit(main())

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from contact_dynamics.contact.contact import ContactSet
+from benchmarks._quotes import quote
+from contact_dynamics.contact.contact import Contact, ContactSet
 from contact_dynamics.impact import (
     ImpactOutcome,
     RestitutionLaw,
@@ -47,16 +48,26 @@ REPEATS: Final = 5
 def run() -> None:
     """Print costs in the plane, in space, and of several contacts."""
     print("One planar impact, us (target: 2)")
-    for law in RestitutionLaw:
-        print(f"  {law.name:>10}  path {_path(law):5.2f}   whole answer {_planar(law):5.2f}")
-    print(f"  {'beside it':>10}  projected Gauss-Seidel to 1e-9 {_gauss_seidel():5.1f}")
+    paths, answers = [_path(law) for law in RestitutionLaw], [_planar(law) for law in RestitutionLaw]
+    for law, path, answer in zip(RestitutionLaw, paths, answers, strict=True):
+        print(f"  {law.name:>10}  path {path:5.2f}   whole answer {answer:5.2f}")
+    quote("impact.planar.path", min(paths), "µs")
+    quote("impact.planar", min(answers), "µs")
+    peer = _gauss_seidel()
+    print(f"  {'beside it':>10}  projected Gauss-Seidel to 1e-9 {peer:5.1f}")
+    quote("impact.planar.gauss_seidel", peer, "µs")
     if importlib.util.find_spec("mujoco"):
-        print(f"  {'':>10}  one step of MuJoCo, of many in an impact {_mujoco_step():5.1f}")
+        step = _mujoco_step()
+        print(f"  {'':>10}  one step of MuJoCo, of many in an impact {step:5.1f}")
+        quote("impact.space.mujoco_step", step, "µs")
     print(f"\nBatches of {CASES} planar impacts, ns a case (target: 150), and cases a second")
+    costs = []
     for text, normals in (("one normal", False), ("a normal a case", True)):
         for law in RestitutionLaw:
             seconds = _batch(law, normals=normals) / CASES
+            costs.append(1e6 * seconds)
             print(f"  {law.name:>10}  {text:>16} {1e9 * seconds:6.0f} {1.0 / seconds:12.2e}")
+    quote("impact.planar.batch", costs, "µs")
     print(f"\nOne impact in space, us, over {DRAWS} random bodies and contacts: median, 90 %, worst")
     _spatial()
     print("\nBatches in space, us a case, and cases a second for the largest; random bodies and contacts")
@@ -84,7 +95,7 @@ def _path(law: RestitutionLaw) -> float:
 
 
 def _planar(law: RestitutionLaw) -> float:
-    return 1e6 * _best(lambda: planar_impact(BODY, VELOCITY, CONTACT, law=law), 5_000)
+    return 1e6 * _best(lambda: planar_impact(BODY, VELOCITY, CONTACT, restitution_law=law), 5_000)
 
 
 def _gauss_seidel() -> float:
@@ -138,7 +149,7 @@ def _batch(law: RestitutionLaw, *, normals: bool) -> float:
             normals=directions if normals else (0.0, 1.0),
             frictions=frictions,
             restitutions=0.5,
-            law=law,
+            restitution_law=law,
         ),
         1,
     )
@@ -171,17 +182,17 @@ def _random(count: int) -> tuple[StrikingBodies, dict[str, Any]]:
 
 def _single(
     bodies: StrikingBodies, contacts: dict[str, FloatArray], i: int
-) -> tuple[MassProperties, BodyState, dict[str, Any]]:
+) -> tuple[MassProperties, BodyState, Contact]:
     body = MassProperties(mass=float(bodies.masses[i]), I_B=bodies.inertias_B[i])
     state = BodyState(
         p_WB_W=np.zeros(3), q_WB=bodies.q_WB[i], v_WB_W=bodies.v_WB_W[i], w_WB_W=bodies.w_WB_W[i]
     )
-    contact = {
-        "p_WC_W": bodies.r_W[i],
-        "n_W": contacts["normals_W"][i],
-        "friction": float(contacts["frictions"][i]),
-        "restitution": float(contacts["restitutions"][i]),
-    }
+    contact = Contact(
+        p_WC_W=bodies.r_W[i],
+        normal_W=contacts["normals_W"][i],
+        friction=float(contacts["frictions"][i]),
+        restitution=float(contacts["restitutions"][i]),
+    )
     return body, state, contact
 
 
@@ -193,15 +204,17 @@ def _spatial() -> None:
     for law in RestitutionLaw:
         seconds: dict[ImpactOutcome | str, list[float]] = {}
         for body, state, contact in problems:
-            answer = spatial_impact(body, state, law=law, **contact)
-            spent = _quickest(lambda: spatial_impact(body, state, law=law, **contact))  # noqa: B023
+            answer = spatial_impact(body, state, contact, restitution_law=law)
+            spent = _quickest(lambda: spatial_impact(body, state, contact, restitution_law=law))  # noqa: B023
             for kind in ("all", answer.outcome):
                 seconds.setdefault(kind, []).append(spent)
-            pair = lambda: spatial_pair_impact(body, state, other, still, law=law, **contact)  # noqa: B023, E731
+            pair = lambda: spatial_pair_impact(body, state, other, still, contact, restitution_law=law)  # noqa: B023, E731
             seconds.setdefault("two bodies", []).append(_quickest(pair))
         for kind, spent_on in sorted(seconds.items(), key=lambda item: str(item[0])):
             name = kind.name if isinstance(kind, ImpactOutcome) else kind
             median, high, worst = 1e6 * np.percentile(spent_on, [50.0, 90.0, 100.0])
+            if kind == "all" and law is RestitutionLaw.POISSON:
+                quote("impact.space", 1e-3 * median, "ms")
             print(f"  {law.name:>10} {name:>24} {len(spent_on):5d} x {median:7.0f} {high:7.0f} {worst:7.0f}")
 
 
@@ -238,9 +251,11 @@ def _print_batches(
             approach = np.einsum("ij,ij->i", contacts["normals_W"], fields["v_WB_W"])
             fields["v_WB_W"] = np.where(approach[:, None] > 0.0, -fields["v_WB_W"], fields["v_WB_W"])
         bodies, chosen = StrikingBodies(**fields), {**contacts, **same_contact}
-        seconds = _best(lambda: spatial_impacts(bodies, laws=law, **chosen), 1)  # noqa: B023
+        seconds = _best(lambda: spatial_impacts(bodies, restitution_laws=law, **chosen), 1)  # noqa: B023
         costs.append(seconds / count)
     numbers = " ".join(f"{1e6 * cost:8.1f}" for cost in costs)
+    if law is RestitutionLaw.POISSON and text in {"any", "balls"}:
+        quote(f"impact.space.batch.{text}", 1e6 * costs[-1], "µs")
     print(f"  {law.name:>10} {text:>12} {numbers} {1.0 / costs[-1]:12.2e}")
 
 
@@ -255,11 +270,8 @@ def _uncertain() -> None:
             lambda samples=samples: spatial_impact_distribution(  # type: ignore[misc]
                 cube,
                 state,
+                Contact(p_WC_W=[0.03, 0.04, 0.0], normal_W=[0.0, 0.0, 1.0], friction=0.2, restitution=0.3),
                 covariance=covariance,
-                p_WC_W=[0.03, 0.04, 0.0],
-                n_W=[0.0, 0.0, 1.0],
-                friction=0.2,
-                restitution=0.3,
                 samples=samples,
             ),
             1,
@@ -279,8 +291,8 @@ def _several() -> None:
         restitutions=np.full(4, 0.1),
     )
     for law in SeveralContactsLaw:
-        answer = several_impact(cube, state, contacts, law=law)
-        cost = _best(lambda law=law: several_impact(cube, state, contacts, law=law), 1)  # type: ignore[misc]
+        answer = several_impact(cube, state, contacts, several_contacts_law=law)
+        cost = _best(lambda law=law: several_impact(cube, state, contacts, several_contacts_law=law), 1)  # type: ignore[misc]
         print(
             f"  {law.name:>14} {1e3 * cost:8.2f}   {answer.verdict.name.lower()}, {len(answer.order)} strikes"
         )

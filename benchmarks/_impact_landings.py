@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 import numpy as np
 
 from benchmarks._measured_errors import STEP, engine, print_both, print_head, print_row
+from benchmarks._quotes import quote
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact import impact_sequence, several_impact
@@ -128,9 +129,10 @@ def compare(
         f"\nMeasured landings on several corners: {len(landings)}, {1e3 * seconds:.0f} ms long (median);"
         f" fitted on {len(training)}, errors on {len(held_out)}\n"
     )
+    quote("impact.landings.count", len(held_out), digits=3)
+    quote("impact.landings.length", 1e3 * float(seconds), "ms")
     print_head()
-    print_row("no impact", "", "", held_out, lambda landing: _flown(CUBE, landing, landing.before))
-    _predictions(CUBE, np.zeros(3), training, held_out, of_one_corner[0])
+    _predictions(CUBE, np.zeros(3), training, held_out, of_one_corner[0], quoted="impact.landings.published")
     print("\nWith the inertia and the centre of mass that balance momenta:")
     _predictions(
         Body(name="cube", mass_properties=balanced, vertices_B=CUBE.vertices_B - centre),
@@ -138,6 +140,7 @@ def compare(
         [about_centre(landing, centre) for landing in training],
         [about_centre(landing, centre) for landing in held_out],
         of_one_corner[1],
+        quoted="impact.landings.balanced",
     )
 
 
@@ -147,22 +150,27 @@ def _predictions(
     training: Sequence[MeasuredLanding],
     held_out: Sequence[MeasuredLanding],
     of_one_corner: tuple[float, float],
+    *,
+    quoted: str,
 ) -> None:
     nominal = (BOARD.friction, BOARD.restitution)
+    still = lambda landing: _flown(shape, landing, landing.before)  # noqa: E731
+    print_row("no impact", "", "", held_out, still, quoted=f"{quoted}.no_impact")
     for name, predict in predictions(shape).items():
-        print_both(name, training, held_out, nominal, predict)
-    for text, constants in (("published", nominal), ("one corner's", of_one_corner)):
+        print_both(name, training, held_out, nominal, predict, quoted=f"{quoted}.{name.replace(' ', '_')}")
+    for text, constants in (("published", nominal), ("of one corner", of_one_corner)):
         print_row(
             f"held, {text}",
             *constants,
             held_out,
             lambda landing, constants=constants: _held(shape, landing, *constants),
+            quoted=f"{quoted}.held.{text.replace(' ', '_')}",
         )
     by_engine = _by_engine(shape.mass_properties, centre)
     if by_engine is None:
         print(f"{'MuJoCo':>28}  is not installed")
     else:
-        print_both("MuJoCo", training, held_out, nominal, by_engine)
+        print_both("MuJoCo", training, held_out, nominal, by_engine, quoted=f"{quoted}.mujoco")
     flying = [landing for landing in held_out if not _stays(shape, landing, *nominal)]
     print(
         f"A corner stays before the second flight, by the published constants, in"

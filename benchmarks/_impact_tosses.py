@@ -23,6 +23,7 @@ import numpy as np
 
 from benchmarks import _impact_landings
 from benchmarks._measured_errors import GYRATION, engine, print_both, print_head, print_row
+from contact_dynamics.contact.contact import Contact
 from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact import RestitutionLaw, spatial_impact
 from contact_dynamics.measured.cube_tosses import BOARD, CUBE, read_cube_toss
@@ -177,11 +178,10 @@ def _rigid(body: MassProperties, law: RestitutionLaw) -> Prediction:
             answer = spatial_impact(
                 body,
                 strike.before,
-                p_WC_W=strike.corner,
-                n_W=[0.0, 0.0, 1.0],
-                friction=friction,
-                restitution=restitution,
-                law=law,
+                Contact(
+                    p_WC_W=strike.corner, normal_W=[0.0, 0.0, 1.0], friction=friction, restitution=restitution
+                ),
+                restitution_law=law,
             )
         except SeparatingContactError:
             return _velocity(strike.before)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 import numpy as np
 from scipy.optimize import minimize
 
+from benchmarks._quotes import quote
 from contact_dynamics.measured.cube_tosses import CUBE, HALF_SIDE
 
 if TYPE_CHECKING:
@@ -46,8 +47,13 @@ def print_both(
     held_out: Sequence[Case],
     nominal: tuple[float, float],
     predict: Callable[[Case, float, float], FloatArray],
+    *,
+    quoted: str = "",
 ) -> tuple[float, float]:
-    """Print the errors with the published constants, mu and e, and with fitted ones; return those."""
+    """Print the errors with the published constants, mu and e, and with fitted ones; return those.
+
+    With ``quoted``, the fitted ones' errors are offered to the documents by that name.
+    """
     print_row(f"{name}, published", *nominal, held_out, lambda case: predict(case, *nominal))
 
     def cost(parameters: FloatArray) -> float:
@@ -61,7 +67,7 @@ def print_both(
         cost, nominal, method="Nelder-Mead", options={"xatol": 2e-3, "fatol": 1e-5, "maxfev": 60}
     ).x
     fitted = (abs(float(best[0])), min(abs(float(best[1])), 1.0))
-    print_row(f"{name}, fitted", *fitted, held_out, lambda case: predict(case, *fitted))
+    print_row(f"{name}, fitted", *fitted, held_out, lambda case: predict(case, *fitted), quoted=quoted)
     return fitted
 
 
@@ -71,13 +77,17 @@ def print_row(
     restitution: float | str,
     cases: Sequence[Case],
     predict: Callable[[Case], FloatArray],
+    *,
+    quoted: str = "",
 ) -> None:
-    """Print the errors of one prediction."""
+    """Print the errors of one prediction; with ``quoted``, offer their means to documents by that name."""
     errors = np.array([predict(case) - case.after for case in cases])
     text = f"{name:>28} "
     text += " ".join(f"{x:6.3f}" if isinstance(x, float) else f"{x:>6}" for x in (friction, restitution))
-    for part in (errors[:, :3], errors[:, 3:]):
+    for part, kind, unit in ((errors[:, :3], "linear", "m/s"), (errors[:, 3:], "angular", "rad/s")):
         sizes = np.linalg.norm(part, axis=1)
+        if quoted:
+            quote(f"{quoted}.{kind}", float(sizes.mean()), unit)
         text += " " + "".join(
             f"{x:8.3f}" for x in (np.median(sizes), sizes.mean(), np.percentile(sizes, 90.0))
         )

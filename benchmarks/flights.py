@@ -23,6 +23,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks._quotes import quote
 from contact_dynamics.measured.cube_tosses import read_cube_toss
 from contact_dynamics.measured.flights import find_flights
 from contact_dynamics.measured.read_toss import read_toss
@@ -151,11 +152,17 @@ def _report(name: str, errors: Errors) -> None:
         f"(median); noise of a measured pose {1e3 * errors.noise[0]:.2f} mm, "
         f"{math.degrees(errors.noise[1]):.2f} deg"
     )
+    what = f"flights.{name.rsplit(maxsplit=1)[-1]}"
+    quote(f"{what}.ahead", 1e3 * float(np.median(errors.ahead)), "ms", digits=3)
+    quote(f"{what}.noise.position", 1e3 * errors.noise[0], "mm")
+    quote(f"{what}.noise.attitude", math.degrees(errors.noise[1]), "°")
     print(f"  {'':18}{'position, mm':>24}{'attitude, deg':>24}")
     print(f"  {'':18}{'median   90 %':>24}{'median   90 %':>24}")
     for method, found in errors.found.items():
         position = _quantiles([1e3 * distance for distance, _ in found])
         attitude = _quantiles([math.degrees(angle) for _, angle in found])
+        quote(f"{what}.{method.replace(' ', '_')}.position", 1e3 * errors.medians(method)[0], "mm")
+        quote(f"{what}.{method.replace(' ', '_')}.attitude", math.degrees(errors.medians(method)[1]), "°")
         print(f"  {method:18}{position:>24}{attitude:>24}")
 
 

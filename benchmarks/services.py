@@ -30,6 +30,7 @@ from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
+from benchmarks._quotes import quote
 from contact_dynamics.demo.ros_domain import claim_domain
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 
@@ -90,7 +91,9 @@ def _measure(*, start_server: Callable[[], int], start_empty: Callable[[], int])
     server_pid = start_server()
     first = _Asker(node, executor, "contact_dynamics", "predict_tumbling")
     first.ask(PredictTumbling.Request(inertia=Inertia(m=1.0, ixx=1.0, iyy=1.0, izz=1.0), state_source=1))
-    print(f"first answer {time.perf_counter() - started:.2f} s after the server's start")
+    first_answer = time.perf_counter() - started
+    quote("services.first_answer", first_answer, "s", digits=1)
+    print(f"first answer {first_answer:.2f} s after the server's start")
     first.close()
     empty_pid = start_empty()
     print(f"{CALLS} calls of each, alternating; ms")
@@ -98,17 +101,26 @@ def _measure(*, start_server: Callable[[], int], start_empty: Callable[[], int])
         f"{'question':34} {'p50':>6} {'p99':>6} {'CPU':>6}   {'empty p50':>9} {'p99':>6} {'CPU':>6}"
         f"   {'ratio':>6}   {'inside':>7} {'of CPU':>6}"
     )
+    inside, ratios = [], {}
     for title, name, request in _questions():
         askers = [_Asker(node, executor, server, name) for server in ("contact_dynamics", "empty")]
         for asker, pid in zip(askers, (server_pid, empty_pid), strict=True):
             asker.pid = pid
         _alternate(askers, request)
         print(_line(title, *askers), flush=True)
+        medians = [statistics.median(asker.trips) for asker in askers]
+        ratios[title] = medians[0] / medians[1]
+        inside.append(statistics.median(askers[0].inside))
         for asker in askers:
             asker.close()
+    quote("services.ratio", list(ratios.values()))
+    quote("services.ratio.one_time", ratios["tumbling, one time"])
+    quote("services.ratio.impact_in_space", ratios["impact, one contact in space"])
+    quote("services.inside", inside, "ms")
     resident = (
         Path(f"/proc/{server_pid}/status").read_text(encoding="utf-8").split("VmRSS:")[1].split("kB")[0]
     )
+    quote("services.memory", int(resident) / 1024, "MB")
     print(f"resident memory of the server: {int(resident) / 1024:.0f} MB")
     rclpy.shutdown()
 

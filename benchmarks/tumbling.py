@@ -16,7 +16,9 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from benchmarks._quotes import quote
 from contact_dynamics.landing.plane_arrival import first_contact
+from contact_dynamics.motion.integrated import forced_motion
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import FreeMotion, Precision, free_motion, rotations_of_many, states_of_many
 from contact_dynamics.tumbling.constants import constants_of
@@ -44,11 +46,28 @@ PATIENCE: Final = 30.0
 
 REPEATS: Final = 5
 
+FAR: Final = 1e9
+"""Revolutions, after which documents quote the error."""
+
+COMPARED: Final = "about the major axis"
+"""The motion that documents quote, and what they quote of it."""
+
+AXES: Final = {"about the major axis": "major", "near the middle axis": "middle"}
+"""The motions whose integration documents quote."""
+
+QUOTED: Final = {
+    "closed form": "ours",
+    "SciPy DOP853, rtol 1e-12": "dop853",
+    "MuJoCo RK4, 1 ms": "mujoco",
+    "Drake RK3, accuracy 1e-09": "drake",
+}
+
 
 def run() -> None:
     """Print costs, then cost and error of 1 kHz trajectories beside the peers."""
     _costs()
     _errors_far_away()
+    _errors_integrated()
     methods = _methods()
     _peers(methods)
     _peers_by_count(methods)
@@ -99,6 +118,7 @@ def _costs() -> None:
     print(f"\nMany rotations, one time each, set-up included: {1e6 * seconds:.2f} us each (target: 3)")
     seconds = _best(lambda: _states_of_many(w)) / len(w)
     print(f"The same with positions, attitudes in the world, axes to be found: {1e6 * seconds:.2f} us a body")
+    quote("tumbling.states_of_many", 1e6 * seconds, "µs", digits=1)
 
 
 def _states_of_many(w: FloatArray) -> object:
@@ -126,13 +146,33 @@ def _landing(motion: FreeMotion) -> object:
 
 def _errors_far_away() -> None:
     print("\nErrors of attitude, rad, after so many revolutions (target: 5e-15)")
+    far: list[float] = []
     for name, w in MOTIONS.items():
         motion = _motion(w)
         truth = _reference().ExactMotion(np.diag(MOMENTS).tolist(), UPRIGHT, w)
         row = []
         for revolutions in (1e0, 1e3, 1e6, 1e9, 1e12):
             t = 2.0 * math.pi / 1.2 * revolutions
-            row.append(f"{revolutions:.0e}: {truth.errors(t, motion.sample(t).q_WB)[0]:.1e}")
+            error = truth.errors(t, motion.sample(t).q_WB)[0]
+            row.append(f"{revolutions:.0e}: {error:.1e}")
+            if revolutions == FAR:
+                far.append(float(error))
+        print(f"  {name:>22}  " + "  ".join(row))
+    quote("tumbling.far.error", max(far), "rad", digits=1)
+
+
+def _errors_integrated() -> None:
+    print("\nErrors of attitude, rad, of the integrator without torque, after so many revolutions")
+    for name, w in MOTIONS.items():
+        motion = forced_motion(_motion(w).body, _motion(w).state)
+        truth = _reference().ExactMotion(np.diag(MOMENTS).tolist(), UPRIGHT, w)
+        row = []
+        for revolutions in (10, 100):
+            t = 2.0 * math.pi / 1.2 * revolutions
+            error = float(truth.errors(t, motion.sample(t).q_WB)[0])
+            row.append(f"{revolutions}: {error:.1e}")
+            if name in AXES:
+                quote(f"tumbling.integrated.{AXES[name]}.{revolutions}", error, "rad", digits=1)
         print(f"  {name:>22}  " + "  ".join(row))
 
 
@@ -164,7 +204,10 @@ def _peers(methods: dict[str, Method]) -> None:
                 attitudes[seconds] = simulate(w, seconds)
                 cost = (time.thread_time() - start) / seconds
             ours = ours or cost
-            errors = [truth.errors(seconds, q)[0] for seconds, q in attitudes.items()]
+            errors = [float(truth.errors(seconds, q)[0]) for seconds, q in attitudes.items()]
+            if name == COMPARED and method in QUOTED:
+                quote(f"tumbling.{QUOTED[method]}", 1e3 * cost, "ms")
+                quote(f"tumbling.{QUOTED[method]}.error", errors[-1], "rad", digits=1)
             print(
                 f"    {method:>28} {1e3 * cost:9.3f} ms  {cost / ours:6.0f} x"
                 f"  {errors[0]:8.1e}  {errors[1]:8.1e}"

@@ -1,6 +1,6 @@
 """Contact modes, impacts and free tumbling of rigid bodies (Mason's lectures 24 to 27).
 
-The table of contents, chapters in reading order; everything here is plain NumPy and knows no ROS.
+The table of contents, chapters in reading order; everything here needs NumPy and SciPy, and knows no ROS.
 
 - Lecture 24, 25, rigid bodies: `MassProperties`, `BodyState`, momenta and energies (`rigid_body`).
 - Lecture 24, 25, mass properties from particles, shapes and meshes: `MassDistribution` (`inertia`).
@@ -13,18 +13,19 @@ The table of contents, chapters in reading order; everything here is plain NumPy
 - Contacts: `ContactSet` in space (`contact`), of all kinds (`contact.curvature`), from geometry
   (`find_contacts`); `PlanarContact` and its kin in the plane (`planar`), reached from space by a
   `PlaneOfMotion`.
-- Lecture 26, contact modes: `planar_contact_modes` (`contact_modes`).
-- Lecture 27, impact: `planar_impact`, `spatial_impact`, strikes in time `impact_sequence` (`impact`).
+- Lecture 26, contact modes: `planar_contact_modes`, `spatial_contact_modes` (`contact_modes`).
+- Lecture 27, impact: `planar_impact`, `spatial_impact`, several contacts at once `several_impact`, strikes in
+  time `impact_sequence` (`impact`).
 - What is refused, and how: `errors`. What counts as zero: `tolerances`.
 """
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.contact import Contact, ContactSet
 from contact_dynamics.contact.curvature import Curvatures
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact_modes import (
-    ConsistentMode,
-    ContactModeAnswer,
     ModeVerdict,
+    PlanarMode,
+    PlanarModeAnswer,
     Refusal,
     RefusedMode,
     planar_contact_modes,
@@ -49,8 +50,9 @@ from contact_dynamics.motion.covariance import propagate_covariance
 from contact_dynamics.motion.free_fit import fit_free_motion
 from contact_dynamics.motion.integrated import motion_of
 from contact_dynamics.motion.integrated_fit import fit_motion
-from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, best_plane, project
+from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, best_plane, project_onto_plane
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import (
     BodyState,
     MassProperties,
@@ -64,12 +66,21 @@ from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.tumbling import FreeMotion, Regime, Trajectory, free_motion, states_of_many
 from contact_dynamics.world import Body, Surface, World, box_vertices
 
+
+def __getattr__(name: str) -> str:
+    """Return ``__version__``, which is looked up where it is asked for."""
+    if name == "__version__":
+        from contact_dynamics.version import version_of_this_package
+
+        return version_of_this_package()
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
 __all__ = [
     "Body",
     "BodyState",
-    "ConsistentMode",
+    "Contact",
     "ContactDynamicsError",
-    "ContactModeAnswer",
     "ContactSet",
     "ConvexShape",
     "Curvatures",
@@ -84,6 +95,8 @@ __all__ = [
     "PlanarBody",
     "PlanarContact",
     "PlanarImpact",
+    "PlanarMode",
+    "PlanarModeAnswer",
     "PlanarProblem",
     "PlanarVelocity",
     "PlanarWrench",
@@ -105,6 +118,7 @@ __all__ = [
     "fit_motion",
     "free_motion",
     "impact_sequence",
+    "inertia",
     "kinetic_energy",
     "momentum",
     "motion_of",
@@ -112,7 +126,7 @@ __all__ = [
     "planar_contact_modes",
     "planar_impact",
     "planar_mode_margins",
-    "project",
+    "project_onto_plane",
     "propagate_covariance",
     "several_impact",
     "spatial_contact_modes",

@@ -58,6 +58,10 @@ class NotSupportedError(ContactDynamicsError):
     """A question that the interface carries and this version does not answer; the message says which part."""
 
 
+class UndecidedError(NotSupportedError):
+    """A question whose answer hangs on rounding: what was asked about is degenerate to the last digits."""
+
+
 _LONGEST_SHOWN: Final = 120
 
 

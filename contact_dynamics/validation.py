@@ -7,7 +7,8 @@ again.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from enum import Enum
+from typing import TYPE_CHECKING, Any, Final, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 FloatArray: TypeAlias = "NDArray[np.float64]"
+Choice = TypeVar("Choice", bound=Enum)
 
 _FEW: Final = 20
 
@@ -61,8 +63,19 @@ def check_within(field: str, value: Any, lowest: float, highest: float) -> float
     return number
 
 
+def check_choice(field: str, value: Any, kind: type[Choice]) -> Choice:
+    """Return ``value`` if it is a member of the enumeration ``kind``; its name or number is none."""
+    if isinstance(value, kind):
+        return value
+    found = f"{type(value).__name__}.{value.name}" if isinstance(value, Enum) else repr(value)
+    raise InvalidFieldError(field, found, " or ".join(f"{kind.__name__}.{one.name}" for one in kind))
+
+
 def check_array(field: str, value: ArrayLike, shape: tuple[int | None, ...]) -> FloatArray:
-    """Return a read-only float64 copy of ``value`` with the given shape (None: any length), all finite."""
+    """Return a read-only float64 copy of ``value`` with the given shape (None: any length), all finite.
+
+    Where any number of rows is allowed, an error names the first one that is not finite.
+    """
     try:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError):
@@ -72,7 +85,11 @@ def check_array(field: str, value: ArrayLike, shape: tuple[int | None, ...]) -> 
     # Where a sum is finite, so are its terms: the faster test for a few of them.
     surely_finite = array.size <= _FEW and math.isfinite(sum(array.ravel().tolist()))
     if not surely_finite and not np.isfinite(array).all():
-        raise InvalidFieldError(field, array, "finite numbers only")
+        if shape[:1] != (None,):
+            raise InvalidFieldError(field, array, "finite numbers only")
+        rows = np.isfinite(array.reshape(len(array), -1)).all(axis=1)
+        first = int(rows.argmin())
+        raise InvalidFieldError(f"{field}[{first}]", array[first], "finite numbers only")
     array.flags.writeable = False
     return array
 

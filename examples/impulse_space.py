@@ -9,7 +9,7 @@ import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 
-from contact_dynamics import BodyState, ContactSet, MassProperties, spatial_impact
+from contact_dynamics import BodyState, Contact, ContactSet, MassProperties, spatial_impact
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.impact import ImpactPicture
 from contact_dynamics.viewing.impulse_space import draw_impulse_space
@@ -30,7 +30,7 @@ with rr.RecordingStream("contact_dynamics") as recording:
     recording.save(sys.argv[1] if len(sys.argv) > 1 else "impulse_space.rrd")
     for i, (x, z) in enumerate(ARMS):
         arm = np.array([x, 0.0, z])
-        impact = spatial_impact(body, state, p_WC_W=arm, n_W=up, friction=0.25, restitution=0.5)
+        impact = spatial_impact(body, state, Contact(p_WC_W=arm, normal_W=up, friction=0.25, restitution=0.5))
         (t, _, n), outcome = impact.impulse_W, impact.outcome.name.lower().replace("_", " ")
         if impact.jams:
             outcome = f"jams, {outcome}"

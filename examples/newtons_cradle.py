@@ -25,7 +25,7 @@ contacts = ContactSet(
 pairs = [(i, i + 1) for i in range(N - 1)]
 for law in SeveralContactsLaw:
     answer = bodies_impact(
-        [ball] * N, states, contacts, pairs, law=law, restitution_law=RestitutionLaw.NEWTON
+        [ball] * N, states, contacts, pairs, several_contacts_law=law, restitution_law=RestitutionLaw.NEWTON
     )
     velocities = " ".join(f"{state.v_WB_W[0] + 0.0:6.3f}" for state in answer.states)
     print(f"{law.name.lower():>12}: {velocities} m/s")

@@ -32,14 +32,7 @@ if landing is None:
     raise SystemExit("it does not land within 2 s")
 print(f"in {landing.seconds:.6f} s at {landing.contacts.p_WC_W[0]}, at {landing.velocities_W[0]} m/s")
 
-impact = spatial_impact(
-    box.mass_properties,
-    landing.state,
-    p_WC_W=landing.contacts.p_WC_W[0],
-    n_W=landing.contacts.normals_W[0],
-    friction=floor.friction,
-    restitution=floor.restitution,
-)
+impact = spatial_impact(box.mass_properties, landing.state, landing.contacts[0])
 print(f"the contact {impact.outcome.name.lower().replace('_', ' ')}; impulse {impact.impulse_W} N s")
 print(
     f"then v = {impact.state.v_WB_W} m/s, w = {impact.state.w_WB_W} rad/s; {-impact.energy_change:.3f} J lost"

@@ -1,7 +1,8 @@
 """`nav_msgs/Odometry` to a body's state and back.
 
 The pose is that of the child frame in `header.frame_id`; the twist is in the child frame's axes and at its
-origin (REP 105 and the message's own comment). Covariances are not read: nothing uses them yet.
+origin (REP 105 and the message's own comment). Covariances are not read: a
+published state has none here, and a fit of several states finds its own.
 """
 
 from __future__ import annotations

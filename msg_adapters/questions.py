@@ -312,7 +312,8 @@ def _sampling(request: PredictTumbling.Request) -> Sampling:
             plane_normal=vector_from_msg(request.plane_normal),
             body_point=vector_from_msg(request.body_point),
         )
-    raise InvalidFieldError("sampling", request.sampling, "AT_TIMES (0) to UNTIL_PLANE (4)")
+    allowed = "AT_TIMES (0), AT_STAMPS (1), AT_RATE (2), UNTIL_CONTACT (3) or UNTIL_PLANE (4)"
+    raise InvalidFieldError("sampling", request.sampling, allowed)
 
 
 def _problem(value: int) -> Problem:

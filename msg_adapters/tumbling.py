@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from contact_dynamics.tumbling.flips import Flips
     from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves
     from contact_dynamics.validation import FloatArray
+    from contact_dynamics_interfaces.srv import PredictImpact
 
 
 def tumbling_answer_to_msg(
@@ -93,15 +94,7 @@ def write_covariances(msg: TrajectoryMsg, carried: CarriedCovariance) -> None:
     msg.covariances_trusted = carried.trusted.tolist()
 
 
-class FitResponse(Protocol):
-    """What the responses say of a fit."""
-
-    fit_count: int
-    fit_position_residual: float
-    fit_orientation_residual: float
-
-
-def write_fit(response: FitResponse, fit: FitQuality | None) -> None:
+def write_fit(response: PredictImpact.Response | PredictTumbling.Response, fit: FitQuality | None) -> None:
     """Write into a response which fit its state came from."""
     if fit is not None:
         response.fit_count = fit.count

@@ -4,7 +4,7 @@
 set -eu
 
 for venv in "$1" "$1"-matrix/*; do
-    if [ -e "$venv/.made/python" ]; then
+    if [ -d "$venv/.made" ]; then
         echo "removing $venv"
         rm -rf "$venv"
     elif [ -e "$venv" ]; then
@@ -14,7 +14,7 @@ done
 rmdir "$1"-matrix 2>/dev/null || true
 
 # setuptools and the tools of `make test` fill these again.
-rm -rf contact_dynamics.egg-info .hypothesis .mypy_cache .pytest_cache .ruff_cache
+rm -rf contact_dynamics.egg-info coverage_html .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache
 
 # A folder of the demo's, by its name and by what only the demo writes into it.
 for run in demo_output/[0-9][0-9][0-9][0-9]-[0-9][0-9]-[0-9][0-9]_*; do

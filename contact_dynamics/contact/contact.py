@@ -1,21 +1,32 @@
 """Contacts of a body with the world: where, along which normal, with which friction and restitution.
 
 A contact is a point of the body on a flat of the world, unless curvatures say otherwise
-(`contact.curvature`). The normal points into the body.
+(`contact.curvature`). The normal points into the body. One contact is a `Contact`; many are a `ContactSet`,
+which holds arrays, and of which each item is a `Contact`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact.curvature import Curvatures, check_pairs, checked_curvatures
+from contact_dynamics.contact.curvature import Curvatures, alike, check_pairs, checked_curvatures
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.tolerances import UNIT_LENGTH_TOLERANCE
-from contact_dynamics.validation import FloatArray, check_array
+from contact_dynamics.validation import (
+    FloatArray,
+    check_array,
+    check_not_negative,
+    check_unit,
+    check_within,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -25,25 +36,68 @@ MOST_CONTACTS: Final = 10_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Contact:
+    """One contact of a body in space. Lists are taken for vectors.
+
+    Raises:
+        InvalidFieldError: a number that is not finite, a normal that is not unit, mu < 0, e outside [0, 1],
+            or curvatures of more than one contact, or with which the sides do not touch in one point.
+    """
+
+    p_WC_W: FloatArray  # (3,), m, the contact point, world
+    normal_W: FloatArray  # (3,), unit, into the body, world axes
+    friction: float  # Coulomb's mu, >= 0
+    restitution: float = 0.0  # e, in [0, 1]; contact modes do not use it
+    surface: str = ""  # the surface that it touches; empty: not known
+    body_curvatures: Curvatures | None = None  # of the body there, one row; None: its point touches
+    surface_curvatures: Curvatures | None = None  # of the world there, one row; None: its flat is touched
+
+    if TYPE_CHECKING:  # what the constructor takes, beside what the fields then hold
+
+        def __init__(
+            self,
+            *,
+            p_WC_W: ArrayLike,
+            normal_W: ArrayLike,
+            friction: float,
+            restitution: float = 0.0,
+            surface: str = "",
+            body_curvatures: Curvatures | None = None,
+            surface_curvatures: Curvatures | None = None,
+        ) -> None: ...
+
+    def __post_init__(self) -> None:
+        """Check every field and normalise the normal to rounding."""
+        object.__setattr__(self, "p_WC_W", check_array("p_WC_W", self.p_WC_W, (3,)))
+        object.__setattr__(self, "normal_W", check_unit("normal_W", self.normal_W, 3))
+        object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
+        object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
+        _check_curvatures(self, self.normal_W[None], "")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ContactSet:
-    """Contacts of one body in space; contact i is row i of each array.
+    """Contacts of one body in space; contact i is row i of each array, and `contacts[i]` is a `Contact`.
+
+    Lists are taken for arrays, one normal for all contacts, and one number for all frictions or restitutions.
 
     Raises:
         InvalidFieldError: arrays of unequal length, a number that is not finite, a normal that is not unit,
-        mu < 0, e outside
-            [0, 1], or curvatures with which the sides do not touch in one point.
+            mu < 0, e outside [0, 1], or curvatures with which the sides do not touch in one point.
         TooLargeError: more than `MOST_CONTACTS` contacts.
     """
 
     p_WC_W: FloatArray  # (n, 3), m, contact points, world
     normals_W: FloatArray  # (n, 3), unit, into the body, world axes
     frictions: FloatArray  # (n,), Coulomb's mu, >= 0
-    restitutions: FloatArray  # (n,), e, in [0, 1]
+    restitutions: FloatArray = field(
+        default_factory=lambda: np.zeros(())
+    )  # (n,), e, in [0, 1]; contact modes do not use them
     surfaces: tuple[str, ...] = ()  # the surface that each contact touches; empty: not known
     body_curvatures: Curvatures | None = None  # of the body at each contact; None: its points touch
     surface_curvatures: Curvatures | None = None  # of the world at each contact; None: its flats are touched
 
-    if TYPE_CHECKING:
+    if TYPE_CHECKING:  # what the constructor takes, beside what the fields then hold
 
         def __init__(
             self,
@@ -51,22 +105,21 @@ class ContactSet:
             p_WC_W: ArrayLike,
             normals_W: ArrayLike,
             frictions: ArrayLike,
-            restitutions: ArrayLike,
-            surfaces: tuple[str, ...] = ...,
-            body_curvatures: Curvatures | None = ...,
-            surface_curvatures: Curvatures | None = ...,
-        ) -> None:
-            """Take whatever NumPy makes arrays of."""
+            restitutions: ArrayLike = 0.0,
+            surfaces: Sequence[str] = (),
+            body_curvatures: Curvatures | None = None,
+            surface_curvatures: Curvatures | None = None,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         """Check every array and normalise the normals to rounding."""
-        n = len(self.frictions)
+        n = len(self.p_WC_W) if np.ndim(self.frictions) == 0 else len(self.frictions)
         if n > MOST_CONTACTS:
             raise TooLargeError("contacts", f"{n} contacts", f"at most {MOST_CONTACTS}")
         points = check_array("contacts.positions", self.p_WC_W, (n, 3))
-        normals = check_array("contacts.normals", self.normals_W, (n, 3))
-        frictions = check_array("contacts.frictions", self.frictions, (n,))
-        restitutions = check_array("contacts.restitutions", self.restitutions, (n,))
+        normals = check_array("contacts.normals", _for_each(self.normals_W, n, 1), (n, 3))
+        frictions = check_array("contacts.frictions", _for_each(self.frictions, n), (n,))
+        restitutions = check_array("contacts.restitutions", _for_each(self.restitutions, n), (n,))
         lengths = np.sqrt(np.einsum("ij,ij->i", normals, normals))
         _check_each(normals, lengths, frictions, restitutions)
         if self.surfaces and len(self.surfaces) != n:
@@ -80,16 +133,43 @@ class ContactSet:
         object.__setattr__(self, "frictions", frictions)
         object.__setattr__(self, "restitutions", restitutions)
         object.__setattr__(self, "surfaces", tuple(self.surfaces))
-        if self.body_curvatures is None and self.surface_curvatures is None:
-            return
-        for name in ("body_curvatures", "surface_curvatures"):
-            checked = checked_curvatures(f"contacts.{name}", getattr(self, name), normals)
-            object.__setattr__(self, name, checked)
-        check_pairs(normals, self.body_curvatures, self.surface_curvatures)
+        _check_curvatures(self, normals, "contacts.")
+
+    @classmethod
+    def of(cls, contacts: Sequence[Contact]) -> ContactSet:
+        """Return the set of these contacts, in their order."""
+        n = len(contacts)
+        return cls(
+            p_WC_W=np.array([one.p_WC_W for one in contacts]).reshape(n, 3),
+            normals_W=np.array([one.normal_W for one in contacts]).reshape(n, 3),
+            frictions=np.array([one.friction for one in contacts]),
+            restitutions=np.array([one.restitution for one in contacts]),
+            surfaces=[one.surface for one in contacts] if any(one.surface for one in contacts) else (),
+            body_curvatures=_together([one.body_curvatures for one in contacts], math.inf),
+            surface_curvatures=_together([one.surface_curvatures for one in contacts], 0.0),
+        )
 
     def __len__(self) -> int:
         """Return the number of contacts."""
         return len(self.frictions)
+
+    def __getitem__(self, i: int) -> Contact:
+        """Return one contact; from the end where ``i`` is negative."""
+        i = range(len(self))[i]
+        body, surface = self.body_curvatures, self.surface_curvatures
+        return Contact(
+            p_WC_W=self.p_WC_W[i],
+            normal_W=self.normals_W[i],
+            friction=float(self.frictions[i]),
+            restitution=float(self.restitutions[i]),
+            surface=self.surfaces[i] if self.surfaces else "",
+            body_curvatures=None if body is None else body.subset([i]),
+            surface_curvatures=None if surface is None else surface.subset([i]),
+        )
+
+    def __iter__(self) -> Iterator[Contact]:
+        """Go through the contacts in their order."""
+        return (self[i] for i in range(len(self)))
 
     def subset(self, indices: Sequence[int]) -> ContactSet:
         """Return the contacts of those indices, in their order."""
@@ -105,6 +185,33 @@ class ContactSet:
                 None if self.surface_curvatures is None else self.surface_curvatures.subset(chosen)
             ),
         )
+
+
+def _for_each(values: ArrayLike, n: int, ndim: int = 0) -> ArrayLike:
+    """Return one value for all contacts, of so many dimensions, n times; anything else as it is."""
+    return values if np.ndim(values) != ndim else np.broadcast_to(values, (n, *np.shape(values)))
+
+
+def _together(curvatures: list[Curvatures | None], otherwise: float) -> Curvatures | None:
+    """Return the curvatures of contacts as those of a set; a contact without any has ``otherwise``, 1/m."""
+    if all(one is None for one in curvatures):
+        return None
+    each = [alike(1, otherwise) if one is None else one for one in curvatures]
+    return Curvatures(
+        along=np.concatenate([one.along for one in each]),
+        across=np.concatenate([one.across for one in each]),
+        directions_W=np.concatenate([one.directions_W for one in each]),
+    )
+
+
+def _check_curvatures(contacts: Contact | ContactSet, normals_W: FloatArray, prefix: str) -> None:
+    """Check the curvatures of both sides against the normals, (n, 3), and make their directions tangent."""
+    if contacts.body_curvatures is None and contacts.surface_curvatures is None:
+        return
+    for name in ("body_curvatures", "surface_curvatures"):
+        checked = checked_curvatures(f"{prefix}{name}", getattr(contacts, name), normals_W)
+        object.__setattr__(contacts, name, checked)
+    check_pairs(normals_W, contacts.body_curvatures, contacts.surface_curvatures)
 
 
 def _check_each(

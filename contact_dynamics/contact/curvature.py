@@ -41,6 +41,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.numerics.vectors import tangent_rows
 from contact_dynamics.tolerances import ROW_TOLERANCE, UNIT_LENGTH_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array
 
@@ -140,7 +141,7 @@ def check_pairs(
     # Quick: one side convex in all directions and the other flat.
     clear = ((mine[0] > 0.0) & (theirs == 0.0).all(axis=0)) | ((theirs[0] > 0.0) & (mine == 0.0).all(axis=0))
     for i in np.flatnonzero(~clear).tolist():
-        frame = tangent_frame(normals_W[i])
+        frame = tangent_rows(normals_W[i])
         body, surface = (
             side_of(body_curvatures, i, frame, math.inf),
             side_of(surface_curvatures, i, frame, 0.0),
@@ -179,14 +180,6 @@ class Rolling(NamedTuple):
 
 Side: TypeAlias = "list[tuple[float, Pair]]"
 """Two curvatures, 1/m, with their directions in the tangent plane."""
-
-
-def tangent_frame(normal_W: FloatArray) -> FloatArray:
-    """Return two unit tangents at right angles, (2, 3)."""
-    least = np.eye(3)[int(np.abs(normal_W).argmin())]
-    first = np.cross(normal_W, least)
-    first = first / math.sqrt(first @ first)
-    return np.array([first, np.cross(normal_W, first)])
 
 
 def side_of(curvatures: Curvatures | None, i: int, frame: FloatArray, default: float) -> Side:

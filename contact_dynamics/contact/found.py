@@ -23,7 +23,9 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.curvature import Curvatures
 from contact_dynamics.contact.on_flats import flat_touches
 from contact_dynamics.contact.on_obstacles import touches_of
+from contact_dynamics.errors import NoContactError
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
+from contact_dynamics.validation import check_not_negative
 from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
@@ -50,8 +52,12 @@ def find_contacts(
     The set may be empty.
 
     Raises:
+        NoContactError: the body has no shape that could touch anything.
+        InvalidFieldError: a tolerance that is negative or not finite.
         NotSupportedError: a rim of the body at an edge of an obstacle (`obstacle_contact`).
     """
+    check_has_shape(body)
+    check_not_negative("distance_tolerance", distance_tolerance)
     shape, R_WB = body.shape, state.R_WB
     points = state.p_WB_W + shape.vertices @ R_WB.T
     flats = [surface for surface in surfaces if isinstance(surface, Surface)]
@@ -65,7 +71,7 @@ def find_contacts(
             touches += flat_touches(
                 shape, state.p_WB_W, R_WB, surface.normal_W, level=level, tolerance=distance_tolerance
             )
-        elif not shape.is_empty:
+        else:
             touches += touches_of(shape, state.p_WB_W, R_WB, surface, distance_tolerance)
         owners += [surface] * (len(touches) - len(owners))
     return ContactSet(
@@ -77,6 +83,13 @@ def find_contacts(
         body_curvatures=_sides([touch.body for touch in touches]),
         surface_curvatures=_sides([touch.surface for touch in touches]),
     )
+
+
+def check_has_shape(body: Body) -> None:
+    """Raise `NoContactError` where a body has no shape that could touch anything."""
+    if body.shape.is_empty:
+        message = f"body {body.name!r}: found no shape, allowed is a body with `vertices_B` or a `shape`"
+        raise NoContactError(message)
 
 
 def _sides(sides: list[Side]) -> Curvatures:

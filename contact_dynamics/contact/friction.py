@@ -7,15 +7,19 @@ inside it.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.numerics.vectors import tangents_towards
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
+
+
+MOST_FACETS: Final = 1000
+"""Edges of a friction pyramid, which then leaves out 5e-6 of friction; far more would only take memory."""
 
 
 def linearised_cone(
@@ -28,29 +32,11 @@ def linearised_cone(
     leans towards ``towards``, (3,), if given.
 
     Raises:
-        InvalidFieldError: fewer than 3 facets.
+        InvalidFieldError: fewer than 3 facets, more than `MOST_FACETS`, or no whole number of them.
     """
-    if facets < 3:
-        raise InvalidFieldError("friction_facets", facets, "a whole number >= 3")
-    one, two = tangents(normal, towards)
+    if not isinstance(facets, (int, np.integer)) or not 3 <= facets <= MOST_FACETS:
+        raise InvalidFieldError("friction_facets", facets, f"a whole number >= 3 and <= {MOST_FACETS}")
+    one, two = tangents_towards(normal, towards)
     angles = 2.0 * math.pi * np.arange(facets) / facets
     edges: FloatArray = normal + friction * (np.outer(np.cos(angles), one) + np.outer(np.sin(angles), two))
     return edges
-
-
-def tangents(normal: FloatArray, towards: FloatArray | None = None) -> tuple[FloatArray, FloatArray]:
-    """Return two unit tangents, (3,) each, that make a right-handed frame (one, two, normal).
-
-    The first leans towards the direction ``towards``, (3,), unless that is along the normal or not given.
-    """
-    if towards is not None:
-        one: FloatArray = towards - np.dot(towards, normal) * normal
-        size = float(np.linalg.norm(one))
-        if size > ROW_TOLERANCE * float(np.linalg.norm(towards)):
-            one = one / size
-            return one, np.cross(normal, one)
-    least = np.zeros(3)
-    least[int(np.abs(normal).argmin())] = 1.0
-    one = np.cross(least, normal)
-    one = one / np.linalg.norm(one)
-    return one, np.cross(normal, one)

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.contact.curvature import least_and_most, rolling, side_of, tangent_frame
+from contact_dynamics.contact.curvature import least_and_most, rolling, side_of
+from contact_dynamics.numerics.vectors import tangent_rows
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -36,7 +37,7 @@ def velocity_accelerations(contacts: ContactSet, velocities_W: FloatArray, w_W: 
     theirs = least_and_most(contacts.surface_curvatures, n, 0.0)
     for i in np.flatnonzero(np.isfinite(mine[0]) | (theirs != 0.0).any(axis=0)).tolist():  # not point on flat
         normal = contacts.normals_W[i]
-        frame = tangent_frame(normal)
+        frame = tangent_rows(normal)
         m = frame @ np.cross(normal, w_W)
         v = frame @ velocities_W[i]
         found = rolling(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
+from contact_dynamics.numerics.vectors import along_least
 from contact_dynamics.shapes.rim import radii_of
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ def flat_touches(
     Corners come first, then rims. A point touches where it is at most ``tolerance``, m, above the plane.
     """
     points = p_WB_W + shape.vertices @ R_WB.T
-    tangent = any_tangent(n_W)
+    tangent = along_least(n_W)
     corner = 1.0 / shape.rounding if shape.rounding > 0.0 else math.inf
     for i in np.flatnonzero(points @ n_W - level - shape.rounding <= tolerance):
         p_WC_W = points[i] - shape.rounding * n_W
@@ -82,7 +83,7 @@ def _of_rim(
         return
     flush = height + size <= tolerance
     corner = 1.0 / rounding if rounding > 0.0 else math.inf
-    tangent = any_tangent(n_W)
+    tangent = along_least(n_W)
     flat = (0.0, 0.0, tangent)
     if flush:
         turns = [2.0 * math.pi * i / RIM_POINTS for i in range(RIM_POINTS)]
@@ -97,10 +98,3 @@ def _of_rim(
             around = (cosine * rim.second - sine * rim.first) / rim.radius  # level: along the rim
             radius = rim.radius * rim.radius / size + rounding
             yield Touch(p_WC_W, n_W, (1.0 / radius, corner, around), flat)
-
-
-def any_tangent(n_W: FloatArray) -> FloatArray:
-    """Return a unit vector, (3,), at right angles to another."""
-    least = np.eye(3)[int(np.abs(n_W).argmin())]
-    tangent: FloatArray = least - (least @ n_W) * n_W
-    return tangent / math.sqrt(tangent @ tangent)

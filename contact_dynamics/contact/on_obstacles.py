@@ -26,8 +26,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.contact.on_flats import flat_touches
-from contact_dynamics.contact.overlap import Rounded, outline, overlap, tangents_of
+from contact_dynamics.contact.overlap import Rounded, outline, overlap
 from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.numerics.vectors import tangent_rows
 from contact_dynamics.shapes.hull_features import features_of
 from contact_dynamics.shapes.obstacle import closest_points
 
@@ -119,7 +120,7 @@ def touches_of(
     if shape.rims and float((theirs.normals @ n_W).max()) < 1.0 - _AS_GOOD:
         message = f"shape: found a rim at an edge of obstacle {obstacle.name!r}, allowed is one at a face"
         raise NotSupportedError(message)
-    frame = tangents_of(n_W)
+    frame = tangent_rows(n_W)
     touches = list(flat_touches(shape, p_WB_W, R_WB, n_W, level=site.level, tolerance=tolerance))
     upper = outline(np.array([touch.p_WC_W for touch in touches]).reshape(-1, 3), frame)
     lowest = float(_lowest(shape, p_WB_W, R_WB, n_W[None])[0])

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.contact.on_flats import Touch
+from contact_dynamics.numerics.convex_hull import hull_of
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.on_flats import Side
@@ -68,9 +69,7 @@ def outline(points: FloatArray, frame: FloatArray) -> Outline:
         along = spread @ axes[0]
         ends = [int(along.argmin()), int(along.argmax())]
         return Outline(points[ends], flat[ends], ends)
-    from scipy.spatial import ConvexHull
-
-    order = ConvexHull(flat).vertices.tolist()
+    order = hull_of("vertices", flat).vertices.tolist()
     return Outline(points[order], flat[order], order)
 
 
@@ -158,10 +157,3 @@ def _is_new(place: FloatArray, taken: list[FloatArray], slack: float) -> bool:
 def _along(side: FloatArray, frame: FloatArray) -> FloatArray:
     direction: FloatArray = side @ frame
     return direction / math.sqrt(direction @ direction)
-
-
-def tangents_of(n_W: FloatArray) -> FloatArray:
-    """Return two tangents, (2, 3), unit, of a plane of unit normal, right-handed with it."""
-    first = np.cross(n_W, np.eye(3)[int(np.abs(n_W).argmin())])
-    first = first / math.sqrt(first @ first)
-    return np.array([first, np.cross(n_W, first)])

@@ -15,16 +15,20 @@ it is over (`settling`).
 """
 
 from contact_dynamics.contact_modes.planar.answer import planar_contact_modes
-from contact_dynamics.contact_modes.planar.margins import ModeMargin, planar_mode_map, planar_mode_margins
+from contact_dynamics.contact_modes.planar.margins import (
+    PlanarModeMargin,
+    planar_mode_map,
+    planar_mode_margins,
+)
 from contact_dynamics.contact_modes.planar.result import (
-    ConsistentMode,
-    ContactModeAnswer,
     ModeVerdict,
+    PlanarMode,
+    PlanarModeAnswer,
     Refusal,
     RefusedMode,
 )
 from contact_dynamics.contact_modes.planar.statics import BodyStatics, Certainty, planar_statics
-from contact_dynamics.contact_modes.planar.wrench_sets import ModeWrenchSet, WrenchHalfSpace
+from contact_dynamics.contact_modes.planar.wrench_sets import PlanarWrenchSet, WrenchHalfSpace
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
 from contact_dynamics.contact_modes.spatial.kinematic import spatial_kinematic_modes
 from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin, spatial_mode_margins
@@ -37,11 +41,11 @@ from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet,
 __all__ = [
     "BodyStatics",
     "Certainty",
-    "ConsistentMode",
-    "ContactModeAnswer",
-    "ModeMargin",
     "ModeVerdict",
-    "ModeWrenchSet",
+    "PlanarMode",
+    "PlanarModeAnswer",
+    "PlanarModeMargin",
+    "PlanarWrenchSet",
     "Refusal",
     "RefusedMode",
     "SpatialMode",

@@ -20,12 +20,14 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.impact.planar.batch import planar_impacts
 from contact_dynamics.impact.spatial.batch import StrikingBodies, spatial_impacts
+from contact_dynamics.rotations.many import products, quaternions_of, rotated
 from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, VELOCITY_TOLERANCE
-from contact_dynamics.validation import FloatArray, check_array, check_unit
+from contact_dynamics.validation import FloatArray, check_array, check_choice
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from contact_dynamics.contact.contact import Contact
     from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
@@ -49,7 +51,7 @@ def planar_impact_distribution(
     contact: PlanarContact,
     *,
     covariance: ArrayLike,
-    law: RestitutionLaw = RestitutionLaw.POISSON,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     samples: int = 10_000,
     seed: int = 0,
@@ -61,7 +63,7 @@ def planar_impact_distribution(
         velocity: Mean of the velocity just before.
         contact: Where, along which normal, with which friction and restitution.
         covariance: (3, 3), of v_x, v_y (m/s) and w (rad/s) before.
-        law: What the coefficient of restitution means.
+        restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A component of the contact's velocity within it counts as zero.
         samples: How many states to draw, an even number; about 0.2 us each.
         seed: Of the draw, so that the same question has the same answer.
@@ -88,7 +90,7 @@ def planar_impact_distribution(
             normals=normal,
             frictions=contact.friction,
             restitutions=contact.restitution,
-            law=law,
+            restitution_law=restitution_law,
             velocity_tolerance=velocity_tolerance,
         )
         after[strikes] = np.column_stack((impacts.v, impacts.w))
@@ -99,13 +101,10 @@ def planar_impact_distribution(
 def spatial_impact_distribution(
     body: MassProperties,
     state: BodyState,
+    contact: Contact,
     *,
     covariance: ArrayLike,
-    p_WC_W: ArrayLike,
-    n_W: ArrayLike,
-    friction: float,
-    restitution: float,
-    law: RestitutionLaw = RestitutionLaw.POISSON,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     samples: int = 2000,
     seed: int = 0,
@@ -117,13 +116,10 @@ def spatial_impact_distribution(
     Args:
         body: Mass and angular inertia.
         state: Mean of the state just before.
+        contact: Where it is at the mean pose, along which normal into the body, friction and restitution.
         covariance: (12, 12), of the state before: position (m), rotation vector (rad, world axes, applied
             after the attitude), linear velocity (m/s), angular velocity (rad/s), each x y z.
-        p_WC_W: (3,), m, the contact at the mean pose, world.
-        n_W: (3,), unit normal into the body, world axes.
-        friction: Coulomb's mu, >= 0.
-        restitution: e, in [0, 1].
-        law: What the coefficient of restitution means.
+        restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A normal or tangential velocity of the contact within it counts as
             zero.
         samples: How many states to draw, an even number; 2000 take some 20 ms, 10 000 some 60 ms.
@@ -133,11 +129,10 @@ def spatial_impact_distribution(
         InvalidFieldError: as `spatial_impact`; or the covariance is not symmetric and positive semidefinite,
             or the number of samples is odd or outside [2, 1 000 000].
     """
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
     draws = _draw(covariance, 12, samples, seed)
-    turns = _rotation_quaternions(draws[:, 3:6])
-    arm = check_array("contact position", p_WC_W, (3,)) - state.p_WB_W
-    normal = check_unit("contact normal", n_W, 3)
-    arms = _rotated(turns, arm)
+    turns = quaternions_of(draws[:, 3:6])
+    arms, normal = rotated(turns, contact.p_WC_W - state.p_WB_W), contact.normal_W
     after = np.concatenate((state.v_WB_W, state.w_WB_W)) + draws[:, 6:]
     v_n = (after[:, :3] + np.cross(after[:, 3:], arms)) @ normal
     # Half, as in the plane.
@@ -148,15 +143,15 @@ def spatial_impact_distribution(
             StrikingBodies(
                 masses=np.array(body.mass),
                 inertias_B=body.I_B,
-                q_WB=_quaternion_products(turns[strikes], state.q_WB),
+                q_WB=products(turns[strikes], state.q_WB),
                 v_WB_W=after[strikes, :3],
                 w_WB_W=after[strikes, 3:],
                 r_W=arms[strikes],
             ),
             normals_W=normal,
-            frictions=friction,
-            restitutions=restitution,
-            laws=law,
+            frictions=contact.friction,
+            restitutions=contact.restitution,
+            restitution_laws=restitution_law,
             velocity_tolerance=velocity_tolerance,
         )
         after[strikes] = np.concatenate((impacts.v_WB_W, impacts.w_WB_W), axis=1)
@@ -189,23 +184,3 @@ def _distribution(after: FloatArray, whole: FloatArray, outcomes: np.ndarray) ->
         missed=1.0 - len(outcomes) / samples,
         samples=samples,
     )
-
-
-def _rotation_quaternions(vectors: FloatArray) -> FloatArray:
-    """Return the quaternions x, y, z, w, (n, 4), of rotation vectors, (n, 3), rad."""
-    angles = np.linalg.norm(vectors, axis=1)
-    halves = 0.5 * np.sinc(angles / (2.0 * np.pi))
-    return np.column_stack((halves[:, None] * vectors, np.cos(0.5 * angles)))
-
-
-def _quaternion_products(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return the rotation ``b``, (4,), followed by each of ``a``, (n, 4), quaternions x, y, z, w."""
-    vectors = a[:, 3:] * b[:3] + b[3] * a[:, :3] + np.cross(a[:, :3], b[:3])
-    return np.column_stack((vectors, a[:, 3] * b[3] - a[:, :3] @ b[:3]))
-
-
-def _rotated(quaternions: FloatArray, vector: FloatArray) -> FloatArray:
-    """Return ``vector``, (3,), turned by each of the quaternions, (n, 4)."""
-    twice = 2.0 * np.cross(quaternions[:, :3], vector)
-    rotated: FloatArray = vector + quaternions[:, 3:] * twice + np.cross(quaternions[:, :3], twice)
-    return rotated

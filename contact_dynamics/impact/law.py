@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contact_dynamics.validation import check_choice
 from contact_dynamics.validation_batches import check_rows
 
 if TYPE_CHECKING:
@@ -79,6 +80,13 @@ _STICKING = frozenset(
 
 
 def check_law_rows(field: str, value: ArrayLike) -> FloatArray:
-    """Return values of `RestitutionLaw`, (N,)."""
+    """Return values of `RestitutionLaw`, (N,); each may be a member or, in an array of numbers, its value."""
+    if not (isinstance(value, np.ndarray) and value.dtype.kind in "iuf"):
+        several = isinstance(value, (list, tuple, np.ndarray)) and np.ndim(value) > 0
+        given: Any = value if several else [value]
+        for i, law in enumerate(given):
+            if type(law) not in {int, float} and not isinstance(law, np.number):
+                check_choice(f"{field}[{i}]" if several else field, law, RestitutionLaw)
     known = [float(law) for law in RestitutionLaw]
-    return check_rows(field, value, (), "a value of RestitutionLaw", lambda x: np.isin(x, known))
+    allowed = " or ".join(f"{law.name} ({law.value})" for law in RestitutionLaw)
+    return check_rows(field, value, (), allowed, lambda x: np.isin(x, known))

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.contact.found import find_contacts
+from contact_dynamics.contact.found import check_has_shape, find_contacts
 from contact_dynamics.landing.obstacle_arrival import first_touch
 from contact_dynamics.landing.plane_arrival import first_contact
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.tumbling import free_motion
+from contact_dynamics.validation import check_not_negative
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -43,12 +44,20 @@ def next_landing(
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     motion: Motion | None = None,
 ) -> Landing | None:
-    """Return where a body's flight ends within ``horizon`` (s), or None.
+    """Return where a body's flight ends within ``horizon`` (s), or None: it flies at least until then.
 
     A point within ``distance_tolerance`` (m) of a surface touches it. A body that touches flies only if each
     of its contacts leaves faster than ``velocity_tolerance`` (m/s); what counts then is where it comes down.
     ``motion`` is the flight, in closed form or under forces; None: that of the state in the world's gravity.
+
+    Raises:
+        NoContactError: the body has no shape that could touch anything.
+        InvalidFieldError: a horizon or a tolerance that is negative or not finite.
     """
+    check_has_shape(body)
+    check_not_negative("horizon", horizon)
+    check_not_negative("distance_tolerance", distance_tolerance)
+    check_not_negative("velocity_tolerance", velocity_tolerance)
     now = _touching(body, state, world, distance_tolerance)
     if now is not None and (now.approach <= velocity_tolerance).any():
         return now.landing(0.0, state, velocity_tolerance)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact.on_obstacles import site_of, touches_of
-from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.landing.plane_arrival import Descent
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, GRAZING_DEPTH
@@ -37,15 +37,16 @@ def first_touch(motion: Motion, shape_B: ConvexShape, obstacle: Obstacle, *, hor
     """Return the first time in [0, horizon], s, at which a body touches an obstacle and does not leave it.
 
     One that touches at time 0 does so at once unless it leaves; then the time at which it comes back counts.
-    None: it does not touch. An empty shape never does.
+    None: it does not touch.
 
     Raises:
-        InvalidFieldError: horizon < 0, or an integrated motion that does not get as far as the search has to.
+        InvalidFieldError: horizon < 0, an empty shape, or an integrated motion that does not get as far as
+            the search has to.
         NotSupportedError: a rim that comes to an edge or a corner, or a body that hovers.
     """
     until = check_not_negative("horizon", horizon)
     if shape_B.is_empty:
-        return None
+        raise InvalidFieldError("shape_B", "nothing", "a shape, which can touch")
     now = 0.0
     for _ in range(MOST_STEPS):
         sample = motion.sample(now)

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.landing.acceleration_bounds import Bound, all_free_for, bounds_of, free_for
 from contact_dynamics.landing.rim_descent import RimAbove
 from contact_dynamics.rotations.one import conjugate, rotated
@@ -66,23 +67,25 @@ def first_contact(
     Args:
         motion: the flight, in closed form or integrated (`motion_of`).
         shape_B: the shape, body axes, from the centre of mass; or (k, 3), m, the corners of a polyhedron, or
-            one point of the body. An empty one never arrives.
+            one point of the body.
         p_WS_W: (3,), m, a point of the plane, world.
         normal_W: (3,), unit normal into the free side, world axes.
         horizon: s after the state's stamp, how far to search.
 
     Raises:
         InvalidFieldError: an array of another shape, a number that is not finite, a normal that is not unit,
+            a shape without corners or rims,
             or horizon < 0; an integrated motion that does not get as far as the search has to go.
     """
     search = Descent(
         motion,
         shape_B if isinstance(shape_B, ConvexShape) else ConvexShape(vertices=np.asarray(shape_B)),
-        check_array("plane_point", p_WS_W, (3,)),
-        check_unit("plane_normal", normal_W, 3),
+        check_array("p_WS_W", p_WS_W, (3,)),
+        check_unit("normal_W", normal_W, 3),
     )
-    until = check_not_negative("horizon", horizon)
-    return None if search.shape.is_empty else search.run(until)
+    if search.shape.is_empty:
+        raise InvalidFieldError("shape_B", "nothing", "a shape or at least one corner, which can arrive")
+    return search.run(check_not_negative("horizon", horizon))
 
 
 class Above(NamedTuple):

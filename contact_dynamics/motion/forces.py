@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.validation import FloatArray, check_array, check_not_negative
+from contact_dynamics.validation import FloatArray, check_array, check_choice, check_not_negative
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -31,7 +31,7 @@ class ConstantWrench:
     """A force through the centre of mass and a torque about it that stay as they are.
 
     Raises:
-        InvalidFieldError: not three finite numbers each.
+        InvalidFieldError: not three finite numbers each, or axes that are none of `WrenchAxes`.
     """
 
     force: FloatArray = field(default_factory=lambda: np.zeros(3))  # (3,), N, in `axes`
@@ -46,9 +46,10 @@ class ConstantWrench:
             """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
-        """Check both arrays."""
+        """Check all fields."""
         object.__setattr__(self, "force", check_array("force", self.force, (3,)))
         object.__setattr__(self, "torque", check_array("torque", self.torque, (3,)))
+        check_choice("axes", self.axes, WrenchAxes)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,8 +7,9 @@ by Gauss's and Newton's method with the exact derivative of the motion (`free_de
 no single velocity decides: L is constant, so it is averaged over all neighbouring pairs (where that fits
 worse than the last turn alone, as for needles, from that).
 
-Not covered: windows in which something touched the body, drag, outliers, noise that is correlated from state
-to state, unknown mass properties; half a turn or more between neighbouring states.
+Not covered: windows in which something touched the body, torque and drag (`forced_motion_fit`), outliers,
+noise that is correlated from state to state, unknown mass properties; half a turn or more between
+neighbouring states.
 """
 
 from __future__ import annotations
@@ -106,7 +107,7 @@ def fit_free_motion(
         if earlier >= later:
             raise InvalidFieldError("fit window: stamps", f"{later - earlier} ns from one to the next", "> 0")
     seconds = np.array(since_newest) * 1e-9
-    gravity = check_array("gravity", gravity_W, (3,))
+    gravity = check_array("gravity_W", gravity_W, (3,))
     place = _fit_place(states, seconds, gravity, noise)
     spin = _fit_rotation(body, states, seconds, noise)
     covariance = np.zeros((12, 12))

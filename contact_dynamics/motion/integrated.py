@@ -12,9 +12,9 @@ therefore exact. SciPy's DOP853 (Hairer, Norsett and Wanner, Solving Ordinary Di
 steps them, in both directions of time and as far as is asked for; what has been stepped is kept.
 
 Accuracy, against the closed form at zero torque: 1e-12 rad after 10 revolutions of a compact body and 5e-11
-after 100, growing with the square of time; a rod of 1 to 20, or spin near the middle axis, is ten times as
-sensitive. Cost: some 15 ms a revolution. Where nothing acts the closed form is better in all respects:
-`motion_of` chooses.
+after 100, growing with the square of time; a rod of 1 to 20 is ten times as sensitive, and spin near the
+middle axis as much more as `poinsot` says of any error of its state. Cost: some 15 ms a revolution. Where
+nothing acts the closed form is better in all respects: `motion_of` chooses.
 
 Not covered: forces that jump (each jump costs small steps), impacts, wind, lift, added mass.
 """
@@ -195,7 +195,7 @@ def motion_of(
             most_steps=most_steps,
         )
         return ChosenMotion(forced, Method.INTEGRATED)
-    fall = check_array("gravity", gravity_W, (3,)) + wrench.force / body.mass
+    fall = check_array("gravity_W", gravity_W, (3,)) + wrench.force / body.mass
     return ChosenMotion(free_motion(body, state, gravity_W=fall), Method.CLOSED_FORM)
 
 
@@ -226,7 +226,7 @@ def forced_motion(
             and whenever the motion is asked for, the function returns anything but twice three finite
             numbers.
     """
-    gravity = check_array("gravity", gravity_W, (3,))
+    gravity = check_array("gravity_W", gravity_W, (3,))
     check_extent(body, state, gravity)
     law = _Law(body, state, gravity, wrench=wrench, drag=drag, wrench_of=wrench_of)
     law.rates(0.0, law.start)  # a function that returns nonsense is refused at once

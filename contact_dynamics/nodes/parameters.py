@@ -91,7 +91,7 @@ def read_server_parameters(node: Node) -> ServerParameters:
         state_timeout=reader.read(
             "state_timeout",
             0.5,
-            "Oldest newest state, s, that a question about now is answered with.",
+            "How old the newest state may be, s, for a question about now.",
             (1e-3, 1e6),
         ),
         state_history=reader.read(

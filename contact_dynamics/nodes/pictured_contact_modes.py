@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from contact_dynamics.contact_modes import ConsistentMode, ModeVerdict, ModeWrenchSet, WrenchHalfSpace
+from contact_dynamics.contact_modes import ModeVerdict, PlanarMode, PlanarWrenchSet, WrenchHalfSpace
 from contact_dynamics.nodes.pictured_answers import in_words, numbers, rows, tell
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.plane.types import PlanarContact, PlanarWrench
@@ -108,7 +108,7 @@ def planar_picture(
 
 
 def applied_wrench(
-    mode: ConsistentMode, contacts: Sequence[PlanarContact], *, mass: float, inertia: float
+    mode: PlanarMode, contacts: Sequence[PlanarContact], *, mass: float, inertia: float
 ) -> PlanarWrench:
     """Return the wrench under which a mode's forces give its accelerations, by Newton's law."""
     f_x, f_y = mass * mode.acceleration[0], mass * mode.acceleration[1]
@@ -185,13 +185,13 @@ def _drawn_mode(msg: Any, contacts: ContactSet, velocities_W: FloatArray, tolera
 
 def _planar_mode(
     msg: Any, contacts: Sequence[PlanarContact], plane: PlaneOfMotion, tolerance: float
-) -> ConsistentMode:
+) -> PlanarMode:
     bases = np.array([(contact.tangent, contact.normal) for contact in contacts])
     in_contact_axes = [
         tuple(_pair(pair) for pair in np.einsum("nij,nj->ni", bases, vectors_W @ plane.axes_W.T))
         for vectors_W in (rows(msg.contact_forces), _beyond(rows(msg.contact_accelerations), tolerance))
     ]
-    return ConsistentMode(
+    return PlanarMode(
         mode=msg.mode,
         acceleration=_pair(plane.axes_W @ np.array(msg.linear_acceleration)),
         angular_acceleration=float(plane.normal_W @ np.array(msg.angular_acceleration)),
@@ -207,8 +207,8 @@ def _beyond(vectors: FloatArray, tolerance: float) -> FloatArray:
     return np.where(np.linalg.norm(vectors, axis=1, keepdims=True) > tolerance, vectors, 0.0)
 
 
-def _wrench_set(msg: Any, plane: PlaneOfMotion) -> ModeWrenchSet:
-    return ModeWrenchSet(
+def _wrench_set(msg: Any, plane: PlaneOfMotion) -> PlanarWrenchSet:
+    return PlanarWrenchSet(
         mode=msg.mode,
         vertices=tuple(_wrench(row, plane) for row in np.reshape(msg.vertices, (-1, 6))),
         generators=tuple(_wrench(row, plane) for row in np.reshape(msg.generators, (-1, 6))),
@@ -221,7 +221,7 @@ def _wrench_set(msg: Any, plane: PlaneOfMotion) -> ModeWrenchSet:
     )
 
 
-def _length_of(sets: Sequence[ModeWrenchSet]) -> float:
+def _length_of(sets: Sequence[PlanarWrenchSet]) -> float:
     """Return the radius of gyration, m, by which half-spaces have unit length; 1 without torques."""
     normals = [side.a for one in sets for side in one.half_spaces]
     a = max(normals, key=lambda row: abs(row[2]), default=(0.0, 0.0, 0.0))

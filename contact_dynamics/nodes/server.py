@@ -7,10 +7,13 @@ publishes.
 
 from __future__ import annotations
 
+import platform
 import time
 import traceback
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+import scipy
 from nav_msgs.msg import Path
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
@@ -153,8 +156,14 @@ class Server(Node):
             self._path.publish(path_from_trajectory(response.trajectory))
 
     def _run_description(self) -> dict[str, str]:
+        """Return every parameter, and the versions that the last bits of an answer depend on."""
+        versions = {
+            "python": platform.python_version(),
+            "numpy": np.__version__,
+            "scipy": scipy.__version__,
+        }
         names = sorted(self._parameters)
-        return {name: str(self._parameters[name].value) for name in names}
+        return {**versions, **{name: str(self._parameters[name].value) for name in names}}
 
 
 def main(arguments: list[str]) -> int:

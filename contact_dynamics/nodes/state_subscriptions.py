@@ -50,7 +50,7 @@ def subscribe_to_states(
     def keep(make_state: Callable[[], BodyState | None], topic: str) -> None:
         try:
             state = make_state()
-        except ContactDynamicsError as error:
+        except (ContactDynamicsError, RuntimeError) as error:  # the latter of bytes that are no message
             node.get_logger().warning(
                 f"{topic}: message ignored: {error}", throttle_duration_sec=_WARN_EVERY_S
             )

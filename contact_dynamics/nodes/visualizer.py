@@ -14,6 +14,7 @@ import signal
 import sys
 import time
 import traceback
+import warnings
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -43,7 +44,7 @@ from contact_dynamics.nodes.pictured_contact_modes import CONTACT_MODE, show_con
 from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
 from contact_dynamics.questions.state_store import StateStore
-from contact_dynamics.recording import BagReader
+from contact_dynamics.recording import BagReader, DamagedLogWarning
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import DEFAULT_PORT, OpenRecording, Sinks, ViewerMode, raise_errors
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
@@ -58,8 +59,8 @@ if TYPE_CHECKING:
 
 NODE_NAME: Final = "contact_dynamics_visualizer"
 
-EVENT_QOS: Final = QoSProfile(depth=1000)
-"""Of the service events: deep, so that a burst of questions is drawn in full."""
+EVENT_QOS: Final = QoSProfile(depth=10_000)
+"""Of the service events: as deep as the server's, so that a burst of questions is drawn in full."""
 
 DRAW_PERIOD_S: Final = 0.05
 """States are drawn in batches, because a batch costs what a single state does."""
@@ -124,17 +125,22 @@ class Visualizer(Node):
         self.get_logger().info(f"ready: draws {server} to {self._recording.description}")
 
     def draw_log(self) -> None:
-        """Draw the states and answers of the log that the parameters name.
+        """Draw the states and answers of the log that the parameters name, and tell what of it is damaged.
 
         Raises:
             NotALogError: there is none.
         """
         count = 0
-        for count, message in enumerate(BagReader(self.log_path).messages(set(self._receivers)), start=1):
-            self._receivers[message.topic](message.data)
-            if count % LOGGED_AT_ONCE == 0:
-                self.draw_states()
+        log = BagReader(self.log_path)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DamagedLogWarning)  # told below, where all else is told
+            for count, message in enumerate(log.messages(set(self._receivers)), start=1):
+                self._guarded(message.topic, partial(self._receivers[message.topic], message.data))
+                if count % LOGGED_AT_ONCE == 0:
+                    self.draw_states()
         self.draw_states()
+        if log.damage is not None:
+            self.get_logger().warning(log.damage)
         self.get_logger().info(f"drew {count} messages of {self.log_path}")
 
     def draw_states(self) -> None:

@@ -11,7 +11,17 @@ import contextlib
 import enum
 import math
 from dataclasses import dataclass
-from decimal import Context, Decimal, localcontext
+from decimal import (
+    MAX_EMAX,
+    MIN_EMIN,
+    ROUND_HALF_EVEN,
+    Context,
+    Decimal,
+    DivisionByZero,
+    InvalidOperation,
+    Overflow,
+    localcontext,
+)
 from typing import TYPE_CHECKING, Any, Final, Generic, TypeAlias, TypeVar
 
 import numpy as np
@@ -66,14 +76,29 @@ DOUBLES: Final = Arithmetic(
     eighth_precise=1e-2,
 )
 
+
+def _context(digits: int) -> Context:
+    """Return a context that says all itself, so that neither the caller's nor the default one matters."""
+    return Context(
+        prec=digits,
+        rounding=ROUND_HALF_EVEN,
+        Emin=MIN_EMIN,
+        Emax=MAX_EMAX,
+        capitals=1,
+        clamp=0,
+        flags=[],
+        traps=[DivisionByZero, InvalidOperation, Overflow],
+    )
+
+
 DECIMALS: Final = Arithmetic(
     number=Decimal,
     any=bool,
     largest=max,
     sqrt=Decimal.sqrt,
     pi=Decimal("3.14159265358979323846264338327950288419716939937510582097494459"),
-    sums=Context(prec=120),  # may cancel by 80 digits and leave a double's worth
-    rates=Context(prec=38),  # a double-double's 32 digits, and six for the way there
+    sums=_context(120),  # may cancel by 80 digits and leave a double's worth
+    rates=_context(38),  # a double-double's 32 digits, and six for the way there
     cancelled=Decimal("1e-100"),
     half_precise=Decimal("1e-19"),
     eighth_precise=Decimal("3e-3"),  # 1e-21: a double, and what cancels where a flip is reached

@@ -9,49 +9,44 @@ from __future__ import annotations
 
 import math
 from itertools import repeat
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 
-Number: TypeAlias = Any  # float, or FloatArray of shape (N,)
-Vector3: TypeAlias = "tuple[Number, Number, Number]"
+if TYPE_CHECKING:
+    from contact_dynamics.validation import FloatArray
+
+Real = TypeVar("Real", float, "FloatArray")
+"""A float, or an array of shape (N,)."""
+
+Number: TypeAlias = Any
+"""The same in the fields of a named tuple, and in what has such fields: before Python 3.11 a named tuple
+cannot be generic, and with a union of the two no batch could index its own arrays."""
 
 
-def sqrt(x: Number) -> Number:
+def sqrt(x: Real) -> Real:
     """Return the square root."""
     return math.sqrt(x) if isinstance(x, float) else np.sqrt(x)
 
 
-def power(x: Number, exponent: float) -> Number:
+def power(x: Real, exponent: float) -> Real:
     """Return ``x`` >= 0 to the power of ``exponent``."""
-    return x**exponent if isinstance(x, float) else np.array(list(map(pow, x.tolist(), repeat(exponent))))
+    if isinstance(x, float):
+        one: float = x**exponent
+        return one
+    return np.array(list(map(pow, x.tolist(), repeat(exponent))))
 
 
-def larger(x: Number, y: Number) -> Number:
+def larger(x: Real, y: Real | float) -> Real:
     """Return the larger of two; ``y`` may be a float where ``x`` is an array."""
     return max(x, y) if isinstance(x, float) else np.maximum(x, y)
 
 
-def smaller(x: Number, y: Number) -> Number:
+def smaller(x: Real, y: Real | float) -> Real:
     """Return the smaller of two; ``y`` may be a float where ``x`` is an array."""
     return min(x, y) if isinstance(x, float) else np.minimum(x, y)
 
 
-def sign(x: Number) -> Number:
+def sign(x: Real) -> Real:
     """Return 1 or -1 with the sign of ``x``."""
     return math.copysign(1.0, x) if isinstance(x, float) else np.copysign(1.0, x)
-
-
-def dot(a: Vector3, b: Vector3) -> Number:
-    """Return the scalar product."""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def cross(a: Vector3, b: Vector3) -> Vector3:
-    """Return the vector product."""
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-
-
-def combined(x: Number, a: Vector3, y: Number, b: Vector3) -> Vector3:
-    """Return x a + y b."""
-    return (x * a[0] + y * b[0], x * a[1] + y * b[1], x * a[2] + y * b[2])

@@ -1,21 +1,56 @@
-"""Vectors of three plain floats: where one answer is wanted they are much faster than arrays."""
+"""Vectors of three numbers, and the tangents of a plane whose normal is given.
+
+`Vector3` is three plain floats: where one answer is wanted they are much faster than an array.  The products
+of `Triple` are written with numbers that may be arrays too (`numerics.elementwise`), for a case or for many.
+
+**Which tangents?**  No choice changes continuously with all normals.  Physics must not depend on the choice,
+but the order of a pyramid's edges and the last bits of answers do, so that each choice keeps its name here.
+*Least* is the coordinate axis that is furthest from the normal.
+
+| function | first tangent | chosen where |
+| --- | --- | --- |
+| `tangents`, `tangent_rows` | normal x least | only the plane matters |
+| `tangents_towards` | towards a direction, or least x normal | edges of friction pyramids start there |
+| `along_least` | least, made orthogonal | the one tangent of a side that is alike all around |
+| `near_x` | x, made orthogonal; y for normals along x | people look at it, or a rim begins there |
+| `tangents_by_sign` | a formula without a choice of axes | a batch must not branch |
+"""
 
 from __future__ import annotations
 
 import math
-from typing import TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+import numpy as np
+
+from contact_dynamics.numerics.elementwise import Real, sign
+from contact_dynamics.tolerances import ROW_TOLERANCE
+
+if TYPE_CHECKING:
+    from contact_dynamics.validation import FloatArray
 
 Vector3: TypeAlias = tuple[float, float, float]
+Triple: TypeAlias = "tuple[Real, Real, Real]"
+
+AXES: Final[tuple[Vector3, ...]] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+ALONG_X: Final = 0.9
+"""Cosine above which a direction counts as along x."""
 
 
-def dot(a: Vector3, b: Vector3) -> float:
+def dot(a: Triple[Real], b: Triple[Real]) -> Real:
     """Return the inner product."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-def cross(a: Vector3, b: Vector3) -> Vector3:
+def cross(a: Triple[Real], b: Triple[Real]) -> Triple[Real]:
     """Return the cross product."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def combined(x: Real, a: Triple[Real], y: Real, b: Triple[Real]) -> Triple[Real]:
+    """Return x a + y b."""
+    return (x * a[0] + y * b[0], x * a[1] + y * b[1], x * a[2] + y * b[2])
 
 
 def norm(a: Vector3) -> float:
@@ -43,3 +78,73 @@ def without(a: Vector3, unit: Vector3) -> Vector3:
     """Return the part of ``a`` orthogonal to a unit vector."""
     along = a[0] * unit[0] + a[1] * unit[1] + a[2] * unit[2]
     return (a[0] - along * unit[0], a[1] - along * unit[1], a[2] - along * unit[2])
+
+
+def across(vector: FloatArray, unit: FloatArray) -> FloatArray:
+    """Return the part of a vector, (3,), orthogonal to a unit vector, (3,): `without` for arrays."""
+    part: FloatArray = vector - (vector @ unit) * unit
+    return part
+
+
+def tangents(normal: Vector3) -> tuple[Vector3, Vector3]:
+    """Return two unit tangents that make a right-handed frame with a unit normal."""
+    first = normalised(cross(normal, _least(normal)))
+    return first, cross(normal, first)
+
+
+def tangent_rows(normal: FloatArray) -> FloatArray:
+    """Return `tangents` of a unit normal, (3,), as the rows of a (2, 3) matrix."""
+    x, y, z = normal.tolist()
+    return np.array(tangents((x, y, z)))
+
+
+def tangents_towards(normal: FloatArray, towards: FloatArray | None = None) -> tuple[FloatArray, FloatArray]:
+    """Return two unit tangents, (3,) each, that make a right-handed frame with a unit normal, (3,).
+
+    The first leans towards the direction ``towards``, (3,), unless that is along the normal or not given.
+    """
+    if towards is not None:
+        first = across(towards, normal)
+        size = float(np.linalg.norm(first))
+        if size > ROW_TOLERANCE * float(np.linalg.norm(towards)):
+            first = first / size
+            return first, np.cross(normal, first)
+    x, y, z = normal.tolist()
+    one = normalised(cross(_least((x, y, z)), (x, y, z)))
+    return np.array(one), np.array(cross((x, y, z), one))
+
+
+def along_least(normal: FloatArray) -> FloatArray:
+    """Return one unit tangent, (3,), of a unit normal, (3,)."""
+    tangent = across(np.eye(3)[int(np.abs(normal).argmin())], normal)
+    return tangent / math.sqrt(tangent @ tangent)
+
+
+def near_x(normal: FloatArray) -> FloatArray:
+    """Return a tangent, (3,), not unit, of a unit normal, (3,): as near to x as can be, or y for x."""
+    return across(np.array(AXES[0] if abs(normal[0]) < ALONG_X else AXES[1]), normal)
+
+
+def tangents_by_sign(normal: Triple[Real]) -> tuple[Triple[Real], Triple[Real]]:
+    """Return two unit tangents (Duff et al. 2017, "Building an orthonormal basis, revisited")."""
+    x, y, z = normal
+    s = sign(z)
+    a = -1.0 / (s + z)
+    b = x * y * a
+    return (1.0 + s * x * x * a, s * b, -s * x), (b, s + y * y * a, -y)
+
+
+def _least(unit: Vector3) -> Vector3:
+    return min(AXES, key=lambda axis: abs(dot(axis, unit)))
+
+
+def point_jacobians(arms: FloatArray) -> FloatArray:
+    """Return the (n, 3, 6) matrices that take a body's (v, w) to the velocities of its points at ``arms``.
+
+    ``arms`` is (n, 3), from the point that v is of.  The transpose takes forces there to a wrench about it.
+    """
+    rows = np.zeros((len(arms), 3, 6))
+    rows[:, :, :3] = np.eye(3)
+    for i, (x, y, z) in enumerate(arms.tolist()):
+        rows[i, :, 3:] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
+    return rows

@@ -81,7 +81,7 @@ class PlanarProblem:
     )
 
 
-def project(
+def project_onto_plane(
     body: MassProperties,
     state: BodyState,
     contacts: ContactSet,

@@ -28,7 +28,7 @@ from contact_dynamics.contact_modes import (
     spatial_statics,
     spatial_wrench_sets,
 )
-from contact_dynamics.contact_modes.planar.problem import MOST_CONTACTS
+from contact_dynamics.contact_modes.planar.problem import MOST_PLANAR_CONTACTS
 from contact_dynamics.contact_modes.spatial.answer import FRICTION_FACETS
 from contact_dynamics.contact_modes.spatial.wrench_sets import WRENCH_FACETS
 from contact_dynamics.errors import InvalidFieldError, OutOfPlaneError, TooLargeError
@@ -228,8 +228,8 @@ def _case(question: ContactModeQuestion, knowledge: Knowledge) -> ModeCase:
     defaults, world = knowledge.defaults, knowledge.world
     distance_tolerance = or_default(question.distance_tolerance, defaults.distance_tolerance)
     contacts = contacts_of(question.contacts, subject, world, distance_tolerance=distance_tolerance)
-    if len(contacts) > MOST_CONTACTS:
-        raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MOST_CONTACTS}")
+    if len(contacts) > MOST_PLANAR_CONTACTS:
+        raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MOST_PLANAR_CONTACTS}")
     gravity_W = world.gravity_W if question.gravity_W is None else question.gravity_W
     return ModeCase(
         subject=subject,

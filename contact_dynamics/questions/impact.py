@@ -193,7 +193,9 @@ def _in_time(question: ImpactQuestion, law: InTime, strike: Strike, knowledge: K
         raise NoContactError(message)
     if not sequence.strikes:
         raise SeparatingContactError(
-            "contacts", "none that strikes", f"one that approaches or comes back within {window:g} s"
+            "contacts",
+            "none that strikes",
+            f"one that approaches or comes back within the strike_window of {window:g} s",
         )
     return sequence
 
@@ -214,11 +216,8 @@ def _in_space(question: ImpactQuestion, law: SeveralContactsLaw, strike: Strike)
         impact = spatial_impact(
             before.body,
             strike.state,
-            p_WC_W=contacts.p_WC_W[0],
-            n_W=contacts.normals_W[0],
-            friction=float(contacts.frictions[0]),
-            restitution=float(contacts.restitutions[0]),
-            law=question.restitution_law,
+            contacts[0],
+            restitution_law=question.restitution_law,
             velocity_tolerance=strike.velocity_tolerance,
         )
         resolved = spatial_resolved(impact, before)
@@ -227,7 +226,7 @@ def _in_space(question: ImpactQuestion, law: SeveralContactsLaw, strike: Strike)
             before.body,
             strike.state,
             contacts,
-            law=law,
+            several_contacts_law=law,
             restitution_law=question.restitution_law,
             velocity_tolerance=strike.velocity_tolerance,
         )
@@ -248,11 +247,8 @@ def _of_two(
             strike.state,
             other_before.body,
             other.state,
-            p_WC_W=contacts.p_WC_W[0],
-            n_W=contacts.normals_W[0],
-            friction=float(contacts.frictions[0]),
-            restitution=float(contacts.restitutions[0]),
-            law=question.restitution_law,
+            contacts[0],
+            restitution_law=question.restitution_law,
             velocity_tolerance=strike.velocity_tolerance,
         )
         return spatial_resolved(impact, before, other_before)
@@ -261,7 +257,7 @@ def _of_two(
         [strike.state, other.state],
         contacts,
         [(0, 1)] * len(contacts),
-        law=law,
+        several_contacts_law=law,
         restitution_law=question.restitution_law,
         velocity_tolerance=strike.velocity_tolerance,
     )
@@ -298,7 +294,7 @@ def _in_plane(
             problem.body,
             problem.velocity,
             problem.contacts[0],
-            law=question.restitution_law,
+            restitution_law=question.restitution_law,
             velocity_tolerance=strike.velocity_tolerance,
         )
         resolved = planar_resolved(impact, problem, before)
@@ -309,7 +305,7 @@ def _in_plane(
         )
         several = several_impact(
             *ordered,
-            law=law,
+            several_contacts_law=law,
             restitution_law=question.restitution_law,
             velocity_tolerance=strike.velocity_tolerance,
         )
@@ -334,7 +330,7 @@ def _orders(
 def _distribution(question: ImpactQuestion, strike: Strike, knowledge: Knowledge) -> ImpactDistribution:
     """Return where the state after the impact lies, for the covariance of the state that was taken."""
     covariance = covariance_of(strike.subject)
-    body, contacts = strike.before.body, strike.contacts
+    body = strike.before.body
     if strike.seconds > 0.0:
         flight = propagate_covariance(
             body,
@@ -347,12 +343,9 @@ def _distribution(question: ImpactQuestion, strike: Strike, knowledge: Knowledge
     return spatial_impact_distribution(
         body,
         strike.state,
+        strike.contacts[0],
         covariance=covariance,
-        samples=SAMPLES,
-        p_WC_W=contacts.p_WC_W[0],
-        n_W=contacts.normals_W[0],
-        friction=float(contacts.frictions[0]),
-        restitution=float(contacts.restitutions[0]),
-        law=question.restitution_law,
+        restitution_law=question.restitution_law,
         velocity_tolerance=strike.velocity_tolerance,
+        samples=SAMPLES,
     )

@@ -12,13 +12,13 @@ from contact_dynamics.plane.lifting import equal_shares
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.contact_modes import ConsistentMode, ModeMargin, ModeWrenchSet
+    from contact_dynamics.contact_modes import PlanarMode, PlanarModeMargin, PlanarWrenchSet
     from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion
     from contact_dynamics.plane.types import PlanarWrench, Vector2
     from contact_dynamics.validation import FloatArray
 
 
-def lifted_mode(mode: ConsistentMode, problem: PlanarProblem, partners: tuple[int, ...]) -> SpatialMode:
+def lifted_mode(mode: PlanarMode, problem: PlanarProblem, partners: tuple[int, ...]) -> SpatialMode:
     """Return a mode in world axes; contacts share their forces with ``partners``, their mirror images."""
     plane = problem.plane
     return SpatialMode(
@@ -34,7 +34,7 @@ def lifted_mode(mode: ConsistentMode, problem: PlanarProblem, partners: tuple[in
     )
 
 
-def lifted_margin(margin: ModeMargin, plane: PlaneOfMotion) -> SpatialModeMargin:
+def lifted_margin(margin: PlanarModeMargin, plane: PlaneOfMotion) -> SpatialModeMargin:
     """Return the margin of a mode in world axes."""
     return SpatialModeMargin(
         mode=margin.mode,
@@ -46,7 +46,7 @@ def lifted_margin(margin: ModeMargin, plane: PlaneOfMotion) -> SpatialModeMargin
     )
 
 
-def lifted_wrench_set(wrenches: ModeWrenchSet, plane: PlaneOfMotion) -> SpatialWrenchSet:
+def lifted_wrench_set(wrenches: PlanarWrenchSet, plane: PlaneOfMotion) -> SpatialWrenchSet:
     """Return the applied wrenches of a mode in world axes; wrenches out of the plane are not bounded."""
     return SpatialWrenchSet(
         mode=wrenches.mode,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, best_plane, project
+from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, best_plane, project_onto_plane
 from contact_dynamics.records import NamedInt
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def planar_problem_of(
         plane = best_plane(
             body, state, contacts, force_W=force_W, torque_W=torque_W, speed_tolerance=speed_tolerance
         )
-    return project(
+    return project_onto_plane(
         body,
         state,
         contacts,

@@ -19,10 +19,10 @@ from contact_dynamics.impact import (
     SeveralContactsLaw,
     SeveralVerdict,
 )
+from contact_dynamics.impact.energy import created
 from contact_dynamics.plane.lifting import with_planar_velocity
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, kinetic_energy
-from contact_dynamics.tolerances import ENERGY_TOLERANCE
 from contact_dynamics.validation import FloatArray
 
 if TYPE_CHECKING:
@@ -143,7 +143,7 @@ def spatial_resolved(impact: SpatialImpact, before: Before, other: Before | None
         energy_before += kinetic_energy(other.body, other.state)
         energy_after += kinetic_energy(other.body, impact.other_state)
     return ResolvedImpact(
-        restitution_law=impact.law,
+        restitution_law=impact.restitution_law,
         several_contacts_law=SeveralContactsLaw.SEQUENTIAL,
         outcome=impact.outcome,
         jams=impact.jams,
@@ -181,7 +181,7 @@ def planar_resolved(impact: PlanarImpact, problem: PlanarProblem, before: Before
         in_world.append((x * x_1 + y * y_1, x * x_2 + y * y_2, x * x_3 + y * y_3))
     vectors_W = np.array(in_world)
     return ResolvedImpact(
-        restitution_law=impact.law,
+        restitution_law=impact.restitution_law,
         several_contacts_law=SeveralContactsLaw.SEQUENTIAL,
         outcome=impact.outcome,
         jams=impact.jams,
@@ -279,7 +279,7 @@ def _several(
     told = _told_by(impact.strikes, len(impact.impulses_W)) if impact.strikes else _NOT_TOLD
     return ResolvedImpact(
         restitution_law=impact.restitution_law,
-        several_contacts_law=impact.law,
+        several_contacts_law=impact.several_contacts_law,
         outcome=told.outcome,
         jams=told.jams,
         converged=impact.verdict == SeveralVerdict.RESOLVED,
@@ -294,7 +294,7 @@ def _several(
         path_contacts=told.path_contacts,
         kinetic_energy_before=energy_before,
         kinetic_energy_after=energy_after,
-        creates_energy=energy_after - energy_before > ENERGY_TOLERANCE * energy_before,
+        creates_energy=created(energy_after - energy_before, energy_before),
     )
 
 

@@ -32,8 +32,7 @@ from contact_dynamics.validation import FloatArray
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from contact_dynamics.contact_modes import ContactModeAnswer as PlanarModeAnswer
-    from contact_dynamics.contact_modes import SpatialModeAnswer
+    from contact_dynamics.contact_modes import PlanarModeAnswer, SpatialModeAnswer
     from contact_dynamics.impact import OrderedOutcomes, SeveralImpact
     from contact_dynamics.plane.projection import PlanarProblem
     from contact_dynamics.plane.types import PlanarVelocity
@@ -109,10 +108,7 @@ def settled_in_space(case: ModeCase, verdict: ModeVerdict) -> SettledImpact | No
         impact = spatial_impact(
             before.body,
             before.state,
-            p_WC_W=contacts.p_WC_W[0],
-            n_W=contacts.normals_W[0],
-            friction=float(contacts.frictions[0]),
-            restitution=float(contacts.restitutions[0]),
+            contacts[0],
             velocity_tolerance=case.velocity_tolerance,
         )
         resolved = spatial_resolved(impact, before)

@@ -8,6 +8,7 @@ from contact_dynamics.recording.bag_reader import BagReader, LoggedMessage
 from contact_dynamics.recording.bag_writer import BagWriter
 from contact_dynamics.recording.decoding import decode
 from contact_dynamics.recording.errors import DamagedLogWarning, LogExistsError, LogFailedError, NotALogError
+from contact_dynamics.recording.mcap_walk import Loss
 from contact_dynamics.recording.qos import OfferedQos
 from contact_dynamics.recording.recorder import Recorder, RecorderStatus
 from contact_dynamics.recording.service_calls import EVENT_TOPIC_SUFFIX, ServiceCall, service_calls
@@ -20,6 +21,7 @@ __all__ = [
     "LogExistsError",
     "LogFailedError",
     "LoggedMessage",
+    "Loss",
     "NotALogError",
     "OfferedQos",
     "Recorder",

@@ -6,6 +6,7 @@ Written by hand, since the form is fixed and short: strings as JSON writes them,
 from __future__ import annotations
 
 import json
+import zlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 
 METADATA_FILE: Final = "metadata.yaml"
 RUN_RECORD: Final = "contact_dynamics"  # the MCAP metadata record that says how the run was made
+CHECKSUM_KEY: Final = "checksum"  # in that record, because MCAP gives metadata none
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,6 +38,21 @@ class BagSummary:
     end_ns: int  # log time of the latest message, ns since the epoch
     topics: Sequence[TopicSummary]
     custom_data: Mapping[str, str]  # what the writer says of the run
+
+
+def sealed_run(run: Mapping[str, str]) -> dict[str, str]:
+    """Return what the run's record holds: how the run was made, and a checksum of that."""
+    return {**run, CHECKSUM_KEY: _checksum(run)}
+
+
+def unsealed_run(record: Mapping[str, str]) -> dict[str, str] | None:
+    """Return how the run was made; None where the checksum does not match, or is not there."""
+    run = {key: value for key, value in record.items() if key != CHECKSUM_KEY}
+    return run if record.get(CHECKSUM_KEY) == _checksum(run) else None
+
+
+def _checksum(run: Mapping[str, str]) -> str:
+    return f"{zlib.crc32(json.dumps(dict(run), sort_keys=True).encode()):08x}"
 
 
 def metadata_lines(bag: BagSummary) -> list[str]:

@@ -1,8 +1,8 @@
 """Reads a log: a bag folder or a bare ``.mcap``, ours or rosbag2's, in the order in which it was written.
 
-Every checksum is checked (the MCAP library's own choice of reader drops the check on a damaged file, so this
-reads front to back by its stream reader). A log cut short by a crash or a full disk gives all messages of its
-whole chunks; `BagReader.damage` then says what is missing and a `DamagedLogWarning` is raised as a warning.
+Every checksum is checked. What is damaged is passed over and everything else is read (`mcap_walk`), as are
+all whole chunks of a log cut short by a crash or a full disk. `BagReader.losses` then says what is missing,
+and a `DamagedLogWarning` is raised as a warning, once a file.
 
 Needs no ROS: messages come as bytes, and `decoding` turns them into message objects where the packages are
 installed.
@@ -12,22 +12,25 @@ from __future__ import annotations
 
 import re
 import warnings
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from mcap.exceptions import InvalidMagic
 from mcap.records import Channel, Message, Metadata, Schema
-from mcap.stream_reader import StreamReader
 
-from contact_dynamics.recording.bag_metadata import RUN_RECORD
+from contact_dynamics.recording.bag_metadata import RUN_RECORD, unsealed_run
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
+from contact_dynamics.recording.mcap_file import McapFile
+from contact_dynamics.recording.mcap_summary import Summary
+from contact_dynamics.recording.mcap_walk import Loss, McapWalk
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
-    from mcap.records import McapRecord
+    from contact_dynamics.recording.mcap_walk import WalkedRecord
 
+_MOST_TOLD: Final = 5  # places of damage that are told one by one
 _SPLIT_NUMBER: Final = re.compile(r"_(\d+)\.mcap$")
 
 
@@ -57,69 +60,115 @@ class BagReader:
         """
         path = Path(path)
         self.paths = sorted(path.glob("*.mcap"), key=_split_number) if path.is_dir() else [path]
-        self.damage: str | None = None  # what the last reading met, None: it was whole
+        self.losses: list[Loss] = []  # what the last reading had to pass over, by then
         if not self.paths or not self.paths[0].is_file():
             raise NotALogError(f"{path}: no MCAP file here")
 
+    @property
+    def damage(self) -> str | None:
+        """What the last reading met, in words; None: all was whole."""
+        described = [
+            _described(path, losses)
+            for path in self.paths
+            if (losses := [loss for loss in self.losses if loss.path == path])
+        ]
+        return "\n".join(described) or None
+
     def messages(self, topics: Collection[str] | None = None) -> Iterator[LoggedMessage]:
-        """Yield the messages, of all topics or of those named, in the order in which they were written."""
-        self.damage = None
+        """Yield the messages, of all topics or of those named, in the order in which they were written.
+
+        Events of services come behind what was received while the answer was made: `log_time_ns` has the
+        order in which all of it happened.
+        """
+        self.losses = []
         for path in self.paths:
-            schemas: dict[int, str] = {}
-            channels: dict[int, tuple[str, str]] = {}
-            for record in self._records(path):
-                if isinstance(record, Message):
-                    if record.channel_id not in channels:  # what defined it was damaged beyond recognition
-                        return self._report_damage(path, "(a message of a channel that it does not define)")
-                    topic, type_name = channels[record.channel_id]
-                    if topics is None or topic in topics:
-                        yield LoggedMessage(
-                            topic=topic,
-                            type_name=type_name,
-                            data=record.data,
-                            log_time_ns=record.log_time,
-                            publish_time_ns=record.publish_time,
-                        )
-                elif isinstance(record, Schema):
-                    schemas[record.id] = record.name
-                elif isinstance(record, Channel):
-                    channels[record.id] = record.topic, schemas.get(record.schema_id, "")
+            with self._walk(path) as walk:
+                definitions = _Definitions(walk)
+                undefined = 0
+                for record in walk.records():
+                    if isinstance(record, Message):
+                        channel = definitions.topic_and_type(record.channel_id)
+                        if channel is None:
+                            undefined += 1
+                        elif topics is None or channel[0] in topics:
+                            yield LoggedMessage(
+                                topic=channel[0],
+                                type_name=channel[1],
+                                data=record.data,
+                                log_time_ns=record.log_time,
+                                publish_time_ns=record.publish_time,
+                            )
+                    else:
+                        definitions.add(record)
+                if undefined:
+                    walk.lose_undefined(undefined)
 
     def run(self) -> dict[str, str]:
-        """Return what the writer of the log said of its run; empty where it is not one of ours."""
+        """Return what the writer of the log said of its run; empty where that is not there or damaged."""
+        self.losses = []
         for path in self.paths:
-            for record in self._records(path):
-                if isinstance(record, Metadata) and record.name == RUN_RECORD:
-                    return record.metadata
+            with self._walk(path) as walk:
+                for record in walk.records():
+                    if isinstance(record, Metadata) and record.name == RUN_RECORD:
+                        run = unsealed_run(record.metadata)
+                        if run is not None:
+                            return run
+                        walk.lose_run()
         return {}
 
-    def _records(self, path: Path) -> Iterator[McapRecord]:
-        size = path.stat().st_size
+    @contextmanager
+    def _walk(self, path: Path) -> Iterator[McapWalk]:
+        """Open a file to walk through, and in the end say what was lost."""
         with path.open("rb") as stream:
-            records = StreamReader(stream, validate_crcs=True, record_size_limit=size).records
-            while True:
-                try:
-                    record = next(records)
-                except StopIteration:
-                    return
-                except InvalidMagic as error:
-                    if stream.tell() <= len(_MAGIC):
-                        raise NotALogError(f"{path} is not an MCAP file") from error
-                    return self._report_damage(path, _near(stream.tell(), error))
-                except Exception as error:  # noqa: BLE001  damaged bytes make the library raise nearly anything
-                    return self._report_damage(path, _near(stream.tell(), error))
-                yield record
-
-    def _report_damage(self, path: Path, what: str) -> None:
-        self.damage = f"{path} is damaged or was cut short {what}"
-        warnings.warn(self.damage, DamagedLogWarning, stacklevel=4)
+            walk = McapWalk(McapFile(path, stream, path.stat().st_size))
+            try:
+                yield walk
+            finally:  # also where the reading ends early: what was passed over until then
+                losses = walk.losses
+                if losses:
+                    self.losses += losses
+                    warnings.warn(_described(path, losses), DamagedLogWarning, stacklevel=4)
 
 
-def _near(position: int, error: Exception) -> str:
-    return f"near byte {position} ({type(error).__name__}: {error})"
+class _Definitions:
+    """Channels and schemas of one file, those that a lost chunk defined taken from the file's summary."""
+
+    def __init__(self, walk: McapWalk) -> None:
+        self._walk = walk
+        self._schemas: dict[int, Schema] = {}
+        self._channels: dict[int, Channel] = {}
+        self._known: dict[int, tuple[str, str] | None] = {}
+
+    def add(self, record: WalkedRecord) -> None:
+        """Take a definition; other records are none."""
+        if isinstance(record, Schema):
+            self._schemas[record.id] = record
+        elif isinstance(record, Channel):
+            self._channels[record.id] = record
+            self._known.pop(record.id, None)
+
+    def topic_and_type(self, channel_id: int) -> tuple[str, str] | None:
+        """Return both of a channel, the type being empty where it has none; None: nothing defines it."""
+        if channel_id not in self._known:
+            self._known[channel_id] = self._find(channel_id)
+        return self._known[channel_id]
+
+    def _find(self, channel_id: int) -> tuple[str, str] | None:
+        channel = self._channels.get(channel_id) or self._summary.channels.get(channel_id)
+        if channel is None or channel.schema_id == 0:
+            return None if channel is None else (channel.topic, "")
+        schema = self._schemas.get(channel.schema_id) or self._summary.schemas.get(channel.schema_id)
+        return None if schema is None else (channel.topic, schema.name)
+
+    @property
+    def _summary(self) -> Summary:
+        return self._walk.summary or Summary()
 
 
-_MAGIC: Final = b"\x89MCAP0\r\n"
+def _described(path: Path, losses: list[Loss]) -> str:
+    told = "; ".join(str(loss) for loss in losses[:_MOST_TOLD])
+    more = f"; and {len(losses) - _MOST_TOLD} places more" if len(losses) > _MOST_TOLD else ""
+    return f"{path} is damaged or was cut short, all but this was read: {told}{more}"
 
 
 def _split_number(path: Path) -> tuple[int, str]:

@@ -25,12 +25,14 @@ from mcap.writer import CompressionType, Writer
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.recording.append_file import AppendFile
 from contact_dynamics.recording.bag_metadata import (
+    CHECKSUM_KEY,
     METADATA_FILE,
     RUN_RECORD,
     BagSummary,
     TopicSummary,
     metadata_file_text,
     metadata_lines,
+    sealed_run,
 )
 from contact_dynamics.recording.cdr_stamp import event_stamp_ns, leading_stamp_ns
 from contact_dynamics.recording.definitions import TypeDefinition, find_definition
@@ -204,7 +206,7 @@ class BagWriter:
 
     def _begin(self) -> None:
         self._writer.start(profile="ros2", library=f"contact_dynamics {self._run['version']}")
-        self._writer.add_metadata(RUN_RECORD, self._run)
+        self._writer.add_metadata(RUN_RECORD, sealed_run(self._run))
         self._safe_size = self._file.tell()
         self._write_metadata_file()
 
@@ -294,6 +296,8 @@ def _checked_run(run: Mapping[str, str]) -> Mapping[str, str]:
     for key, value in run.items():
         if not isinstance(key, str) or not isinstance(value, str):
             raise InvalidFieldError(f"run[{key!r}]", value, "text under a text key")
+        if key == CHECKSUM_KEY:
+            raise InvalidFieldError("run", key, "another key: this one is the log's own")
     return run
 
 

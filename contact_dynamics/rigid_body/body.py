@@ -56,6 +56,11 @@ class MassProperties:
         """Return k of I_n = m k^2, m, about a unit axis through the centre of mass (lecture 25, eq. 13)."""
         return math.sqrt(self.angular_inertia_about(axis_B) / self.mass)
 
+    @property
+    def mean_radius_of_gyration(self) -> float:
+        """The root mean square of the radii of gyration about three orthogonal axes, m."""
+        return mean_radius_of_gyration(self.mass, self.I_B)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class BodyState:
@@ -100,6 +105,25 @@ class BodyState:
         """Return the velocities, (..., 3), m/s, world axes, of body points now at ``p_WP_W``: v + w x r."""
         velocity: FloatArray = self.v_WB_W + (p_WP_W - self.p_WB_W) @ cross_matrix(self.w_WB_W).T
         return velocity
+
+
+def mean_radius_of_gyration(mass: float, inertia: FloatArray) -> float:
+    """Return the root mean square, m, of the radii of gyration about three orthogonal axes.
+
+    ``inertia`` is (3, 3), kg m^2, about the centre of mass in any axes, which change the result by rounding.
+    """
+    return math.sqrt(float(np.trace(inertia)) / (3.0 * mass))
+
+
+def inverse_mass_matrix(mass: float, inertia_W: FloatArray) -> FloatArray:
+    """Return the (6, 6) matrix that takes force and torque to linear and angular acceleration.
+
+    ``inertia_W`` is (3, 3), kg m^2, about the centre of mass. The body is taken at rest: no w x L.
+    """
+    inverse = np.zeros((6, 6))
+    inverse[:3, :3] = np.eye(3) / mass
+    inverse[3:, 3:] = np.linalg.inv(inertia_W)
+    return inverse
 
 
 def momentum(body: MassProperties, state: BodyState) -> FloatArray:

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-
 from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rotations.many import rotated
 from contact_dynamics.rotations.one import cross_matrix, rotation_matrix
 from contact_dynamics.validation import check_unit
 
@@ -63,10 +62,7 @@ def origins_of_published_frame(p_WB_W: FloatArray, q_WB: FloatArray, p_FB_F: Flo
     """Return the positions of F's origin, (n, 3), m, world, from those of B and quaternions, (n, 4)."""
     if not p_FB_F.any():
         return p_WB_W
-    vectors, w = q_WB[:, :3], q_WB[:, 3:]
-    twice = 2.0 * np.cross(vectors, p_FB_F)
-    origins: FloatArray = p_WB_W - (p_FB_F + w * twice + np.cross(vectors, twice))
-    return origins
+    return p_WB_W - rotated(q_WB, p_FB_F)
 
 
 def velocity_of_published_frame(state: BodyState, p_FB_F: FloatArray) -> FloatArray:

@@ -9,21 +9,41 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contact_dynamics.rotations.one import rows_of
+
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 
 def matrices_of(q: FloatArray) -> FloatArray:
     """Return the rotation matrices, (n, 3, 3), of unit quaternions, (n, 4)."""
-    x, y, z, w = q.T
     R = np.empty((len(q), 3, 3))
-    R[:, 0, 0] = 1.0 - 2.0 * (y * y + z * z)
-    R[:, 1, 1] = 1.0 - 2.0 * (x * x + z * z)
-    R[:, 2, 2] = 1.0 - 2.0 * (x * x + y * y)
-    R[:, 0, 1], R[:, 1, 0] = 2.0 * (x * y - w * z), 2.0 * (x * y + w * z)
-    R[:, 0, 2], R[:, 2, 0] = 2.0 * (x * z + w * y), 2.0 * (x * z - w * y)
-    R[:, 1, 2], R[:, 2, 1] = 2.0 * (y * z - w * x), 2.0 * (y * z + w * x)
+    R.transpose(1, 2, 0)[:] = rows_of(*q.T)
     return R
+
+
+def products(p: FloatArray, q: FloatArray) -> FloatArray:
+    """Return Hamilton's products, (n, 4): the rotations ``q``, each followed by one of ``p``, (n, 4).
+
+    ``q`` is (n, 4), or (4,) for all.  The last bit of the two may differ: NumPy sums a product of matrices
+    and of rows in another order.
+    """
+    x, s = p[:, :3], p[:, 3:]
+    u, w = q[..., :3], q[..., 3:]
+    inner = x @ u if q.ndim == 1 else np.einsum("ij,ij->i", x, u)
+    return np.column_stack([s * u + w * x + np.cross(x, u), s[:, 0] * w[..., 0] - inner])
+
+
+def rotated(q: FloatArray, vector: FloatArray) -> FloatArray:
+    """Return a vector, (3,), turned by each of the unit quaternions, (n, 4), as (n, 3)."""
+    twice = 2.0 * np.cross(q[:, :3], vector)
+    vectors: FloatArray = vector + q[:, 3:] * twice + np.cross(q[:, :3], twice)
+    return vectors
+
+
+def quaternions_of(theta: FloatArray) -> FloatArray:
+    """Return the quaternions, (n, 4), of rotation vectors, (n, 3)."""
+    return _of_angles(theta, np.linalg.norm(theta, axis=1))
 
 
 def cross_matrices(vectors: FloatArray) -> FloatArray:
@@ -55,13 +75,15 @@ def turned(q: FloatArray, theta: FloatArray) -> FloatArray:
 
     ``q`` is (n, 4), or (4,) for all.
     """
-    q = np.broadcast_to(q, (len(theta), 4))
-    angle = np.sqrt(np.einsum("ij,ij->i", theta, theta))
-    a = theta * (0.5 * np.sinc(angle / (2.0 * np.pi)))[:, None]
-    c = np.cos(0.5 * angle)
-    u, w = q[:, :3], q[:, 3]
-    vector = c[:, None] * u + w[:, None] * a + np.cross(a, u)
-    return np.column_stack([vector, c * w - np.einsum("ij,ij->i", a, u)])
+    # Not `quaternions_of`: its angles are summed in another order, and fits go by these to the last bit.
+    turns = _of_angles(theta, np.sqrt(np.einsum("ij,ij->i", theta, theta)))
+    return products(turns, np.broadcast_to(q, turns.shape))
+
+
+def _of_angles(theta: FloatArray, angles: FloatArray) -> FloatArray:
+    """Return the quaternions, (n, 4), of rotation vectors of lengths ``angles``, (n,), rad."""
+    vectors = theta * (0.5 * np.sinc(angles / (2.0 * np.pi)))[:, None]
+    return np.column_stack([vectors, np.cos(0.5 * angles)])
 
 
 def make_continuous(q: FloatArray, first: FloatArray) -> None:

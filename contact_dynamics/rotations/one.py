@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from contact_dynamics.numerics.elementwise import Real
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -87,16 +89,18 @@ def from_z_onto(direction: Sequence[float]) -> Quaternion:
     return normalised((-y, x, 0.0, 1.0 + z))
 
 
+def rows_of(x: Real, y: Real, z: Real, w: Real) -> tuple[tuple[Real, Real, Real], ...]:
+    """Return the three rows of the rotation matrix of a unit quaternion, each number a float or an array."""
+    return (
+        (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
+        (2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),
+        (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
+    )
+
+
 def rotation_matrix(q: FloatArray) -> FloatArray:
     """Return the (3, 3) rotation matrix of a unit quaternion x, y, z, w."""
-    x, y, z, w = q.tolist()
-    return np.array(
-        [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-        ]
-    )
+    return np.array(rows_of(*q.tolist()))
 
 
 def cross_matrix(vector: FloatArray) -> FloatArray:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.numerics.convex_hull import hull_of
 from contact_dynamics.shapes.rim import radii_of
 
 if TYPE_CHECKING:
@@ -62,14 +63,14 @@ def hull_features(points: FloatArray) -> Features:
         ends = points[[int(along.argmin()), int(along.argmax())]]
         return Features(ends, nothing, axes[:1], np.zeros((0, 3, 3)))
     if rank == 2:
-        outline = points[_hull((points - center) @ axes[:2].T).vertices]
+        outline = points[hull_of("vertices", (points - center) @ axes[:2].T).vertices]
         sides = np.roll(outline, -1, axis=0) - outline
         fan = np.array([outline[[0, i, i + 1]] for i in range(1, len(outline) - 1)])
         normal = np.cross(axes[0], axes[1])
         return Features(outline, np.array([normal, -normal]), _distinct(_unit(sides), signed=False), fan)
-    hull = _hull(points)
+    hull = hull_of("vertices", points)
     normals = hull.equations[:, :3]
-    sides = [
+    ridges = [
         points[a] - points[b]
         for i, simplex in enumerate(hull.simplices)
         for corner, j in enumerate(hull.neighbors[i])
@@ -79,15 +80,9 @@ def hull_features(points: FloatArray) -> Features:
     return Features(
         points[hull.vertices],
         _distinct(normals, signed=True),
-        _distinct(_unit(np.array(sides)), signed=False),
+        _distinct(_unit(np.array(ridges)), signed=False),
         points[hull.simplices],
     )
-
-
-def _hull(points: FloatArray) -> Any:
-    from scipy.spatial import ConvexHull
-
-    return ConvexHull(points)
 
 
 def _unit(vectors: FloatArray) -> FloatArray:

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+
+from contact_dynamics.numerics.vectors import near_x
 
 if TYPE_CHECKING:
     from contact_dynamics.rotations.one import Vector
     from contact_dynamics.shapes.convex import Rim
-
-_ALONG: Final = 0.9
-"""Cosine above which an axis counts as along x."""
 
 
 class Radii(NamedTuple):
@@ -27,8 +26,7 @@ class Radii(NamedTuple):
 def radii_of(rim: Rim) -> Radii:
     """Return two orthogonal radii of a rim; the first lies as near to x as can be, or to y for an x axis."""
     axis = np.array(rim.axis)
-    helper = np.array([1.0, 0.0, 0.0]) if abs(axis[0]) < _ALONG else np.array([0.0, 1.0, 0.0])
-    first = helper - (helper @ axis) * axis
+    first = near_x(axis)
     first *= rim.radius / math.sqrt(first @ first)
     second = np.cross(axis, first)
     reach = math.hypot(*rim.center) + rim.radius

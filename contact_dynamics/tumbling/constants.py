@@ -75,7 +75,8 @@ def constants_of(inertia: bytes, attitude: bytes, rate: bytes, precision: Precis
         q_LP = (beta.imag, -beta.real, alpha.imag, alpha.real)
         q_WL = normalised(product(q, conjugate(product(q_LP, q_PB))))
     farthest = min(MOST_TURNED / max(largest_rate(rotation), 1.0 / LARGEST_NUMBER), LARGEST_NUMBER)
-    regime = regime_of(frame, rotation)
+    with within(DECIMALS.sums):
+        regime = regime_of(frame, rotation)
     return Constants(frame, rotation, form, q_WL, q_PB, along, across, farthest, regime)
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.rigid_body.inertia.principal_frame import in_doubles
+from contact_dynamics.rotations.one import cross_matrix
 from contact_dynamics.tumbling.many import flips_of_many
 from contact_dynamics.tumbling.polhode import Spin, Tumble
 from contact_dynamics.tumbling.regime import Regime
@@ -65,8 +66,8 @@ def next_flips(motion: FreeMotion, count: int, *, covariance: ArrayLike | None =
     if (
         not flips
         or isinstance(rotation, Spin)
-        or rotation.b2 < NEAR_MIDDLE_AXIS
-        or rotation.m1 > NEAR_SEPARATRIX
+        or float(rotation.b2) < NEAR_MIDDLE_AXIS
+        or float(rotation.m1) > NEAR_SEPARATRIX
     ):
         return Flips(seconds=np.zeros(0), deviations=np.zeros(0))
     times = _flip_times(rotation, count, from_seconds=0.0)
@@ -89,8 +90,7 @@ def _flip_times(rotation: Tumble[Decimal] | Tumble[float], count: int, *, from_s
 def _covariance_in_body(motion: FreeMotion, covariance: FloatArray) -> FloatArray:
     """Return the covariance (3, 3) of the angular velocity in body axes, which alone decides."""
     rows = np.r_[3:6, 9:12]
-    x, y, z = motion.state.w_WB_W.tolist()
-    turned = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])  # by an error of the attitude
+    turned = cross_matrix(motion.state.w_WB_W)  # by an error of the attitude
     onto_body = motion.state.R_WB.T @ np.hstack([turned, np.eye(3)])
     spread: FloatArray = onto_body @ covariance[np.ix_(rows, rows)] @ onto_body.T
     return spread

@@ -34,7 +34,7 @@ from contact_dynamics.rotations.one import (
 )
 from contact_dynamics.tolerances import LARGEST_NUMBER
 from contact_dynamics.tumbling.constants import constants_of
-from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_within
+from contact_dynamics.validation import FloatArray, check_array, check_choice, check_magnitude, check_within
 
 if TYPE_CHECKING:
     from decimal import Decimal
@@ -230,7 +230,8 @@ def free_motion(
         InvalidFieldError: gravity is not three finite numbers; a number is beyond what doubles can square
             (`LARGEST_NUMBER`).
     """
-    gravity = check_array("gravity", gravity_W, (3,))
+    check_choice("precision", precision, Precision)
+    gravity = check_array("gravity_W", gravity_W, (3,))
     check_extent(body, state, gravity)
     constants = constants_of(body.I_B.tobytes(), state.q_WB.tobytes(), state.w_WB_W.tobytes(), precision)
     return FreeMotion(

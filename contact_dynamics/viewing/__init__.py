@@ -5,7 +5,7 @@ In reading order: the colours (`palette`) and what they mean in words (`legend`)
 answers (`trajectory`, `impact` with its `impulse_space`, `contact_modes`), lecture 25's picture of rotations
 (`poinsot`), lecture 26's of modes and wrenches (`planar_scene`, `planar_modes`, `wrench_chart`, `mode_map`,
 `force_dual`), the arrangement of the views (`blueprint`), all of it together (`picture`), and where it goes
-(`sinks`).
+(`sinks`), a file or a viewer that is started (`viewer_process`).
 
 Everything is drawn on one timeline, `stamp`: the stamps of the states, to the nanosecond. An answer appears
 at the stamp of the state that it was computed from, never later, so that a live view that follows the newest
@@ -20,6 +20,7 @@ _RUST_LOG: Final = "warn,re_log_encoding::rrd::file_sink=error"
 
 if "RUST_LOG" not in os.environ:  # rerun reads it once, when it is imported first
     os.environ["RUST_LOG"] = _RUST_LOG
-    import rerun as _rerun  # noqa: F401
-
-    del os.environ["RUST_LOG"]
+    try:
+        import rerun as _rerun  # noqa: F401
+    finally:
+        del os.environ["RUST_LOG"]

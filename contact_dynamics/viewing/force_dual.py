@@ -22,7 +22,7 @@ from contact_dynamics.viewing.wrench_chart import ANTICLOCKWISE, CLOCKWISE
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.contact_modes import ModeWrenchSet
+    from contact_dynamics.contact_modes import PlanarWrenchSet
     from contact_dynamics.plane.types import PlanarContact, PlanarWrench
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.wrench_chart import ForceDualChart
@@ -37,7 +37,7 @@ _FILL: Final = 0.55  # share of the mode's colour in its region
 
 def draw_force_dual(
     recording: rr.RecordingStream,
-    one: ModeWrenchSet,
+    one: PlanarWrenchSet,
     contacts: Sequence[PlanarContact],
     chart: ForceDualChart,
     *,
@@ -91,7 +91,7 @@ def draw_force_dual(
 
 
 def split_generators(
-    one: ModeWrenchSet, contacts: Sequence[PlanarContact]
+    one: PlanarWrenchSet, contacts: Sequence[PlanarContact]
 ) -> tuple[list[tuple[int, PlanarWrench]], list[PlanarWrench]]:
     """Return a mode's negated cone edges, each with its contact's number from 1, and its accelerations."""
     edges = [

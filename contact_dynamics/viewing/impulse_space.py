@@ -2,10 +2,15 @@
 
 The path of the accumulated impulse leaves the origin, inside the friction cone. On the sticking line the
 contact does not slide, on the compression line it does not approach: the path bends where it meets the first,
-and compression ends where it meets the second. In space the picture's plane is that of the normal and of the
-total impulse, the lines are those for impulses in it, and a path that swerves is seen as its projection.
+and compression ends where it meets the second.
+
+In space the picture's plane is that of the normal and of the total impulse, and a path that swerves is seen
+as its projection. So is the sticking line, where neither tangential velocity is left. Where the contact does
+not approach is a plane, of which the picture shows a cut: the compression line is that for impulses as far
+out of the picture as the path is where compression ends, one for each end.
 
 Of a contact that strikes more than once the whole path is drawn, the lines and labels of its first strike.
+What other contacts did before that is in its lines.
 """
 
 from __future__ import annotations
@@ -18,6 +23,7 @@ import rerun as rr
 
 from contact_dynamics.impact.law import PathEvent
 from contact_dynamics.impact.spatial.one_contact import contact_inverse_inertia
+from contact_dynamics.numerics.vectors import across
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import IMPULSE_SPACE
 from contact_dynamics.viewing.scene import tangents
@@ -28,7 +34,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from contact_dynamics.plane.types import Vector2
-    from contact_dynamics.rigid_body.body import MassProperties
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.impact import ImpactPicture
 
@@ -60,6 +66,28 @@ class Line(NamedTuple):
     offset: float  # m/s
 
 
+class _ContactMotion(NamedTuple):
+    """The contact's velocity after an impulse x is ``velocity + response @ x`` (lecture 27, eq. 9 and 10).
+
+    Components are those along the picture's tangent, along the normal, and out of the picture.
+    """
+
+    velocity: FloatArray  # (3,), m/s, before the impact
+    response: FloatArray  # (3, 3), 1/kg
+
+    def sticking_line(self, *, in_space: bool) -> Line:
+        """Return where the contact does not slide; in space the projection of where it does not."""
+        velocity, response = self.velocity, self.response
+        # The impulse out of the picture is eliminated: it is the one that leaves no velocity there.
+        share = response[0, 2] / response[2, 2] if in_space else 0.0
+        normal = response[0, :2] - share * response[2, :2]
+        return Line(normal, float(velocity[0] - share * velocity[2]))
+
+    def compression_line(self, *, aside: float) -> Line:
+        """Return where the contact does not approach, for impulses ``aside``, N s, of the picture."""
+        return Line(self.response[1, :2], float(self.velocity[1] + self.response[1, 2] * aside))
+
+
 def draw_impulse_space(
     recording: rr.RecordingStream,
     mass_properties: MassProperties | None,
@@ -82,16 +110,23 @@ def draw_impulse_space(
     # Labels of the path stand on its side of the normal, the names of the lines on the other.
     side = -1.0 if len(path) > 0 and path[-1, 0] < 0.0 else 1.0
     _draw_names(recording, entity, -side * _NAMES * extent, extent)
-    lines = None
-    if mass_properties is not None and (picture.other is None or other is not None):
-        lines = _lines(mass_properties, picture, contact, axes_W, other=other)
-    for i, (name, color) in enumerate(_NAMED[:2]):
-        part = np.zeros((0, 2, 2)) if lines is None else line_in_box(lines[i], extent)
-        _strips(recording, [entity, name], part, color)
-    _strips(recording, [entity, "path"], [path], palette.IMPACT, width=_PATH_WIDTH)
     events = [(i, picture.path_events[i]) for i in chosen if picture.path_events[i] in _EVENTS]
     ends = [k for k, (_, event) in enumerate(events) if event == PathEvent.RESTITUTION_ENDS]
     events = events[: ends[0] + 1] if ends else events  # the lines are those of the first strike
+    sticking: list[Line] = []
+    compression: list[Line] = []
+    if mass_properties is not None and (picture.other is None or other is not None):
+        before = chosen[0] if chosen else 0
+        motion = _contact_motion(mass_properties, picture, contact, axes_W, other=other, before=before)
+        sticking = [motion.sticking_line(in_space=picture.plane_normal_W is None)]
+        compressed_W = [picture.path_W[i] for i, event in events if event == PathEvent.COMPRESSION_ENDS]
+        aside = [float(np.cross(*axes_W) @ p_W) for p_W in compressed_W]
+        compression = [motion.compression_line(aside=s) for s in aside or [0.0]]
+    for (name, color), lines in zip(_NAMED, (sticking, compression), strict=False):
+        _strips(
+            recording, [entity, name], [part for line in lines for part in line_in_box(line, extent)], color
+        )
+    _strips(recording, [entity, "path"], [path], palette.IMPACT, width=_PATH_WIDTH)
     points = picture.path_W[[i for i, _ in events]] @ axes_W.T
     texts = [
         f"{_EVENTS[PathEvent(event)]}: {t:.3g}, {n:.3g} N s"
@@ -117,7 +152,7 @@ def contact_axes(picture: ImpactPicture, contact: int) -> FloatArray:
         slip_W = picture.state.velocity_of_point(picture.contacts.p_WC_W[contact])
         candidates = [picture.impulses_W[contact], -slip_W]
     for vector_W in (*candidates, tangents(normal_W)[0]):
-        tangent_W = vector_W - (vector_W @ normal_W) * normal_W
+        tangent_W = across(vector_W, normal_W)
         length = float(np.linalg.norm(tangent_W))
         if length > 1e-9 * float(np.linalg.norm(vector_W)):
             break
@@ -146,25 +181,43 @@ def line_in_box(line: Line, extent: float) -> FloatArray:
     return np.array([[foot + begin * along, foot + end * along]])
 
 
-def _lines(
+def _contact_motion(
     mass_properties: MassProperties,
     picture: ImpactPicture,
     contact: int,
     axes_W: FloatArray,
     *,
     other: MassProperties | None,
-) -> tuple[Line, Line]:
-    """Return the sticking and the compression line (lecture 27, eq. 9 and 10)."""
+    before: int,
+) -> _ContactMotion:
+    """Return how a contact moves once the contacts before a vertex of the path have struck."""
     p_WC_W = picture.contacts.p_WC_W[contact]
-    velocity_W = picture.state.velocity_of_point(p_WC_W)
+    struck_W = dict(
+        zip(picture.path_contacts[:before], picture.path_W[:before], strict=True)
+    )  # the last of each
+    pushes = [(picture.contacts.p_WC_W[i], impulse_W) for i, impulse_W in struck_W.items()]
+    velocity_W = _velocity_of_point(mass_properties, picture.state, p_WC_W, pushes)
     response_W = contact_inverse_inertia(mass_properties, picture.state, p_WC_W - picture.state.p_WB_W)
     if picture.other is not None and other is not None:
         struck = picture.other.state
-        velocity_W = velocity_W - struck.velocity_of_point(p_WC_W)
+        pushes = [(p_W, -impulse_W) for p_W, impulse_W in pushes]
+        velocity_W = velocity_W - _velocity_of_point(other, struck, p_WC_W, pushes)
         response_W = response_W + contact_inverse_inertia(other, struck, p_WC_W - struck.p_WB_W)
-    velocity = axes_W @ velocity_W
-    response = axes_W @ response_W @ axes_W.T
-    return Line(response[0], float(velocity[0])), Line(response[1], float(velocity[1]))
+    axes = np.vstack([axes_W, np.cross(*axes_W)])
+    return _ContactMotion(axes @ velocity_W, axes @ response_W @ axes.T)
+
+
+def _velocity_of_point(
+    body: MassProperties, state: BodyState, p_WP_W: FloatArray, pushes: list[tuple[FloatArray, FloatArray]]
+) -> FloatArray:
+    """Return the velocity, (3,), m/s, of a body's point after impulses, N s, at places, m, world axes."""
+    v_WB_W, moment_W = state.v_WB_W, np.zeros(3)
+    for p_W, impulse_W in pushes:
+        v_WB_W = v_WB_W + impulse_W / body.mass
+        moment_W = moment_W + np.cross(p_W - state.p_WB_W, impulse_W)
+    w_WB_W = state.w_WB_W + np.linalg.solve(body.inertia_in_world(state.R_WB), moment_W)
+    velocity_W: FloatArray = v_WB_W + np.cross(w_WB_W, p_WP_W - state.p_WB_W)
+    return velocity_W
 
 
 def _draw_background(recording: rr.RecordingStream, entity: str, friction: float, extent: float) -> None:

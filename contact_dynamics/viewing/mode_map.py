@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from contact_dynamics.contact_modes import ModeWrenchSet
+    from contact_dynamics.contact_modes import PlanarWrenchSet
     from contact_dynamics.plane.types import PlanarWrench
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.wrench_chart import WrenchChart
@@ -68,7 +68,7 @@ class WidestPlace(NamedTuple):
     has_room: bool  # whether the name fits
 
 
-def mode_regions(sets: Sequence[ModeWrenchSet], chart: WrenchChart) -> ModeRegions:
+def mode_regions(sets: Sequence[PlanarWrenchSet], chart: WrenchChart) -> ModeRegions:
     """Return the regions of a chart, by the half-spaces of each mode's wrenches."""
     wrenches, shown = chart.wrenches()
     points = wrenches[shown]
@@ -91,7 +91,7 @@ def mode_regions(sets: Sequence[ModeWrenchSet], chart: WrenchChart) -> ModeRegio
 
 def draw_mode_map(
     recording: rr.RecordingStream,
-    sets: Sequence[ModeWrenchSet],
+    sets: Sequence[PlanarWrenchSet],
     chart: WrenchChart,
     *,
     entity: str = MODE_MAP,
@@ -136,7 +136,7 @@ def draw_mode_map(
     draw_applied(recording, chart, entity=entity, applied=applied, change=change)
 
 
-def look_alike(one: Sequence[ModeWrenchSet], other: Sequence[ModeWrenchSet], *, length: float) -> bool:
+def look_alike(one: Sequence[PlanarWrenchSet], other: Sequence[PlanarWrenchSet], *, length: float) -> bool:
     """Return whether two maps over directions differ by less than can be seen; ``length`` as in the chart."""
     if [a.mode for a in one] != [b.mode for b in other]:
         return False
@@ -154,7 +154,7 @@ def look_alike(one: Sequence[ModeWrenchSet], other: Sequence[ModeWrenchSet], *, 
 
 
 def chart_for(
-    sets: Sequence[ModeWrenchSet],
+    sets: Sequence[PlanarWrenchSet],
     *,
     length: float,
     applied: PlanarWrench | None,
@@ -183,7 +183,7 @@ def color_of_modes(consistent: Sequence[str], every: Sequence[str]) -> palette.C
     return palette.mode_color(consistent[0], every.index(consistent[0]))
 
 
-def borders_of(one: ModeWrenchSet, chart: WrenchChart) -> list[FloatArray]:
+def borders_of(one: PlanarWrenchSet, chart: WrenchChart) -> list[FloatArray]:
     """Return the boundary of a mode's wrenches as strips of places, (k, 2) each."""
     normals = np.array([side.a for side in one.half_spaces]).reshape(-1, 3)
     offsets = np.array([side.b for side in one.half_spaces])

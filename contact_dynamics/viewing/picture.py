@@ -26,7 +26,12 @@ from contact_dynamics.viewing.impulse_space import draw_impulse_space
 from contact_dynamics.viewing.legend import LEGEND_TEXT
 from contact_dynamics.viewing.measured import draw_prediction_at, draw_states, set_time, style_series
 from contact_dynamics.viewing.planar_modes import DrawnMap, draw_planar_map, draw_planar_modes, silhouette
-from contact_dynamics.viewing.poinsot import draw_poinsot, draw_rolling
+from contact_dynamics.viewing.poinsot import (
+    clear_poinsot,
+    count_of_flight,
+    draw_poinsot,
+    draw_rolling,
+)
 from contact_dynamics.viewing.scene import draw_axes, draw_body, draw_obstacle, draw_surface
 from contact_dynamics.viewing.shape import Shape, drawn_shape
 from contact_dynamics.viewing.trajectory import draw_trajectory
@@ -66,7 +71,7 @@ class Picture:
         self._answers: dict[str, str] = {}
         self._told_ns: int | None = None  # stamp of the last answer
         self._map: DrawnMap | None = None
-        self._rolling: set[str] = set()  # bodies that Poinsot's picture was drawn of
+        self._rolling: dict[str, PoinsotPicture] = {}  # of the bodies whose flight still goes on
         self._framed = False
         self._eye: Eye | None = None
         self._diagrams: set[str] = set()  # those that have been drawn
@@ -94,7 +99,7 @@ class Picture:
                 up_W=self._up_W,
             )
         if body_name in self._rolling:
-            draw_rolling(self._recording, body_name, states)
+            self._roll(body_name, states)
         self._newest[body_name] = states[-1]
         self._recent.extend((state.stamp_ns, state.p_WB_W) for state in states)
         while self._recent[-1][0] - self._recent[0][0] > WINDOW_S * 1e9:
@@ -118,11 +123,11 @@ class Picture:
             self._look_at(trajectory.p_WB_W)  # later ones leave the view to whoever looks
 
     def show_poinsot(self, picture: PoinsotPicture, *, state: BodyState, body_name: str) -> None:
-        """Draw Poinsot's picture of the rotation that a state began; later states roll it on."""
+        """Draw Poinsot's picture of the rotation that a state began; later ones of the flight roll it on."""
         set_time(self._recording, state.stamp_ns)
         draw_poinsot(self._recording, body_name, picture)
         draw_rolling(self._recording, body_name, [state])
-        self._rolling.add(body_name)
+        self._rolling[body_name] = picture
         self._bring_up(POINSOT)
 
     def show_impact(self, body_name: str, impact: ImpactPicture, *, stamp_ns: int) -> None:
@@ -188,6 +193,14 @@ class Picture:
         legend = rr.TextDocument(LEGEND_TEXT, media_type=rr.MediaType.MARKDOWN)
         self._recording.log(LEGEND, legend, static=True)
         self._arrange()
+
+    def _roll(self, body_name: str, states: Sequence[BodyState]) -> None:
+        count = count_of_flight(self._rolling[body_name], states)
+        draw_rolling(self._recording, body_name, states[:count])
+        if count < len(states):
+            set_time(self._recording, states[count].stamp_ns)
+            clear_poinsot(self._recording, body_name)
+            del self._rolling[body_name]
 
     def _mass_properties(self, body_name: str) -> MassProperties | None:
         body = self.body(body_name)

@@ -21,7 +21,7 @@ from contact_dynamics.viewing.shape import FLAT
 from contact_dynamics.viewing.wrench_chart import DirectionChart
 
 if TYPE_CHECKING:
-    from contact_dynamics.contact_modes import ConsistentMode, ModeWrenchSet
+    from contact_dynamics.contact_modes import PlanarMode, PlanarWrenchSet
     from contact_dynamics.plane.types import PlanarContact, PlanarWrench
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.shape import Shape
@@ -42,10 +42,10 @@ class PlanarModesPicture:
     """What the 2D pictures of a planar answer are made of; positions from the centre of mass."""
 
     contacts: tuple[PlanarContact, ...]
-    modes: tuple[ConsistentMode, ...]  # every consistent mode
+    modes: tuple[PlanarMode, ...]  # every consistent mode
     margins: tuple[str, ...]  # what to say of each mode's margin; empty: nothing
     verdict: str  # what to say where there is no mode
-    sets: tuple[ModeWrenchSet, ...]  # of all modes; empty: not told
+    sets: tuple[PlanarWrenchSet, ...]  # of all modes; empty: not told
     length: float  # m, the radius of gyration
     applied: PlanarWrench | None  # the wrench in question, if known
     change: PlanarWrench | None  # the least change that takes it out of the first mode, if told
@@ -92,7 +92,7 @@ def draw_planar_modes(
 class DrawnMap:
     """A map that is in the picture."""
 
-    sets: tuple[ModeWrenchSet, ...]
+    sets: tuple[PlanarWrenchSet, ...]
     chart: WrenchChart
 
 

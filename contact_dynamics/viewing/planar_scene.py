@@ -17,7 +17,7 @@ from contact_dynamics.viewing.entities import PLANAR_SCENE
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.contact_modes import ConsistentMode
+    from contact_dynamics.contact_modes import PlanarMode
     from contact_dynamics.plane.types import PlanarContact
     from contact_dynamics.validation import FloatArray
 
@@ -42,7 +42,7 @@ def draw_planar_scene(
     contacts: Sequence[PlanarContact],
     *,
     walls: Sequence[FloatArray] = (),
-    mode: ConsistentMode | None = None,
+    mode: PlanarMode | None = None,
     size: float | None = None,
     shift: float = 0.0,
     entity: str = PLANAR_SCENE,

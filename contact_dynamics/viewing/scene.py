@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.numerics.vectors import near_x
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import SCENE, SURFACES, body_entity, entity, trail_entity
 from contact_dynamics.viewing.shape import convex_shape
@@ -96,7 +97,6 @@ def solid(shape: Shape, color: palette.Color) -> rr.Mesh3D:
 
 def tangents(normal_W: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return two unit vectors, (3,), that with a unit normal make a right-handed frame: x and y for z."""
-    helper = np.array([1.0, 0.0, 0.0]) if abs(normal_W[0]) < 0.9 else np.array([0.0, 1.0, 0.0])
-    u_W = helper - (helper @ normal_W) * normal_W
+    u_W = near_x(normal_W)
     u_W = u_W / np.linalg.norm(u_W)
     return u_W, np.cross(normal_W, u_W)

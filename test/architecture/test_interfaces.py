@@ -68,7 +68,8 @@ def constants(message: type, names: list[str]) -> dict[str, int]:
     ids=lambda value: value.__name__,
 )
 def test_enumerations_equal_those_of_the_messages(enum: type[IntEnum], message: type) -> None:
-    values = {member.name: int(member) for member in enum}
+    refused = {SequenceEnd.WINDOW_ENDED}  # the service answers a sequence without a strike with a status
+    values = {member.name: int(member) for member in enum if member not in refused}
     assert values == constants(message, list(values))
 
 

@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contact_dynamics.contact.friction import linearised_cone, tangents
+from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.numerics.vectors import tangents_towards
 from contact_dynamics.plane.force_dual import (
     OrientedPoint,
     Turn,
@@ -63,7 +64,7 @@ def test_the_pyramid_is_inside_the_round_cone(
     if length < 1e-3:
         return
     normal = np.array(direction) / length
-    one, two = tangents(normal)
+    one, two = tangents_towards(normal)
     np.testing.assert_allclose(np.cross(one, two), normal, atol=1e-12)
     edges = linearised_cone(normal, friction, facets)
     assert edges.shape == (facets, 3)

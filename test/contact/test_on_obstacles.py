@@ -14,7 +14,7 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.curvature import Curvatures
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact.on_obstacles import site_of
-from contact_dynamics.errors import InvalidFieldError, NotSupportedError
+from contact_dynamics.errors import InvalidFieldError, NoContactError, NotSupportedError
 from contact_dynamics.landing.earliest import next_landing
 from contact_dynamics.landing.obstacle_arrival import first_touch
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
@@ -421,7 +421,9 @@ def test_what_is_no_obstacle_is_refused(vertices: object) -> None:
         obstacle(vertices)
 
 
-def test_a_body_without_shape_touches_nothing() -> None:
+def test_a_body_without_shape_is_refused() -> None:
     nothing = Body(name="body", mass_properties=STUFF)
-    assert len(find_contacts(nothing, at((0.0, 0.0, 0.0)), [TABLE])) == 0
-    assert drop(at((0.0, 0.0, 0.0)), ConvexShape()) is None
+    with pytest.raises(NoContactError, match="'body': found no shape"):
+        find_contacts(nothing, at((0.0, 0.0, 0.0)), [TABLE])
+    with pytest.raises(InvalidFieldError, match="shape_B: found nothing"):
+        drop(at((0.0, 0.0, 0.0)), ConvexShape())

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.contact_modes import ConsistentMode, ContactModeAnswer
+    from contact_dynamics.contact_modes import PlanarMode, PlanarModeAnswer
     from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 
 ROUNDING = 1e-9  # relative to the forces at work: internal forces of narrow cones are large
 
 
 def check_evidence(
-    answer: ContactModeAnswer,
+    answer: PlanarModeAnswer,
     body: PlanarBody,
     velocity: PlanarVelocity,
     contacts: Sequence[PlanarContact],
@@ -33,7 +33,7 @@ def _world(contact: PlanarContact, pair: tuple[float, float]) -> tuple[float, fl
 
 
 def _check_newton(
-    mode: ConsistentMode, body: PlanarBody, contacts: Sequence[PlanarContact], wrench: PlanarWrench
+    mode: PlanarMode, body: PlanarBody, contacts: Sequence[PlanarContact], wrench: PlanarWrench
 ) -> None:
     f_x, f_y = wrench.f
     moment = wrench.moment
@@ -51,9 +51,7 @@ def _check_newton(
     assert abs(moment - body.inertia * mode.angular_acceleration) <= scale * rho
 
 
-def _check_letter(
-    mode: ConsistentMode, i: int, contact: PlanarContact, velocity: tuple[float, float]
-) -> None:
+def _check_letter(mode: PlanarMode, i: int, contact: PlanarContact, velocity: tuple[float, float]) -> None:
     letter = mode.mode[i]
     f_t, f_n = mode.contact_forces[i]
     a_t, a_n = mode.contact_accelerations[i]
@@ -75,7 +73,7 @@ def _check_letter(
     assert abs(f_t + right * edge) <= ROUNDING * (edge + f_n)
 
 
-def _check_acceleration(mode: ConsistentMode, i: int, contact: PlanarContact, w: float) -> None:
+def _check_acceleration(mode: PlanarMode, i: int, contact: PlanarContact, w: float) -> None:
     x, y = contact.r
     alpha = mode.angular_acceleration
     a_x = mode.acceleration[0] - alpha * y - w * w * x

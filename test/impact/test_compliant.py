@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from contact_dynamics.contact.contact import Contact
 from contact_dynamics.impact import (
     ImpactOutcome,
     RestitutionLaw,
@@ -62,11 +63,8 @@ def in_space(problem: impact_compliant.Problem) -> tuple[ImpactOutcome, np.ndarr
     answer = spatial_impact(
         MassProperties(mass=problem.mass, I_B=problem.inertia),
         BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=problem.v, w_WB_W=problem.w),
-        p_WC_W=problem.arm,
-        n_W=problem.normal,
-        friction=problem.mu,
-        restitution=problem.e,
-        law=RestitutionLaw.ENERGETIC,
+        Contact(p_WC_W=problem.arm, normal_W=problem.normal, friction=problem.mu, restitution=problem.e),
+        restitution_law=RestitutionLaw.ENERGETIC,
     )
     return answer.outcome, np.concatenate([answer.state.v_WB_W, answer.state.w_WB_W])
 
@@ -78,7 +76,7 @@ def in_plane(problem: impact_compliant.Problem) -> tuple[ImpactOutcome, np.ndarr
         PlanarBody(mass=problem.mass, inertia=float(problem.inertia[1, 1])),
         PlanarVelocity(v=(float(problem.v[0]), float(problem.v[2])), w=-float(problem.w[1])),
         PlanarContact(r=(x, z), normal=(0.0, 1.0), friction=problem.mu, restitution=problem.e),
-        law=RestitutionLaw.ENERGETIC,
+        restitution_law=RestitutionLaw.ENERGETIC,
     )
     v_x, v_z = answer.velocity.v
     return answer.outcome, np.array([v_x, 0.0, v_z, 0.0, -answer.velocity.w, 0.0])
@@ -166,7 +164,7 @@ def test_stiff_springs_in_the_plane_by_the_hundred() -> None:
         normals=(0.0, 1.0),
         frictions=problems.mu,
         restitutions=problems.e,
-        law=RestitutionLaw.ENERGETIC,
+        restitution_law=RestitutionLaw.ENERGETIC,
     )
     after = np.column_stack((rigid.v, rigid.w))
     first, second = (
@@ -220,7 +218,7 @@ def test_stiff_springs_in_space_by_the_hundred() -> None:
         normals_W=[0.0, 0.0, 1.0],
         frictions=problems.mu,
         restitutions=problems.e,
-        laws=RestitutionLaw.ENERGETIC,
+        restitution_laws=RestitutionLaw.ENERGETIC,
     )
     after = np.concatenate((rigid.v_WB_W, rigid.w_WB_W), axis=1)
     first, second = (

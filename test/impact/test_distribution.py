@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from contact_dynamics.contact.contact import Contact
 from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact import (
     ImpactDistribution,
@@ -79,11 +81,8 @@ def test_space_agrees_with_the_plane() -> None:
     answer = spatial_impact_distribution(
         MassProperties(mass=1.0, I_B=np.eye(3)),
         BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[0.6, 0.0, -1.0], w_WB_W=np.zeros(3)),
+        Contact(p_WC_W=[0.3, 0.0, -1.0], normal_W=[0.0, 0.0, 1.0], friction=0.3, restitution=0.5),
         covariance=covariance,
-        p_WC_W=[0.3, 0.0, -1.0],
-        n_W=[0.0, 0.0, 1.0],
-        friction=0.3,
-        restitution=0.5,
         samples=4000,
     )
     # x, z, and the turn about -y.
@@ -99,11 +98,8 @@ def test_a_tilted_pose_moves_the_contact_with_it() -> None:
     answer = spatial_impact_distribution(
         MassProperties(mass=1.0, I_B=np.eye(3)),
         BodyState(p_WB_W=[0.0, 0.0, 1.0], q_WB=IDENTITY, v_WB_W=[0.0, 0.0, -1.0], w_WB_W=np.zeros(3)),
+        Contact(p_WC_W=[0.0, 0.0, 0.0], normal_W=[0.0, 0.0, 1.0], friction=0.0, restitution=0.0),
         covariance=covariance,
-        p_WC_W=[0.0, 0.0, 0.0],
-        n_W=[0.0, 0.0, 1.0],
-        friction=0.0,
-        restitution=0.0,
         samples=400,
     )
     # Tilted by x about +y the lowest point is at -x, where the impulse m v turns the body by +x v m/I.
@@ -140,14 +136,12 @@ def test_agrees_with_plain_monte_carlo_in_space() -> None:
     state = BodyState(
         p_WB_W=[0.1, 0.2, 0.3], q_WB=quaternion, v_WB_W=[0.4, -0.1, -0.5], w_WB_W=[1.0, -0.5, 0.3]
     )
-    contact = {"n_W": [0.0, 0.0, 1.0], "friction": 0.35, "restitution": 0.4}
     arm = np.array([0.1, -0.05, -0.3])
+    contact = Contact(p_WC_W=state.p_WB_W + arm, normal_W=[0.0, 0.0, 1.0], friction=0.35, restitution=0.4)
     spread = np.array([0.01] * 3 + [0.1, 0.15, 0.1] + [0.3, 0.3, 0.3] + [0.5, 0.5, 0.5])
     mixing = np.random.default_rng(3).normal(size=(12, 12)) * 0.2 + np.eye(12)
     covariance = (spread[:, None] * mixing) @ (spread[:, None] * mixing).T
-    answer = spatial_impact_distribution(
-        body, state, covariance=covariance, p_WC_W=state.p_WB_W + arm, samples=20_000, **contact
-    )
+    answer = spatial_impact_distribution(body, state, contact, covariance=covariance, samples=20_000)
     draws = np.random.default_rng(98).multivariate_normal(np.zeros(12), covariance, size=1500)
     after, counts = np.empty((1500, 6)), np.zeros(len(ImpactOutcome))
     for i, draw in enumerate(draws):
@@ -159,7 +153,8 @@ def test_agrees_with_plain_monte_carlo_in_space() -> None:
             w_WB_W=state.w_WB_W + draw[9:],
         )
         try:
-            single = spatial_impact(body, drawn, p_WC_W=drawn.p_WB_W + turn.apply(arm), **contact)
+            moved = replace(contact, p_WC_W=drawn.p_WB_W + turn.apply(arm))
+            single = spatial_impact(body, drawn, moved)
         except SeparatingContactError:
             after[i] = [*drawn.v_WB_W, *drawn.w_WB_W]
             continue

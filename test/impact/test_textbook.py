@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.contact import Contact, ContactSet
 from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact import (
     BodiesImpact,
@@ -71,11 +71,8 @@ def test_a_ball_grips_or_slides(spin: float, beta: float, law: RestitutionLaw) -
         impact = spatial_impact(
             body,
             state,
-            p_WC_W=[0.0, 0.0, 0.0],
-            n_W=[0.0, 0.0, 1.0],
-            friction=friction,
-            restitution=e,
-            law=law,
+            Contact(p_WC_W=[0.0, 0.0, 0.0], normal_W=[0.0, 0.0, 1.0], friction=friction, restitution=e),
+            restitution_law=law,
         )
         if friction > needed:
             rolling = (v + beta * radius * spin) / (1.0 + beta)
@@ -97,7 +94,7 @@ def dropped_rod(theta: float, *, friction: float, e: float, law: RestitutionLaw)
         r=(-math.cos(theta), -math.sin(theta)), normal=UP, friction=friction, restitution=e
     )
     rod, falling = PlanarBody(mass=3.0, inertia=1.0), PlanarVelocity(v=(0.0, -1.0), w=0.0)
-    return planar_impact(rod, falling, contact, law=law).velocity
+    return planar_impact(rod, falling, contact, restitution_law=law).velocity
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
@@ -146,7 +143,7 @@ def test_a_ball_strikes_a_free_block(offset: float, law: RestitutionLaw) -> None
         PlanarVelocity(v=(0.0, 0.0), w=0.0),
         PlanarContact(r=(0.05, 0.0), normal=(-1.0, 0.0), friction=0.0, restitution=e),
         other_r=(-0.4, offset),
-        law=law,
+        restitution_law=law,
     )
     impulse = (1.0 + e) * v / (1.0 / 0.5 + 1.0 / 4.0 + offset**2 / 0.8)
     assert impact.velocity.v == pytest.approx((v - impulse / 0.5, 0.0), rel=1e-14)
@@ -181,7 +178,7 @@ def cradle(
         states,
         contacts,
         [(i, i + 1) for i in range(n - 1)],
-        law=law,
+        several_contacts_law=law,
         restitution_law=restitution_law,
     )
     assert answer.verdict is SeveralVerdict.RESOLVED
@@ -271,7 +268,7 @@ def test_a_cube_on_its_face(e: float) -> None:
     """At once it bounces level, by symmetry; in turn one corner is the first, and the orders spread."""
     contacts = contacts_at(FACE, normal=(0.0, 0.0, 1.0), friction=0.0, restitution=e)
     state = moving([0.0, 0.0, 0.05], [0.0, 0.0, -1.0])
-    level = several_impact(CUBE, state, contacts, law=SIMULTANEOUS)
+    level = several_impact(CUBE, state, contacts, several_contacts_law=SIMULTANEOUS)
     assert level.state.v_WB_W == pytest.approx([0.0, 0.0, e], abs=1e-11)
     assert level.state.w_WB_W == pytest.approx([0.0, 0.0, 0.0], abs=1e-10)
     outcomes = outcomes_over_orders(CUBE, state, contacts)
@@ -295,7 +292,7 @@ def test_a_cube_on_an_edge(e: float) -> None:
     state = moving([0.0, 0.0, height], [0.0, 0.0, -1.0])  # a cube's inertia is the same in all axes
     inertia = float(CUBE.I_B[0, 0])
     total = (1.0 + e) / (1.0 / 0.5 + lever**2 / inertia)
-    at_once = several_impact(CUBE, state, contacts, law=SIMULTANEOUS)
+    at_once = several_impact(CUBE, state, contacts, several_contacts_law=SIMULTANEOUS)
     assert at_once.impulses_W.sum(axis=0) == pytest.approx([0.0, 0.0, total], rel=1e-9)
     assert at_once.state.w_WB_W == pytest.approx([0.0, -lever * total / inertia, 0.0], abs=1e-9)
     outcomes = outcomes_over_orders(CUBE, state, contacts)
@@ -328,7 +325,7 @@ def rocking_block(alpha: float) -> tuple[PlanarBody, PlanarVelocity, list[Planar
 def test_a_rocking_block_keeps_housners_share_of_its_spin(alpha: float, law: SeveralContactsLaw) -> None:
     """Angular momentum about the right corner stays: w'/w = 1 - 3/2 sin^2(alpha). The left corner lifts."""
     body, velocity, feet = rocking_block(alpha)
-    answer = planar_several_impact(body, velocity, feet, law=law)
+    answer = planar_several_impact(body, velocity, feet, several_contacts_law=law)
     kept = 1.0 - 1.5 * math.sin(alpha) ** 2
     assert answer.state.w_WB_W == pytest.approx([0.0, 0.0, -1.5 * kept], abs=1e-8)
     assert answer.velocities_after_W[0, 1] > 0.0
@@ -340,7 +337,7 @@ def test_a_rocking_block_keeps_housners_share_of_its_spin(alpha: float, law: Sev
 def test_a_flat_block_does_not_rock_over(law: SeveralContactsLaw) -> None:
     """Where sin^2(alpha) > 2/3 Housner's share is negative; the left corner stops it."""
     body, velocity, feet = rocking_block(1.2)
-    answer = planar_several_impact(body, velocity, feet, law=law)
+    answer = planar_several_impact(body, velocity, feet, several_contacts_law=law)
     assert answer.verdict is SeveralVerdict.RESOLVED
     assert answer.state.w_WB_W == pytest.approx([0.0, 0.0, 0.0], abs=1e-7)
     assert answer.state.v_WB_W == pytest.approx([0.0, 0.0, 0.0], abs=1e-7)
@@ -371,7 +368,7 @@ def test_a_rocking_block_in_time_stays_on_its_right_foot() -> None:
 def test_one_contact_in_the_plane_is_the_planar_law(law: RestitutionLaw) -> None:
     body, velocity = PlanarBody(mass=1.0, inertia=1.0), PlanarVelocity(v=(-1.0, -1.0), w=0.4)
     contact = PlanarContact(r=(-1.0, -2.0), normal=UP, friction=0.25, restitution=0.5)
-    one = planar_impact(body, velocity, contact, law=law)
+    one = planar_impact(body, velocity, contact, restitution_law=law)
     axes = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])  # the plane seen from +x
     several = planar_several_impact(body, velocity, [contact], restitution_law=law, axes_W=axes)
     assert several.state.v_WB_W == pytest.approx([0.0, *one.velocity.v], abs=1e-13)
@@ -387,7 +384,7 @@ def test_a_level_rod_on_two_supports_in_the_plane() -> None:
     assert answer.order[:2] == (0, 1)
     assert answer.strikes[0][1].impulse_W == pytest.approx([0.0, 1.0, 0.0], rel=1e-12)
     assert answer.strikes[1][1].impulse_W == pytest.approx([0.0, 2.0, 0.0], rel=1e-12)
-    at_once = planar_several_impact(rod, falling, ends, law=SIMULTANEOUS)
+    at_once = planar_several_impact(rod, falling, ends, several_contacts_law=SIMULTANEOUS)
     assert at_once.state.v_WB_W == pytest.approx([0.0, 1.0, 0.0], abs=1e-12)
     assert at_once.state.w_WB_W == pytest.approx([0.0, 0.0, 0.0], abs=1e-11)
 
@@ -408,7 +405,7 @@ def test_momentum_and_energy_of_a_heap() -> None:
     ]
     before = sum(kinetic_energy(box, state) for state in states)
     for law in SeveralContactsLaw:
-        answer = bodies_impact([box] * 3, states, contacts, pairs, law=law)
+        answer = bodies_impact([box] * 3, states, contacts, pairs, several_contacts_law=law)
         assert answer.verdict is SeveralVerdict.RESOLVED
         assert answer.velocities_after_W[:, 2].min() >= -1e-8
         after = sum(kinetic_energy(box, state) for state in answer.states)

@@ -9,6 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from contact_dynamics.contact.found import find_contacts
+from contact_dynamics.errors import InvalidFieldError, NoContactError
+from contact_dynamics.impact import impact_sequence
 from contact_dynamics.landing.earliest import next_landing
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import free_motion
@@ -58,6 +61,27 @@ def test_the_surface_that_is_reached_first_counts() -> None:
     assert landing is not None
     assert landing.seconds == pytest.approx(0.2, abs=1e-15)  # 1.8 m to the wall at 9 m/s
     assert set(landing.contacts.surfaces) == {"wall"}
+
+
+def test_a_body_without_a_shape_is_refused_by_name() -> None:
+    point = Body(name="point", mass_properties=BOX.mass_properties)
+    words = r"^body 'point': found no shape, allowed is a body with `vertices_B` or a `shape`"
+    with pytest.raises(NoContactError, match=words):
+        next_landing(point, state(1.0), WORLD, horizon=1.0)
+    with pytest.raises(NoContactError, match=words):
+        find_contacts(point, state(1.0), WORLD.surfaces)
+    with pytest.raises(NoContactError, match=words):
+        impact_sequence(point, state(1.0), WORLD)
+
+
+@pytest.mark.parametrize("field", ["horizon", "distance_tolerance", "velocity_tolerance"])
+@pytest.mark.parametrize("value", [-1.0, math.nan, math.inf])
+def test_senseless_limits_are_refused_by_name(field: str, value: float) -> None:
+    with pytest.raises(InvalidFieldError, match=rf"^{field}: found {value}"):
+        next_landing(BOX, state(1.0), WORLD, **{"horizon": 1.0, field: value})
+    if field == "distance_tolerance":
+        with pytest.raises(InvalidFieldError, match=rf"^{field}: found {value}"):
+            find_contacts(BOX, state(1.0), WORLD.surfaces, distance_tolerance=value)
 
 
 def test_beyond_the_horizon_nothing_lands() -> None:

@@ -153,8 +153,9 @@ def test_beyond_the_horizon_is_no_contact() -> None:
     assert first_contact(toss(1.05), CUBE_B, FLOOR, UP, horizon=seconds + 1e-6) is not None
 
 
-def test_a_body_without_corners_never_arrives() -> None:
-    assert first_contact(toss(1.0), np.zeros((0, 3)), FLOOR, UP, horizon=1.0) is None
+def test_a_body_without_corners_is_refused() -> None:
+    with pytest.raises(InvalidFieldError, match=r"^shape_B: found nothing, allowed is a shape or at least"):
+        first_contact(toss(1.0), np.zeros((0, 3)), FLOOR, UP, horizon=1.0)
 
 
 @pytest.mark.parametrize(

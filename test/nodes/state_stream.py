@@ -1,7 +1,7 @@
-"""Publishes the brick's states at 500 Hz until it is stopped, and a simulated clock if asked.
+"""Publishes the brick's states at 500 Hz until it is stopped, and, if asked, a simulated clock at 40 Hz.
 
-It is a process of its own, as a driver or a simulator is: ``state_stream.py wall`` or ``state_stream.py
-simulated``. The clock ticks 40 times a second. Simulated time runs at half the speed of the wall clock, from 1000 s on.
+A process of its own, as a driver or a simulator is: ``state_stream.py wall``, ``state_stream.py simulated``.
+Simulated time runs at half the speed of the wall clock, from 1000 s on.
 """
 
 from __future__ import annotations

@@ -218,6 +218,51 @@ def test_bad_input_is_named_and_the_next_good_request_answered(
     assert (after.status, after.message) == (after.OK, "")
 
 
+INTERFACES = Path(__file__).parents[2] / "contact_dynamics_interfaces" / "srv"
+
+
+def choices_of(service: Any) -> Iterator[tuple[str, list[str]]]:
+    """The fields of a request that take one of its constants, with those constants, from the interface."""
+    constants: list[str] = []
+    text = (INTERFACES / f"{service.__name__}.srv").read_text(encoding="utf-8")
+    for line in text.split("\n---")[0].splitlines():
+        words = line.split("#")[0].split()
+        if words[:1] == ["uint8"] and "=" in words:
+            constants.append(f"{words[1]} ({words[3]})")
+        elif words[:1] == ["uint8"]:
+            yield words[1], constants
+            constants = []
+
+
+CHOICES = [(service, field, names) for service in SERVICES for field, names in choices_of(service)]
+
+
+def test_the_interfaces_choices_were_found() -> None:
+    assert {field for _, field, _ in CHOICES} == {
+        "state_source",
+        "contact_source",
+        "gravity",
+        "problem",
+        "restitution_law",
+        "several_contacts_law",
+        "sampling",
+    }
+
+
+@pytest.mark.parametrize(("service", "field", "names"), CHOICES)
+@pytest.mark.parametrize("value", [5, 250])
+def test_an_unknown_constant_is_refused_with_the_known_ones(
+    client: Client, service: Any, field: str, names: list[str], value: int
+) -> None:
+    request = good(service)
+    setattr(request, field, value)
+    answer = client.ask(request)
+    assert answer.status == answer.INVALID_FIELD, answer.message
+    assert answer.message.startswith(f"{field}: found {value}, allowed is ")
+    assert len(names) >= 2
+    assert all(name in answer.message for name in names)
+
+
 def bad_rate(request: Any) -> None:
     request.sampling = request.AT_RATE
     request.rate = -5.0
@@ -248,7 +293,7 @@ def test_no_state_published_yet(client: Client, service: Any) -> None:
 
 
 def test_states_that_are_stale_or_make_no_sense(client: Client) -> None:
-    """A stale state is refused with its age; one with a NaN or in another frame is not taken at all."""
+    """A stale state is refused with its age; one with a NaN or in another frame, or bytes, are not taken."""
     publisher = client.publisher(Odometry, "/brick/odometry")
     nonsense = Odometry()
     nonsense.header.frame_id = "world"
@@ -260,6 +305,7 @@ def test_states_that_are_stale_or_make_no_sense(client: Client) -> None:
     old = Odometry()
     old.header.frame_id = "world"
     old.header.stamp.sec = nonsense.header.stamp.sec - 3
+    publisher.publish(b"\0\1\0\0no message at all")
     publisher.publish(nonsense)
     publisher.publish(elsewhere)
     publisher.publish(old)

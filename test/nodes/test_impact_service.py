@@ -266,7 +266,7 @@ def test_a_contact_that_leaves_strikes_when_it_comes_back(client: Client) -> Non
     request.strike_window = 0.01
     answer = client.ask(request)
     assert answer.status == answer.SEPARATING
-    assert "comes back within 0.01 s" in answer.message
+    assert "comes back within the strike_window of 0.01 s" in answer.message
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import platform
 import random
 import signal
 import subprocess
@@ -19,6 +20,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy
 import yaml
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
@@ -243,6 +245,8 @@ def test_the_run_record_has_every_parameter(session: Session) -> None:
         name: str(value) for name, value in configured.items()
     }
     assert run["version"]
+    versions = {"python": platform.python_version(), "numpy": np.__version__, "scipy": scipy.__version__}
+    assert {name: run[name] for name in versions} == versions
 
 
 def test_metadata_counts_what_is_in_the_file(session: Session) -> None:

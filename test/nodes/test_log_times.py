@@ -1,4 +1,4 @@
-"""The times in the log of a server that is asked while states stream in, on the wall clock and in simulation.
+"""The times in the log of a server that is asked while states stream in, also in a simulation.
 
 What counts is that a log can be replayed: the states with a `log_time` up to a request's are those that its
 answer was made from.

@@ -16,6 +16,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
+from rclpy.serialization import serialize_message
 from scipy.spatial.transform import Rotation
 from service_msgs.msg import ServiceEventInfo
 
@@ -25,6 +26,7 @@ with warnings.catch_warnings():
     from viewing.drawn import STAMP_NS, Drawn, read_drawn
 
 from contact_dynamics.nodes.parameters import ConfigurationError
+from contact_dynamics.recording import BagWriter
 from contact_dynamics_interfaces.msg import (
     BodyState,
     ContactMode,
@@ -275,9 +277,14 @@ def test_polhode_and_herpolhode_are_drawn_where_the_answer_carries_them(bench: B
     answer.poinsot.invariable_plane_distance = 5.0
     answer.poinsot.polhode = answer.poinsot.herpolhode = [0.0, 0.0, 5.0, 1.0, 0.0, 5.0]
     bench.answer("predict_tumbling", answer)
-    bench.states.publish(odometry(STAMP_NS + 7, 0.1))
-    bench.spin_until(lambda: bench.received == 2)
+    turning = odometry(STAMP_NS + 7, 0.1)
+    w_WB_B = Rotation.from_quat(TURNED).inv().apply(answer.poinsot.angular_momentum) / [0.01, 0.04, 0.0625]
+    turning.twist.twist.angular = Vector3(x=w_WB_B[0], y=w_WB_B[1], z=w_WB_B[2])
+    bench.states.publish(turning)
+    bench.states.publish(odometry(STAMP_NS + 8, 0.1))  # something has stopped it
+    bench.spin_until(lambda: bench.received == 3)
     drawn = bench.drawn()
+    assert drawn.stamps("/poinsot/brick", "Clear:is_recursive") == [STAMP_NS + 8]
     net = np.vstack(drawn.array("/poinsot/brick/body/ellipsoid", "LineStrips3D:strips"))
     np.testing.assert_allclose(net.max(axis=0), [10.0, 5.0, 4.0], rtol=1e-3)
     assert drawn.stamps("/poinsot/brick/body", "Transform3D:quaternion") == [STAMP_NS, STAMP_NS + 7]
@@ -526,6 +533,32 @@ def test_a_log_that_was_to_be_seen_and_is_not_ends_with_the_reason(
     with process("visualizer", *arguments, "-p", f"rrd_path:={path}", ready=reason) as started:
         assert started.wait(10.0) == 1  # the file is there, what was asked for was to see it
     assert path.stat().st_size > 0
+
+
+def test_a_damaged_log_is_drawn_but_for_the_damage_which_is_told(tmp_path: Path) -> None:
+    """One chunk of three has a flipped bit, and one state is of another type than its topic should have."""
+    stamps = [STAMP_NS + number for number in range(6)]
+    with BagWriter(tmp_path / "log") as writer:
+        writer.add_topic("/brick/odometry", "nav_msgs/msg/Odometry")
+        for number, stamp in enumerate(stamps):
+            data = serialize_message(odometry(stamp, 0.1 * number))
+            writer.write("/brick/odometry", data[:20] if number == 5 else data, log_time_ns=stamp)
+            if number % 2 == 1:
+                writer.flush()
+    data = bytearray(writer.path.read_bytes())
+    data[data.index(b"zstd", data.index(b"zstd") + 1) + 20] ^= 1
+    writer.path.write_bytes(data)
+    path = tmp_path / "drawn.rrd"
+    parameters = ("-p", f"from_log:={tmp_path / 'log'}", "-p", f"rrd_path:={path}")
+    arguments = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", *parameters)
+    with process("visualizer", *arguments) as started:
+        told = wait_for(started, "messages of")
+        assert started.wait(10.0) == 0
+    assert told.count("is damaged or was cut short") == 1
+    assert ", 2 messages (" in told
+    assert told.count("/brick/odometry: message ignored") == 1
+    drawn = read_drawn(path)
+    assert drawn.stamps("/world/bodies/brick", "Transform3D:translation") == [*stamps[:2], stamps[4]]
 
 
 def test_a_log_that_is_none_is_named(tmp_path: Path) -> None:

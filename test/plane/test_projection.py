@@ -10,10 +10,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.contact import Contact, ContactSet
 from contact_dynamics.errors import InvalidFieldError, OutOfPlaneError
 from contact_dynamics.impact import planar_impact, spatial_impact
-from contact_dynamics.plane.projection import PlaneOfMotion, best_plane, out_of_plane_speed, project
+from contact_dynamics.plane.projection import (
+    PlaneOfMotion,
+    best_plane,
+    out_of_plane_speed,
+    project_onto_plane,
+)
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
 BODY = MassProperties(mass=2.0, I_B=np.diag([0.2, 0.3, 0.4]))
@@ -47,7 +52,7 @@ def contact(point: tuple[float, float, float], normal: np.ndarray = UP) -> Conta
 
 
 def test_seen_with_the_normal_towards_the_eye_right_is_right() -> None:
-    problem = project(
+    problem = project_onto_plane(
         BODY,
         state((1.0, 0.0, -2.0), (0.0, 3.0, 0.0)),
         contact((0.25, 0.0, 0.0)),
@@ -66,7 +71,7 @@ def test_seen_with_the_normal_towards_the_eye_right_is_right() -> None:
 
 def test_turned_over_left_and_right_change_places() -> None:
     behind = PlaneOfMotion(normal_W=np.array([0.0, 1.0, 0.0]))
-    problem = project(
+    problem = project_onto_plane(
         BODY, state((1.0, 0.0, 0.0)), contact((0.25, 0.0, 0.0)), plane=behind, force_W=WEIGHT, torque_W=NONE
     )
     assert problem.velocity.v == (-1.0, 0.0)
@@ -98,24 +103,28 @@ def test_the_amount_out_of_plane_is_the_speed_left_out(moving: BodyState, amount
         with pytest.raises(
             OutOfPlaneError, match=rf"state: found {amount:g} m/s out of the plane .*at most 1e-06 m/s"
         ):
-            project(BODY, moving, touching, plane=FROM_THE_FRONT, force_W=WEIGHT, torque_W=NONE)
-    project(BODY, moving, touching, plane=FROM_THE_FRONT, force_W=WEIGHT, torque_W=NONE, speed_tolerance=0.3)
+            project_onto_plane(BODY, moving, touching, plane=FROM_THE_FRONT, force_W=WEIGHT, torque_W=NONE)
+    project_onto_plane(
+        BODY, moving, touching, plane=FROM_THE_FRONT, force_W=WEIGHT, torque_W=NONE, speed_tolerance=0.3
+    )
 
 
 def test_what_leans_out_of_the_plane_is_refused_by_name() -> None:
     leaning = np.array([0.0, math.sin(0.02), math.cos(0.02)])
     arguments = {"plane": FROM_THE_FRONT, "force_W": WEIGHT, "torque_W": NONE}
     with pytest.raises(OutOfPlaneError, match=r"contact normals: found a part of 0\.0199"):
-        project(BODY, state(), contact((0.0, 0.0, 0.0), leaning), **arguments)
+        project_onto_plane(BODY, state(), contact((0.0, 0.0, 0.0), leaning), **arguments)
     with pytest.raises(OutOfPlaneError, match=r"applied force: found a part of 0\.0199"):
-        project(BODY, state(), contact((0.0, 0.0, 0.0)), **{**arguments, "force_W": 20.0 * leaning})
+        project_onto_plane(
+            BODY, state(), contact((0.0, 0.0, 0.0)), **{**arguments, "force_W": 20.0 * leaning}
+        )
     with pytest.raises(OutOfPlaneError, match="applied torque"):
-        project(
+        project_onto_plane(
             BODY, state(), contact((0.0, 0.0, 0.0)), **{**arguments, "torque_W": np.array([1.0, 0.0, 0.0])}
         )
     skew = MassProperties(mass=2.0, I_B=np.array([[0.2, 0.05, 0.0], [0.05, 0.3, 0.0], [0.0, 0.0, 0.4]]))
     with pytest.raises(OutOfPlaneError, match="inertia"):
-        project(skew, state(), contact((0.0, 0.0, 0.0)), **arguments)
+        project_onto_plane(skew, state(), contact((0.0, 0.0, 0.0)), **arguments)
     with pytest.raises(InvalidFieldError, match="plane_normal"):
         PlaneOfMotion(normal_W=np.zeros(3))
 
@@ -212,9 +221,11 @@ def test_a_planar_impact_lifted_to_space_is_the_spatial_impact(
     if before.velocity_of_point(point)[2] > -1e-3:
         return
     plane = PlaneOfMotion(normal_W=turn.apply([0.0, -1.0, 0.0]))
-    problem = project(BODY, before, touching, plane=plane, force_W=NONE, torque_W=NONE, speed_tolerance=1e-12)
+    problem = project_onto_plane(
+        BODY, before, touching, plane=plane, force_W=NONE, torque_W=NONE, speed_tolerance=1e-12
+    )
     flat = planar_impact(problem.body, problem.velocity, problem.contacts[0])
-    deep = spatial_impact(BODY, before, p_WC_W=point, n_W=UP, friction=mu, restitution=e)
+    deep = spatial_impact(BODY, before, Contact(p_WC_W=point, normal_W=UP, friction=mu, restitution=e))
     scale = 1e-9 * (
         1.0 + float(np.linalg.norm(deep.impulse_W))
     )  # the path's series are summed to about 1e-12

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from contact_dynamics.recording import BagReader, decode, service_calls
+from running_server import ROOT
 
 
 def test_nothing_is_lost_between_publisher_and_file(real_log: Any) -> None:
@@ -113,3 +114,26 @@ def test_rerun_finds_nothing_to_complain_of(real_log: Any) -> None:
     }
     assert set(lines) == set(real_log.counts)
     assert {(line.split()[0], line.split()[-1]) for line in lines.values()} == {("ok", "—")}
+
+
+def test_rerun_draws_nothing_of_a_log_by_itself(real_log: Any, tmp_path: Path) -> None:
+    """As `docs/log.md` says: the values are there, and nothing that its 3D view would show."""
+    pytest.importorskip("rerun")
+    rerun, converted = Path(sys.executable).with_name("rerun"), tmp_path / "log.rrd"
+    subprocess.run([str(rerun), "mcap", "convert", str(real_log.path), "-o", str(converted)], check=True)
+    printed = subprocess.run(
+        [str(rerun), "rrd", "print", "-v", str(converted)], capture_output=True, text=True, check=True
+    ).stdout
+    assert "nav_msgs.msg.Odometry:message" in printed
+    shapes = (
+        "Transform3D",
+        "Transform",
+        "Points3D",
+        "Boxes3D",
+        "Mesh3D",
+        "Asset3D",
+        "Arrows3D",
+        "LineStrips3D",
+    )
+    assert [shape for shape in shapes if f"{shape}:" in printed] == []
+    assert "3D view stays empty" in (ROOT / "docs" / "log.md").read_text(encoding="utf-8")

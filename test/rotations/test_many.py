@@ -14,6 +14,9 @@ from contact_dynamics.rotations.many import (
     cross_matrices,
     make_continuous,
     matrices_of,
+    products,
+    quaternions_of,
+    rotated,
     rotation_vectors,
     turned,
 )
@@ -45,6 +48,17 @@ def test_rotation_vectors_are_those_of_scipy() -> None:
     found = rotation_vectors(DRAWN.as_quat(), BEFORE.as_quat())
     np.testing.assert_allclose(found, (DRAWN * BEFORE.inv()).as_rotvec(), rtol=0.0, atol=1e-13)
     np.testing.assert_array_equal(rotation_vectors(-DRAWN.as_quat(), BEFORE.as_quat()), found)
+
+
+def test_products_turned_vectors_and_quaternions_of_vectors_are_those_of_scipy() -> None:
+    p, q = DRAWN.as_quat(), BEFORE.as_quat()
+    each, all_by_one = products(p, q), products(p, q[0])
+    np.testing.assert_allclose(matrices_of(each), (DRAWN * BEFORE).as_matrix(), rtol=0.0, atol=3e-15)
+    np.testing.assert_allclose(all_by_one, products(p, np.tile(q[0], (COUNT, 1))), rtol=0.0, atol=1e-15)
+    vector = np.array([0.3, -2.0, 1.1])
+    np.testing.assert_allclose(rotated(p, vector), DRAWN.apply(vector), rtol=0.0, atol=1e-14)
+    found = quaternions_of(DRAWN.as_rotvec())
+    np.testing.assert_allclose(matrices_of(found), DRAWN.as_matrix(), rtol=0.0, atol=3e-15)
 
 
 @settings(deadline=None)

@@ -5,12 +5,15 @@ from __future__ import annotations
 import ast
 import os
 import re
+import shutil
 import subprocess
 import sys
+import tarfile
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
 import pytest
+from catkin_pkg.packages import find_packages
 
 from contact_dynamics.command_line import VERBS
 
@@ -18,10 +21,31 @@ ROOT = Path(__file__).parents[2]
 MANIFESTS = (ROOT / "package.xml", ROOT / "contact_dynamics_interfaces" / "package.xml")
 OWN = {"contact_dynamics", "msg_adapters", "benchmarks", *(path.stem for path in (ROOT / "test").iterdir())}
 
+SOURCES = (
+    "benchmarks",
+    "cmake",
+    "config",
+    "contact_dynamics",
+    "contact_dynamics_interfaces",
+    "docs",
+    "examples",
+    "executables",
+    "launch",
+    "msg_adapters",
+    "requirements",
+    "resource",
+    "scripts",
+    "setup",
+    "test",
+)
+"""The folders that a source distribution holds."""
+
 # Where a rosdep key is not called what is imported; None: there is no key, and pip installs it.
 KEYS = {
+    "catkin_pkg": "python3-catkin-pkg-modules",
     "colcon_core": "python3-colcon-common-extensions",
     "hypothesis": "python3-hypothesis",
+    "lz4": "mcap-ros2-support",  # the mcap library needs it, and zstandard
     "mcap": "mcap-ros2-support",
     "mcap_ros2": "mcap-ros2-support",
     "mpmath": None,
@@ -33,6 +57,7 @@ KEYS = {
     "scipy": "python3-scipy",
     "typing_extensions": "python3-typing-extensions",
     "yaml": "python3-yaml",
+    "zstandard": "mcap-ros2-support",
 }
 
 
@@ -98,6 +123,63 @@ def test_setup_py_takes_the_version_from_package_xml() -> None:
     assert answer.stdout.split()[-1] == ET.parse(MANIFESTS[0]).getroot().findtext("version")
 
 
+def described(*fields: str) -> list[str]:
+    """What setup.py says of some fields of the metadata, line by line."""
+    command = [sys.executable, "setup.py", "-q", *(f"--{field}" for field in fields)]
+    answer = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    return answer.stdout.splitlines()
+
+
+def test_the_metadata_describe_the_package_and_invent_nobody() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert "\n".join(described("long-description")).strip() == readme.strip()
+    pythons = [f"Programming Language :: Python :: 3.{minor}" for minor in range(10, 15)]
+    assert set(pythons) <= set(described("classifiers"))
+    assert described("maintainer", "maintainer-email", "author", "author-email", "url") == ["None"] * 5
+    # .invalid is reserved: such an address reaches nobody (RFC 2606).
+    emails = [ET.parse(path).getroot().find("maintainer").get("email") for path in MANIFESTS]
+    assert all(email.endswith(".invalid") for email in emails)
+
+
+def test_an_sdist_holds_the_project_and_installs(tmp_path: Path) -> None:
+    leave = shutil.ignore_patterns(
+        ".*", "__pycache__", "*.egg-info", "build", "install", "log", "demo_output"
+    )
+    checkout = shutil.copytree(ROOT, tmp_path / "a checkout", symlinks=True, ignore=leave)
+    command = [sys.executable, "setup.py", "-q", "sdist", "--formats=gztar"]
+    subprocess.run(command, cwd=checkout, capture_output=True, check=True)
+    (archive,) = (checkout / "dist").iterdir()
+    with tarfile.open(archive) as packed:
+        names = {name.partition("/")[2] for name in packed.getnames()}
+    for folder in SOURCES:
+        files = [path for path in (checkout / folder).rglob("*") if path.is_file()]
+        assert {str(path.relative_to(checkout)) for path in files} <= names, folder
+    assert {"Makefile", "LICENSE", "CHANGELOG.md", "package.xml", "colcon_defaults.yaml"} <= names
+    installed = tmp_path / "installed"
+    install = [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--no-build-isolation"]
+    done = subprocess.run(
+        [*install, "--no-index", "--target", installed, archive], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    answer = subprocess.run(
+        [
+            sys.executable,
+            "-c",
+            "import contact_dynamics.command_line as c; print(c.__file__); c.main(['--help'])",
+        ],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(installed)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert answer.returncode == 0, answer.stderr
+    assert answer.stdout.startswith(str(installed))
+    assert "usage: contact-dynamics" in answer.stdout
+    assert (installed / "contact_dynamics" / "demo" / "tosses" / "brick.csv").exists()
+    assert (installed / "share" / "contact_dynamics" / "config" / "server.yaml").exists()
+
+
 def test_colcon_finds_both_packages_from_the_root() -> None:
     environment = {name: value for name, value in os.environ.items() if not name.startswith("COLCON_")}
     answer = subprocess.run(
@@ -112,6 +194,47 @@ def test_colcon_finds_both_packages_from_the_root() -> None:
         ["contact_dynamics", ".", "(ros.ament_python)"],
         ["contact_dynamics_interfaces", "contact_dynamics_interfaces", "(ros.ament_cmake)"],
     ]
+
+
+def paths_of_readme(command: str) -> list[list[str]]:
+    """The folders that the README names in each line that begins so."""
+    lines = re.findall(
+        rf"^{command} ([^-\n]*)", (ROOT / "README.md").read_text(encoding="utf-8"), re.MULTILINE
+    )
+    return [line.split() for line in lines]
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Path:
+    """A workspace with the project in src/."""
+    for manifest in MANIFESTS:
+        copy = tmp_path / "src" / "contact_dynamics" / manifest.relative_to(ROOT)
+        copy.parent.mkdir(parents=True)
+        shutil.copy(manifest, copy)
+    return tmp_path
+
+
+def test_rosdep_finds_both_packages_in_the_folders_that_the_readme_names(workspace: Path) -> None:
+    named = paths_of_readme("rosdep install --from-paths")
+    assert len(named) == 2
+    for folder, paths in zip((workspace, workspace / "src" / "contact_dynamics"), named, strict=True):
+        # What rosdep asks; it looks no further below a folder that is a package.
+        found = [package.name for path in paths for package in find_packages(folder / path).values()]
+        assert sorted(found) == ["contact_dynamics", "contact_dynamics_interfaces"], paths
+
+
+def test_colcon_finds_both_packages_from_the_root_of_a_workspace(workspace: Path) -> None:
+    (paths,) = paths_of_readme("colcon build --base-paths")
+    listing = "from colcon_core.command import main; raise SystemExit(main())"
+    answer = subprocess.run(
+        [sys.executable, "-c", listing, "list", "--names-only", "--base-paths", *paths],
+        cwd=workspace,
+        env={name: value for name, value in os.environ.items() if not name.startswith("COLCON_")},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert answer.stdout.split() == ["contact_dynamics", "contact_dynamics_interfaces"]
 
 
 def test_every_ros_wheel_is_pinned_where_what_it_pulls_in_is() -> None:

@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 import math
+import tempfile
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from hypothesis import given
+import rerun as rr
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.contact import Contact, ContactSet
 from contact_dynamics.impact.law import ImpactOutcome
-from contact_dynamics.impact.spatial.one_contact import spatial_pair_impact
+from contact_dynamics.impact.several.orders import several_impact
+from contact_dynamics.impact.spatial.one_contact import spatial_impact, spatial_pair_impact
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.viewing.impact import ImpactPicture, OtherBody
 from contact_dynamics.viewing.impulse_space import Line, contact_axes, draw_impulse_space, line_in_box
+from contact_dynamics.viewing.measured import set_time
+from viewing.drawn import STAMP_NS, read_drawn
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-    import rerun as rr
 
     from viewing.drawn import Drawn
 
@@ -92,6 +96,95 @@ def distance(point: tuple[float, float], line: np.ndarray) -> float:
     return float(abs(along[0] * across[1] - along[1] * across[0]) / np.linalg.norm(along))
 
 
+@given(
+    velocity=st.tuples(*[st.floats(-2.0, 2.0)] * 2, st.floats(-3.0, -0.5)),
+    spin=st.tuples(*[st.floats(-8.0, 8.0)] * 3),
+    arm=st.tuples(*[st.floats(-0.6, 0.6)] * 2, st.floats(-1.0, -0.3)),
+    friction=st.floats(0.05, 1.0),
+    restitution=st.floats(0.0, 1.0),
+)
+def test_every_dot_of_a_path_that_swerves_lies_on_the_line_that_names_it(
+    velocity: tuple[float, ...],
+    spin: tuple[float, ...],
+    *,
+    arm: tuple[float, ...],
+    friction: float,
+    restitution: float,
+) -> None:
+    """In a file of each example's own, read back."""
+    body = MassProperties(mass=1.3, I_B=np.diag([0.2, 0.5, 0.6]))
+    state = replace(
+        sliding_rod().state, p_WB_W=-np.array(arm), v_WB_W=np.array(velocity), w_WB_W=np.array(spin)
+    )
+    up = np.array([0.0, 0.0, 1.0])
+    assume(state.velocity_of_point(np.zeros(3))[2] < -0.05)
+    impact = spatial_impact(
+        body, state, p_WC_W=np.zeros(3), n_W=up, friction=friction, restitution=restitution
+    )
+    picture = replace(
+        sliding_rod(in_plane=False),
+        state=state,
+        impulses_W=impact.impulse_W[None],
+        path_W=impact.path_W,
+        path_events=tuple(int(event) for event in impact.path_events),
+        path_contacts=(0,) * len(impact.path_W),
+    )
+    check_dots(body, picture)
+
+
+def check_dots(body: MassProperties, picture: ImpactPicture) -> None:
+    """Each dot lies on the line that names it, within a thousandth of the picture's width."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "drawn.rrd"
+        stream = rr.RecordingStream("test")
+        stream.save(path)
+        set_time(stream, STAMP_NS)
+        draw_impulse_space(stream, body, picture)
+        stream.disconnect()
+        drawn = read_drawn(path)
+    extent = np.abs(drawn.last("/impulse_space/axes", "LineStrips2D:strips")[0]).max()
+    dots = on_paper(drawn.last("/impulse_space/events", "Points2D:positions")).reshape(-1, 2)
+    labels = drawn.last(r"/impulse_space/event\ labels", "Points2D:labels")
+    for dot, label in zip(dots, labels, strict=True):
+        for words, name in (("compression ends", "compression"), ("sliding stops", "sticking")):
+            if label.startswith(words):
+                lines = drawn.last(rf"/impulse_space/{name}\ line", "LineStrips2D:strips")
+                distances = [distance(tuple(dot), on_paper(line)) for line in lines]
+                assert min(distances) < 1e-3 * extent, label
+
+
+def test_a_contact_that_strikes_after_another_has_its_dots_on_its_lines() -> None:
+    """The impulse of the first changes the velocity of the second, and its lines with it."""
+    body = MassProperties(mass=1.0, I_B=np.diag([0.02, 0.05, 0.06]))
+    state = replace(
+        sliding_rod().state,
+        p_WB_W=np.array([0.05, 0.02, 0.2]),
+        v_WB_W=np.array([-0.6, -0.5, -1.0]),
+        w_WB_W=np.array([-0.9, -0.1, 1.9]),
+    )
+    contacts = ContactSet(
+        p_WC_W=np.array([[0.3, 0.1, 0.0], [-0.3, 0.0, 0.0]]),
+        normals_W=np.array([[0.0, 0.0, 1.0]] * 2),
+        frictions=np.array([0.3, 0.3]),
+        restitutions=np.array([0.5, 0.5]),
+    )
+    impact = several_impact(body, state, contacts)
+    strikes = impact.strikes[:2]
+    assert impact.order[:2] == (0, 1)
+    picture = ImpactPicture(
+        state=state,
+        v_after_W=impact.state.v_WB_W,
+        contacts=contacts,
+        impulses_W=np.array([strike.impulse_W for _, strike in strikes]),
+        path_W=np.concatenate([strike.path_W for _, strike in strikes]),
+        path_events=tuple(int(event) for _, strike in strikes for event in strike.path_events),
+        path_contacts=tuple(contact for contact, strike in strikes for _ in strike.path_events),
+        plane_normal_W=None,
+    )
+    assert picture.main_contact == 1
+    check_dots(body, picture)
+
+
 def test_without_mass_properties_the_lines_are_left_out(
     recording: rr.RecordingStream, read: Callable[[], Drawn]
 ) -> None:
@@ -118,10 +211,7 @@ def test_between_two_bodies_the_lines_are_those_of_their_relative_motion(
         rod.state,
         bat,
         bat_state,
-        p_WC_W=np.zeros(3),
-        n_W=np.array([0.0, 0.0, 1.0]),
-        friction=2.0,
-        restitution=0.5,
+        Contact(p_WC_W=np.zeros(3), normal_W=np.array([0.0, 0.0, 1.0]), friction=2.0, restitution=0.5),
     )
     assert impact.outcome is ImpactOutcome.STICKS_IN_COMPRESSION
     picture = replace(

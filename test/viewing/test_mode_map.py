@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from contact_dynamics.contact_modes import ModeWrenchSet, planar_contact_modes, planar_mode_map
+from contact_dynamics.contact_modes import PlanarWrenchSet, planar_contact_modes, planar_mode_map
 from contact_dynamics.plane.force_dual import acceleration_centre
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.viewing import palette
@@ -160,7 +160,7 @@ def test_the_construction_of_rsrs(recording: rr.RecordingStream, read: Callable[
 
 
 def test_a_map_without_half_spaces_is_one_region() -> None:
-    always = ModeWrenchSet(mode="f", vertices=(), generators=(), half_spaces=())
+    always = PlanarWrenchSet(mode="f", vertices=(), generators=(), half_spaces=())
     regions = mode_regions([always], DirectionChart(length=1.0, resolution=20))
     assert regions.modes[2:] == (("f",),)
     assert look_alike([always], [always], length=1.0)

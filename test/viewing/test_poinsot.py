@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -8,18 +9,41 @@ import pytest
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.tumbling.poinsot_construction import poinsot, rolling_curves
-from contact_dynamics.viewing.poinsot import PoinsotPicture, draw_poinsot, draw_rolling, ellipsoid_net
+from contact_dynamics.viewing.picture import Picture
+from contact_dynamics.viewing.poinsot import (
+    PoinsotPicture,
+    count_of_flight,
+    draw_poinsot,
+    draw_rolling,
+    ellipsoid_net,
+)
+from viewing.drawn import read_drawn
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     import rerun as rr
 
     from contact_dynamics.rigid_body.body import BodyState
-    from contact_dynamics.world import Body
+    from contact_dynamics.tumbling import FreeMotion
+    from contact_dynamics.world import Body, World
     from viewing.drawn import Drawn
 
 PATH = "/poinsot/brick"
+
+
+def picture_of(motion: FreeMotion) -> PoinsotPicture:
+    constants = poinsot(motion)
+    curves = rolling_curves(motion, 50)
+    return PoinsotPicture(
+        semi_axes=constants.ellipsoid_semi_axes,
+        principal_axes_B=constants.principal_axes_B,
+        L_W=constants.L_W,
+        distance=constants.invariable_plane_distance,
+        polhode_B=curves.polhode_B,
+        herpolhode_W=curves.herpolhode_W,
+    )
 
 
 def test_the_net_lies_on_the_ellipsoid() -> None:
@@ -34,14 +58,7 @@ def test_the_ellipsoid_touches_the_plane_where_the_angular_velocity_ends(
     motion = free_motion(body.mass_properties, state, gravity_W=(0.0, 0.0, 0.0))
     constants = poinsot(motion)
     curves = rolling_curves(motion, 50)
-    picture = PoinsotPicture(
-        semi_axes=constants.ellipsoid_semi_axes,
-        principal_axes_B=constants.principal_axes_B,
-        L_W=constants.L_W,
-        distance=constants.invariable_plane_distance,
-        polhode_B=curves.polhode_B,
-        herpolhode_W=curves.herpolhode_W,
-    )
+    picture = picture_of(motion)
     states = [motion.state_at(seconds) for seconds in curves.seconds.tolist()]
     draw_poinsot(recording, "brick", picture)
     draw_rolling(recording, "brick", sorted(states, key=lambda state: state.stamp_ns))
@@ -62,3 +79,52 @@ def test_the_ellipsoid_touches_the_plane_where_the_angular_velocity_ends(
         heights = net @ rotation_matrix(turn).T @ view[2]
         assert heights.min() >= view[2] @ rate - 1e-6  # all of the ellipsoid is above the plane
     assert view[2] @ rates[0] == pytest.approx(view[2] @ rates[-1], abs=1e-6)
+
+
+def test_the_picture_knows_the_inertia(body: Body, state: BodyState) -> None:
+    picture = picture_of(free_motion(body.mass_properties, state))
+    np.testing.assert_allclose(picture.I_B, body.mass_properties.I_B, rtol=1e-9, atol=1e-15)
+
+
+def flight_with_an_impact(body: Body, state: BodyState) -> tuple[list[BodyState], list[BodyState]]:
+    """Twenty states of a flight, and twenty after something struck it."""
+    times = np.linspace(0.0, 0.2, 21)[1:].tolist()
+    before = [free_motion(body.mass_properties, state).state_at(seconds) for seconds in times]
+    struck = replace(before[-1], w_WB_W=before[-1].w_WB_W + np.array([0.0, 6.0, 3.0]))
+    after = [free_motion(body.mass_properties, struck).state_at(seconds) for seconds in times]
+    return before, after
+
+
+def test_states_belong_to_a_flight_until_its_angular_momentum_is_gone(body: Body, state: BodyState) -> None:
+    picture = picture_of(free_motion(body.mass_properties, state))
+    before, after = flight_with_an_impact(body, state)
+    noisy = [replace(one, w_WB_W=1.05 * one.w_WB_W) for one in before]
+    assert count_of_flight(picture, noisy) == len(noisy)
+    assert count_of_flight(picture, before + after) == len(before)
+    assert count_of_flight(picture, []) == 0
+
+
+def test_an_impact_takes_the_ellipsoid_away_until_the_next_prediction(
+    recording: rr.RecordingStream, tmp_path: Path, *, world: World, body: Body, state: BodyState
+) -> None:
+    """Read back as a viewer looks: what is there at each stamp."""
+    before, after = flight_with_an_impact(body, state)
+    picture = Picture(recording, world, surface_side=2.0)
+    picture.add_states("brick", [state])
+    picture.show_poinsot(picture_of(free_motion(body.mass_properties, state)), state=state, body_name="brick")
+    picture.add_states("brick", before[:10])
+    picture.add_states("brick", before[10:] + after[:5])
+    picture.add_states("brick", after[5:10])
+    again = picture_of(free_motion(body.mass_properties, after[9]))
+    picture.show_poinsot(again, state=after[9], body_name="brick")
+    picture.add_states("brick", after[10:])
+    recording.disconnect()
+    drawn = read_drawn(tmp_path / "drawn.rrd")
+    turned = drawn.stamps(f"{PATH}/body", "Transform3D:quaternion")
+    of_flights = [state, *before, after[9], *after[10:]]
+    assert turned == [one.stamp_ns for one in of_flights]
+    assert drawn.stamps(f"{PATH}/angular_velocity", "Arrows3D:vectors") == turned
+    for name in ("body/ellipsoid", "body/polhode", "herpolhode", "plane/grid"):
+        stamps = drawn.stamps(f"{PATH}/{name}", "LineStrips3D:strips")
+        assert stamps == [state.stamp_ns, after[9].stamp_ns]
+    assert drawn.values[PATH, "Clear:is_recursive"] == [(after[0].stamp_ns, [True])]

@@ -120,3 +120,46 @@ def test_a_viewer_alone_that_is_not_there_is_an_error(free_port: int) -> None:
     url = f"rerun+http://{LOCAL}:{free_port}/proxy"
     with pytest.raises(NowhereToDrawError, match=r"nowhere to draw to: no viewer listens at .*refused"):
         OpenRecording(Sinks(viewer=ViewerMode.CONNECT, url=url), on_problem=print)
+
+
+DRAWS_FOR_EVER = """
+import sys
+from pathlib import Path
+from contact_dynamics.viewing.measured import set_time
+from contact_dynamics.viewing.sinks import OpenRecording, Sinks
+import rerun as rr
+
+def resident():
+    return int(Path("/proc/self/statm").read_text().split()[1])
+
+recording = OpenRecording(Sinks(rrd_path=sys.argv[1]), on_problem=print)
+pages = []
+for answer in range(4 * 300):
+    set_time(recording.stream, 1_760_000_000_000_000_000 + answer)
+    for part in range(20):
+        recording.stream.log(f"part_{part}", rr.LineStrips3D([[[0, 0, answer], [1, 0, part]]]))
+    recording.stream.flush()  # answers come one by one
+    if answer % 300 == 299:
+        pages.append(resident())
+recording.close()
+print((pages[3] - pages[1]) / (2 * 300))
+"""
+
+
+def test_memory_does_not_grow_with_the_answers_that_were_drawn(tmp_path: Path) -> None:
+    """What an answer of 20 things leaves behind in a process of its own.
+
+    An index at the end of the file, which stays in memory until then, would make that 5 KB,
+    and 50 KB for the visualizer's own answers, which have many kinds of parts.
+    """
+    import resource
+    import subprocess
+
+    path = tmp_path / "long.rrd"
+    command = [sys.executable, "-c", DRAWS_FOR_EVER, str(path)]
+    root = Path(__file__).parents[2]
+    done = subprocess.run(command, cwd=root, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""  # rerun warns of a file without an index, which is meant
+    assert float(done.stdout) * resource.getpagesize() < 2e3
+    assert len(read_drawn(path).values["/part_0", "LineStrips3D:strips"]) == 4 * 300

@@ -1,14 +1,15 @@
 """Contact modes of one planar body: every mode that is consistent with mechanics (Mason, lecture 26).
 
-Model: a rigid body in the plane, points of which touch flats of the fixed world with Coulomb friction, under
-an applied wrench. A mode hypothesis fixes which contact equations hold; the accelerations that follow are
+Model: a rigid body in the plane that touches the fixed world with Coulomb friction, under an applied wrench.
+A contact is a point of the body on a flat of the world, unless its curvatures say otherwise
+(`PlanarContact`). A mode hypothesis fixes which contact equations hold; the accelerations that follow are
 kept if they contradict no letter. The lecture's table decides, with its strictness: zero normal force is
 allowed, `s` needs v_n > 0 or a_n > 0.
 
 A contact's velocity within `velocity_tolerance` counts as zero, and so does an angular velocity that moves no
 contact relative to the centre of mass by more than that.
 
-Does not cover: a flat of the body on a point of the world, moving surfaces, elastic contacts.
+Does not cover: moving surfaces, elastic contacts.
 """
 
 from __future__ import annotations
@@ -19,11 +20,11 @@ from contact_dynamics.contact_modes.planar.coincident import coincident
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.judgement import judge_all
 from contact_dynamics.contact_modes.planar.one_contact import single_contact_modes
-from contact_dynamics.contact_modes.planar.problem import contact_velocities, planar_problem
+from contact_dynamics.contact_modes.planar.problem import contact_velocities, planar_case
 from contact_dynamics.contact_modes.planar.result import (
-    ConsistentMode,
-    ContactModeAnswer,
     ModeVerdict,
+    PlanarMode,
+    PlanarModeAnswer,
     RefusedMode,
     verdict_on,
 )
@@ -44,7 +45,7 @@ def planar_contact_modes(
     *,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     acceleration_tolerance: float = ACCELERATION_TOLERANCE,
-) -> ContactModeAnswer:
+) -> PlanarModeAnswer:
     """Return the verdict on a contact set, all consistent modes, and why the others are refused.
 
     Without contacts the one mode is the empty string, free motion.
@@ -52,7 +53,7 @@ def planar_contact_modes(
     Args:
         body: Mass and angular inertia.
         velocity: Of the body.
-        contacts: At most `problem.MOST_CONTACTS`; any may coincide, oppose or repeat another.
+        contacts: At most `problem.MOST_PLANAR_CONTACTS`; any may coincide, oppose or repeat another.
         wrench: Applied to the body besides its contact forces, gravity included.
         velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero.
         acceleration_tolerance: Relative to the applied wrench and the centripetal terms, >= 0: forces and
@@ -60,7 +61,7 @@ def planar_contact_modes(
 
     Raises:
         InvalidFieldError: a tolerance is negative.
-        TooLargeError: more than `problem.MOST_CONTACTS` contacts.
+        TooLargeError: more than `problem.MOST_PLANAR_CONTACTS` contacts.
 
     Source: lecture 26, table and "Basic approach".
     """
@@ -68,7 +69,7 @@ def planar_contact_modes(
     accuracy = check_not_negative("acceleration_tolerance", acceleration_tolerance)
     velocities = contact_velocities(velocity, contacts, v_tolerance)
     approaching = tuple(i for i, (_, v_n) in enumerate(velocities) if v_n < 0.0)
-    modes: list[ConsistentMode] = []
+    modes: list[PlanarMode] = []
     refused: list[RefusedMode] = []
     a_tolerance = 0.0
     if not approaching:
@@ -86,7 +87,7 @@ def planar_contact_modes(
             )
         else:
             same = coincident(contacts, velocities, body.radius_of_gyration)
-            problem = planar_problem(
+            case = planar_case(
                 body,
                 velocity,
                 contacts if same is None else [contacts[i] for i in same.firsts],
@@ -94,13 +95,13 @@ def planar_contact_modes(
                 wrench,
                 velocity_tolerance=v_tolerance,
             )
-            modes, refused = judge_all(problem, kinematic_cells(problem), accuracy)
+            modes, refused = judge_all(case, kinematic_cells(case), accuracy)
             if same is not None:
-                modes = [same.consistent(mode, accuracy * problem.load) for mode in modes]
+                modes = [same.consistent(mode, accuracy * case.load) for mode in modes]
                 refused = [same.refused(mode) for mode in refused]
-            a_tolerance = accuracy * problem.load / body.mass
+            a_tolerance = accuracy * case.load / body.mass
     found = tuple(modes)
-    return ContactModeAnswer(
+    return PlanarModeAnswer(
         verdict=ModeVerdict.IMPACT if approaching else verdict_on(found),
         modes=found,
         refused=tuple(refused),
@@ -122,7 +123,7 @@ def _spin(
 
 def _free_motion(
     body: PlanarBody, contacts: Sequence[PlanarContact], wrench: PlanarWrench, w: float
-) -> ConsistentMode:
+) -> PlanarMode:
     a_x = wrench.f[0] / body.mass
     a_y = wrench.f[1] / body.mass
     alpha = wrench.moment / body.inertia
@@ -133,7 +134,7 @@ def _free_motion(
         c_x = a_x - alpha * r_y - w * w * r_x
         c_y = a_y + alpha * r_x - w * w * r_y
         accelerations.append((c_x * n_y - c_y * n_x, c_x * n_x + c_y * n_y))
-    return ConsistentMode(
+    return PlanarMode(
         mode="s" * len(contacts),
         acceleration=(a_x, a_y),
         angular_acceleration=alpha,

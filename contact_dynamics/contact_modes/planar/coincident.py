@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from contact_dynamics.contact_modes.planar.result import ConsistentMode, RefusedMode
+from contact_dynamics.contact_modes.planar.result import PlanarMode, RefusedMode
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,7 +31,7 @@ class Coincident(NamedTuple):
         """Return the letters of all contacts from those of the groups."""
         return "".join([mode[group] for group in self.group])
 
-    def consistent(self, mode: ConsistentMode, negligible: float) -> ConsistentMode:
+    def consistent(self, mode: PlanarMode, negligible: float) -> PlanarMode:
         """Return a mode of the groups as one of all contacts; a force of up to ``negligible``, N, is none."""
         counts = self.counts
         shares: list[Vector2] = [
@@ -41,7 +41,7 @@ class Coincident(NamedTuple):
             count > 1 and f_n > negligible
             for (_, f_n), count in zip(mode.contact_forces, counts, strict=True)
         )
-        return ConsistentMode(
+        return PlanarMode(
             mode=self.letters_of_all(mode.mode),
             acceleration=mode.acceleration,
             angular_acceleration=mode.angular_acceleration,

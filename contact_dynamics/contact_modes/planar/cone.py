@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.numerics.vectors import Vector3, cross, dot, normalised, opposite
+from contact_dynamics.numerics.vectors import AXES, Vector3, cross, dot, normalised, opposite, tangents
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
     from contact_dynamics.validation import FloatArray
 
-_AXES: Final[tuple[Vector3, ...]] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _WIDE: Final = 0.1  # sine: planes that meet at more serve to start with, without a look at the others
 MANY: Final = 24
 """Rows, from which on arrays are faster."""
@@ -54,7 +53,7 @@ class PolyhedralCone:
 
     def __init__(self, rows: Sequence[Vector3], *, tolerance: float) -> None:
         """Cut with each of ``rows``, which are unit; below ``tolerance`` a row vanishes on a unit vector."""
-        self.lineality = list(_AXES)
+        self.lineality = list(AXES)
         self.rays = []
         self.tight = []
         self.rows = rows
@@ -291,6 +290,4 @@ def _complement(basis: list[Vector3], unit: Vector3) -> list[Vector3]:
     if len(basis) == 2:
         normal = cross(basis[0], basis[1])
         return [normalised(cross(normal, unit))]
-    least = min(_AXES, key=lambda axis: abs(dot(axis, unit)))
-    first = normalised(cross(unit, least))
-    return [first, cross(unit, first)]
+    return list(tangents(unit))

@@ -17,7 +17,7 @@ from contact_dynamics.numerics.vectors import Vector3, dot, norm
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
-    from contact_dynamics.contact_modes.planar.problem import ContactRow, PlanarProblem
+    from contact_dynamics.contact_modes.planar.problem import ContactRow, PlanarCase
     from contact_dynamics.plane.types import Vector2
 
 _MOST_EQUATIONS: Final = 3  # that can be independent: a planar body's freedoms
@@ -47,13 +47,13 @@ class _Unknown(NamedTuple):
 class IndependentModes:
     """Solves and judges the modes of one problem."""
 
-    __slots__ = ("_accuracy", "_equations", "_load", "_problem", "_scale", "_wrench")
+    __slots__ = ("_accuracy", "_case", "_equations", "_load", "_scale", "_wrench")
 
-    def __init__(self, problem: PlanarProblem, accuracy: float) -> None:
+    def __init__(self, case: PlanarCase, accuracy: float) -> None:
         """Judge with zero as the relative ``accuracy`` has it."""
-        self._problem = problem
-        self._scale = problem.lift.scale if problem.lift else 0.0
-        self._wrench: Vector4 = (*problem.w, problem.mass * self._scale)
+        self._case = case
+        self._scale = case.lift.scale if case.lift else 0.0
+        self._wrench: Vector4 = (*case.w, case.mass * self._scale)
         self._load = _size(self._wrench)
         self._accuracy = accuracy
         self._equations: dict[tuple[int, int], tuple[_Equation, ...]] = {}  # of the letters met so far
@@ -92,7 +92,7 @@ class IndependentModes:
         ]
 
     def _equations_of(self, position: int, letter: int) -> tuple[_Equation, ...]:
-        row = self._problem.rows[position]
+        row = self._case.rows[position]
         normal: Vector4 = (*row.unit_n, self._offset(row.b_n, row.size_n))
         if letter == FIXED:
             tangential: Vector4 = (*row.unit_t, self._offset(row.b_t, row.size_t))
@@ -111,7 +111,7 @@ class IndependentModes:
         forces: list[Vector2] = []
         at = 0
         for position, letter in letters:
-            row = self._problem.rows[position]
+            row = self._case.rows[position]
             normal, f_n = unknowns[at], sizes[at] / unknowns[at].length
             if sizes[at] < 0.0 and sizes[at] < -tolerance * _size(normal.response):
                 return RefusedMode(mode=mode, refusal=Refusal.PULLS, contact=row.contact, amount=f_n)
@@ -136,8 +136,8 @@ class IndependentModes:
         self, mode: str, letters: Letters, unknowns: list[_Unknown], sizes: list[float]
     ) -> RefusedMode | None:
         """Return the first contact that does not accelerate as its letter says."""
-        problem = self._problem
-        x, y, z = problem.w
+        case = self._case
+        x, y, z = case.w
         for unknown, size in zip(unknowns, sizes, strict=True):
             x += size * unknown.wrench[0]
             y += size * unknown.wrench[1]
@@ -146,7 +146,7 @@ class IndependentModes:
             (self._accuracy + _ROUNDING) * self._load * (1.5 + sum(_size(one.response) for one in unknowns))
         )
         staying = dict(letters)
-        for position, row in enumerate(problem.rows):
+        for position, row in enumerate(case.rows):
             letter = staying.get(position)
             if letter is None:
                 sign, unit, length, offset = 1.0, row.unit_n, row.size_n, row.b_n
@@ -154,14 +154,14 @@ class IndependentModes:
                 sign, unit, length, offset = _DIRECTION[letter], row.unit_t, row.size_t, row.b_t
             else:
                 continue
-            value = sign * (unit[0] * x + unit[1] * y + unit[2] * z + problem.mass * offset / length)
+            value = sign * (unit[0] * x + unit[1] * y + unit[2] * z + case.mass * offset / length)
             if value > clear:
                 continue
             row4 = (*unit, self._offset(offset, length))
             tolerance = 0.0 if value < -clear else self._tolerance(row4, unknowns)
             if value <= tolerance:
                 reason = Refusal.PENETRATES if value < -tolerance and letter is None else Refusal.WRONG_MOTION
-                amount = sign * value * length / problem.mass
+                amount = sign * value * length / case.mass
                 return RefusedMode(mode=mode, refusal=reason, contact=row.contact, amount=amount)
         return None
 

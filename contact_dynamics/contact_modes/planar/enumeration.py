@@ -14,7 +14,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 from contact_dynamics.contact_modes.planar.cone import PolyhedralCone, Sector, bits
-from contact_dynamics.contact_modes.planar.problem import PlanarProblem, lifted
+from contact_dynamics.contact_modes.planar.problem import PlanarCase, lifted
 from contact_dynamics.numerics.vectors import Vector3, dot, normalised
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
@@ -44,33 +44,33 @@ class _Tangent(NamedTuple):
     letter: int  # of a contact that already slides; 0: the row decides
 
 
-def kinematic_cells(problem: PlanarProblem) -> dict[str, Cell]:
+def kinematic_cells(case: PlanarCase) -> dict[str, Cell]:
     """Return the mode strings that can occur, each with its accelerations. At least one contact touches."""
-    lift = problem.lift
+    lift = case.lift
     below = 0
     if lift is None:
-        normals = [row.unit_n for row in problem.rows]
-        tangents = [_Tangent(row.unit_t, _SLIDING[row.slides]) for row in problem.rows]
+        normals = [row.unit_n for row in case.rows]
+        tangents = [_Tangent(row.unit_t, _SLIDING[row.slides]) for row in case.rows]
     else:
-        below = 1 << len(problem.rows)
-        normals = [normalised(lifted(lift, row.N, row.b_n)) for row in problem.rows]
+        below = 1 << len(case.rows)
+        normals = [normalised(lifted(lift, row.N, row.b_n)) for row in case.rows]
         normals.append((0.0, 0.0, 1.0))
         tangents = [
             _Tangent(
                 normalised(lifted(lift, row.T, row.b_t)) if row.slides == 0.0 else row.T,
                 _SLIDING[row.slides],
             )
-            for row in problem.rows
+            for row in case.rows
         ]
     cone = PolyhedralCone(normals, tolerance=ROW_TOLERANCE)
-    base = bytearray(b"s" * len(problem.contacts))
+    base = bytearray(b"s" * len(case.contacts))
     cells: dict[str, Cell] = {}
     if cone.has_interior:
         cells[base.decode()] = Cell((), [ray for ray, _ in cone.edges()])
     for letters, rays in _all_cells(cone, tangents, below):
         text = bytearray(base)
         for position, letter in letters:
-            text[problem.rows[position].contact] = letter
+            text[case.rows[position].contact] = letter
         mode = text.decode()
         known = cells.get(mode)
         if known is None:

@@ -14,45 +14,43 @@ from typing import TYPE_CHECKING
 
 from contact_dynamics.contact_modes.planar.determined import IndependentModes
 from contact_dynamics.contact_modes.planar.enumeration import FIXED, Cell
-from contact_dynamics.contact_modes.planar.result import ConsistentMode, Refusal, RefusedMode
+from contact_dynamics.contact_modes.planar.result import PlanarMode, Refusal, RefusedMode
 from contact_dynamics.contact_modes.planar.wrench_cone import ModeWrenches
 from contact_dynamics.numerics.vectors import Vector3
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from contact_dynamics.contact_modes.planar.problem import PlanarProblem
+    from contact_dynamics.contact_modes.planar.problem import PlanarCase
     from contact_dynamics.plane.types import Vector2
 
 
 def judge_all(
-    problem: PlanarProblem, cells: Mapping[str, Cell], accuracy: float
-) -> tuple[list[ConsistentMode], list[RefusedMode]]:
+    case: PlanarCase, cells: Mapping[str, Cell], accuracy: float
+) -> tuple[list[PlanarMode], list[RefusedMode]]:
     """Return the consistent and the refused modes among ``cells``, in alphabetical order."""
-    consistent: list[ConsistentMode] = []
+    consistent: list[PlanarMode] = []
     refused: list[RefusedMode] = []
-    independent = IndependentModes(problem, accuracy)
+    independent = IndependentModes(case, accuracy)
     for mode, cell in sorted(cells.items()):
         forces = independent.forces(mode, cell.letters)
-        outcome: ConsistentMode | RefusedMode
+        outcome: PlanarMode | RefusedMode
         if forces is None:
-            outcome = _from_cone(problem, mode, cell, accuracy)
+            outcome = _from_cone(case, mode, cell, accuracy)
         elif isinstance(forces, RefusedMode):
             outcome = forces
         else:
-            outcome = _consistent(problem, mode, cell, forces, unique=(True, True))
-        if isinstance(outcome, ConsistentMode):
+            outcome = _consistent(case, mode, cell, forces, unique=(True, True))
+        if isinstance(outcome, PlanarMode):
             consistent.append(outcome)
         else:
             refused.append(outcome)
     return consistent, refused
 
 
-def _from_cone(
-    problem: PlanarProblem, mode: str, cell: Cell, accuracy: float
-) -> ConsistentMode | RefusedMode:
+def _from_cone(case: PlanarCase, mode: str, cell: Cell, accuracy: float) -> PlanarMode | RefusedMode:
     """Decide a mode whose equations are not independent by the cone of its wrenches."""
-    wrenches = ModeWrenches(problem, cell)
+    wrenches = ModeWrenches(case, cell)
     shortfall = wrenches.shortfall(accuracy)
     if shortfall is not None:
         return RefusedMode(mode=mode, refusal=Refusal.NO_SOLUTION, contact=-1, amount=shortfall)
@@ -62,31 +60,31 @@ def _from_cone(
         f_t, f_n = sums[position]
         sums[position] = (f_t + slope * share, f_n + share)
     forces = [sums[position] for position, _ in cell.letters]
-    return _consistent(problem, mode, cell, forces, unique=unique)
+    return _consistent(case, mode, cell, forces, unique=unique)
 
 
 def _consistent(
-    problem: PlanarProblem,
+    case: PlanarCase,
     mode: str,
     cell: Cell,
     forces: list[Vector2],
     *,
     unique: tuple[bool, bool],
-) -> ConsistentMode:
-    q = _acceleration(problem, cell, forces)
-    alpha = q[2] / problem.rho
-    square = problem.omega * problem.omega
+) -> PlanarMode:
+    q = _acceleration(case, cell, forces)
+    alpha = q[2] / case.rho
+    square = case.omega * case.omega
     accelerations: list[Vector2] = []
     a_x, a_y, _ = q
-    for contact in problem.contacts:
+    for contact in case.contacts:
         n_x, n_y = contact.normal
         r_x, r_y = contact.r
         c_x = a_x - alpha * r_y - square * r_x
         c_y = a_y + alpha * r_x - square * r_y
         accelerations.append((c_x * n_y - c_y * n_x, c_x * n_x + c_y * n_y))
-    all_forces: list[Vector2] = [(0.0, 0.0)] * len(problem.contacts)
+    all_forces: list[Vector2] = [(0.0, 0.0)] * len(case.contacts)
     for (position, letter), (f_t, f_n) in zip(cell.letters, forces, strict=True):
-        row = problem.rows[position]
+        row = case.rows[position]
         index = row.contact
         edge = row.friction * f_n
         if f_n > 0.0:  # rounding at the cone's apex and edges is taken out
@@ -94,7 +92,7 @@ def _consistent(
         # What the mode says is zero is zero, without rounding.
         accelerations[index] = (0.0 if letter == FIXED else accelerations[index][0], 0.0)
     forces_unique, motion_unique = unique
-    return ConsistentMode(
+    return PlanarMode(
         mode=mode,
         acceleration=(a_x, a_y),
         angular_acceleration=alpha,
@@ -105,11 +103,11 @@ def _consistent(
     )
 
 
-def _acceleration(problem: PlanarProblem, cell: Cell, forces: list[Vector2]) -> Vector3:
-    x, y, z = problem.w
+def _acceleration(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> Vector3:
+    x, y, z = case.w
     for (position, _), (f_t, f_n) in zip(cell.letters, forces, strict=True):
-        row = problem.rows[position]
+        row = case.rows[position]
         x += f_n * row.N[0] + f_t * row.T[0]
         y += f_n * row.N[1] + f_t * row.T[1]
         z += f_n * row.N[2] + f_t * row.T[2]
-    return (x / problem.mass, y / problem.mass, z / problem.mass)
+    return (x / case.mass, y / case.mass, z / case.mass)

@@ -8,9 +8,13 @@ from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.judgement import judge_all
-from contact_dynamics.contact_modes.planar.problem import contact_velocities, planar_problem
+from contact_dynamics.contact_modes.planar.problem import contact_velocities, planar_case
 from contact_dynamics.contact_modes.planar.result import ModeVerdict, verdict_on
-from contact_dynamics.contact_modes.planar.wrench_sets import ModeWrenchSet, WrenchHalfSpace, mode_wrench_set
+from contact_dynamics.contact_modes.planar.wrench_sets import (
+    PlanarWrenchSet,
+    WrenchHalfSpace,
+    planar_wrench_set,
+)
 from contact_dynamics.plane.types import PlanarVelocity, PlanarWrench
 from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_not_negative, check_positive
@@ -18,7 +22,7 @@ from contact_dynamics.validation import check_not_negative, check_positive
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.contact_modes.planar.problem import PlanarProblem
+    from contact_dynamics.contact_modes.planar.problem import PlanarCase
     from contact_dynamics.plane.types import PlanarBody, PlanarContact
 
 _AT_REST: Final = PlanarVelocity(v=(0.0, 0.0), w=0.0)
@@ -29,7 +33,7 @@ lies behind: far more than the tolerances that make the boundary, far less than 
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ModeMargin:
+class PlanarModeMargin:
     """How far an applied wrench is from leaving one of its consistent modes, and where it would go."""
 
     mode: str  # one letter a contact
@@ -46,7 +50,7 @@ def planar_mode_map(
     *,
     velocity: PlanarVelocity = _AT_REST,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
-) -> tuple[ModeWrenchSet, ...]:
+) -> tuple[PlanarWrenchSet, ...]:
     """Return the applied wrenches of every kinematically possible mode, in alphabetical order.
 
     Empty where a contact approaches, or where none touches.
@@ -58,12 +62,10 @@ def planar_mode_map(
     Source: lecture 26, "Force dual for dynamic contact problem" and "Contact modes for wrench in tray".
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
-    problem = _touching_problem(body, velocity, contacts, _NO_WRENCH, tolerance)
-    if problem is None:
+    case = _touching_problem(body, velocity, contacts, _NO_WRENCH, tolerance)
+    if case is None:
         return ()
-    return tuple(
-        mode_wrench_set(problem, mode, cell) for mode, cell in sorted(kinematic_cells(problem).items())
-    )
+    return tuple(planar_wrench_set(case, mode, cell) for mode, cell in sorted(kinematic_cells(case).items()))
 
 
 def planar_mode_margins(
@@ -75,7 +77,7 @@ def planar_mode_margins(
     margin_length: float | None = None,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     acceleration_tolerance: float = ACCELERATION_TOLERANCE,
-) -> tuple[ModeMargin, ...]:
+) -> tuple[PlanarModeMargin, ...]:
     """Return the margin of ``wrench`` in each of its consistent modes, in the order of their answer.
 
     Args:
@@ -97,20 +99,20 @@ def planar_mode_margins(
     length = (
         body.radius_of_gyration if margin_length is None else check_positive("margin_length", margin_length)
     )
-    problem = _touching_problem(body, velocity, contacts, wrench, tolerance)
-    if problem is None:
+    case = _touching_problem(body, velocity, contacts, wrench, tolerance)
+    if case is None:
         return ()
-    cells = kinematic_cells(problem)
-    consistent, _ = judge_all(problem, cells, accuracy)
+    cells = kinematic_cells(case)
+    consistent, _ = judge_all(case, cells, accuracy)
     present = tuple(mode.mode for mode in consistent)
     if len(contacts) == 1:
         present = tuple(sorted(present, key="slrf".index))  # the order in which `single` tries them
     found = []
     for mode in present:
-        margin, side = _nearest(mode_wrench_set(problem, mode, cells[mode]), wrench, length)
+        margin, side = _nearest(planar_wrench_set(case, mode, cells[mode]), wrench, length)
         if side is None:
             found.append(
-                ModeMargin(
+                PlanarModeMargin(
                     mode=mode,
                     margin=math.inf,
                     length=length,
@@ -123,9 +125,9 @@ def planar_mode_margins(
         way = side.outward(length)
         step = margin + _BEYOND * max(margin, math.hypot(*wrench.f, wrench.moment / length))
         beyond = _stepped(wrench, step, way)
-        there, _ = judge_all(problem._replace(w=(*beyond.f, beyond.moment / problem.rho)), cells, accuracy)
+        there, _ = judge_all(case._replace(w=(*beyond.f, beyond.moment / case.rho)), cells, accuracy)
         found.append(
-            ModeMargin(
+            PlanarModeMargin(
                 mode=mode,
                 margin=margin,
                 length=length,
@@ -138,7 +140,7 @@ def planar_mode_margins(
 
 
 def _nearest(
-    wrenches: ModeWrenchSet, wrench: PlanarWrench, length: float
+    wrenches: PlanarWrenchSet, wrench: PlanarWrench, length: float
 ) -> tuple[float, WrenchHalfSpace | None]:
     """Return the distance to the nearest boundary and that boundary; a consistent wrench is inside."""
     if not wrenches.half_spaces:
@@ -160,9 +162,9 @@ def _touching_problem(
     contacts: Sequence[PlanarContact],
     wrench: PlanarWrench,
     tolerance: float,
-) -> PlanarProblem | None:
+) -> PlanarCase | None:
     """Return the problem of the contacts that touch; None: none does, or one approaches."""
     velocities = contact_velocities(velocity, contacts, tolerance)
     if any(v_n < 0.0 for _, v_n in velocities) or all(v_n > 0.0 for _, v_n in velocities):
         return None
-    return planar_problem(body, velocity, contacts, velocities, wrench, velocity_tolerance=tolerance)
+    return planar_case(body, velocity, contacts, velocities, wrench, velocity_tolerance=tolerance)

@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 from typing import Final, NamedTuple
 
-from contact_dynamics.contact_modes.planar.result import ConsistentMode, Refusal, RefusedMode
+from contact_dynamics.contact_modes.planar.result import PlanarMode, Refusal, RefusedMode
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench, Vector2
 from contact_dynamics.tolerances import LARGEST_NUMBER, ROW_TOLERANCE
 
@@ -78,7 +78,7 @@ def single_contact_modes(
     v_t: float,
     w: float,
     accuracy: float,
-) -> tuple[list[ConsistentMode], list[RefusedMode], float]:
+) -> tuple[list[PlanarMode], list[RefusedMode], float]:
     """Return consistent modes, refused modes and the tolerance on accelerations, m/s^2, at v_n = 0.
 
     Args:
@@ -97,7 +97,7 @@ def single_contact_modes(
         trials.append(("r", _sliding(axes, direction=1.0, at_rest=v_t == 0.0)))
     if v_t == 0.0:
         trials.append(("f", _fixed(axes)))
-    consistent: list[ConsistentMode] = []
+    consistent: list[PlanarMode] = []
     refused: list[RefusedMode] = []
     for letter, outcome in trials:
         if isinstance(outcome, _Failure):
@@ -194,14 +194,14 @@ def _fixed(axes: _ContactAxes) -> _Solution | _Failure:
 
 def _mode(
     letter: str, solution: _Solution, body: PlanarBody, contact: PlanarContact, wrench: PlanarWrench
-) -> ConsistentMode:
+) -> PlanarMode:
     f_t, f_n, a_t, a_n, unique = solution
     n_x, n_y = contact.normal
     r_x, r_y = contact.r
     f_x = f_t * n_y + f_n * n_x
     f_y = f_n * n_y - f_t * n_x
     acceleration: Vector2 = ((wrench.f[0] + f_x) / body.mass, (wrench.f[1] + f_y) / body.mass)
-    return ConsistentMode(
+    return PlanarMode(
         mode=letter,
         acceleration=acceleration,
         angular_acceleration=(wrench.moment + r_x * f_y - r_y * f_x) / body.inertia,

@@ -21,7 +21,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.errors import TooLargeError
-from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, without
+from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, tangents, without
 from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, LARGEST_NUMBER, ROW_TOLERANCE
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, Vector2
 
 
-MOST_CONTACTS: Final = 1000
+MOST_PLANAR_CONTACTS: Final = 1000
 """Longest list of contacts accepted: the mode strings of n contacts are about 4 n^2 letters."""
 
 
@@ -58,8 +58,8 @@ class Lift(NamedTuple):
     scale: float  # m/s^2, the largest |b|: the third coordinate's unit
 
 
-class PlanarProblem(NamedTuple):
-    """Everything the enumeration and the dynamics of modes need."""
+class PlanarCase(NamedTuple):
+    """Everything the enumeration and the judgement of modes need."""
 
     contacts: Sequence[PlanarContact]  # touching or not
     mass: float  # kg
@@ -81,10 +81,10 @@ def contact_velocities(
     """Return (v_t, v_n), m/s, of each contact, with values within ``tolerance`` as an exact 0.
 
     Raises:
-        TooLargeError: more than `MOST_CONTACTS` contacts.
+        TooLargeError: more than `MOST_PLANAR_CONTACTS` contacts.
     """
-    if len(contacts) > MOST_CONTACTS:
-        raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MOST_CONTACTS}")
+    if len(contacts) > MOST_PLANAR_CONTACTS:
+        raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MOST_PLANAR_CONTACTS}")
     (v_x, v_y), w = velocity.v, velocity.w
     found = []
     for contact in contacts:
@@ -97,7 +97,7 @@ def contact_velocities(
     return tuple(found)
 
 
-def planar_problem(
+def planar_case(
     body: PlanarBody,
     velocity: PlanarVelocity,
     contacts: Sequence[PlanarContact],
@@ -105,7 +105,7 @@ def planar_problem(
     wrench: PlanarWrench,
     *,
     velocity_tolerance: float,
-) -> PlanarProblem:
+) -> PlanarCase:
     """Return the problem of the contacts whose normal velocity in ``contact_velocities`` is an exact 0.
 
     An angular velocity that moves no contact relative to the centre of mass by more than
@@ -149,7 +149,7 @@ def planar_problem(
         slides = float((v_t > 0.0) - (v_t < 0.0))
         friction = min(contact.friction, LARGEST_NUMBER)
         rows.append(ContactRow(index, N, T, unit_n, unit_t, size_n, size_t, b_n, b_t, slides, friction))
-    return PlanarProblem(
+    return PlanarCase(
         contacts=contacts,
         mass=body.mass,
         rho=rho,
@@ -177,9 +177,7 @@ def _unhindered(twist: Vector3, resting: list[Vector3]) -> Vector3:
 
 def _lift(twist: Vector3, scale: float) -> Lift:
     line = normalised(twist)
-    least = min(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), key=lambda axis: abs(dot(axis, line)))
-    one = normalised(cross(line, least))
-    return Lift(line, (one, cross(line, one)), scale)
+    return Lift(line, tangents(line), scale)
 
 
 def _divided(a: Vector3, by: float) -> Vector3:

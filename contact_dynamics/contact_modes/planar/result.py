@@ -45,7 +45,7 @@ class Refusal(IntEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ConsistentMode:
+class PlanarMode:
     """A mode that is consistent with mechanics, with accelerations and forces that realise it."""
 
     mode: str  # one letter a contact
@@ -68,11 +68,11 @@ class RefusedMode:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ContactModeAnswer:
+class PlanarModeAnswer:
     """The answer to one question about contact modes."""
 
     verdict: ModeVerdict  # on the whole contact set
-    modes: tuple[ConsistentMode, ...]  # all consistent modes
+    modes: tuple[PlanarMode, ...]  # all consistent modes
     refused: tuple[RefusedMode, ...]  # the kinematically possible rest
     approaching: tuple[int, ...]  # contacts that approach; not empty exactly where the verdict is IMPACT
     contact_velocities: tuple[Vector2, ...]  # m/s, (v_t, v_n), with values within tolerance as 0
@@ -85,7 +85,7 @@ class ContactModeAnswer:
         return tuple(sorted([found.mode for found in self.modes] + [found.mode for found in self.refused]))
 
 
-def verdict_on(modes: tuple[ConsistentMode, ...]) -> ModeVerdict:
+def verdict_on(modes: tuple[PlanarMode, ...]) -> ModeVerdict:
     """Return the verdict on a set without approaching contacts from its consistent modes."""
     if len(modes) == 1:
         return ModeVerdict.UNIQUE

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from contact_dynamics.contact_modes.planar.cone import PolyhedralCone, bits
 from contact_dynamics.contact_modes.planar.enumeration import Cell
 from contact_dynamics.contact_modes.planar.friction_edges import friction_edges, reactions
-from contact_dynamics.contact_modes.planar.problem import PlanarProblem, lifted
+from contact_dynamics.contact_modes.planar.problem import PlanarCase, lifted
 from contact_dynamics.numerics.linear_spaces import orthonormal
 from contact_dynamics.numerics.nonnegative_least_squares import least_force
 from contact_dynamics.numerics.vectors import Vector3, dot, norm, normalised, opposite
@@ -40,22 +40,22 @@ class HalfSpace(NamedTuple):
 class ModeWrenches:
     """The cone of applied wrenches of one mode, and where the problem's own wrench stands in it."""
 
-    __slots__ = ("_common", "_problem", "_rays", "_reactions", "_target", "dual", "edges")
+    __slots__ = ("_case", "_common", "_rays", "_reactions", "_target", "dual", "edges")
 
-    def __init__(self, problem: PlanarProblem, cell: Cell) -> None:
+    def __init__(self, case: PlanarCase, cell: Cell) -> None:
         """Build the cone; its rays stand first among the rows of ``dual``, then the reactions."""
-        lift = problem.lift
-        self._problem = problem
+        lift = case.lift
+        self._case = case
         self._rays = cell.rays
-        self.edges = friction_edges(problem.rows, cell.letters)
+        self.edges = friction_edges(case.rows, cell.letters)
         self._reactions = reactions(lift, self.edges.wrenches)
         self.dual = PolyhedralCone([*cell.rays, *self._reactions.units], tolerance=ROW_TOLERANCE)
-        self._target = lifted(lift, problem.w, problem.mass * lift.scale * lift.scale if lift else 0.0)
+        self._target = lifted(lift, case.w, case.mass * lift.scale * lift.scale if lift else 0.0)
         self._common = self.dual.all_rows
 
     def generated_by(self) -> tuple[list[Vector3], list[Vector3]]:
         """Return vertices, N, and rays whose averages and positive combinations are the mode's wrenches."""
-        lift = self._problem.lift
+        lift = self._case.lift
         rays = [opposite(wrench) for wrench in self.edges.wrenches]
         if lift is None:
             return [(0.0, 0.0, 0.0)], [*self._rays, *rays]
@@ -64,7 +64,7 @@ class ModeWrenches:
         for ray in self._rays:
             x, y, z, height = self._with_height(ray)
             if height > ROW_TOLERANCE:
-                factor = self._problem.mass * lift.scale / height
+                factor = self._case.mass * lift.scale / height
                 vertices.append((factor * x, factor * y, factor * z))
             else:
                 rays.append((x, y, z))
@@ -149,7 +149,7 @@ class ModeWrenches:
         motions = orthonormal(self._motions())
         if not motions and len(acting) > _MOST_INDEPENDENT:
             return False, True
-        height = () if self._problem.lift is None else (0.0,)
+        height = () if self._case.lift is None else (0.0,)
         forces = orthonormal((*normalised(wrench), *height) for wrench in acting)
         total = len(orthonormal([*motions, *forces])) if motions else len(forces)
         return total == len(motions) + len(acting), total == len(motions) + len(forces)
@@ -157,12 +157,12 @@ class ModeWrenches:
     def _motions(self) -> Iterator[tuple[float, ...]]:
         for ray in self._rays:
             yield self._with_height(ray)
-        if self._problem.lift is not None:
-            yield (*self._problem.lift.line, 0.0)
+        if self._case.lift is not None:
+            yield (*self._case.lift.line, 0.0)
 
     def _unlifted(self, z: Vector3) -> tuple[Vector3, float]:
         """Return a and b of a . w + b for the height of the wrench w over the facet ``z``."""
-        lift = self._problem.lift
+        lift = self._case.lift
         if lift is None:
             return z, 0.0
         one, two = lift.across
@@ -179,7 +179,7 @@ class ModeWrenches:
         return abs(height) / size if size > ROW_TOLERANCE else math.inf
 
     def _with_height(self, ray: Vector3) -> tuple[float, ...]:
-        lift = self._problem.lift
+        lift = self._case.lift
         if lift is None:
             return ray
         one, two = lift.across

@@ -19,7 +19,7 @@ from contact_dynamics.plane.types import PlanarWrench
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.planar.enumeration import Cell
-    from contact_dynamics.contact_modes.planar.problem import PlanarProblem
+    from contact_dynamics.contact_modes.planar.problem import PlanarCase
     from contact_dynamics.numerics.vectors import Vector3
 
 
@@ -44,7 +44,7 @@ class WrenchHalfSpace(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ModeWrenchSet:
+class PlanarWrenchSet:
     """The applied wrenches that can bring one mode about, as the closure of their set in two forms."""
 
     mode: str  # one letter a contact
@@ -60,12 +60,12 @@ class ModeWrenchSet:
         return min((side.depth(wrench, length) for side in self.half_spaces), default=math.inf)
 
 
-def mode_wrench_set(problem: PlanarProblem, mode: str, cell: Cell) -> ModeWrenchSet:
+def planar_wrench_set(case: PlanarCase, mode: str, cell: Cell) -> PlanarWrenchSet:
     """Return the wrenches of one mode; the problem's own wrench plays no part."""
-    wrenches = ModeWrenches(problem, cell)
-    rho = problem.rho
+    wrenches = ModeWrenches(case, cell)
+    rho = case.rho
     vertices, generators = wrenches.generated_by()
-    return ModeWrenchSet(
+    return PlanarWrenchSet(
         mode=mode,
         vertices=tuple(_in_units(vertex, rho) for vertex in vertices),
         generators=tuple(_in_units(generator, rho) for generator in generators),

@@ -76,7 +76,7 @@ def spatial_contact_modes(
             more trials than `search.MOST_EXAMINED`, as for hundreds of sectors without ``sharpen``.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
-    wrench = np.concatenate([check_array("force", force_W, (3,)), check_array("torque", torque_W, (3,))])
+    wrench = np.concatenate([check_array("force_W", force_W, (3,)), check_array("torque_W", torque_W, (3,))])
     case = spatial_case(body, state, contacts, wrench, tolerance)
     modes: list[SpatialMode] = []
     examined = 0

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.errors import UndecidedError
+from contact_dynamics.numerics.convex_hull import hull_of
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
@@ -31,6 +33,9 @@ _TRIALS: Final = 60
 """Steps, of a few microseconds each, before a linear program, of milliseconds, has to find the inner
 point."""
 
+_NEAREST_STEPS: Final = 10
+"""Steps for each span in the search for the nearest sum. It takes one or two; SciPy alone stops at three."""
+
 
 class Cone(NamedTuple):
     """The parts of {x : rows x >= 0}: positive sums of rays, plus sums of lines."""
@@ -42,12 +47,16 @@ class Cone(NamedTuple):
 
 
 def cone_of(rows: FloatArray) -> Cone:
-    """Return the parts of a cone, given by unit rows, (m, d)."""
+    """Return the parts of a cone, given by unit rows, (m, d).
+
+    Raises:
+        UndecidedError: rounding decides what the cone is.
+    """
     inner, strict = inner_point(rows)
     # Within the space where the implied equations hold, and across the lines that the cone contains.
     space = null_space(rows[~strict])
-    if not strict.any():
-        return Cone(strict, rows[strict], np.zeros((0, rows.shape[1])), space.T)
+    if not strict.any() or space.shape[1] == 0:
+        return Cone(np.zeros_like(strict), rows[:0], np.zeros((0, rows.shape[1])), space.T)
     reduced = rows[strict] @ space
     reduced /= np.linalg.norm(reduced, axis=1)[:, None]
     spread, basis = np.linalg.svd(reduced)[1:]
@@ -78,11 +87,14 @@ def inner_point(rows: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
         bounds=[(None, None)] * d + [(0.0, 1.0)] * m,
         method="highs",
     )
-    strict = found.x[d:] > 0.5
+    solution = _solution_of(found)
+    strict = solution[d:] > 0.5
     if not strict.any():
-        return found.x[:d], strict
+        return solution[:d], strict
     # The one deepest inside, in the space of the rows that cannot be positive.
     space = null_space(rows[~strict])
+    if space.shape[1] == 0:
+        return solution[:d], np.zeros_like(strict)
     inside = rows[strict] @ space
     inside /= np.linalg.norm(inside, axis=1)[:, None]
     k = space.shape[1]
@@ -93,7 +105,15 @@ def inner_point(rows: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
         bounds=[(-1.0, 1.0)] * k + [(None, 1.0)],
         method="highs",
     )
-    return space @ deepest.x[:k], strict
+    return space @ _solution_of(deepest)[:k], strict
+
+
+def _solution_of(program: Any) -> FloatArray:
+    """Return where a linear program of SciPy's ends. Those here all do, unless rounding hides it."""
+    if program.x is None:
+        raise _undecided("a linear program has no end")
+    solution: FloatArray = program.x
+    return solution
 
 
 def extreme_rays(rows: FloatArray, inner: FloatArray) -> FloatArray:
@@ -105,13 +125,14 @@ def extreme_rays(rows: FloatArray, inner: FloatArray) -> FloatArray:
         return _rays_by_choice(rows)
     inner = inner / np.linalg.norm(inner)
     across = np.linalg.svd(inner[None, :])[2][1:]
-    points = (rows @ across.T) / (rows @ inner)[:, None]
+    heights = rows @ inner
+    if not heights.min() > 0.0:
+        raise _undecided("their cone has no inner point")
+    points = (rows @ across.T) / heights[:, None]
     if d == 2:
         sides = np.array([[1.0, -points.max()], [-1.0, points.min()]])
     else:
-        from scipy.spatial import ConvexHull
-
-        sides = ConvexHull(points).equations
+        sides = hull_of("contacts", points).equations
     # A side says that outward . x + offset <= 0; the ray is where that height is 0 for the points on it.
     rays: FloatArray = -sides[:, -1:] * inner - sides[:, :-1] @ across
     rays /= np.linalg.norm(rays, axis=1)[:, None]
@@ -137,3 +158,25 @@ def null_space(rows: FloatArray) -> FloatArray:
     spread, basis = np.linalg.svd(rows)[1:]
     seen = int((spread > ROW_TOLERANCE * spread[0]).sum())
     return np.ascontiguousarray(basis[seen:].T)
+
+
+def nearest_sum(spans: FloatArray, target: FloatArray) -> tuple[FloatArray, float]:
+    """Return shares >= 0, (k,), of spans, (k, d), whose sum is nearest to a target, (d,), and its distance.
+
+    Raises:
+        UndecidedError: spans so nearly dependent that the search does not end.
+    """
+    from scipy.optimize import nnls
+
+    try:
+        shares, left = nnls(spans.T, target, maxiter=_NEAREST_STEPS * max(1, len(spans)))
+    except RuntimeError:
+        raise _undecided("non-negative least squares did not end") from None
+    return shares, float(left)
+
+
+def _undecided(reason: str) -> UndecidedError:
+    return UndecidedError(
+        f"contacts: found wrenches whose balance hangs on rounding ({reason}), allowed are contacts that are "
+        "either the same or clearly apart, with friction that is not far from 1"
+    )

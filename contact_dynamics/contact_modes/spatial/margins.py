@@ -89,9 +89,9 @@ def spatial_mode_margins(
         TooLargeError: as for `spatial_contact_modes`, or more than `MOST_EDGES` edges of all pyramids.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
-    wrench = np.concatenate([check_array("force", force_W, (3,)), check_array("torque", torque_W, (3,))])
-    gyration = math.sqrt(float(np.trace(body.I_B)) / (3.0 * body.mass))
-    length = gyration if margin_length is None else check_positive("margin_length", margin_length)
+    wrench = np.concatenate([check_array("force_W", force_W, (3,)), check_array("torque_W", torque_W, (3,))])
+    own = body.mean_radius_of_gyration
+    length = own if margin_length is None else check_positive("margin_length", margin_length)
     case = spatial_case(body, state, contacts, wrench, tolerance)
     if not isinstance(case, SpatialCase):
         return ()

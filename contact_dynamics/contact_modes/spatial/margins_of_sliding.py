@@ -21,9 +21,11 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.contact_modes.spatial.answer import evidenced
+from contact_dynamics.contact_modes.spatial.cone import nearest_sum
 from contact_dynamics.contact_modes.spatial.problem import search_of
 from contact_dynamics.contact_modes.spatial.wrenches import Way, distinct, supports, wrench_generators
 from contact_dynamics.errors import TooLargeError
+from contact_dynamics.rigid_body.body import mean_radius_of_gyration
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
@@ -131,7 +133,7 @@ class _Union:
 
     def __init__(self, case: SpatialCase, search: Search, mode: str, facets: int) -> None:
         motion = case.motion
-        gyration = math.sqrt(float(np.trace(motion.inertia)) / (3.0 * motion.mass))
+        gyration = mean_radius_of_gyration(motion.mass, motion.inertia)
         # Cones are stated in the body's own metric, whichever margins are asked for in.
         self.own = np.array([1.0, 1.0, 1.0, gyration, gyration, gyration])
         self.unit = motion.mass * motion.scale  # N; wrenches are divided by it, and by the metric
@@ -171,13 +173,11 @@ class _Union:
 
 def _next(heap: list[_Boundary], wrench: FloatArray, stretch: FloatArray) -> _Boundary | None:
     """Take the nearest boundary, with its nearest point; None: there are no more."""
-    from scipy.optimize import nnls
-
     while heap:
         side = heapq.heappop(heap)
         if side.nearest is not None:
             return side
-        nearest = nnls((side.spans * stretch).T, wrench * stretch)[0] @ side.spans
+        nearest = nearest_sum(side.spans * stretch, wrench * stretch)[0] @ side.spans
         distance = float(np.linalg.norm((nearest - wrench) * stretch))
         heapq.heappush(heap, side._replace(distance=distance, nearest=nearest))
     return None

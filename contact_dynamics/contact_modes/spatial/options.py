@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact.friction import linearised_cone, tangents
+from contact_dynamics.contact.friction import linearised_cone
+from contact_dynamics.numerics.vectors import tangents_towards
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -32,7 +33,7 @@ _AT_BORDER: Final = 1e-9
 """In sectors: how far beyond its border a sector's edge still counts as acting."""
 
 
-class Letters(NamedTuple):
+class Option(NamedTuple):
     """A letter of one contact, or several together; rows are (motion, constant), 7 numbers."""
 
     letter: str  # s, f, c; c also for an arc of sliding directions; empty: several
@@ -41,7 +42,7 @@ class Letters(NamedTuple):
     raised: int | None  # the normal acceleration's name, where that is positive
     rows: FloatArray  # (k, 7), zero or not negative
     equalities: int  # how many rows are zero; the first ones
-    parts: tuple[Letters, ...]  # what it stands for, in groups; empty where it is a letter
+    parts: tuple[Option, ...]  # what it stands for, in groups; empty where it is a letter
 
 
 class Pyramid(NamedTuple):
@@ -82,10 +83,10 @@ def pyramid_of(
     if speed > 0.0:
         return Pyramid((normal - friction * sliding / speed)[None, :], None, first)
     edges = linearised_cone(normal, friction, facets, towards=-free)
-    return Pyramid(edges, tangents(normal, -free), first)
+    return Pyramid(edges, tangents_towards(normal, -free), first)
 
 
-def any_letter(pyramid: Pyramid, point: FloatArray, normal_name: int) -> Letters:
+def any_letter(pyramid: Pyramid, point: FloatArray, normal_name: int) -> Option:
     """Return all letters of one touching contact, but for its ways of sliding (`ways_of_sliding`).
 
     Args:
@@ -95,19 +96,19 @@ def any_letter(pyramid: Pyramid, point: FloatArray, normal_name: int) -> Letters
     """
     own = range(pyramid.first, pyramid.first + len(pyramid.edges))
     nothing = np.zeros((0, 7))
-    separates = Letters("s", -1, frozenset(own), normal_name, nothing, 0, ())
+    separates = Option("s", -1, frozenset(own), normal_name, nothing, 0, ())
     zeroed = frozenset([normal_name])
     if pyramid.frame is None:
-        stays = Letters("c", -1, zeroed, None, nothing, 0, ())
+        stays = Option("c", -1, zeroed, None, nothing, 0, ())
     else:
-        sticks = Letters("f", -1, frozenset(), None, np.array(pyramid.frame) @ point, 2, ())
-        stays = Letters("", -1, zeroed, None, nothing, 0, (sticks,))
-    return Letters("", -1, frozenset(), None, nothing, 0, (separates, stays))
+        sticks = Option("f", -1, frozenset(), None, np.array(pyramid.frame) @ point, 2, ())
+        stays = Option("", -1, zeroed, None, nothing, 0, (sticks,))
+    return Option("", -1, frozenset(), None, nothing, 0, (separates, stays))
 
 
 def ways_of_sliding(
     pyramid: Pyramid, point: FloatArray, acting: tuple[int, int] | None = None
-) -> tuple[Letters, ...]:
+) -> tuple[Option, ...]:
     """Return the letters of a contact that slides, in arcs of directions.
 
     Args:
@@ -128,7 +129,7 @@ def ways_of_sliding(
     return tuple(_slides(arc.tolist(), pyramid.first, along) for arc in arcs)
 
 
-def _slides(arc: list[int], first_name: int, along: FloatArray) -> Letters:
+def _slides(arc: list[int], first_name: int, along: FloatArray) -> Option:
     """Return the letters of sliding within an arc of items.
 
     The edge that opposes the sliding most has the least product with it, alone or with its neighbour.
@@ -147,15 +148,15 @@ def _slides(arc: list[int], first_name: int, along: FloatArray) -> Letters:
         ]
         halves = (arc[: len(arc) // 2], arc[len(arc) // 2 :])
         parts = tuple(_slides(half, first_name, along) for half in halves)
-        return Letters("c", -1, silent, None, np.array([middle, *sides]), 0, parts)
+        return Option("c", -1, silent, None, np.array([middle, *sides]), 0, parts)
     first %= 2 * count
     j, k = first // 2, (first + 1) // 2 % count
     sides = [along[(j - 1) % count] - along[j], along[(k + 1) % count] - along[k]]
     for side in sides:
         side[-1] -= STRICT
     if j == k:
-        return Letters("c", first, silent, None, np.array(sides), 0, ())
-    return Letters("c", first, silent, None, np.array([along[j] - along[k], *sides]), 1, ())
+        return Option("c", first, silent, None, np.array(sides), 0, ())
+    return Option("c", first, silent, None, np.array([along[j] - along[k], *sides]), 1, ())
 
 
 def acting_edges(directions: FloatArray, count: int) -> NDArray[np.bool_]:

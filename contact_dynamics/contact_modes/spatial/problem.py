@@ -14,6 +14,8 @@ import numpy as np
 from contact_dynamics.contact.kinds import velocity_accelerations
 from contact_dynamics.contact_modes.spatial.search import Search, Touching
 from contact_dynamics.errors import TooLargeError
+from contact_dynamics.numerics.vectors import point_jacobians
+from contact_dynamics.rigid_body.body import inverse_mass_matrix
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,7 +28,7 @@ MOST_DYNAMIC_CONTACTS: Final = 32
 """Longest list of touching contacts accepted: a tenth of a second, two where many modes are consistent."""
 
 
-class SpatialMotion:
+class AccelerationMap:
     """Accelerations of the body and of its contact points as affine functions of the contact forces."""
 
     def __init__(
@@ -39,15 +41,9 @@ class SpatialMotion:
         wrench_W: FloatArray,
         rolling_W: FloatArray,
     ) -> None:
-        n = len(r_W)
         # J maps (a, alpha) to the accelerations of the contact points, its transpose forces to wrenches.
-        J = np.zeros((3 * n, 6))
-        for i, (x, y, z) in enumerate(r_W):
-            J[3 * i : 3 * i + 3, :3] = np.eye(3)
-            J[3 * i : 3 * i + 3, 3:] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
-        inverse = np.zeros((6, 6))
-        inverse[:3, :3] = np.eye(3) / mass
-        inverse[3:, 3:] = np.linalg.inv(inertia)
+        J = point_jacobians(r_W).reshape(-1, 6)
+        inverse = inverse_mass_matrix(mass, inertia)
         self.mass = mass
         self.inertia = inertia
         self.points = J
@@ -71,7 +67,7 @@ class SpatialMotion:
 class SpatialCase(NamedTuple):
     """A body with its contacts, none of which approaches."""
 
-    motion: SpatialMotion
+    motion: AccelerationMap
     contacts: ContactSet
     sliding: FloatArray  # (n, 3), m/s, tangential velocities; zero: at rest
     touching: NDArray[np.intp]  # contacts that neither approach nor leave
@@ -105,7 +101,7 @@ def spatial_case(
     w = state.w_WB_W
     if len(r_W) > 0 and np.linalg.norm(w) * _reach(body, r_W, contacts) <= tolerance:
         w = np.zeros(3)
-    motion = SpatialMotion(
+    motion = AccelerationMap(
         body.mass,
         body.inertia_in_world(state.R_WB),
         r_W=r_W,

@@ -13,12 +13,12 @@ where loads are shared, that differs from one sharing to the next.
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.contact_modes.planar.result import Refusal, RefusedMode
+from contact_dynamics.contact_modes.spatial.cone import nearest_sum
 from contact_dynamics.contact_modes.spatial.kinematic import spatial_kinematic_modes
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial.wrenches import Way, wrench_generators
@@ -73,9 +73,9 @@ def spatial_refused_modes(
         InvalidFieldError: a wrench that is not finite, or the length is not > 0.
         TooLargeError: more contacts than `spatial_contact_modes` accepts.
     """
-    wrench = np.concatenate([check_array("force", force_W, (3,)), check_array("torque", torque_W, (3,))])
-    gyration = math.sqrt(float(np.trace(body.I_B)) / (3.0 * body.mass))
-    length = gyration if margin_length is None else check_positive("margin_length", margin_length)
+    wrench = np.concatenate([check_array("force_W", force_W, (3,)), check_array("torque_W", torque_W, (3,))])
+    own = body.mean_radius_of_gyration
+    length = own if margin_length is None else check_positive("margin_length", margin_length)
     tolerance = answer.velocity_tolerance
     case = spatial_case(body, state, contacts, wrench, tolerance)
     if not isinstance(case, SpatialCase):
@@ -123,15 +123,13 @@ def _known(case: SpatialCase, search: Search, string: str) -> RefusedMode | None
 
 
 def _short(case: SpatialCase, search: Search, string: str, metric: FloatArray) -> RefusedMode:
-    from scipy.optimize import nnls
-
     ways = [Way(string[i], -1) for i in case.touching.tolist()]
     generators = wrench_generators(case, search, ways, metric)
     unit = case.motion.mass * case.motion.scale  # N; wrenches are divided by it
     target = np.append(case.motion.wrench / metric / unit, 1.0)
-    columns = np.vstack([generators.rays, generators.lines, -generators.lines]).T
+    spans = np.vstack([generators.rays, generators.lines, -generators.lines])
     heights = np.append(np.ones(6), _EXACT)
-    left = float(nnls(heights[:, None] * columns, heights * target)[1])
+    left = nearest_sum(spans * heights, heights * target)[1]
     if left <= _NOTHING * float(np.linalg.norm(target[:6])):
         return RefusedMode(mode=string, refusal=Refusal.WRONG_MOTION, contact=-1, amount=0.0)
     return RefusedMode(mode=string, refusal=Refusal.NO_SOLUTION, contact=-1, amount=left * unit)

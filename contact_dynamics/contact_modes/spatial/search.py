@@ -34,7 +34,7 @@ from contact_dynamics.errors import TooLargeError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from contact_dynamics.contact_modes.spatial.options import Letters, Pyramid
+    from contact_dynamics.contact_modes.spatial.options import Option, Pyramid
     from contact_dynamics.contact_modes.spatial.regions import Flat
     from contact_dynamics.validation import FloatArray
 
@@ -60,7 +60,7 @@ class Touching(NamedTuple):
 class Found(NamedTuple):
     """A mode that some forces bring about."""
 
-    letters: list[Letters]  # of each touching contact
+    letters: list[Option]  # of each touching contact
     program: Program  # solved
     motion: Ends  # of a mixture of the motion's components: whether it is unique
 
@@ -143,7 +143,7 @@ class Search:
             any_letter(pyramid, contact.point, first + i)
             for i, (contact, pyramid) in enumerate(zip(touching, self.pyramids, strict=True))
         ]
-        self._ways: dict[tuple[int, tuple[int, int] | None], tuple[Letters, ...]] = {}
+        self._ways: dict[tuple[int, tuple[int, int] | None], tuple[Option, ...]] = {}
         self._found: dict[tuple[tuple[str, int], ...], Found] = {}
         self._grouped = False
         self._goal = ""  # the letters that are sought, where all are known
@@ -178,7 +178,7 @@ class Search:
             )
         return program.solve()
 
-    def _narrowed(self, program: Program, at: int, letters: Letters, *, staying: bool = False) -> Program:
+    def _narrowed(self, program: Program, at: int, letters: Option, *, staying: bool = False) -> Program:
         zeroed = letters.zeroed
         if staying:
             zeroed |= {self._first_normal + at}
@@ -191,7 +191,7 @@ class Search:
             tag=_CONTACT_TAG - at,
         )
 
-    def _decide_who_stays(self, program: Program, trials: list[Letters], at: int) -> None:
+    def _decide_who_stays(self, program: Program, trials: list[Option], at: int) -> None:
         if at == len(trials):
             self._decide_common_motion(program, trials)
             return
@@ -200,7 +200,7 @@ class Search:
             if self._holds(narrower):
                 self._decide_who_stays(narrower, [*trials[:at], part, *trials[at + 1 :]], at + 1)
 
-    def _decide_common_motion(self, program: Program, trials: list[Letters]) -> None:
+    def _decide_common_motion(self, program: Program, trials: list[Option]) -> None:
         open_ones = [i for i, letters in enumerate(trials) if letters.parts]
         frames = np.array([trials[i].parts[0].rows for i in open_ones]).reshape(-1, 2, 7)
         if len(open_ones) < 2 or np.any(frames[:, :, -1]):
@@ -233,7 +233,7 @@ class Search:
         rows = np.column_stack([flat.rows, np.zeros(len(flat.rows))])
         return program.narrowed(rows=rows, equalities=len(rows), tag=_CONTACT_TAG - len(self.touching))
 
-    def _decide_flat(self, program: Program, trials: list[Letters], image: Image) -> bool:
+    def _decide_flat(self, program: Program, trials: list[Option], image: Image) -> bool:
         """Find the modes in which all contacts that are not decided slide; False: nor if some of them stick.
 
         But for all of them, at rest.
@@ -262,7 +262,7 @@ class Search:
         names = np.array([one.first for one in pyramids])[:, None] + np.arange(len(pyramids[0].edges))
         return Common(image, open_ones, pyramids, names, gains)
 
-    def _decide_within(self, region: Region, program: Program, trials: list[Letters], common: Common) -> bool:
+    def _decide_within(self, region: Region, program: Program, trials: list[Option], common: Common) -> bool:
         """Find the modes within a region; False: there is none, whichever of the contacts slide."""
         if self._goal in self._settled:
             return True
@@ -302,14 +302,14 @@ class Search:
         scale = max(float(np.abs(weights).max()), float(np.abs(gains).max()))
         return program.allows_any(weights / scale, gains / scale, -STRICT)
 
-    def _ways_of(self, at: int, acting: NDArray[np.bool_]) -> tuple[Letters, ...]:
+    def _ways_of(self, at: int, acting: NDArray[np.bool_]) -> tuple[Option, ...]:
         """Return the ways of sliding of a contact against neighbouring edges, laid out once for a range."""
         arc = None if acting.all() else (int((acting & ~np.roll(acting, 1)).argmax()), int(acting.sum()))
         if (at, arc) not in self._ways:
             self._ways[at, arc] = ways_of_sliding(self.pyramids[at], self.touching[at].point, arc)
         return self._ways[at, arc]
 
-    def _decide_letters(self, program: Program, trials: list[Letters], depths: list[int]) -> None:
+    def _decide_letters(self, program: Program, trials: list[Option], depths: list[int]) -> None:
         if self._goal in self._settled:
             return
         open_ones = [i for i, letters in enumerate(trials) if letters.parts]
@@ -323,7 +323,7 @@ class Search:
             if self._holds(narrower):
                 self._decide_letters(narrower, [*trials[:at], part, *trials[at + 1 :]], deeper)
 
-    def _note(self, letters: list[Letters]) -> None:
+    def _note(self, letters: list[Option]) -> None:
         """Keep the mode, if some forces bring it about."""
         key = tuple((one.letter, one.item) for one in letters)
         if key in self._found:

@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact.friction import tangents
 from contact_dynamics.contact_modes.spatial.cone import null_space
 from contact_dynamics.contact_modes.spatial.kinematic import cone_faces
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.numerics.vectors import tangents_towards
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def spatial_sliding_modes(contacts: ContactSet, *, planes: int = 2) -> tuple[str
     normals = _rows(contacts.normals_W, arms)
     across = []  # normals of the planes, within the tangent plane: quarter a turn from each line
     for normal, arm in zip(contacts.normals_W, arms, strict=True):
-        one, two = tangents(normal)
+        one, two = tangents_towards(normal)
         turns = [math.pi * k / planes + 0.5 * math.pi for k in range(planes)]
         ways = np.array([math.cos(turn) * one + math.sin(turn) * two for turn in turns])
         across.append(_rows(ways, np.tile(arm, (planes, 1))))

@@ -60,13 +60,14 @@ def spatial_statics(
 
     Raises:
         InvalidFieldError: a number that is not allowed, too few facets.
+        UndecidedError: contacts so nearly the same that rounding decides the answer.
         TooLargeError: more than `MOST_EDGES` edges, or more contacts than `spatial_contact_modes` accepts.
     """
     accuracy = check_not_negative("acceleration_tolerance", acceleration_tolerance)
-    force = check_array("force", force_W, (3,))
-    torque = check_array("torque", torque_W, (3,))
-    gyration = math.sqrt(float(np.trace(body.I_B)) / (3.0 * body.mass))
-    length = gyration if margin_length is None else check_positive("margin_length", margin_length)
+    force = check_array("force_W", force_W, (3,))
+    torque = check_array("torque_W", torque_W, (3,))
+    own = body.mean_radius_of_gyration
+    length = own if margin_length is None else check_positive("margin_length", margin_length)
     if len(contacts) * friction_facets > MOST_EDGES:
         found = f"{len(contacts)} contacts of {friction_facets} edges"
         raise TooLargeError("contacts", found, f"at most {MOST_EDGES} edges together")

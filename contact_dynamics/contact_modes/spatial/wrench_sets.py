@@ -105,6 +105,7 @@ def spatial_wrench_sets(
 
     Raises:
         InvalidFieldError: as for `spatial_contact_modes`, or modes that are not strings of s, f and c.
+        UndecidedError: contacts so nearly the same that rounding decides the sets.
         TooLargeError: as for `spatial_contact_modes`; more than `MOST_WRENCH_SETS` sets, more than
             `spatial_statics.MOST_EDGES` edges of all pyramids, or too many ways of sliding
             (`ways_of_sliding.MOST_MEETINGS`).
@@ -112,7 +113,7 @@ def spatial_wrench_sets(
     Source: lecture 26, "Force dual for dynamic contact problem"; Huang, Cheng and Mason 2020 for the ways.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
-    wrench = np.concatenate([check_array("force", force_W, (3,)), check_array("torque", torque_W, (3,))])
+    wrench = np.concatenate([check_array("force_W", force_W, (3,)), check_array("torque_W", torque_W, (3,))])
     for mode in modes or ():
         if len(mode) != len(contacts) or set(mode) - set("sfc"):
             raise InvalidFieldError("modes", mode, f"{len(contacts)} letters of s, f and c")
@@ -128,8 +129,7 @@ def spatial_wrench_sets(
     if len(wanted) > MOST_WRENCH_SETS:
         allowed = f"at most {MOST_WRENCH_SETS}: fewer contacts, or fewer friction_facets"
         raise TooLargeError("contacts", f"{len(wanted)} sets of wrenches", allowed)
-    gyration = math.sqrt(float(np.trace(body.I_B)) / (3.0 * body.mass))
-    metric = np.array([1.0, 1.0, 1.0, gyration, gyration, gyration])
+    metric = np.array([1.0, 1.0, 1.0, *[body.mean_radius_of_gyration] * 3])
     turning = wrench - case.motion.wrench  # which a body that turns needs besides
     return tuple(
         _wrench_set(case, search, ways, mode=mode, metric=metric, turning=turning) for mode, ways in wanted

@@ -16,7 +16,7 @@ class SequenceEnd(IntEnum):
     """Why a sequence of strikes has no further one."""
 
     NOTHING_STRIKES = 0
-    """Nothing strikes within the window after the last strike."""
+    """Nothing strikes within the window after the last strike: the body flies, and may come down later."""
     STAYS = 1
     """A contact neither approaches nor leaves, and the free motion would press it in: the flight is over."""
     CHATTERS = 2
@@ -24,6 +24,8 @@ class SequenceEnd(IntEnum):
     limit time, from which on the contact stays."""
     MOST_STRIKES = 3
     """The bound on the number of strikes was reached."""
+    WINDOW_ENDED = 4
+    """Nothing has struck before the window ended, which began with the state: the body may land later."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -42,6 +44,7 @@ class ImpactSequence:
     """A landing as strikes in time, with free flight between them."""
 
     restitution_law: RestitutionLaw  # the law of each strike
+    window: float  # s, the longest flight that was followed
     contacts: ContactSet  # those given; from geometry: those that struck or stay, where they first did
     strikes: tuple[TimedStrike, ...]  # in the order of time; those of one instant in the order of resolution
     end: SequenceEnd  # why there is no further one
@@ -53,6 +56,21 @@ class ImpactSequence:
     def seconds(self) -> float:
         """Return the time of the last strike, s after the first state's stamp; without one 0."""
         return self.strikes[-1].seconds if self.strikes else 0.0
+
+    @property
+    def message(self) -> str:
+        """Return in words why there is no further strike, and what would tell more."""
+        stay = ", ".join(map(str, self.staying))
+        return {
+            SequenceEnd.NOTHING_STRIKES: f"no further strike within the window of {self.window:g} s after "
+            "the last one; a longer window follows the flight on",
+            SequenceEnd.STAYS: f"flight is over: the contacts {stay} stay; contact modes say what follows",
+            SequenceEnd.CHATTERS: f"infinitely many rebounds end: the contacts {stay} stay from then on",
+            SequenceEnd.MOST_STRIKES: f"the bound of {len(self.strikes)} strikes was reached; the body may "
+            "strike again at once",
+            SequenceEnd.WINDOW_ENDED: f"no strike within the window of {self.window:g} s after the state; a "
+            "longer window, or `next_landing`, may find one",
+        }[self.end]
 
     @property
     def order(self) -> tuple[int, ...]:

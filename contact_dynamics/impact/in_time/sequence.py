@@ -6,7 +6,7 @@ motion in closed form (`tumbling`), and the next strike is found to rounding (`f
 stepped. Contacts of one instant are struck one after the other, the fastest approach first, as the sequential
 law does (`several`); there the order is a choice, between instants it is not.
 
-The sequence ends where nothing strikes any more within a window, where a contact stays, or where strikes
+The sequence ends where nothing strikes within a window, where a contact stays, or where strikes
 accumulate: rebounds that shrink by a ratio r < 1 have all ended d / (1 - r) after a strike whose rebound
 takes d (Zeno). Then free flight is over, and which contacts stay, slide or roll is a question
 of contact modes, not of impacts.
@@ -22,6 +22,7 @@ Not covered: a resting contact that its own sliding jams.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -36,7 +37,7 @@ from contact_dynamics.impact.spatial.one_contact import spatial_impact
 from contact_dynamics.rotations.one import cross_matrix
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.tumbling import Precision, free_motion
-from contact_dynamics.validation import check_array, check_not_negative, check_positive
+from contact_dynamics.validation import check_array, check_choice, check_not_negative, check_positive
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -103,7 +104,9 @@ def impact_sequence(
 
     Raises:
         InvalidFieldError: a number that is not allowed.
+        NoContactError: the body has no shape that could touch anything.
     """
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     held = None if hold_step is None else check_positive("hold_step", hold_step)
     meetings = FoundMeetings(
@@ -155,11 +158,12 @@ def impact_sequence_of(
     Raises:
         InvalidFieldError: a number that is not allowed, or a contact with curvature: it is no fixed point.
     """
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     held = None if hold_step is None else check_positive("hold_step", hold_step)
     if contacts.body_curvatures is not None or contacts.surface_curvatures is not None:
         raise InvalidFieldError("contacts.curvatures", "some", "none: a point of the body on a plane")
-    gravity = check_array("gravity", gravity_W, (3,))
+    gravity = check_array("gravity_W", gravity_W, (3,))
     meetings = NamedMeetings(
         body,
         state,
@@ -195,9 +199,12 @@ class _Sequence:
     def run(self, state: BodyState, window: float, most_strikes: int) -> ImpactSequence:
         most = round(check_positive("most_strikes", most_strikes))
         end = self._strike_on(state, window, most)
+        if end == SequenceEnd.NOTHING_STRIKES and not self.strikes:
+            end = SequenceEnd.WINDOW_ENDED
         stays = end in {SequenceEnd.STAYS, SequenceEnd.CHATTERS}
         return ImpactSequence(
             restitution_law=self.law,
+            window=window,
             contacts=self.meetings.contacts,
             strikes=tuple(self.strikes),
             end=end,
@@ -298,15 +305,11 @@ class _Sequence:
         return impact.state
 
     def _impact(self, landing: Landing, row: int, *, restitution: float) -> SpatialImpact:
-        contacts = landing.contacts
         return spatial_impact(
             self.body,
             landing.state,
-            p_WC_W=contacts.p_WC_W[row],
-            n_W=contacts.normals_W[row],
-            friction=float(contacts.frictions[row]),
-            restitution=restitution,
-            law=self.law,
+            replace(landing.contacts[row], restitution=restitution),
+            restitution_law=self.law,
             # Half, since the approach was judged by another sum with other rounding.
             velocity_tolerance=0.5 * self.tolerance,
         )

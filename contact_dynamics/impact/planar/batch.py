@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import SeparatingContactError
+from contact_dynamics.impact.energy import energy_change, law_created
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
-from contact_dynamics.tolerances import ENERGY_TOLERANCE, VELOCITY_TOLERANCE
-from contact_dynamics.validation import FloatArray, check_not_negative
+from contact_dynamics.tolerances import VELOCITY_TOLERANCE
+from contact_dynamics.validation import FloatArray, check_choice, check_not_negative
 from contact_dynamics.validation_batches import (
     check_not_negative_rows,
     check_positive_rows,
@@ -50,7 +51,7 @@ _OUTCOMES: Final = np.array(
 class PlanarImpacts:
     """The answers to N planar impacts; row i belongs to case i. Meanings as in `PlanarImpact`."""
 
-    law: RestitutionLaw  # the restitution law of all of them
+    restitution_law: RestitutionLaw  # the restitution law of all of them
     outcomes: NDArray[np.int64]  # (N,), values of ImpactOutcome
     v: FloatArray  # (N, 2), m/s, of the centres of mass afterwards, axes of the plane
     w: FloatArray  # (N,), rad/s, afterwards
@@ -62,17 +63,16 @@ class PlanarImpacts:
     @property
     def energy_changes(self) -> FloatArray:
         """Return the changes of kinetic energy, (N,), J."""
-        i, v_0, v_1 = self.impulses_C, self.velocities_before_C, self.velocities_after_C
-        changes: FloatArray = 0.5 * (i[:, 0] * (v_0[:, 0] + v_1[:, 0]) + i[:, 1] * (v_0[:, 1] + v_1[:, 1]))
-        return changes
+        return energy_change(*self._at_contacts())
 
     @property
     def creates_energy(self) -> NDArray[np.bool_]:
         """Return which of them the law gave energy, (N,), beyond rounding. Only Newton's can."""
-        speeds = abs(self.velocities_before_C) + abs(self.velocities_after_C)
-        exchanged = np.einsum("ij,ij->i", abs(self.impulses_C), speeds)
-        created: NDArray[np.bool_] = self.energy_changes > ENERGY_TOLERANCE * exchanged
+        created: NDArray[np.bool_] = law_created(*self._at_contacts())
         return created
+
+    def _at_contacts(self) -> tuple[list[FloatArray], ...]:
+        return list(self.impulses_C.T), list(self.velocities_before_C.T), list(self.velocities_after_C.T)
 
 
 def planar_impacts(
@@ -85,7 +85,7 @@ def planar_impacts(
     normals: ArrayLike,
     frictions: ArrayLike,
     restitutions: ArrayLike,
-    law: RestitutionLaw = RestitutionLaw.POISSON,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> PlanarImpacts:
     """Return what N planar impacts do; the same as `planar_impact` for each.
@@ -99,7 +99,7 @@ def planar_impacts(
         normals: (N, 2) or (2,), unit, into the bodies.
         frictions: (N,) or one number, >= 0.
         restitutions: (N,) or one number, in [0, 1].
-        law: What the coefficients of restitution mean.
+        restitution_law: What the coefficients of restitution mean.
         velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero.
 
     Raises:
@@ -107,6 +107,7 @@ def planar_impacts(
             first.
         InvalidFieldError: a number is not allowed; the message names the field and the first row.
     """
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     fields = {
         "masses": check_positive_rows("masses", masses),
@@ -126,9 +127,11 @@ def planar_impacts(
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for first in range(0, count, _CHUNK):
             chunk = slice(first, first + _CHUNK)
-            outcomes[chunk] = _strike([x[chunk] for x in columns], results[:, chunk], law, tolerance, first)
+            outcomes[chunk] = _strike(
+                [x[chunk] for x in columns], results[:, chunk], restitution_law, tolerance, first
+            )
     return PlanarImpacts(
-        law=law,
+        restitution_law=restitution_law,
         outcomes=outcomes,
         v=results[:2].T,
         w=results[2],

@@ -16,7 +16,7 @@ from contact_dynamics.impact.planar.result import PlanarImpact
 from contact_dynamics.impact.planar.routh import impulse_path, inverse_inertia
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, Vector2
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_not_negative
+from contact_dynamics.validation import check_choice, check_not_negative
 
 
 def planar_impact(
@@ -24,7 +24,7 @@ def planar_impact(
     velocity: PlanarVelocity,
     contact: PlanarContact,
     *,
-    law: RestitutionLaw = RestitutionLaw.POISSON,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> PlanarImpact:
     """Return what the impact of ``body`` at ``contact`` does.
@@ -33,15 +33,17 @@ def planar_impact(
         body: Mass and angular inertia.
         velocity: Of the body just before.
         contact: Where, along which normal, with which friction and restitution.
-        law: What the coefficient of restitution means.
+        restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A component of the contact's velocity within it counts as zero.
 
     Raises:
         SeparatingContactError: the contact's normal velocity is above the tolerance.
-        InvalidFieldError: the tolerance is negative, or the numbers are so large that the velocity overflows.
+        InvalidFieldError: the law is none, the tolerance is negative, or the numbers are so large that the
+            velocity overflows.
 
     Source: lecture 27, eqs. 2 to 10; Routh 1860; Stronge 1990 for the energetic law.
     """
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     n_x, n_y = contact.normal
     r_x, r_y = contact.r
@@ -53,13 +55,13 @@ def planar_impact(
     r_t = r_x * n_y - r_y * n_x
     r_n = r_x * n_x + r_y * n_y
     response = inverse_inertia(body.mass, body.inertia, r_t, r_n)
-    path = impulse_path(v_t, v_n, response, contact.friction, contact.restitution, law)
+    path = impulse_path(v_t, v_n, response, contact.friction, contact.restitution, restitution_law)
     i_t = path.t_end
     i_n = path.p_end
     i_x = i_t * n_y + i_n * n_x
     i_y = i_n * n_y - i_t * n_x
     return PlanarImpact(
-        law=law,
+        restitution_law=restitution_law,
         velocity=PlanarVelocity(
             v=(v_x + i_x / body.mass, v_y + i_y / body.mass), w=w + (r_t * i_n - r_n * i_t) / body.inertia
         ),

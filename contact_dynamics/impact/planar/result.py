@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from contact_dynamics.impact.energy import energy_change, law_created
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.impact.planar.routh import ImpulsePath, InverseInertia
 from contact_dynamics.plane.types import PlanarVelocity, Vector2
-from contact_dynamics.tolerances import ENERGY_TOLERANCE
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlanarImpact:
     """The answer to one planar impact; contact axes are tangent, normal, and impulses act on the body."""
 
-    law: RestitutionLaw  # the restitution law that was asked for
+    restitution_law: RestitutionLaw  # the restitution law that was asked for
     velocity: PlanarVelocity  # m/s, rad/s, of the body afterwards, axes of the plane
     velocity_before_C: Vector2  # m/s, of the contact before, relative, contact axes; 0: within tolerance
     inverse_inertia: InverseInertia  # 1/kg, the contact's response to impulse
@@ -77,14 +77,9 @@ class PlanarImpact:
     @property
     def energy_change(self) -> float:
         """Return the change of kinetic energy, J: the impulse times the contact's mean velocity."""
-        path = self.contact_path
-        v_t, v_n = self.velocity_before_C
-        return 0.5 * (path.t_end * (v_t + path.v_t) + path.p_end * (v_n + path.v_n))
+        return energy_change(self.impulse_C, self.velocity_before_C, self.velocity_after_C)
 
     @property
     def creates_energy(self) -> bool:
         """Return whether the law gave the body energy, beyond rounding. Only Newton's can."""
-        path = self.contact_path
-        v_t, v_n = self.velocity_before_C
-        exchanged = abs(path.t_end) * (abs(v_t) + abs(path.v_t)) + path.p_end * (abs(v_n) + path.v_n)
-        return self.energy_change > ENERGY_TOLERANCE * exchanged
+        return bool(law_created(self.impulse_C, self.velocity_before_C, self.velocity_after_C))

@@ -16,7 +16,7 @@ from contact_dynamics.impact.planar.result import PlanarImpact
 from contact_dynamics.impact.planar.routh import impulse_path, pair_inverse_inertia
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, Vector2, check_vector2
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_not_negative
+from contact_dynamics.validation import check_choice, check_not_negative
 
 
 def planar_pair_impact(
@@ -27,7 +27,7 @@ def planar_pair_impact(
     contact: PlanarContact,
     *,
     other_r: Vector2,
-    law: RestitutionLaw = RestitutionLaw.POISSON,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> PlanarImpact:
     """Return what the impact of two planar bodies does.
@@ -39,13 +39,14 @@ def planar_pair_impact(
         other_velocity: Of the second body just before.
         contact: Where on the first body (from its centre of mass), normal, friction, restitution.
         other_r: m, from the second body's centre of mass to the contact.
-        law: What the coefficient of restitution means.
+        restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A component of the relative velocity within it counts as zero.
 
     Raises:
         SeparatingContactError: the contact's relative normal velocity is above the tolerance.
         InvalidFieldError: a number is not finite, or the tolerance is negative.
     """
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     n_x, n_y = contact.normal
     r_x, r_y = contact.r
@@ -59,11 +60,11 @@ def planar_pair_impact(
         (body.mass, body.inertia, r_x * n_y - r_y * n_x, r_x * n_x + r_y * n_y),
         (other.mass, other.inertia, s_x * n_y - s_y * n_x, s_x * n_x + s_y * n_y),
     )
-    path = impulse_path(v_t, v_n, response, contact.friction, contact.restitution, law)
+    path = impulse_path(v_t, v_n, response, contact.friction, contact.restitution, restitution_law)
     i_x = path.t_end * n_y + path.p_end * n_x
     i_y = path.p_end * n_y - path.t_end * n_x
     return PlanarImpact(
-        law=law,
+        restitution_law=restitution_law,
         velocity=_planar_pushed(body, velocity, (r_x, r_y), (i_x, i_y)),
         velocity_before_C=(v_t, v_n),
         inverse_inertia=response,

@@ -22,14 +22,14 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact.friction import tangents
 from contact_dynamics.contact.kinds import velocity_accelerations
 from contact_dynamics.contact.velocities import spatial_contact_velocities
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralImpact, SeveralVerdict
 from contact_dynamics.numerics.lemke import solve_complementarity
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.numerics.vectors import point_jacobians, tangents_towards
+from contact_dynamics.rigid_body.body import BodyState, MassProperties, inverse_mass_matrix
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_not_negative
 
@@ -100,8 +100,8 @@ def jamming_impact(
         TooLargeError: more than `MOST_JAMMED_CONTACTS` contacts.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
-    force = check_array("force", force_W, (3,))
-    torque = check_array("torque", torque_W, (3,))
+    force = check_array("force_W", force_W, (3,))
+    torque = check_array("torque_W", torque_W, (3,))
     if len(contacts) == 0:
         raise InvalidFieldError("contacts", "none", "at least one contact")
     if len(contacts) > MOST_JAMMED_CONTACTS:
@@ -112,14 +112,12 @@ def jamming_impact(
         raise InvalidFieldError("friction_facets", friction_facets, "a whole number >= 3")
     w, inertia = state.w_WB_W, body.inertia_in_world(state.R_WB)
     arms = contacts.p_WC_W - state.p_WB_W
-    inverse = np.zeros((6, 6))
-    inverse[:3, :3] = np.eye(3) / body.mass
-    inverse[3:, 3:] = np.linalg.inv(inertia)
+    inverse = inverse_mass_matrix(body.mass, inertia)
     free = inverse @ np.concatenate([force, torque - np.cross(w, inertia @ w)])
     twist = np.concatenate([state.v_WB_W, w])
-    before = _rows(arms) @ twist
+    before = point_jacobians(arms) @ twist
     rolling = velocity_accelerations(contacts, before, w)
-    hurry = _fastest(_rows(arms) @ free + np.cross(w, np.cross(w, arms)) + rolling, free[:3])
+    hurry = _fastest(point_jacobians(arms) @ free + np.cross(w, np.cross(w, arms)) + rolling, free[:3])
     speed = max(_fastest(before, twist[:3]), tolerance)
     cleaned = spatial_contact_velocities(state, contacts, velocity_tolerance=tolerance)
     directions = _directions(contacts, before, plane_normal_W, friction_facets)
@@ -127,7 +125,7 @@ def jamming_impact(
     for share in _SHORT:
         short = share * speed / hurry if hurry > 0.0 else 0.0
         seen = _Contacts(
-            rows=_rows(arms + short * np.cross(w, arms)),
+            rows=point_jacobians(arms + short * np.cross(w, arms)),
             normals=contacts.normals_W,
             directions=directions,
             frictions=contacts.frictions,
@@ -141,14 +139,14 @@ def jamming_impact(
         if found is None:
             continue
         impulses, held = found
-        jump = inverse @ np.einsum("ijk,ij->k", _rows(arms), impulses)
-        total, after = _made_exact(_rows(arms), inverse, impulses, twist + jump, held)
-        approach = np.einsum("ij,ij->i", _rows(arms) @ after, contacts.normals_W)
+        jump = inverse @ np.einsum("ijk,ij->k", point_jacobians(arms), impulses)
+        total, after = _made_exact(point_jacobians(arms), inverse, impulses, twist + jump, held)
+        approach = np.einsum("ij,ij->i", point_jacobians(arms) @ after, contacts.normals_W)
         resolved = float(approach.min()) >= -max(tolerance, seen.zero)
         if resolved:
             break
     return SeveralImpact(
-        law=SeveralContactsLaw.SIMULTANEOUS,
+        several_contacts_law=SeveralContactsLaw.SIMULTANEOUS,
         restitution_law=RestitutionLaw.POISSON,
         verdict=SeveralVerdict.RESOLVED if resolved else SeveralVerdict.NOT_CONVERGED,
         state=BodyState(
@@ -160,7 +158,7 @@ def jamming_impact(
         ),
         impulses_W=total,
         velocities_before_W=before,
-        velocities_after_W=_rows(arms) @ after,
+        velocities_after_W=point_jacobians(arms) @ after,
         strikes=(),
     )
 
@@ -251,7 +249,7 @@ def _directions(
     angles = 2.0 * math.pi * np.arange(facets) / facets
     found = []
     for normal, velocity in zip(contacts.normals_W, velocities, strict=True):
-        one, two = tangents(normal, -velocity if velocity.any() else None)
+        one, two = tangents_towards(normal, -velocity if velocity.any() else None)
         found.append(np.outer(np.cos(angles), one) + np.outer(np.sin(angles), two))
     return np.array(found)
 
@@ -261,15 +259,6 @@ def _vectors(seen: _Contacts, phase: _Impulses) -> FloatArray:
         "im,imj->ij", phase.friction, seen.directions
     )
     return vectors
-
-
-def _rows(arms: FloatArray) -> FloatArray:
-    """Return the (3, 6) matrices that give contacts' velocities from (v, w)."""
-    rows = np.zeros((len(arms), 3, 6))
-    rows[:, :, :3] = np.eye(3)
-    for i, (x, y, z) in enumerate(arms.tolist()):
-        rows[i, :, 3:] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
-    return rows
 
 
 def _fastest(of_contacts: FloatArray, of_body: FloatArray) -> float:

@@ -29,7 +29,7 @@ from contact_dynamics.impact.several.result import (
 )
 from contact_dynamics.impact.several.sequential import Touching, bodies_impact, check_touching, strike_in_turn
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_positive
+from contact_dynamics.validation import check_choice, check_positive
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -45,7 +45,7 @@ def several_impact(
     state: BodyState,
     contacts: ContactSet,
     *,
-    law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
+    several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SeveralImpact:
@@ -55,7 +55,7 @@ def several_impact(
         body: Mass and angular inertia.
         state: Pose and velocities just before.
         contacts: All that touch, approaching or not; at least one.
-        law: The law for several contacts.
+        several_contacts_law: The law for several contacts.
         restitution_law: What the coefficients of restitution mean; ENERGETIC only with SEQUENTIAL.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
 
@@ -68,12 +68,12 @@ def several_impact(
         [state],
         contacts,
         [(0, None)] * len(contacts),
-        law=law,
+        several_contacts_law=several_contacts_law,
         restitution_law=restitution_law,
         velocity_tolerance=velocity_tolerance,
     )
     return SeveralImpact(
-        law=law,
+        several_contacts_law=several_contacts_law,
         restitution_law=restitution_law,
         verdict=answer.verdict,
         state=answer.states[0],
@@ -110,6 +110,7 @@ def outcomes_over_orders(
         SeparatingContactError: every contact separates.
         InvalidFieldError: no contacts, or a tolerance that is not > 0.
     """
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     touching = Touching([body], contacts, [(0, None)] * len(contacts), restitution_law, tolerance)
     check_touching(touching, [state])

@@ -29,7 +29,7 @@ def planar_several_impact(
     velocity: PlanarVelocity,
     contacts: Sequence[PlanarContact],
     *,
-    law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
+    several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     axes_W: ArrayLike = _X_AND_Y,
@@ -40,7 +40,7 @@ def planar_several_impact(
         body: Mass and angular inertia.
         velocity: Of the body just before.
         contacts: All that touch, approaching or not; at least one.
-        law: The law for several contacts.
+        several_contacts_law: The law for several contacts.
         restitution_law: What the coefficients of restitution mean; ENERGETIC only with SEQUENTIAL.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
         axes_W: (2, 3), the plane's x and y in world axes, in which the answer is given; the centre of mass is
@@ -52,5 +52,8 @@ def planar_several_impact(
     """
     spatial = planar_in_space(body, velocity, contacts, axes_W=axes_W)
     return several_impact(
-        *spatial, law=law, restitution_law=restitution_law, velocity_tolerance=velocity_tolerance
+        *spatial,
+        several_contacts_law=several_contacts_law,
+        restitution_law=restitution_law,
+        velocity_tolerance=velocity_tolerance,
     )

@@ -33,7 +33,7 @@ class SeveralVerdict(IntEnum):
 class SeveralImpact:
     """The answer for several contacts; contact i is row i, impulses act on the body, axes are the world's."""
 
-    law: SeveralContactsLaw  # the law for several contacts
+    several_contacts_law: SeveralContactsLaw  # the law for several contacts
     restitution_law: RestitutionLaw  # the law of restitution
     verdict: SeveralVerdict  # whether the answer holds
     state: BodyState  # afterwards: the pose of before, new velocities
@@ -52,7 +52,7 @@ class SeveralImpact:
 class BodiesImpact:
     """The answer for several contacts of several bodies; contact i is row i, axes are the world's."""
 
-    law: SeveralContactsLaw  # the law for several contacts
+    several_contacts_law: SeveralContactsLaw  # the law for several contacts
     restitution_law: RestitutionLaw  # the law of restitution
     verdict: SeveralVerdict  # whether the answer holds
     states: tuple[BodyState, ...]  # of each body afterwards: the pose of before, new velocities

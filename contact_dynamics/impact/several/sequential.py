@@ -14,7 +14,7 @@ Not covered: moments at the contacts.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -23,8 +23,10 @@ from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import BodiesImpact, SeveralContactsLaw, SeveralVerdict
 from contact_dynamics.impact.several.simultaneous import simultaneous_impulses
 from contact_dynamics.impact.spatial.one_contact import spatial_impact, spatial_pair_impact
+from contact_dynamics.numerics.vectors import point_jacobians
+from contact_dynamics.rigid_body.body import inverse_mass_matrix
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_positive
+from contact_dynamics.validation import check_choice, check_positive
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -45,7 +47,7 @@ def bodies_impact(
     contacts: ContactSet,
     pairs: Sequence[tuple[int, int | None]],
     *,
-    law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
+    several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> BodiesImpact:
@@ -57,7 +59,7 @@ def bodies_impact(
         contacts: All that touch, approaching or not; at least one.
         pairs: For each contact the body that its normal points into, and the other one, None for the world;
             indices into ``bodies``.
-        law: The law for several contacts.
+        several_contacts_law: The law for several contacts.
         restitution_law: What the coefficients of restitution mean; ENERGETIC only with SEQUENTIAL.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
 
@@ -66,12 +68,14 @@ def bodies_impact(
         InvalidFieldError: no contacts, lists of unequal length, an index that is none, a tolerance that is
             not > 0, or ENERGETIC with SIMULTANEOUS.
     """
+    check_choice("several_contacts_law", several_contacts_law, SeveralContactsLaw)
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     _check_pairs(bodies, states, contacts, pairs)
     touching = Touching(bodies, contacts, pairs, restitution_law, tolerance)
     before = check_touching(touching, states)
     strikes: tuple[tuple[int, SpatialImpact], ...] = ()
-    if law == SeveralContactsLaw.SEQUENTIAL:
+    if several_contacts_law == SeveralContactsLaw.SEQUENTIAL:
         strikes, after, verdict = strike_in_turn(touching, states)
         impulses = np.zeros((len(contacts), 3))
         for contact, impact in strikes:
@@ -81,7 +85,7 @@ def bodies_impact(
     else:
         impulses, after, verdict = _strike_at_once(touching, states)
     return BodiesImpact(
-        law=law,
+        several_contacts_law=several_contacts_law,
         restitution_law=restitution_law,
         verdict=verdict,
         states=tuple(after),
@@ -141,19 +145,23 @@ def _strike(touching: Touching, states: list[BodyState], contact: int) -> Spatia
     """Return the impact at one contact, and put the states after it in place."""
     bodies, contacts = touching.bodies, touching.contacts
     first, second = touching.pairs[contact]
-    how: dict[str, Any] = {
-        "p_WC_W": contacts.p_WC_W[contact],
-        "n_W": contacts.normals_W[contact],
-        "friction": float(contacts.frictions[contact]),
-        "restitution": float(contacts.restitutions[contact]),
-        "law": touching.restitution_law,
-        # Half, since the approach was judged by another sum with other rounding.
-        "velocity_tolerance": 0.5 * touching.tolerance,
-    }
+    touch, law = contacts[contact], touching.restitution_law
+    # Half, since the approach was judged by another sum with other rounding.
+    tolerance = 0.5 * touching.tolerance
     if second is None:
-        impact = spatial_impact(bodies[first], states[first], **how)
+        impact = spatial_impact(
+            bodies[first], states[first], touch, restitution_law=law, velocity_tolerance=tolerance
+        )
     else:
-        impact = spatial_pair_impact(bodies[first], states[first], bodies[second], states[second], **how)
+        impact = spatial_pair_impact(
+            bodies[first],
+            states[first],
+            bodies[second],
+            states[second],
+            touch,
+            restitution_law=law,
+            velocity_tolerance=tolerance,
+        )
         if impact.other_state is not None:
             states[second] = impact.other_state
     states[first] = impact.state
@@ -170,15 +178,12 @@ def _strike_at_once(
     for i, pair in enumerate(pairs):
         for index, sign in zip(pair, (1.0, -1.0), strict=True):
             if index is not None:
-                x, y, z = (contacts.p_WC_W[i] - states[index].p_WB_W).tolist()
-                jacobian[i, :, 6 * index : 6 * index + 6] = sign * np.array(
-                    [[1, 0, 0, 0, z, -y], [0, 1, 0, -z, 0, x], [0, 0, 1, y, -x, 0]]
-                )
+                arm = contacts.p_WC_W[i] - states[index].p_WB_W
+                jacobian[i, :, 6 * index : 6 * index + 6] = sign * point_jacobians(arm[None])[0]
     inverse_mass = np.zeros((size, size))
     for index, (body, state) in enumerate(zip(bodies, states, strict=True)):
-        at = 6 * index
-        inverse_mass[at : at + 3, at : at + 3] = np.eye(3) / body.mass
-        inverse_mass[at + 3 : at + 6, at + 3 : at + 6] = np.linalg.inv(body.inertia_in_world(state.R_WB))
+        own = slice(6 * index, 6 * index + 6)
+        inverse_mass[own, own] = inverse_mass_matrix(body.mass, body.inertia_in_world(state.R_WB))
     twist = np.concatenate([part for state in states for part in (state.v_WB_W, state.w_WB_W)])
     impulses, converged = simultaneous_impulses(
         contacts,

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from contact_dynamics.errors import SeparatingContactError
+from contact_dynamics.impact.energy import energy_change, law_created
 from contact_dynamics.impact.law import RestitutionLaw, check_law_rows
 from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
 from contact_dynamics.impact.spatial.batch_paths import trace_all
@@ -24,7 +25,6 @@ from contact_dynamics.impact.spatial.response import (
 )
 from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
 from contact_dynamics.tolerances import (
-    ENERGY_TOLERANCE,
     SYMMETRY_TOLERANCE,
     TRIANGLE_TOLERANCE,
     VELOCITY_TOLERANCE,
@@ -104,7 +104,7 @@ class StrikingBodies:
 class SpatialImpacts:
     """The answers to N impacts in space; row i belongs to case i. Meanings as in `SpatialImpact`."""
 
-    laws: NDArray[np.int64]  # (N,), values of RestitutionLaw
+    restitution_laws: NDArray[np.int64]  # (N,), values of RestitutionLaw
     outcomes: NDArray[np.int64]  # (N,), values of ImpactOutcome
     v_WB_W: FloatArray  # (N, 3), m/s, of the centres of mass afterwards, world axes
     w_WB_W: FloatArray  # (N, 3), rad/s, afterwards, world axes
@@ -118,17 +118,16 @@ class SpatialImpacts:
     @property
     def energy_changes(self) -> FloatArray:
         """Return the changes of kinetic energy, (N,), J."""
-        speeds = self.velocities_before_W + self.velocities_after_W
-        changes: FloatArray = 0.5 * np.einsum("ij,ij->i", self.impulses_W, speeds)
-        return changes
+        return energy_change(*self._at_contacts())
 
     @property
     def creates_energy(self) -> NDArray[np.bool_]:
         """Return which of them the law gave energy, (N,), beyond rounding. Only Newton's can."""
-        speeds = abs(self.velocities_before_W) + abs(self.velocities_after_W)
-        exchanged = np.einsum("ij,ij->i", abs(self.impulses_W), speeds)
-        created: NDArray[np.bool_] = self.energy_changes > ENERGY_TOLERANCE * exchanged
+        created: NDArray[np.bool_] = law_created(*self._at_contacts())
         return created
+
+    def _at_contacts(self) -> tuple[list[FloatArray], ...]:
+        return list(self.impulses_W.T), list(self.velocities_before_W.T), list(self.velocities_after_W.T)
 
 
 def spatial_impacts(
@@ -138,7 +137,7 @@ def spatial_impacts(
     frictions: ArrayLike,
     restitutions: ArrayLike,
     others: StrikingBodies | None = None,
-    laws: ArrayLike = RestitutionLaw.POISSON,
+    restitution_laws: ArrayLike = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SpatialImpacts:
     """Return what N impacts in space do; the same as `spatial_impact`, or `spatial_pair_impact`, of each.
@@ -149,7 +148,7 @@ def spatial_impacts(
         frictions: (N,) or one number, >= 0.
         restitutions: (N,) or one number, in [0, 1].
         others: What they strike, where it is not the fixed world.
-        laws: (N,) or one, values of RestitutionLaw.
+        restitution_laws: (N,) or one, values of RestitutionLaw.
         velocity_tolerance: m/s, >= 0. A normal or tangential velocity of a contact within it counts as zero.
 
     Raises:
@@ -162,13 +161,13 @@ def spatial_impacts(
         "normals_W": check_unit_rows("normals_W", normals_W, 3),
         "frictions": check_not_negative_rows("frictions", frictions),
         "restitutions": check_share_rows("restitutions", restitutions),
-        "laws": check_law_rows("laws", laws),
+        "restitution_laws": check_law_rows("restitution_laws", restitution_laws),
         **{f"bodies.{name}": rows for name, rows in bodies.fields.items()},
     }
     if others is not None:
         fields |= {f"others.{name}": rows for name, rows in others.fields.items()}
     count = common_length(fields)
-    every_law = np.broadcast_to(fields["laws"], count)
+    every_law = np.broadcast_to(fields["restitution_laws"], count)
     outcomes = np.empty(count, dtype=np.int64)
     results = np.empty((18 if others is None else 24, count))
     # Lanes that a formula is not meant for are computed too, and not used.
@@ -183,7 +182,7 @@ def spatial_impacts(
                     result[chunk] = component
     triples = [results[i : i + 3].T for i in range(0, len(results), 3)]
     return SpatialImpacts(
-        laws=every_law.astype(np.int64),
+        restitution_laws=every_law.astype(np.int64),
         outcomes=outcomes,
         v_WB_W=triples[0],
         w_WB_W=triples[1],

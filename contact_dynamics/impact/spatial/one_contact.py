@@ -33,11 +33,13 @@ from contact_dynamics.impact.spatial.response import (
 from contact_dynamics.impact.spatial.result import SpatialImpact
 from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_array, check_not_negative, check_unit, check_within
+from contact_dynamics.validation import (
+    check_choice,
+    check_not_negative,
+)
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
+    from contact_dynamics.contact.contact import Contact
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
 
@@ -45,12 +47,9 @@ if TYPE_CHECKING:
 def spatial_impact(
     body: MassProperties,
     state: BodyState,
+    contact: Contact,
     *,
-    p_WC_W: ArrayLike,
-    n_W: ArrayLike,
-    friction: float,
-    restitution: float,
-    law: RestitutionLaw = RestitutionLaw.POISSON,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SpatialImpact:
     """Return what the impact of ``body`` does.
@@ -58,29 +57,18 @@ def spatial_impact(
     Args:
         body: Mass and angular inertia.
         state: Pose and velocities just before.
-        p_WC_W: (3,), m, the contact, world.
-        n_W: (3,), unit normal into the body, world axes.
-        friction: Coulomb's mu, >= 0.
-        restitution: e, in [0, 1].
-        law: What the coefficient of restitution means.
+        contact: Where, along which normal into the body, with which friction and restitution. Curvatures play
+            no part in an impact.
+        restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A normal or tangential velocity of the contact within it counts as
             zero.
 
     Raises:
         SeparatingContactError: the contact's normal velocity is above the tolerance.
-        InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, or e outside [0, 1].
+        InvalidFieldError: the tolerance is negative.
     """
     return _impact(
-        body,
-        state,
-        None,
-        None,
-        p_WC_W=p_WC_W,
-        n_W=n_W,
-        friction=friction,
-        restitution=restitution,
-        law=law,
-        velocity_tolerance=velocity_tolerance,
+        body, state, None, None, contact, law=restitution_law, velocity_tolerance=velocity_tolerance
     )
 
 
@@ -89,12 +77,9 @@ def spatial_pair_impact(
     state: BodyState,
     other: MassProperties,
     other_state: BodyState,
+    contact: Contact,
     *,
-    p_WC_W: ArrayLike,
-    n_W: ArrayLike,
-    friction: float,
-    restitution: float,
-    law: RestitutionLaw = RestitutionLaw.POISSON,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SpatialImpact:
     """Return what the impact of two bodies in space does; no moment passes the contact.
@@ -104,28 +89,16 @@ def spatial_pair_impact(
         state: Of the first body just before.
         other: The second body.
         other_state: Of the second body just before.
-        p_WC_W: (3,), m, the contact, world.
-        n_W: (3,), unit normal into the first body, world axes.
-        friction: Coulomb's mu, >= 0.
-        restitution: e, in [0, 1].
-        law: What the coefficient of restitution means.
+        contact: Where, along which normal into the first body, with which friction and restitution.
+        restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A normal or tangential relative velocity within it counts as zero.
 
     Raises:
         SeparatingContactError: the contact's relative normal velocity is above the tolerance.
-        InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, or e outside [0, 1].
+        InvalidFieldError: the tolerance is negative.
     """
     return _impact(
-        body,
-        state,
-        other,
-        other_state,
-        p_WC_W=p_WC_W,
-        n_W=n_W,
-        friction=friction,
-        restitution=restitution,
-        law=law,
-        velocity_tolerance=velocity_tolerance,
+        body, state, other, other_state, contact, law=restitution_law, velocity_tolerance=velocity_tolerance
     )
 
 
@@ -134,26 +107,20 @@ def _impact(
     state: BodyState,
     other: MassProperties | None,
     other_state: BodyState | None,
+    contact: Contact,
     *,
-    p_WC_W: ArrayLike,
-    n_W: ArrayLike,
-    friction: float,
-    restitution: float,
     law: RestitutionLaw,
     velocity_tolerance: float,
 ) -> SpatialImpact:
     """Return the impact of a body on ``other``; None is the fixed world."""
-    normal = check_unit("contact normal", n_W, 3)
-    point = check_array("contact position", p_WC_W, (3,))
-    mu = check_not_negative("friction", friction)
-    e = check_within("restitution", restitution, 0.0, 1.0)
+    check_choice("restitution_law", law, RestitutionLaw)
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
 
-    first, second = _responding(body, state, point), None
+    first, second = _responding(body, state, contact.p_WC_W), None
     if other is not None and other_state is not None:
-        second = _responding(other, other_state, point)
+        second = _responding(other, other_state, contact.p_WC_W)
     velocity = velocity_at_contact(first, second)
-    axes = contact_axes(first, second, tuple(normal.tolist()))
+    axes = contact_axes(first, second, tuple(contact.normal_W.tolist()))
     u1, u2, v_n = axes.components(velocity)
     if not v_n <= tolerance:
         raise SeparatingContactError(
@@ -168,8 +135,8 @@ def _impact(
         v_n = 0.0
     if still or rests:
         velocity = axes.in_world((u1, u2, v_n))
-    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, min(mu, LARGEST_FRICTION))
-    path = trace(sliding, (u1, u2), v_n, restitution=e, law=law)
+    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, min(contact.friction, LARGEST_FRICTION))
+    path = trace(sliding, (u1, u2), v_n, restitution=contact.restitution, law=law)
 
     impulse = axes.in_world(path.impulse)
     v, w = pushed(first, impulse)
@@ -180,7 +147,7 @@ def _impact(
     columns = np.array([axes.t1, axes.t2, axes.n]).T
     matrix = np.array([[axes.l1, 0.0, axes.k1], [0.0, axes.l2, axes.k2], [axes.k1, axes.k2, axes.kn]])
     return SpatialImpact(
-        law=law,
+        restitution_law=law,
         outcome=path.outcome,
         jams=path.jams,
         state=replace(state, v_WB_W=np.array(v), w_WB_W=np.array(w)),

@@ -10,12 +10,16 @@ shares of the relative velocity.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
-from contact_dynamics.numerics.elementwise import Number, Vector3, combined, cross, dot, larger, sign, sqrt
+from contact_dynamics.numerics.elementwise import Number, larger, sign, sqrt
+from contact_dynamics.numerics.vectors import combined, cross, dot, tangents_by_sign
+from contact_dynamics.rotations.one import rows_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+Vector3: TypeAlias = "tuple[Number, Number, Number]"
 
 _LEAST_PIVOT: Final = 1e-30
 """Relative to its diagonal entry. A pivot of an inertia matrix is > 0 but for rounding."""
@@ -89,13 +93,9 @@ def responding(  # noqa: PLR0917 - the columns of one table
     rest = i_yz - l31 * i_xy
     l32 = rest / d2
     d3 = larger(i_zz - l31 * i_xz - l32 * rest, _LEAST_PIVOT * i_zz)
-    x, y, z, s = q
-    rotation = (
-        (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + s * z), 2.0 * (x * z - s * y)),
-        (2.0 * (x * y - s * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + s * x)),
-        (2.0 * (x * z + s * y), 2.0 * (y * z - s * x), 1.0 - 2.0 * (x * x + y * y)),
-    )
-    return Responding(1.0 / mass, (i_xx, d2, d3, l21, l31, l32), rotation, r, v, w)
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rows_of(*q)
+    columns = ((xx, yx, zx), (xy, yy, zy), (xz, yz, zz))
+    return Responding(1.0 / mass, (i_xx, d2, d3, l21, l31, l32), columns, r, v, w)
 
 
 def velocity_at_contact(body: Responding, other: Responding | None) -> Vector3:
@@ -129,7 +129,7 @@ def response(body: Responding, a: Vector3, b: Vector3, n: Vector3) -> Response:
 
 def contact_axes(body: Responding, other: Responding | None, normal: Vector3) -> ContactAxes:
     """Return the contact's axes and response, of ``body`` against the fixed world or against ``other``."""
-    a, b = _tangents(normal)
+    a, b = tangents_by_sign(normal)
     whole = response(body, a, b, normal)
     if other is not None:
         second = response(other, a, b, normal)
@@ -176,12 +176,3 @@ def pushed(body: Responding, impulse: Vector3) -> tuple[Vector3, Vector3]:
 def _in_body(body: Responding, vector: Vector3) -> Vector3:
     e_x, e_y, e_z = body.rotation
     return (dot(e_x, vector), dot(e_y, vector), dot(e_z, vector))
-
-
-def _tangents(n: Vector3) -> tuple[Vector3, Vector3]:
-    """Return two unit tangents (Duff et al. 2017, "Building an orthonormal basis, revisited")."""
-    x, y, z = n
-    s = sign(z)
-    a = -1.0 / (s + z)
-    b = x * y * a
-    return (1.0 + s * x * x * a, s * b, -s * x), (b, s + y * y * a, -y)

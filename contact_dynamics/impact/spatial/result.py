@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from contact_dynamics.impact.energy import energy_change, law_created
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.tolerances import ENERGY_TOLERANCE
 from contact_dynamics.validation import FloatArray
 
 
@@ -14,7 +14,7 @@ from contact_dynamics.validation import FloatArray
 class SpatialImpact:
     """The answer to one impact in space. Impulses act on the body; all arrays are in world axes."""
 
-    law: RestitutionLaw  # the restitution law that was asked for
+    restitution_law: RestitutionLaw  # the restitution law that was asked for
     outcome: ImpactOutcome  # what the contact did
     jams: bool  # whether sliding drove the contact into compression at first
     state: BodyState  # afterwards: the pose of before, new velocities
@@ -38,10 +38,12 @@ class SpatialImpact:
     @property
     def energy_change(self) -> float:
         """Return the change of kinetic energy, J: the impulse times the contact's mean velocity."""
-        return 0.5 * float(self.impulse_W @ (self.velocity_before_W + self.velocity_after_W))
+        return energy_change(*self._at_contact())
 
     @property
     def creates_energy(self) -> bool:
         """Return whether the law gave the body energy, beyond rounding."""
-        speeds = abs(self.velocity_before_W) + abs(self.velocity_after_W)
-        return self.energy_change > ENERGY_TOLERANCE * float(abs(self.impulse_W) @ speeds)
+        return bool(law_created(*self._at_contact()))
+
+    def _at_contact(self) -> tuple[list[float], list[float], list[float]]:
+        return self.impulse_W.tolist(), self.velocity_before_W.tolist(), self.velocity_after_W.tolist()

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.errors import InvalidFieldError, UndecidedError
+from contact_dynamics.numerics.convex_hull import hull_of
 from contact_dynamics.rigid_body.inertia.closed_surface import closed_surface
 from contact_dynamics.rigid_body.inertia.distribution import MassDistribution, inertia_of_second_moments
 from contact_dynamics.rigid_body.inertia.mass_or_density import mass_of
@@ -60,8 +61,6 @@ def convex_hull(
         InvalidFieldError: the points lie in a plane, a number is not finite, or not exactly one of mass and
             density is given.
     """
-    from scipy.spatial import ConvexHull, QhullError
-
     vertices = check_magnitude("vertices", check_array("vertices", p_FV_F, (None, 3)))
     flat = InvalidFieldError("vertices", f"{len(vertices)} points", "four or more, not in one plane")
     if len(vertices) < 4:
@@ -71,8 +70,8 @@ def convex_hull(
     if thickness <= _EPSILON * len(vertices) * float(np.abs(vertices).max()):
         raise flat
     try:
-        triangles: NDArray[np.int64] = ConvexHull(points).simplices.astype(np.int64)
-    except QhullError:
+        triangles = hull_of("vertices", points).simplices
+    except UndecidedError:
         raise flat from None
     inward = signed_volumes(points, triangles) < 0.0  # their mean is inside
     triangles[inward] = triangles[inward][:, ::-1]

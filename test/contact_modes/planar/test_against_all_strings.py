@@ -6,7 +6,7 @@ import random
 
 import pytest
 
-from contact_dynamics.contact_modes import ContactModeAnswer, ModeVerdict, planar_contact_modes
+from contact_dynamics.contact_modes import ModeVerdict, PlanarModeAnswer, planar_contact_modes
 from contact_dynamics.contact_modes.planar import cone
 from contact_dynamics.contact_modes.planar import friction_edges as edges
 from contact_modes.evidence import check_evidence
@@ -50,12 +50,12 @@ DEGENERATE = {
 }
 
 
-def ask(case: FloatCase) -> ContactModeAnswer:
+def ask(case: FloatCase) -> PlanarModeAnswer:
     body, velocity, contacts, wrench = case
     return planar_contact_modes(body, velocity, contacts, wrench)
 
 
-def compare(exact: ExactCase, case: FloatCase) -> ContactModeAnswer:
+def compare(exact: ExactCase, case: FloatCase) -> PlanarModeAnswer:
     kinematic = kinematic_modes(exact)
     answer = ask(case)
     assert set(answer.kinematic_modes) == kinematic

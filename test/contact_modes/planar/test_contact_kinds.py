@@ -12,13 +12,13 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.curvature import Curvatures
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact_modes import (
-    ConsistentMode,
+    PlanarMode,
     planar_contact_modes,
     spatial_contact_modes,
     spatial_kinematic_modes,
 )
 from contact_dynamics.errors import OutOfPlaneError
-from contact_dynamics.plane.projection import PlaneOfMotion, project
+from contact_dynamics.plane.projection import PlaneOfMotion, project_onto_plane
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import cylinder, sphere
@@ -37,7 +37,7 @@ def contact(
     return PlanarContact(r=r, normal=(0.0, 1.0), friction=friction, body_curvature=k_B, surface_curvature=k_S)
 
 
-def only(velocity: PlanarVelocity, *contacts: PlanarContact, body: PlanarBody = DISC) -> ConsistentMode:
+def only(velocity: PlanarVelocity, *contacts: PlanarContact, body: PlanarBody = DISC) -> PlanarMode:
     answer = planar_contact_modes(body, velocity, contacts, WEIGHT)
     assert len(answer.modes) == 1, [mode.mode for mode in answer.modes]
     return answer.modes[0]
@@ -170,7 +170,7 @@ def test_a_can_found_on_its_side_rolls_in_space_as_in_its_plane() -> None:
     lying = state((math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)), (3.0, 0.0, 0.0), (0.0, 3.0 / R, 0.0))
     contacts = find_contacts(can, lying, [FLOOR])
     assert len(contacts) == 2
-    problem = project(
+    problem = project_onto_plane(
         can.mass_properties,
         lying,
         contacts,
@@ -202,7 +202,7 @@ def test_a_can_that_lies_askew_to_the_plane_is_refused() -> None:
         body_curvatures=askew,
     )
     with pytest.raises(OutOfPlaneError, match="body_curvatures"):
-        project(
+        project_onto_plane(
             MassProperties(mass=M, I_B=np.eye(3)),
             state((0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
             contacts,

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from contact_dynamics.contact_modes import ContactModeAnswer, planar_contact_modes
+from contact_dynamics.contact_modes import PlanarModeAnswer, planar_contact_modes
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_modes.evidence import check_evidence
 from oracles.contact_mode_cases import FloatCase, draw, rounded
@@ -20,11 +20,11 @@ SWAPPED = str.maketrans("lr", "rl")
 cases = st.integers(0, 10**6).map(lambda seed: rounded(draw(seed, most_contacts=5)))
 
 
-def ask(case: FloatCase) -> ContactModeAnswer:
+def ask(case: FloatCase) -> PlanarModeAnswer:
     return planar_contact_modes(case[0], case[1], case[2], case[3])
 
 
-def strings(answer: ContactModeAnswer) -> tuple[set[str], set[str]]:
+def strings(answer: PlanarModeAnswer) -> tuple[set[str], set[str]]:
     return set(answer.kinematic_modes), {mode.mode for mode in answer.modes}
 
 

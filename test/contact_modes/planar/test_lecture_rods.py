@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from contact_dynamics.contact_modes import ContactModeAnswer, ModeVerdict, Refusal, planar_contact_modes
+from contact_dynamics.contact_modes import ModeVerdict, PlanarModeAnswer, Refusal, planar_contact_modes
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 
 LENGTH = 4.0
@@ -24,7 +24,7 @@ def rod_tip(friction: float) -> PlanarContact:
     return PlanarContact(r=r, normal=(0.0, 1.0), friction=friction)
 
 
-def ask(velocity: PlanarVelocity, wrench: PlanarWrench, friction: float) -> ContactModeAnswer:
+def ask(velocity: PlanarVelocity, wrench: PlanarWrench, friction: float) -> PlanarModeAnswer:
     return planar_contact_modes(ROD, velocity, [rod_tip(friction)], wrench)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from contact_dynamics.contact_modes import ContactModeAnswer, ModeVerdict, Refusal, planar_contact_modes
+from contact_dynamics.contact_modes import ModeVerdict, PlanarModeAnswer, Refusal, planar_contact_modes
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 
@@ -19,11 +19,11 @@ def ask(
     w: float = 0.0,
     f: tuple[float, float] = (0.0, -10.0),
     moment: float = 0.0,
-) -> ContactModeAnswer:
+) -> PlanarModeAnswer:
     return planar_contact_modes(BODY, PlanarVelocity(v=v, w=w), [BELOW], PlanarWrench(f=f, moment=moment))
 
 
-def letters(answer: ContactModeAnswer) -> list[str]:
+def letters(answer: PlanarModeAnswer) -> list[str]:
     return [mode.mode for mode in answer.modes]
 
 

@@ -8,9 +8,9 @@ import random
 import pytest
 
 from contact_dynamics.contact_modes import (
-    ModeMargin,
     ModeVerdict,
-    ModeWrenchSet,
+    PlanarModeMargin,
+    PlanarWrenchSet,
     planar_contact_modes,
     planar_mode_map,
     planar_mode_margins,
@@ -54,7 +54,7 @@ def test_the_map_says_what_the_modes_say(seed: int) -> None:
         assert found == {mode for mode, depth in depths.items() if depth > 0.0}
 
 
-def combination(one: ModeWrenchSet, chance: random.Random) -> PlanarWrench:
+def combination(one: PlanarWrenchSet, chance: random.Random) -> PlanarWrench:
     parts = [(wrench, chance.uniform(0.1, 1.0)) for wrench in one.generators]
     shares = [chance.uniform(0.1, 1.0) for _ in one.vertices]
     parts += [(vertex, share / sum(shares)) for vertex, share in zip(one.vertices, shares, strict=True)]
@@ -125,7 +125,7 @@ def test_just_inside_the_margin_the_mode_holds_and_just_outside_are_those_told(s
     length = body.radius_of_gyration * random.Random(seed).choice([0.1, 1.0, 10.0])
     size = math.hypot(*wrench.f, wrench.moment / length)
 
-    def asked_again(margin: ModeMargin, step: float) -> tuple[str, ...]:
+    def asked_again(margin: PlanarModeMargin, step: float) -> tuple[str, ...]:
         part, change = step / margin.margin, margin.change
         f = (wrench.f[0] + part * change.f[0], wrench.f[1] + part * change.f[1])
         there = PlanarWrench(f=f, moment=wrench.moment + part * change.moment)

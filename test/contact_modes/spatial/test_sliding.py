@@ -10,9 +10,9 @@ import pytest
 from scipy.optimize import linprog
 
 from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact.friction import tangents
 from contact_dynamics.contact_modes import spatial_kinematic_modes, spatial_sliding_modes
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.numerics.vectors import tangents_towards
 from contact_dynamics.rigid_body.body import BodyState
 
 X, Y, Z = np.eye(3)
@@ -62,7 +62,7 @@ def possible(contacts: ContactSet, mode: str, planes: int) -> bool:
         def row(way: np.ndarray, point: np.ndarray = point) -> np.ndarray:
             return np.concatenate([way, np.cross(point, way)])
 
-        one, two = tangents(normal)
+        one, two = tangents_towards(normal)
         (positive if letter == "s" else zero).append(row(normal))
         if letter == "f":
             zero += [row(one), row(two)]
@@ -122,7 +122,7 @@ def test_a_box_at_two_walls_has_these_modes_and_no_others() -> None:
     allowed = np.ones(len(motions), dtype=bool)
     for i, (point, normal) in enumerate(zip(contacts.p_WC_W, contacts.normals_W, strict=True)):
         accelerations = motions[:, :3] + np.cross(motions[:, 3:], point)
-        one, two = tangents(normal)
+        one, two = tangents_towards(normal)
         above, x, y = accelerations @ normal, accelerations @ one, accelerations @ two
         quarter = np.select([(x > 0) & (y >= 0), (x <= 0) & (y > 0), (x < 0) & (y <= 0)], [0, 1, 2], 3)
         item = 2 * quarter + ((x != 0.0) & (y != 0.0))

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 
 import numpy as np
 import pytest
 from scipy.optimize import linprog
+from scipy.spatial.transform import Rotation
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import BodyStatics, Certainty, planar_statics, spatial_statics
-from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.errors import InvalidFieldError, TooLargeError, UndecidedError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
@@ -145,6 +147,50 @@ def test_planar_cases_have_the_planes_answer(seed: int) -> None:
     if space.equilibrium != Certainty.NO:
         assert space.stable_disturbance <= plane.stable_disturbance * (1.0 + 1e-6)
         assert (space.jammed == Certainty.NO) == (plane.jammed == Certainty.NO)
+
+
+# Three corners on a floor, each found twice, with normals that are some 1e-5 rad apart.
+CORNERS = np.array([(0.6, -1.0, -0.5), (-0.1, -0.6, -0.5), (-0.6, -0.4, -0.5)] * 2)
+LEANING = np.array(
+    [(-10.8, 3.9), (-4.7, 13.499), (15.2, 30.5), (21.999, -1.7), (-28.599, -22.199), (-5.6, -10.2)]
+)
+
+
+def test_corners_found_twice_have_an_answer_in_every_attitude() -> None:
+    """Rounding depends on the attitude as on the machine: in half of them Qhull alone gives up."""
+    normals = np.column_stack([1e-6 * LEANING, np.ones(len(LEANING))])
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    force = -normals.sum(axis=0) + [0.1, 0.05, 0.0]
+    torque = -np.cross(CORNERS, normals).sum(axis=0)
+    found = [
+        spatial_statics(
+            BODY,
+            STATE,
+            touching(list(map(tuple, CORNERS @ R.T)), list(map(tuple, normals @ R.T))),
+            force_W=R @ force,
+            torque_W=R @ torque,
+            friction_facets=16,
+        )
+        for R in Rotation.random(16, random_state=22).as_matrix()
+    ]
+    rooms = [one.stable_disturbance for one in found]
+    assert min(rooms) > 0.01
+    assert rooms == pytest.approx([rooms[0]] * len(rooms), rel=1e-6)
+
+
+@pytest.mark.parametrize("apart", [10.0**-i for i in range(6, 15)])
+def test_contacts_that_nearly_coincide_are_answered_or_refused_by_name(apart: float) -> None:
+    normals = np.array([(0.68508724, 0.41538837, -0.59842124), (-0.31675377, -0.29525161, 0.90138423)])
+    point = np.array([-0.51296316, -1.24467599, 1.11255807])
+    chance = np.random.default_rng(3)
+    for _ in range(20):
+        points = [tuple(point), tuple(point + apart * chance.normal(size=3))]
+        force, torque = chance.normal(size=3), chance.normal(size=3)
+        with contextlib.suppress(UndecidedError):
+            found = spatial_statics(
+                BODY, STATE, touching(points, list(map(tuple, normals)), 0.3), force_W=force, torque_W=torque
+            )
+            assert found.equilibrium == Certainty.NO  # a torque about the one point cannot be balanced
 
 
 def can_balance(found: ContactSet, wrench: np.ndarray, share: float) -> bool:

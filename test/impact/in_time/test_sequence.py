@@ -83,13 +83,28 @@ def test_a_rebound_without_restitution_stays_at_once() -> None:
 def test_beyond_the_window_nothing_strikes() -> None:
     state, world = dropped_pin(0.002), world_of(PIN, floor(e=0.5))
     first = math.sqrt(2.0 * 0.002 / G)
-    assert impact_sequence(PIN, state, world, window=0.9 * first).strikes == ()
+    early = impact_sequence(PIN, state, world, window=0.9 * first)
+    assert (early.strikes, early.end) == ((), SequenceEnd.WINDOW_ENDED)
     alone = impact_sequence(PIN, state, world, window=0.9999 * first + 1e-5)
     assert (alone.end, len(alone.strikes)) == (SequenceEnd.CHATTERS, len(alone.strikes))
     # The first rebound, at e = 1, takes twice as long as the fall.
     elastic = impact_sequence(PIN, state, world_of(PIN, floor(e=1.0)), window=1.9 * first)
     assert (elastic.end, elastic.order) == (SequenceEnd.NOTHING_STRIKES, (0,))
     assert elastic.limit_seconds is None
+
+
+def test_a_drop_that_takes_longer_than_the_window_says_so() -> None:
+    state, world = dropped_pin(0.5), world_of(PIN, floor(e=0.5))
+    found = impact_sequence(PIN, state, world)
+    assert found.end == SequenceEnd.WINDOW_ENDED
+    assert found.message.startswith("no strike within the window of 0.05 s after the state; a longer window")
+    assert len(impact_sequence(PIN, state, world, window=1.0).strikes) > 0
+    elastic = impact_sequence(PIN, state, world_of(PIN, floor(e=1.0)), window=0.4)
+    assert elastic.message.startswith("no further strike within the window of 0.4 s after the last one")
+    bounded = impact_sequence(PIN, state, world_of(PIN, floor(e=1.0)), window=1.0, most_strikes=2)
+    assert bounded.message.startswith("the bound of 2 strikes was reached")
+    rests = impact_sequence(PIN, dropped_pin(0.002), world)
+    assert rests.message.startswith("infinitely many rebounds end: the contacts 0 stay")
 
 
 def test_the_number_of_strikes_is_bounded() -> None:

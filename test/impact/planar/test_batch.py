@@ -55,7 +55,7 @@ def scalar(cases: dict[str, np.ndarray], i: int, law: RestitutionLaw) -> PlanarI
             friction=cases["frictions"][i],
             restitution=cases["restitutions"][i],
         ),
-        law=law,
+        restitution_law=law,
     )
 
 
@@ -63,7 +63,7 @@ def scalar(cases: dict[str, np.ndarray], i: int, law: RestitutionLaw) -> PlanarI
 def test_equals_the_scalar_call_to_the_last_bit(law: RestitutionLaw) -> None:
     # More than one chunk, so that their seams are inside.
     cases = random_cases(5000)
-    batch = planar_impacts(**cases, law=law)
+    batch = planar_impacts(**cases, restitution_law=law)
     assert set(batch.outcomes.tolist()) == set(ImpactOutcome)
     creates_energy = batch.creates_energy
     assert creates_energy.any() == (law is RestitutionLaw.NEWTON)

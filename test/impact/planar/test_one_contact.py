@@ -36,7 +36,7 @@ def strike(
         body,
         PlanarVelocity(v=v, w=w),
         PlanarContact(r=r, normal=normal, friction=friction, restitution=restitution),
-        law=law,
+        restitution_law=law,
         velocity_tolerance=velocity_tolerance,
     )
 

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from contact_dynamics.contact.contact import Contact
 from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact import (
     RestitutionLaw,
@@ -73,7 +74,9 @@ def random_body(rng: np.random.Generator) -> tuple[MassProperties, BodyState]:
 @given(seed=st.integers(0, 2**32))
 def test_planar_momentum_and_energy(law: RestitutionLaw, seed: int) -> None:
     first, before, second, other_before, contact, other_r = planar_draw(seed)
-    answer = planar_pair_impact(first, before, second, other_before, contact, other_r=other_r, law=law)
+    answer = planar_pair_impact(
+        first, before, second, other_before, contact, other_r=other_r, restitution_law=law
+    )
     after, other_after = answer.velocity, answer.other_velocity
     assert other_after is not None
     # Angular momentum about the contact, to which each body's centre is at -r.
@@ -116,11 +119,13 @@ def test_spatial_momentum_and_energy(law: RestitutionLaw, seed: int) -> None:
         state,
         second,
         other_state,
-        p_WC_W=point,
-        n_W=normal,
-        friction=float(10.0 ** rng.uniform(-1.5, 0.5)),
-        restitution=float(rng.uniform()),
-        law=law,
+        Contact(
+            p_WC_W=point,
+            normal_W=normal,
+            friction=float(10.0 ** rng.uniform(-1.5, 0.5)),
+            restitution=float(rng.uniform()),
+        ),
+        restitution_law=law,
     )
     assert answer.other_state is not None
     before, after = (
@@ -161,8 +166,8 @@ def test_a_heavy_second_body_is_the_world(law: RestitutionLaw, seed: int) -> Non
         contact = replace(contact, normal=(-contact.normal[0], -contact.normal[1]))
     heavy = PlanarBody(mass=1e30, inertia=1e30)
     rest = PlanarVelocity(v=(0.0, 0.0), w=0.0)
-    alone = planar_impact(first, before, contact, law=law)
-    answer = planar_pair_impact(first, before, heavy, rest, contact, other_r=other_r, law=law)
+    alone = planar_impact(first, before, contact, restitution_law=law)
+    answer = planar_pair_impact(first, before, heavy, rest, contact, other_r=other_r, restitution_law=law)
     assert answer.outcome is alone.outcome
     assert answer.impulse == pytest.approx(alone.impulse, rel=1e-12, abs=1e-12)
     assert answer.velocity.v == pytest.approx(alone.velocity.v, rel=1e-12, abs=1e-11)
@@ -192,10 +197,7 @@ def test_ball_against_the_corner_of_a_free_block() -> None:
         BodyState(p_WB_W=[0.3, 0.0, 1.05], q_WB=IDENTITY, v_WB_W=[0.0, 0.0, -2.0], w_WB_W=np.zeros(3)),
         MassProperties(mass=2.0, I_B=np.diag([0.2, 0.25, 0.3])),
         BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)),
-        p_WC_W=[0.3, 0.0, 1.0],
-        n_W=[0.0, 0.0, 1.0],
-        friction=0.0,
-        restitution=0.8,
+        Contact(p_WC_W=[0.3, 0.0, 1.0], normal_W=[0.0, 0.0, 1.0], friction=0.0, restitution=0.8),
     )
     impulse = 1.8 * 2.0 / (1.0 / 0.5 + 1.0 / 2.0 + 0.3**2 / 0.25)
     assert answer.impulse_W == pytest.approx([0.0, 0.0, impulse], rel=1e-14)
@@ -216,6 +218,8 @@ def test_the_fixed_world_has_no_state_afterwards() -> None:
     point = state.p_WB_W + 0.1
     normal = -state.velocity_of_point(point)
     answer = spatial_impact(
-        body, state, p_WC_W=point, n_W=normal / np.linalg.norm(normal), friction=0.1, restitution=0.1
+        body,
+        state,
+        Contact(p_WC_W=point, normal_W=normal / np.linalg.norm(normal), friction=0.1, restitution=0.1),
     )
     assert answer.other_state is None

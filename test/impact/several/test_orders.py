@@ -61,7 +61,11 @@ def test_cube_on_its_face_at_once(restitution: float, law: RestitutionLaw) -> No
     """By symmetry it stays level: the centre's velocity turns round by e."""
     contacts = floor_contacts(FACE, friction=0.3, restitution=restitution)
     answer = several_impact(
-        CUBE, falling(0.05, [0.0, 0.0, -2.0]), contacts, law=SIMULTANEOUS, restitution_law=law
+        CUBE,
+        falling(0.05, [0.0, 0.0, -2.0]),
+        contacts,
+        several_contacts_law=SIMULTANEOUS,
+        restitution_law=law,
     )
     assert answer.verdict is SeveralVerdict.RESOLVED
     assert answer.state.v_WB_W == pytest.approx([0.0, 0.0, 2.0 * restitution], abs=1e-12)
@@ -75,7 +79,9 @@ def test_cube_on_its_face_at_once(restitution: float, law: RestitutionLaw) -> No
 def test_sliding_cube_on_its_face_at_once(restitution: float) -> None:
     """Friction of mu times the whole impulse slows the slide; its lever arm loads the leading feet more."""
     contacts = floor_contacts(FACE, friction=0.1, restitution=restitution)
-    answer = several_impact(CUBE, falling(0.05, [3.0, 0.0, -1.0]), contacts, law=SIMULTANEOUS)
+    answer = several_impact(
+        CUBE, falling(0.05, [3.0, 0.0, -1.0]), contacts, several_contacts_law=SIMULTANEOUS
+    )
     assert answer.verdict is SeveralVerdict.RESOLVED
     total = 0.5 * (1.0 + restitution)
     if restitution == 0.0:
@@ -97,7 +103,11 @@ def test_cube_on_an_edge(law: SeveralContactsLaw, restitution_law: RestitutionLa
     offset = 0.02
     contacts = floor_contacts([[offset, -0.05, 0.0], [offset, 0.05, 0.0]], friction=0.0, restitution=0.0)
     answer = several_impact(
-        CUBE, falling(0.07, [0.0, 0.0, -1.0]), contacts, law=law, restitution_law=restitution_law
+        CUBE,
+        falling(0.07, [0.0, 0.0, -1.0]),
+        contacts,
+        several_contacts_law=law,
+        restitution_law=restitution_law,
     )
     assert answer.verdict is SeveralVerdict.RESOLVED
     inertia = float(CUBE.I_B[0, 0])
@@ -152,7 +162,7 @@ def test_rocking_block() -> None:
     )
     kept = 1.0 - 1.5 * half_width**2 / (half_width**2 + half_height**2)
     for law in SeveralContactsLaw:
-        answer = several_impact(block, state, contacts, law=law)
+        answer = several_impact(block, state, contacts, several_contacts_law=law)
         assert answer.verdict is SeveralVerdict.RESOLVED
         assert answer.state.w_WB_W == pytest.approx([0.0, 2.0 * kept, 0.0], abs=1e-9)
         assert answer.velocities_after_W[0, 2] > 0.0
@@ -186,7 +196,9 @@ def test_resolved_answers_are_admissible(
 ) -> None:
     body, state, contacts = random_set(seed)
     try:
-        answer = several_impact(body, state, contacts, law=law, restitution_law=restitution_law)
+        answer = several_impact(
+            body, state, contacts, several_contacts_law=law, restitution_law=restitution_law
+        )
     except SeparatingContactError:
         return
     normals = contacts.normals_W
@@ -213,15 +225,7 @@ def test_one_contact_is_the_single_law(restitution_law: RestitutionLaw) -> None:
         restitutions=contacts.restitutions[:1],
     )
     answer = several_impact(body, state, alone, restitution_law=restitution_law)
-    single = spatial_impact(
-        body,
-        state,
-        p_WC_W=alone.p_WC_W[0],
-        n_W=alone.normals_W[0],
-        friction=float(alone.frictions[0]),
-        restitution=float(alone.restitutions[0]),
-        law=restitution_law,
-    )
+    single = spatial_impact(body, state, alone[0], restitution_law=restitution_law)
     assert answer.order == (0,)
     assert answer.impulses_W[0].tolist() == single.impulse_W.tolist()
     outcomes = outcomes_over_orders(body, state, alone, restitution_law=restitution_law)
@@ -249,7 +253,7 @@ def test_refusals() -> None:
             CUBE,
             falling(0.05, [0.0, 0.0, -1.0]),
             contacts,
-            law=SIMULTANEOUS,
+            several_contacts_law=SIMULTANEOUS,
             restitution_law=RestitutionLaw.ENERGETIC,
         )
     with pytest.raises(InvalidFieldError, match="velocity_tolerance"):
@@ -279,7 +283,12 @@ def test_bodies_that_touch_no_world_keep_their_momenta(
     pairs = [(0, 1)] * len(contacts)
     try:
         answer = bodies_impact(
-            [body, other], [state, below], contacts, pairs, law=law, restitution_law=restitution_law
+            [body, other],
+            [state, below],
+            contacts,
+            pairs,
+            several_contacts_law=law,
+            restitution_law=restitution_law,
         )
     except SeparatingContactError:
         return

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from contact_dynamics.contact.contact import Contact
 from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact import (
     ImpactOutcome,
@@ -67,8 +68,10 @@ def random_problem(seed: int) -> dict[str, object]:
 
 
 def solve(problem: dict[str, object], law: RestitutionLaw = RestitutionLaw.POISSON) -> SpatialImpact:
-    rest = {name: value for name, value in problem.items() if name not in {"body", "state"}}
-    return spatial_impact(problem["body"], problem["state"], law=law, **rest)  # type: ignore[arg-type]
+    names = {"p_WC_W": "p_WC_W", "n_W": "normal_W", "friction": "friction", "restitution": "restitution"}
+    contact = Contact(**{names[name]: problem[name] for name in names})
+    rest = {name: value for name, value in problem.items() if name not in {"body", "state", *names}}
+    return spatial_impact(problem["body"], problem["state"], contact, restitution_law=law, **rest)  # type: ignore[arg-type]
 
 
 # Independent integrations.
@@ -107,7 +110,7 @@ def test_a_central_impact_of_an_uneven_body_swerves_too(across: float) -> None:
     """
     body = MassProperties(mass=1.0, I_B=np.diag([1.0, 0.05, 1.0]))
     state = BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[1.0, across, -0.3], w_WB_W=np.zeros(3))
-    answer = spatial_impact(body, state, p_WC_W=-UP, n_W=UP, friction=0.3, restitution=0.5)
+    answer = spatial_impact(body, state, Contact(p_WC_W=-UP, normal_W=UP, friction=0.3, restitution=0.5))
     # Uncoupled, the normal impulse is that of a point.
     assert answer.impulse_W @ UP == pytest.approx(0.45, rel=1e-13)
     assert np.linalg.norm(answer.impulse_W[:2]) <= 0.3 * 0.45
@@ -238,11 +241,8 @@ def test_newton_creates_energy_where_friction_stops_the_slide() -> None:
         law: spatial_impact(
             MassProperties(mass=1.0, I_B=np.eye(3)),
             BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[-0.3, 0.0, -1.0], w_WB_W=np.zeros(3)),
-            p_WC_W=[1.0, 0.0, -1.0],
-            n_W=UP,
-            friction=0.6,
-            restitution=1.0,
-            law=law,
+            Contact(p_WC_W=[1.0, 0.0, -1.0], normal_W=UP, friction=0.6, restitution=1.0),
+            restitution_law=law,
         )
         for law in RestitutionLaw
     }
@@ -257,7 +257,7 @@ def test_from_rest_a_contact_leaves_in_an_invariant_direction(angle: float) -> N
     body = MassProperties(mass=1.0, I_B=np.diag([0.2, 0.3, 0.35]))
     arm = np.array([0.8 * c, 0.8 * s, -0.6])
     state = BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[0.0, 0.0, -1.0], w_WB_W=np.zeros(3))
-    answer = spatial_impact(body, state, p_WC_W=arm, n_W=UP, friction=0.1, restitution=0.5)
+    answer = spatial_impact(body, state, Contact(p_WC_W=arm, normal_W=UP, friction=0.1, restitution=0.5))
     assert answer.outcome is ImpactOutcome.SLIDES
     assert PathEvent.SAMPLE not in answer.path_events
     after = answer.velocity_after_W[:2]
@@ -276,7 +276,9 @@ def test_sphere_with_spin(friction: float, grips: bool) -> None:  # noqa: FBT001
     """
     body = MassProperties(mass=1.0, I_B=0.4 * np.eye(3))
     state = BodyState(p_WB_W=UP, q_WB=IDENTITY, v_WB_W=[1.0, 2.0, -1.5], w_WB_W=[0.3, -0.8, 5.0])
-    answer = spatial_impact(body, state, p_WC_W=[0.0, 0.0, 0.0], n_W=UP, friction=friction, restitution=0.6)
+    answer = spatial_impact(
+        body, state, Contact(p_WC_W=[0.0, 0.0, 0.0], normal_W=UP, friction=friction, restitution=0.6)
+    )
     slide = np.array([1.0 + 0.8, 2.0 + 0.3, 0.0])
     slip_speed = np.linalg.norm(slide)
     tangential = min(friction * 1.6 * 1.5, slip_speed * 2.0 / 7.0)
@@ -292,7 +294,9 @@ def test_eccentric_rod_drop_without_friction() -> None:
     """A thin level rod of length 2 strikes with its end: I_n = (1 + e) v / (1/m + 1/I), by momentum alone."""
     body = MassProperties(mass=1.0, I_B=np.diag([1e-6, 1.0 / 3.0, 1.0 / 3.0]))
     state = BodyState(p_WB_W=[0.0, 0.0, 0.0], q_WB=IDENTITY, v_WB_W=[0.0, 0.0, -2.0], w_WB_W=np.zeros(3))
-    answer = spatial_impact(body, state, p_WC_W=[1.0, 0.0, 0.0], n_W=UP, friction=0.0, restitution=0.5)
+    answer = spatial_impact(
+        body, state, Contact(p_WC_W=[1.0, 0.0, 0.0], normal_W=UP, friction=0.0, restitution=0.5)
+    )
     assert answer.impulse_W == pytest.approx([0.0, 0.0, 1.5 * 2.0 / 4.0], rel=1e-14)
     assert answer.state.w_WB_W == pytest.approx([0.0, -0.75 * 3.0, 0.0], rel=1e-14)
 
@@ -316,7 +320,7 @@ def test_planar_problems_have_planar_answers(law: RestitutionLaw, seed: int) -> 
         PlanarBody(mass=mass, inertia=inertia),
         PlanarVelocity(v=tuple(v), w=w),
         PlanarContact(r=tuple(r), normal=(0.0, 1.0), friction=friction, restitution=e),
-        law=law,
+        restitution_law=law,
     )
     # Plane x, y with z as the axis; then the whole problem turned at random.
     turn = random_rotation(rng)
@@ -328,11 +332,8 @@ def test_planar_problems_have_planar_answers(law: RestitutionLaw, seed: int) -> 
     answer = spatial_impact(
         body,
         state,
-        p_WC_W=turn @ [*r, 0.0],
-        n_W=turn @ [0.0, 1.0, 0.0],
-        friction=friction,
-        restitution=e,
-        law=law,
+        Contact(p_WC_W=turn @ [*r, 0.0], normal_W=turn @ [0.0, 1.0, 0.0], friction=friction, restitution=e),
+        restitution_law=law,
     )
     assert answer.outcome is flat.outcome
     assert answer.jams == flat.jams
@@ -359,16 +360,13 @@ def test_planes_along_the_axes_have_planar_answers_to_rounding(law: RestitutionL
         PlanarBody(mass=mass, inertia=inertia),
         PlanarVelocity(v=tuple(v), w=0.0),
         PlanarContact(r=tuple(r), normal=(0.0, 1.0), friction=friction, restitution=e),
-        law=law,
+        restitution_law=law,
     )
     answer = spatial_impact(
         MassProperties(mass=mass, I_B=inertia * np.diag([0.7, 1.0, 0.8])),
         BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[v[0], 0.0, v[1]], w_WB_W=np.zeros(3)),
-        p_WC_W=[r[0], 0.0, r[1]],
-        n_W=UP,
-        friction=friction,
-        restitution=e,
-        law=law,
+        Contact(p_WC_W=[r[0], 0.0, r[1]], normal_W=UP, friction=friction, restitution=e),
+        restitution_law=law,
     )
     assert answer.outcome is flat.outcome
     assert list(answer.path_events) == [event for event, _ in flat.path]
@@ -519,7 +517,7 @@ def test_resting_contact_gets_no_impulse_unless_it_jams() -> None:
 
     def strike(friction: float) -> SpatialImpact:
         return spatial_impact(
-            body, state, p_WC_W=[-1.0, 0.0, -4.0], n_W=UP, friction=friction, restitution=0.5
+            body, state, Contact(p_WC_W=[-1.0, 0.0, -4.0], normal_W=UP, friction=friction, restitution=0.5)
         )
 
     assert strike(0.499).outcome is ImpactOutcome.NO_IMPULSE
@@ -546,8 +544,8 @@ def test_path_runs_from_nothing_to_the_total() -> None:
         ("friction", -0.1, "friction"),
         ("friction", math.nan, "friction"),
         ("restitution", 1.1, "restitution"),
-        ("n_W", [0.0, 0.0, 0.0], "contact normal"),
-        ("p_WC_W", [0.0, math.inf, 0.0], "contact position"),
+        ("n_W", [0.0, 0.0, 0.0], "normal_W"),
+        ("p_WC_W", [0.0, math.inf, 0.0], "p_WC_W"),
         ("velocity_tolerance", -1.0, "velocity_tolerance"),
     ],
 )
@@ -569,6 +567,9 @@ def test_weak_coupling_ends_in_the_central_impact(offset: float, law: Restitutio
     body = MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5]))
     state = BodyState(p_WB_W=UP, q_WB=IDENTITY, v_WB_W=[1e-6, 2e-6, -1e-7], w_WB_W=np.zeros(3))
     answer = spatial_impact(
-        body, state, p_WC_W=[offset, -0.3 * offset, 0.0], n_W=UP, friction=0.0, restitution=0.5, law=law
+        body,
+        state,
+        Contact(p_WC_W=[offset, -0.3 * offset, 0.0], normal_W=UP, friction=0.0, restitution=0.5),
+        restitution_law=law,
     )
     assert answer.impulse_W == pytest.approx([0.0, 0.0, 2.0 * 1.5e-7], rel=1e-8, abs=1e-22)

@@ -1,0 +1,49 @@
+"""The energy that an impact takes or gives, and the one judgement whether its law created some.
+
+The change of kinetic energy is the impulse times the mean of the contact's velocities before and after. The
+energies of the bodies give it too, but their difference has lost the digits of a small change.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from contact_dynamics.tolerances import ENERGY_TOLERANCE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.numerics.elementwise import Real
+
+
+def energy_change(impulse: Sequence[Real], before: Sequence[Real], after: Sequence[Real]) -> Real:
+    """Return the change of kinetic energy, J, by an impulse at one contact.
+
+    Args:
+        impulse: N s, by components along any axes; each is a number, or an array with a case an element.
+        before: m/s, the contact's velocity before, relative to what it touches, along the same axes.
+        after: m/s, afterwards.
+    """
+    return 0.5 * _inner(impulse, [v + w for v, w in zip(before, after, strict=True)])
+
+
+def law_created(impulse: Sequence[Real], before: Sequence[Real], after: Sequence[Real]) -> Any:
+    """Return whether an impulse, as in `energy_change`, gave energy: a bool, or an array of them."""
+    sizes = [abs(v) + abs(w) for v, w in zip(before, after, strict=True)]
+    return created(energy_change(impulse, before, after), _inner([abs(i) for i in impulse], sizes))
+
+
+def created(change: Real, exchanged: Real) -> Any:
+    """Return whether a change of energy, J, is more than rounding, beside the energy it is summed from, J.
+
+    At one contact that is what the impulse exchanges; at several, where impulses in turn give and take
+    what does not remain, the kinetic energy before.
+    """
+    return change > ENERGY_TOLERANCE * exchanged
+
+
+def _inner(a: Sequence[Real], b: Sequence[Real]) -> Real:
+    total = a[0] * b[0]
+    for x, y in zip(a[1:], b[1:], strict=True):
+        total = total + x * y
+    return total

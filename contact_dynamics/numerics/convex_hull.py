@@ -1,0 +1,62 @@
+"""Convex hulls by Qhull, asked again in other rotations where rounding makes it give up.
+
+Qhull merges facets that are nearly one. Where points are symmetric, or lie nearly in a plane, rounding can
+lead it into merges that it refuses, in one rotation of a thousand or in four of five; others give the hull.
+"""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact_dynamics.errors import UndecidedError
+from contact_dynamics.validation import FloatArray
+
+_TRIALS: Final = 40
+
+
+class Hull(NamedTuple):
+    """The convex hull of points in a space of d dimensions; indices are those of the points."""
+
+    vertices: NDArray[np.int64]  # (k,), the extreme points; counterclockwise in the plane
+    simplices: NDArray[np.int64]  # (s, d), that make up the surface, in any orientation
+    neighbors: NDArray[np.int64]  # (s, d), of a simplex: across from each of its points
+    equations: FloatArray  # (s, d + 1), outward unit normals, then offsets: normal . x + offset <= 0 within
+
+
+def hull_of(field: str, points: FloatArray) -> Hull:
+    """Return the convex hull of points, (n, d), d >= 2, that do not lie in a plane.
+
+    Args:
+        field: What the caller knows the points by; an error names it.
+        points: Any unit.
+
+    Raises:
+        UndecidedError: the points lie in a plane to rounding, or Qhull gives up in all rotations.
+    """
+    from scipy.spatial import ConvexHull, QhullError
+
+    middle = points.mean(axis=0)
+    rotation = np.eye(points.shape[1])
+    chance = np.random.default_rng(0)
+    for _ in range(_TRIALS):
+        try:
+            hull = ConvexHull((points - middle) @ rotation)
+        except (QhullError, ValueError):  # the latter: numbers so large that their differences are infinite
+            rotation = np.linalg.qr(chance.normal(size=rotation.shape))[0]
+            if np.linalg.det(rotation) < 0.0:
+                rotation[:, 0] *= -1.0  # keeps what is counterclockwise
+            continue
+        outward = hull.equations[:, :-1] @ rotation.T
+        return Hull(
+            vertices=hull.vertices.astype(np.int64),
+            simplices=hull.simplices.astype(np.int64),
+            neighbors=hull.neighbors.astype(np.int64),
+            equations=np.column_stack([outward, hull.equations[:, -1] - outward @ middle]),
+        )
+    raise UndecidedError(
+        f"{field}: found a convex hull that hangs on rounding (Qhull gave up in {_TRIALS} rotations), "
+        "allowed are points and directions that are either the same or clearly apart"
+    )

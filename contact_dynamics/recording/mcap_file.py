@@ -1,0 +1,97 @@
+"""The bytes of an MCAP file and where its records begin and end, never beyond the end of the file."""
+
+from __future__ import annotations
+
+import io
+import struct
+import zlib
+from typing import TYPE_CHECKING, Any, Final
+
+from mcap.data_stream import ReadDataStream
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from typing import BinaryIO
+
+MAGIC: Final = b"\x89MCAP0\r\n"
+HEAD: Final = struct.Struct("<BQ")  # of a record: its kind, and the length of what follows
+WINDOW: Final = 1024 * 1024  # bytes looked through at once
+
+_LONGEST_CONTENT: Final = 16 * 1024 * 1024  # bytes, of a record that is neither chunk, message nor attachment
+
+
+class DamagedError(Exception):
+    """What stands at a place of the file is no whole record; never leaves this package."""
+
+
+class McapFile:
+    """The first ``size`` bytes of a file that is open for reading."""
+
+    def __init__(self, path: Path, stream: BinaryIO, size: int) -> None:
+        """Read from ``stream``, which stays the caller's to close."""
+        self.path = path
+        self.size = size
+        self._stream = stream
+
+    def bytes_at(self, position: int, count: int) -> bytes:
+        """Return so many bytes, or fewer where the file ends."""
+        self._stream.seek(position)
+        return self._stream.read(max(0, min(count, self.size - position)))
+
+    def number_at(self, position: int, width: int) -> int:
+        """Return an unsigned number of so many bytes."""
+        return int.from_bytes(self.bytes_at(position, width), "little")
+
+    def checksum(self, begin: int, end: int) -> int:
+        """Return the CRC32 of a stretch."""
+        checksum = 0
+        for position in range(begin, end, WINDOW):
+            checksum = zlib.crc32(self.bytes_at(position, min(WINDOW, end - position)), checksum)
+        return checksum
+
+    def head(self, position: int) -> tuple[int, int, int]:
+        """Return the kind of the record at a position, and where its content begins and ends.
+
+        Raises:
+            DamagedError: the file has not so many bytes.
+        """
+        head = self.bytes_at(position, HEAD.size)
+        if len(head) < HEAD.size:
+            message = "the file ends here, before its end"
+            raise DamagedError(message)
+        kind, length = HEAD.unpack(head)
+        begin = position + HEAD.size
+        if length > self.size - begin:
+            message = f"a record claims {length} bytes, {self.size - begin} are left"
+            raise DamagedError(message)
+        return kind, begin, begin + length
+
+    def content(self, begin: int, end: int) -> bytes:
+        """Return the content of a record of a kind that is short.
+
+        Raises:
+            DamagedError: it is not short.
+        """
+        if end - begin > _LONGEST_CONTENT:
+            message = f"a record claims {end - begin} bytes"
+            raise DamagedError(message)
+        return self.bytes_at(begin, end - begin)
+
+
+def demand(condition: bool, what: str) -> None:  # noqa: FBT001  as an assertion
+    """Raise `DamagedError` unless the condition holds; ``what`` is wrong then."""
+    if not condition:
+        message = f"{what} is wrong"
+        raise DamagedError(message)
+
+
+def parsed(record_type: Any, content: bytes) -> Any:
+    """Return a record of the library's whose fields fill its length; `DamagedError` where it has others."""
+    stream = ReadDataStream(io.BytesIO(content))
+    try:
+        record = record_type.read(stream)
+    except Exception as error:  # damaged bytes make the library raise nearly anything
+        message = f"a {record_type.__name__} record is wrong: {error!r}"
+        raise DamagedError(message) from error
+    demand(stream.count == len(content), f"the length of a {record_type.__name__} record")
+    return record

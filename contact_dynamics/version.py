@@ -1,0 +1,28 @@
+"""The version of this package, which stands once: in package.xml.
+
+A source tree has the file beside the package. An installed package has the number in its metadata, which
+setup.py takes from the same file.
+"""
+
+from __future__ import annotations
+
+import re
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+_NAME = "contact_dynamics"
+
+
+def version_of_this_package() -> str:
+    """Return the version, as in "0.1.0"; without a package.xml or metadata raise `AttributeError`."""
+    manifest = Path(__file__).parents[1] / "package.xml"
+    if manifest.is_file():
+        text = manifest.read_text(encoding="utf-8")
+        found = re.search(rf"<name>{_NAME}</name>\s*<version>([^<]+)</version>", text)
+        if found:
+            return found[1]
+    try:
+        return version(_NAME)
+    except PackageNotFoundError:
+        message = f"__version__: found no package.xml beside {_NAME}, allowed is that or an installed package"
+        raise AttributeError(message) from None

@@ -1,0 +1,98 @@
+#!/bin/sh
+# Runs the suite's physics with the oldest and the newest NumPy and SciPy, on every Python of this machine, and with the newest
+# wheels as if on several kinds of processors. Prints a table; fails where anything failed or could not be set up.
+# usage: matrix.sh FOLDER
+#   PYTHONS="3.10 3.13"     only these
+#   TESTS="test/impact"     only these files or folders
+set -u
+
+folder=$1
+here=$(dirname "$0")
+tests=${TESTS:-test}
+# What needs ROS, rerun or the built environment is not physics.
+beside="nodes demo recording viewing msg_adapters test_setup architecture test_examples.py"
+tools=$(grep -E '^(pytest|hypothesis|mpmath)\b' requirements/test.txt)
+
+mkdir -p "$folder"
+table=$folder/table.txt
+missing=$folder/missing.txt
+: >"$table"
+pythons=$("$here/pythons.sh" 2>"$missing")
+if [ -n "${PYTHONS:-}" ]; then
+    pythons=$(echo "$pythons" | grep -E "^($(echo "$PYTHONS" | sed 's/\./\\./g; s/  */|/g'))	")
+fi
+failed=0
+
+wheels_of() {
+    "$1/bin/python" -c 'import numpy, scipy; print("NumPy", numpy.__version__, "SciPy", scipy.__version__)'
+}
+
+row() { # Python, wheels, processor, result
+    printf '%-7s %-7s %-28s %-12s %s\n' "$1" "$2" "$3" "$4" "$5" >>"$table"
+    printf '%s %s %s %s: %s\n' "$1" "$2" "$3" "$4" "$5"
+}
+
+run_suite() { # environment, Python, which wheels, processor
+    log=$1/.made/suite-$4.log
+    ignored=""
+    for each in $beside; do ignored="$ignored --ignore=test/$each"; done
+    [ "$4" = own ] && unset OPENBLAS_CORETYPE || export OPENBLAS_CORETYPE="$4"
+    # The lists are split into words on purpose.
+    # shellcheck disable=SC2086
+    if "$1/bin/python" -m pytest -q -p no:cacheprovider $ignored $tests >"$log" 2>&1; then
+        row "$2" "$3" "$(wheels_of "$1")" "$4" "$(tail -n 1 "$log")"
+    else
+        failed=1
+        grep -E '^(FAILED|ERROR)' "$log"
+        row "$2" "$3" "$(wheels_of "$1")" "$4" "FAILED: $(tail -n 1 "$log"), see $log"
+    fi
+    unset OPENBLAS_CORETYPE
+}
+
+install() { # environment, program, which wheels
+    "$here/make_venv.sh" "$1" "$2" || return 1
+    case $3 in
+        oldest) wanted="-r requirements/oldest.txt" ;;
+        newest) wanted="--upgrade numpy scipy" ;;
+    esac
+    # shellcheck disable=SC2086
+    "$here/install.sh" "$1" --only-binary numpy,scipy -r requirements/core.txt $tools $wanted
+}
+
+# OpenBLAS picks its kernels by the processor; these it can be told to take, where the processor has their instructions.
+processors="Prescott Nehalem"
+for pair in avx:Sandybridge avx2:Haswell avx2:Zen avx512f:SkylakeX; do
+    if grep -qwm 1 "${pair%%:*}" /proc/cpuinfo; then processors="$processors ${pair##*:}"; fi
+done
+
+newest=""
+while IFS='	' read -r version program; do
+    [ -n "$version" ] || continue
+    for wheels in oldest newest; do
+        environment=$folder/$version-$wheels
+        if install "$environment" "$program" "$wheels"; then
+            run_suite "$environment" "$version" "$wheels" own
+            [ "$wheels" = newest ] && newest=$environment && newest_version=$version
+        else
+            failed=1
+            row "$version" "$wheels" "" "" "FAILED: not installed"
+        fi
+    done
+done <<END
+$pythons
+END
+
+if [ -n "$newest" ]; then
+    for processor in $processors; do
+        run_suite "$newest" "$newest_version" newest "$processor"
+    done
+else
+    failed=1
+    echo "No Python could be tried." >&2
+fi
+
+echo
+printf '%-7s %-7s %-28s %-12s %s\n' Python wheels versions processor result
+cat "$table"
+cat "$missing"
+exit $failed

@@ -1,0 +1,135 @@
+"""Every measured number in a document is that of `benchmarks/measured.json`, and stands between its marks."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from benchmarks import _quotes as quotes
+from running_server import ROOT
+
+PAGES = [str(path.relative_to(ROOT)) for path in quotes.documents()]
+UNITS = "ns|us|µs|ms|s|min|h|Hz|kHz|MHz|GHz|m|mm|cm|nm|rad|°|deg|m/s|rad/s|N|bytes|KiB|MiB|KB|MB|GB|%|times"
+NUMBER = re.compile(
+    rf"(?<![\w./-])\d[\d.,]*(?:e-?\d+)?(?:(?: to | and )\d[\d.,]*(?:e-?\d+)?)? ?(?:{UNITS})(?![\w⁻²³/*·])"
+)
+VAGUE = re.compile(
+    r"\b(?:tenths?|hundredths?|thousandths?|(?:few|some|two|a) (?:nano|micro|milli)?seconds?) of an? \w+"
+    r"|(?:few|some|two|several|tens of) (?:nano|micro|milli)seconds",
+)
+
+NOT_MEASURED: dict[
+    str, list[str]
+] = {  # what is set, derived, told of the world, or held by a test of its own
+    "README.md": ["100 s at 1 kHz", "RK4 at 1 ms"],
+    "docs/contact-modes.md": ["−90°", "1e-9 m/s", "1e-6 m"],
+    "docs/contacts.md": ["at least 92 %"],  # test_contacts_of_shapes
+    "docs/log.md": ["100 ms", "5 s old", "64 MiB", "1 kHz", "256 KiB", "240 Hz"],
+    "docs/notation.md": ["−90°", "0.1 µs"],  # of a double at 1.8e9 s
+    "docs/several-contacts.md": ["some milliseconds apart", "within 1 cm", "0.05 s unless"],
+    "docs/tumbling.md": [
+        "a tenth of a second ahead",
+        "5e-15 rad",  # tumbling/test_accuracy
+        "1e16 rad",
+        "1 % is a tenth of a radian",
+        "0.1 rad",
+        "last 0.1 s",
+    ],
+    "contact_dynamics_interfaces/README.md": [
+        "pushed with 2 N",
+        "last 0.1 s",
+        "some milliseconds before",
+        "(0.001 s)",
+        "0.1 rad",
+    ],
+}
+
+
+def prose(page: str) -> str:
+    """A document without its code, and without what stands between marks."""
+    text = re.sub(
+        r"^```.*?^```", "", (ROOT / page).read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE
+    )
+    return re.sub(r"`[^`\n]*`", "", quotes.MARKED.sub("", text))
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_quoted_number_is_the_one_of_the_file(page: str) -> None:
+    text = (ROOT / page).read_text(encoding="utf-8")
+    marks = {match[1]: match[2] for match in quotes.MARKED.finditer(text)}
+    assert len(marks) <= text.count("<!--/-->") == text.count("<!--bench:")
+    assert marks.items() <= quotes.texts(quotes.read()).items()
+    # The same number twice in one document, too.
+    assert quotes.rewritten(text, quotes.texts(quotes.read())) == text
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_no_measured_number_stands_outside_marks(page: str) -> None:
+    text = " ".join(prose(page).split())
+    for phrase in NOT_MEASURED.get(page, []):
+        assert phrase in text
+        text = text.replace(phrase, "")
+    assert NUMBER.findall(text) + VAGUE.findall(text) == []
+
+
+@pytest.mark.parametrize(
+    "text", ["0.19 m/s", "2 to 15 ms", "takes 3.5 µs,", "1.14 m/s |", "0.2°", "some tenths of a second"]
+)
+def test_what_looks_measured_is_seen(text: str) -> None:
+    assert NUMBER.search(text) or VAGUE.search(text)
+
+
+def test_the_file_says_how_its_numbers_came_about() -> None:
+    measured = quotes.read()
+    names = {path.stem for path in (ROOT / "benchmarks").glob("*.py") if not path.stem.startswith("_")}
+    assert set(measured) <= names
+    for name, one in measured.items():
+        assert one["command"] == f"python -m benchmarks {name}"
+        assert re.fullmatch(r"\d{4}-\d\d-\d\d", one["date"])
+        assert re.fullmatch(r"\d+ cores( at [\d.]+ GHz)? \(\w+\)", one["machine"])
+        assert {"python", "numpy", "scipy"} <= set(one["versions"])
+        assert all(number.split(".")[0] == name for number in one["numbers"])
+
+
+@pytest.fixture
+def own_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a document and a file of numbers of its own."""
+    (tmp_path / "README.md").write_text(
+        "takes <!--bench:flights.time-->9 s<!--/-->, off by <!--bench:flights.error-->?<!--/-->\n",
+        encoding="utf-8",
+    )
+    monkeypatch.setattr(quotes, "ROOT", tmp_path)
+    monkeypatch.setattr(quotes, "FILE", tmp_path / "measured.json")
+    monkeypatch.setattr(quotes, "_offered", {})
+    return tmp_path
+
+
+def test_writing_puts_what_was_offered_into_file_and_documents(own_file: Path) -> None:
+    quotes.quote("flights.time", [0.01534, 0.0021], "ms")
+    quotes.quote("flights.error", 5.04e-17, "rad", digits=1)
+    assert quotes.write("flights") == set()
+    quotes.write_documents()
+    numbers: dict[str, Any] = json.loads((own_file / "measured.json").read_text())["flights"]["numbers"]
+    assert numbers["flights.time"] == {"value": [0.0021, 0.015], "unit": "ms"}
+    text = (own_file / "README.md").read_text(encoding="utf-8")
+    assert "takes <!--bench:flights.time-->0.0021 to 0.015 ms<!--/-->" in text
+    assert "off by <!--bench:flights.error-->5e-17 rad<!--/-->" in text
+
+
+def test_nothing_is_written_while_a_quoted_number_is_lacking(own_file: Path) -> None:
+    """Where a peer is not installed, or the recordings are not at hand."""
+    quotes.quote("flights.time", 0.0021, "ms")
+    assert quotes.write("flights") == {"flights.error"}
+    assert not (own_file / "measured.json").exists()
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [(265.0, "ms", "265 ms"), (0.2, "°", "0.2°"), ([2.0, 15.0], "ms", "2 to 15 ms"), (1.4, "", "1.4")],
+)
+def test_numbers_are_written_as_documents_write_them(value: float, unit: str, text: str) -> None:
+    assert quotes.text_of({"value": value, "unit": unit}) == text
