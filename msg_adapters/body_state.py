@@ -22,6 +22,7 @@ from msg_adapters.stamps import NS_PER_S, stamp_ns_from_msg
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import World
 
 _COVARIANCE_LENGTH: Final = 144
 
@@ -65,6 +66,15 @@ def body_state_to_msg(
     v.x, v.y, v.z = state.v_WB_W.tolist()
     w.x, w.y, w.z = state.w_WB_W.tolist()
     return msg
+
+
+def center_of_mass(body_name: str, world: World) -> FloatArray:
+    """Return where a body's centre of mass is in its published frame, (3,), m.
+
+    Messages do not say it. Of a body that the world does not know it is taken to be at that frame's origin.
+    """
+    known = (body.p_FB_F for body in world.bodies if body.name == body_name)
+    return next(known, np.zeros(3))
 
 
 def known_state_from_msg(
