@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
-from contact_dynamics.contact_modes.spatial.cone import null_space
 from contact_dynamics.contact_modes.spatial.kinematic import cone_faces
 from contact_dynamics.contact_modes.spatial.sliding import open_faces
 from contact_dynamics.contact_modes.spatial.wrenches import Way
