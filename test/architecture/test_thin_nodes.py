@@ -1,4 +1,4 @@
-"""Nodes keep parameters, subscriptions, clock and log; a question is typed from the request to the response."""
+"""Nodes keep parameters, subscriptions, clock and log; a question has types all the way to its response."""
 
 from __future__ import annotations
 
