@@ -16,7 +16,7 @@ from contact_dynamics.contact_modes.planar.wrench_sets import (
     planar_wrench_set,
 )
 from contact_dynamics.plane.types import PlanarVelocity, PlanarWrench
-from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, VELOCITY_TOLERANCE
+from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, BEYOND_MARGIN, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_not_negative, check_positive
 
 if TYPE_CHECKING:
@@ -27,9 +27,6 @@ if TYPE_CHECKING:
 
 _AT_REST: Final = PlanarVelocity(v=(0.0, 0.0), w=0.0)
 _NO_WRENCH: Final = PlanarWrench(f=(0.0, 0.0))
-_BEYOND: Final = 1e-5
-"""Part of a margin (or of the wrench, where the margin is less) by which the boundary is passed to see what
-lies behind: far more than the tolerances that make the boundary, far less than the way to the next one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -123,7 +120,7 @@ def planar_mode_margins(
             )
             continue
         way = side.outward(length)
-        step = margin + _BEYOND * max(margin, math.hypot(*wrench.f, wrench.moment / length))
+        step = margin + BEYOND_MARGIN * max(margin, math.hypot(*wrench.f, wrench.moment / length))
         beyond = _stepped(wrench, step, way)
         there, _ = judge_all(case._replace(w=(*beyond.f, beyond.moment / case.rho)), cells, accuracy)
         found.append(

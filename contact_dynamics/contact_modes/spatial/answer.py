@@ -22,10 +22,9 @@ import numpy as np
 from contact_dynamics.contact_modes.planar.result import ModeVerdict
 from contact_dynamics.contact_modes.spatial.exact_friction import Sliding, sharpened
 from contact_dynamics.contact_modes.spatial.least_forces import least_forces, misdirection
-from contact_dynamics.contact_modes.spatial.options import STRICT
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
-from contact_dynamics.tolerances import VELOCITY_TOLERANCE
+from contact_dynamics.tolerances import SAME_MOTION, STRICT, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_not_negative
 
 if TYPE_CHECKING:
@@ -38,9 +37,6 @@ if TYPE_CHECKING:
 
 FRICTION_FACETS: Final = 8
 """Edges of a friction pyramid where nothing else is asked for: it holds at least 92 % of the round cone's."""
-
-_SAME: Final = 1e-6
-"""Relative: how far the motions of two modes may lie apart where they count as the same."""
 
 
 def spatial_contact_modes(
@@ -124,7 +120,7 @@ def _are_twins(mode: SpatialMode, other: SpatialMode) -> bool:
         return True
     one = np.concatenate([mode.acceleration_W, mode.angular_acceleration_W])
     two = np.concatenate([other.acceleration_W, other.angular_acceleration_W])
-    return bool(np.abs(one - two).max() <= _SAME * (1.0 + np.abs(one).max()))
+    return bool(np.abs(one - two).max() <= SAME_MOTION * (1.0 + np.abs(one).max()))
 
 
 def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool) -> SpatialMode:

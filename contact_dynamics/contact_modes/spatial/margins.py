@@ -24,7 +24,7 @@ from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_o
 from contact_dynamics.contact_modes.spatial.statics import MOST_EDGES
 from contact_dynamics.contact_modes.spatial.wrenches import Way, supports, wrench_generators
 from contact_dynamics.errors import TooLargeError
-from contact_dynamics.tolerances import ROW_TOLERANCE, VELOCITY_TOLERANCE
+from contact_dynamics.tolerances import BEYOND_MARGIN, ROW_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_not_negative, check_positive
 
 if TYPE_CHECKING:
@@ -40,10 +40,6 @@ if TYPE_CHECKING:
 
 MARGIN_FACETS: Final = 16
 """Edges of a friction pyramid in margins where nothing else is asked for: 2 % of friction are left out."""
-
-_BEYOND: Final = 1e-5
-"""Part of a margin (or of the wrench, where the margin is less) by which the boundary is passed to see what
-lies behind: far more than the tolerances that make the boundary, far less than the way to the next one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -126,7 +122,7 @@ def spatial_mode_margins(
             # A pyramid that turns as the wrench changes may hold a little longer: the round cone's part.
             rest = (1.0 / math.cos(math.pi / friction_facets) - 1.0) * size
             for further in (0.0, rest):
-                step = margin + further + _BEYOND * max(margin, size)
+                step = margin + further + BEYOND_MARGIN * max(margin, size)
                 there = ask(wrench + step * way * metric)
                 if mode.mode not in [one.mode for one in there.modes]:
                     break

@@ -14,7 +14,8 @@ import numpy as np
 
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.spatial.restitution import Progress
-from contact_dynamics.impact.spatial.taylor import CLOSE, MOST_ITERATIONS, value, value_and_slope
+from contact_dynamics.impact.spatial.taylor import MOST_ITERATIONS, value, value_and_slope
+from contact_dynamics.tolerances import EVENT_LOCATED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -245,7 +246,7 @@ def crossings(series: list[FloatArray], level: FloatArray, begin: FloatArray, en
         beyond = (excess > 0.0) == rising
         high, low = np.where(beyond, s, high), np.where(beyond, low, s)
         guess = np.where(slope != 0.0, s - excess / slope, high)
-        done = (abs(guess - s) <= CLOSE * abs(guess)) & (slope != 0.0)
+        done = (abs(guess - s) <= EVENT_LOCATED * abs(guess)) & (slope != 0.0)
         inside = (low < guess) & (guess < high)
         s = np.where(done, s, np.where(inside, guess, 0.5 * (low + high)))
         result[lanes] = s

@@ -17,18 +17,7 @@ from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
 from contact_dynamics.impact.spatial.stop import Stop, stop_ahead
 from contact_dynamics.impact.spatial.taylor import SlidingSeries, crossing, value
 from contact_dynamics.numerics.elementwise import Number
-
-STRAIGHT: Final = 1e-12
-"""Dimensionless, of the sliding law's scale. A direction that turns more slowly is invariant: what turns it
-is the rounding of contact axes and inertia, some 1e-15, which an unstable direction would amplify."""
-
-UNCOUPLED: Final = 1e-15
-"""Dimensionless, of the tangential inverse inertia. A slower turn is the rounding of a coupling that is zero,
-as of a sphere's, whose scale is rounding too."""
-
-STOPPED: Final = 1e-13
-"""Dimensionless, of the first sliding speed. The error in impulse from going the rest of the way straight is
-below this part of the impulse that stops the contact."""
+from contact_dynamics.tolerances import STOPPED, STRAIGHT, UNCOUPLED
 
 MOST_STRETCHES: Final = 2000
 
