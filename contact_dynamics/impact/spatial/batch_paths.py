@@ -105,7 +105,7 @@ class _Slide:
         self.sliding = sliding
         self.u1, self.u2 = u[0].copy(), u[1].copy()
         self.progress = progress
-        self.with_work = progress.law == RestitutionLaw.ENERGETIC
+        self.with_work = progress.rule.needs_work
 
     def run(self, lanes: Lanes) -> None:
         """Follow ``lanes`` until each stops, with u = 0, or its impact is over."""

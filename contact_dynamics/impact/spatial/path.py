@@ -97,7 +97,7 @@ def slide(
     u1, u2 = u
     slowest = STOPPED * first_speed
     still = max(STRAIGHT * sliding.scale, UNCOUPLED * (sliding.l1 + sliding.l2))
-    with_work = progress.law == RestitutionLaw.ENERGETIC
+    with_work = progress.rule.needs_work
     for _ in range(MOST_STRETCHES):
         speed = math.sqrt(u1 * u1 + u2 * u2)
         d1, d2 = u1 / speed, u2 / speed
