@@ -17,7 +17,7 @@ from contact_dynamics.validation_batches import check_covariance
 from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 from msg_adapters.frames import check_frame, origin_of_published_frame, turned
 from msg_adapters.geometry import quaternion_from_msg, vector_from_msg
-from msg_adapters.stamps import NS_PER_S, stamp_ns_from_msg
+from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
@@ -53,8 +53,7 @@ def body_state_to_msg(
 ) -> BodyStateMsg:
     """Return the state as a message: a new one, or the one to fill."""
     msg = BodyStateMsg() if into is None else into
-    stamp = msg.header.stamp
-    stamp.sec, stamp.nanosec = divmod(int(state.stamp_ns), NS_PER_S)
+    stamp_to_msg(state.stamp_ns, into=msg.header.stamp)
     msg.header.frame_id = world_frame
     msg.body_name = body_name
     # Into what the message has already: messages cost more to build than to fill.

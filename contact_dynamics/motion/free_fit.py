@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.constants import STANDARD_GRAVITY_W
+from contact_dynamics.constants import STANDARD_GRAVITY_W, seconds_since
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.motion.free_derivative import rotation_derivatives
 from contact_dynamics.numerics.gauss_newton import gauss_newton
@@ -106,7 +106,7 @@ def fit_free_motion(
     for earlier, later in itertools.pairwise(since_newest):
         if earlier >= later:
             raise InvalidFieldError("fit window: stamps", f"{later - earlier} ns from one to the next", "> 0")
-    seconds = np.array(since_newest) * 1e-9
+    seconds = seconds_since(0, since_newest)
     gravity = check_array("gravity_W", gravity_W, (3,))
     place = _fit_place(states, seconds, gravity, noise)
     spin = _fit_rotation(body, states, seconds, noise)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.constants import STANDARD_GRAVITY_W
+from contact_dynamics.constants import STANDARD_GRAVITY_W, seconds_since
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag
 from contact_dynamics.motion.free_fit import SMALL_STEP, FitResult, StateNoise, fit_free_motion
 from contact_dynamics.motion.integrated import MOST_STEPS, ForcedMotion, forced_motion, turns_or_drags
@@ -110,7 +110,7 @@ class _Seen:
 
     def __init__(self, states: Sequence[BodyState]) -> None:
         newest = states[-1].stamp_ns
-        self.seconds = np.array([state.stamp_ns - newest for state in states]) * 1e-9
+        self.seconds = seconds_since(newest, [state.stamp_ns for state in states])
         self.p = np.array([state.p_WB_W for state in states])
         self.q = np.array([state.q_WB for state in states])
         self.v = np.array([state.v_WB_W for state in states])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from contact_dynamics.constants import ns_after
 from contact_dynamics.impact.law import ImpactOutcome
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.tumbling import Trajectory
@@ -19,7 +20,7 @@ from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 from msg_adapters.body_state import body_state_from_msg
 from msg_adapters.contacts import contacts_from_msg
 from msg_adapters.geometry import vector_from_msg
-from msg_adapters.stamps import ns_after, stamp_ns_from_msg
+from msg_adapters.stamps import stamp_ns_from_msg
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from contact_dynamics.constants import seconds_between
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.landing.earliest import next_landing
 from contact_dynamics.landing.plane_arrival import first_contact
@@ -15,7 +16,6 @@ from contact_dynamics.motion.integrated import ForcedMotion
 from contact_dynamics.nodes.subject import Knowledge, Subject, check_has_shape, or_configured
 from contact_dynamics.validation import check_array, check_unit
 from msg_adapters.geometry import vector_from_msg
-from msg_adapters.stamps import seconds_between
 
 if TYPE_CHECKING:
     from contact_dynamics.tumbling import FreeMotion

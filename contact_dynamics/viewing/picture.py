@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.constants import to_ns
 from contact_dynamics.shapes.convex import NO_SHAPE
 from contact_dynamics.viewing.blueprint import WINDOW_S, Eye, eye_on, make_blueprint
 from contact_dynamics.viewing.contact_modes import draw_contact_modes
@@ -102,7 +103,7 @@ class Picture:
             self._roll(body_name, states)
         self._newest[body_name] = states[-1]
         self._recent.extend((state.stamp_ns, state.p_WB_W) for state in states)
-        while self._recent[-1][0] - self._recent[0][0] > WINDOW_S * 1e9:
+        while self._recent[-1][0] - self._recent[0][0] > to_ns(WINDOW_S):
             self._recent.popleft()
 
     def show_trajectory(

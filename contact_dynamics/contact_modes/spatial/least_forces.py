@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.numerics.linear_spaces import row_space
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ def least_forces(of_forces: FloatArray, forces: FloatArray, edges: Sequence[Floa
         forces: (n, 3), some that the edges allow.
         edges: For each contact the edges, (k, 3), that may act, around its normal in order.
     """
-    blocks = [_basis(of_contact) for of_contact in edges]
+    blocks = [row_space(of_contact) for of_contact in edges]
     basis = np.zeros((forces.size, sum(len(block) for block in blocks)))
     at = 0
     for i, block in enumerate(blocks):
@@ -61,14 +62,6 @@ def misdirection(forces: FloatArray, directions: FloatArray, normals: FloatArray
             across = float(np.linalg.norm(np.cross(friction, way)))
             largest = max(largest, math.atan2(across, -float(friction @ way)))
     return largest
-
-
-def _basis(edges: FloatArray) -> FloatArray:
-    """Return orthonormal rows that span the edges."""
-    if len(edges) == 0:
-        return np.zeros((0, 3))
-    sizes, basis = np.linalg.svd(edges)[1:]
-    return basis[: int((sizes > ROW_TOLERANCE * sizes[0]).sum())]
 
 
 def _holds(edges: FloatArray, force: FloatArray, slack: float) -> bool:

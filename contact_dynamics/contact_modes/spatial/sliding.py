@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STICKS
-from contact_dynamics.contact_modes.spatial.cone import null_space
 from contact_dynamics.contact_modes.spatial.kinematic import cone_faces
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.numerics.linear_spaces import null_space
 from contact_dynamics.numerics.vectors import tangents_towards
 from contact_dynamics.tolerances import ROW_TOLERANCE
 

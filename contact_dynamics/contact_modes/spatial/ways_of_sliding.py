@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
-from contact_dynamics.contact_modes.spatial.cone import null_space
 from contact_dynamics.contact_modes.spatial.kinematic import cone_faces
 from contact_dynamics.contact_modes.spatial.sliding import open_faces
 from contact_dynamics.contact_modes.spatial.wrenches import Way
 from contact_dynamics.errors import TooLargeError
+from contact_dynamics.numerics.linear_spaces import null_space
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STICKS
-from contact_dynamics.contact_modes.spatial.cone import cone_of, null_space
+from contact_dynamics.contact_modes.spatial.cone import cone_of
+from contact_dynamics.numerics.linear_spaces import null_space
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
