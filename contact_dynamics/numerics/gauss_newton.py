@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Final, Generic, TypeVar
 
 import numpy as np
 
+from contact_dynamics.tolerances import SMALL_SHARE
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -27,10 +29,6 @@ MOST_ROUNDS: Final = 20
 
 MOST_HALVINGS: Final = 10
 """Of a step that does not make the residuals smaller."""
-
-SMALL_SHARE: Final = 1e-10
-"""Of the squares of the residuals: a round that explains less of them is the last. The parameters are then
-changed by some 1e-5 of their standard deviations, and by far less in a round to come."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -10,9 +10,14 @@ from contact_dynamics.contact_modes.letters import PLANAR_LETTERS
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.judgement import judge_all
 from contact_dynamics.contact_modes.planar.problem import touching_case
-from contact_dynamics.contact_modes.planar.wrench_sets import wrench_set_of
+from contact_dynamics.contact_modes.planar.wrench_sets import (
+    PlanarWrenchSet,
+    WrenchHalfSpace,
+    wrench_set_of,
+)
 from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
 from contact_dynamics.plane.types import PlanarWrench
+from contact_dynamics.tolerances import BEYOND_MARGIN
 from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
@@ -21,9 +26,6 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.planar.wrench_sets import PlanarWrenchSet, WrenchHalfSpace
 
 _NO_WRENCH: Final = PlanarWrench(f=(0.0, 0.0))
-_BEYOND: Final = 1e-5
-"""Part of a margin (or of the wrench, where the margin is less) by which the boundary is passed to see what
-lies behind: far more than the tolerances that make the boundary, far less than the way to the next one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,7 +85,7 @@ def planar_mode_margins(
             )
             continue
         way = side.outward(length)
-        step = margin + _BEYOND * max(margin, math.hypot(*wrench.f, wrench.moment / length))
+        step = margin + BEYOND_MARGIN * max(margin, math.hypot(*wrench.f, wrench.moment / length))
         beyond = _stepped(wrench, step, way)
         there, _ = judge_all(case._replace(w=(*beyond.f, beyond.moment / case.rho)), cells, accuracy)
         found.append(

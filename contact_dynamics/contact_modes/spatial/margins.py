@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_o
 from contact_dynamics.contact_modes.spatial.statics import MOST_EDGES
 from contact_dynamics.contact_modes.spatial.wrenches import Way, supports, wrench_generators
 from contact_dynamics.errors import TooLargeError
-from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.tolerances import BEYOND_MARGIN, ROW_TOLERANCE
 from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
@@ -32,10 +32,6 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.result import SpatialModeAnswer
     from contact_dynamics.contact_modes.spatial.search import Found, Search
     from contact_dynamics.validation import FloatArray
-
-_BEYOND: Final = 1e-5
-"""Part of a margin (or of the wrench, where the margin is less) by which the boundary is passed to see what
-lies behind: far more than the tolerances that make the boundary, far less than the way to the next one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -116,7 +112,7 @@ def _beyond(
     rest = (1.0 / math.cos(math.pi / problem.friction_facets) - 1.0) * size
     found: tuple[str, ...] = ()
     for further in (0.0, rest):
-        step = margin + further + _BEYOND * max(margin, size)
+        step = margin + further + BEYOND_MARGIN * max(margin, size)
         found = _modes_under(problem, problem.wrench_W + step * way * metric)
         if mode not in found:
             break

@@ -17,21 +17,15 @@ import numpy as np
 from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.numerics.vectors import tangents_towards
+from contact_dynamics.tolerances import AT_SECTORS_BORDER, STRICT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from contact_dynamics.validation import FloatArray
 
-STRICT: Final = 1e-8
-"""Relative to the largest acceleration: what an inequality must have to hold strictly. A thousand times what
-a condition may miss (`dual_simplex`)."""
-
 MILDER: Final = 0.1
 """How much less an arc must hold than its letters, whose rows are differences of unit ones."""
-
-_AT_BORDER: Final = 1e-9
-"""In sectors: how far beyond its border a sector's edge still counts as acting."""
 
 
 class Option(NamedTuple):
@@ -176,9 +170,9 @@ def acting_edges(directions: FloatArray, count: int) -> NDArray[np.bool_]:
     gap = gaps[each, widest]
     sector = 2.0 * math.pi / count
     start = (angles[each, (widest + 1) % angles.shape[1]] - math.pi) / sector + 0.5
-    first = np.floor(start - _AT_BORDER)
-    more = np.floor(start + (2.0 * math.pi - gap) / sector + _AT_BORDER) - first
+    first = np.floor(start - AT_SECTORS_BORDER)
+    more = np.floor(start + (2.0 * math.pi - gap) / sector + AT_SECTORS_BORDER) - first
     acting: NDArray[np.bool_] = (np.arange(count) - first[:, None]) % count <= more[:, None]
     least = (x * x + y * y).min(axis=1)
-    acting[(gap <= math.pi + _AT_BORDER) | (least <= _AT_BORDER**2)] = True
+    acting[(gap <= math.pi + AT_SECTORS_BORDER) | (least <= AT_SECTORS_BORDER**2)] = True
     return acting

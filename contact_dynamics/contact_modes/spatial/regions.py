@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.spatial.options import MILDER, STRICT, acting_edges
+from contact_dynamics.contact_modes.spatial.options import MILDER, acting_edges
 from contact_dynamics.numerics.linear_spaces import seen_and_unseen
-from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.tolerances import ROW_TOLERANCE, STRICT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -23,14 +23,10 @@ import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS
 from contact_dynamics.contact_modes.spatial.dual_simplex import Ends, Program
-from contact_dynamics.contact_modes.spatial.options import (
-    STRICT,
-    any_letter,
-    pyramid_of,
-    ways_of_sliding,
-)
+from contact_dynamics.contact_modes.spatial.options import any_letter, pyramid_of, ways_of_sliding
 from contact_dynamics.contact_modes.spatial.regions import Image, Region, flat_of, whole
 from contact_dynamics.errors import TooLargeError
+from contact_dynamics.tolerances import STRICT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
