@@ -21,6 +21,7 @@ import numpy as np
 
 from benchmarks._measured_errors import STEP, engine, print_both, print_head, print_row
 from benchmarks._quotes import quote
+from contact_dynamics.constants import to_seconds
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact import impact_sequence, several_impact
@@ -270,7 +271,7 @@ def _at_once(shape: Body, landing: MeasuredLanding, world: World, within: float)
 
 def _flown(shape: Body, landing: MeasuredLanding, state: BodyState) -> FloatArray:
     """Return the velocities, (6,), after free flight from a state to the second flight."""
-    rest = landing.seconds - 1e-9 * state.stamp_ns
+    rest = landing.seconds - to_seconds(state.stamp_ns)
     return _velocity(free_motion(shape.mass_properties, state, gravity_W=GRAVITY_W).state_at(rest))
 
 

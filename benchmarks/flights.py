@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks._quotes import quote
+from contact_dynamics.constants import seconds_since
 from contact_dynamics.measured.cube_tosses import read_cube_toss
 from contact_dynamics.measured.flights import find_flights
 from contact_dynamics.measured.read_toss import read_toss
@@ -64,7 +65,7 @@ class Half:
 
     def fall(self) -> float:
         """Return the acceleration down, m/s^2, of a parabola fitted to the half."""
-        times = np.array([state.stamp_ns - self.states[0].stamp_ns for state in self.states]) * 1e-9
+        times = seconds_since(self.states[0].stamp_ns, [state.stamp_ns for state in self.states])
         powers = np.column_stack([np.ones_like(times), times, -0.5 * times * times])
         heights = np.array([state.p_WB_W[2] for state in self.states])
         return float(np.linalg.lstsq(powers, heights, rcond=None)[0][2])

@@ -18,7 +18,7 @@ from contact_dynamics.validation import check_unit
 from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 from msg_adapters.frames import check_frame
 from msg_adapters.geometry import quaternion_from_msg, vector_from_msg
-from msg_adapters.stamps import NS_PER_S, stamp_ns_from_msg
+from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
@@ -55,8 +55,7 @@ def body_state_to_msg(
 ) -> BodyStateMsg:
     """Return the state as a message: a new one, or the one to fill."""
     msg = BodyStateMsg() if into is None else into
-    stamp = msg.header.stamp
-    stamp.sec, stamp.nanosec = divmod(int(state.stamp_ns), NS_PER_S)
+    stamp_to_msg(state.stamp_ns, into=msg.header.stamp)
     msg.header.frame_id = world_frame
     msg.body_name = body_name
     # Into what the message has already: messages cost more to build than to fill.

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contact_dynamics.constants import ns_after
 from contact_dynamics.impact.in_time.result import SequenceEnd
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw
@@ -24,7 +25,7 @@ from contact_dynamics_interfaces.srv import PredictImpact
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg, flat, rows
 from msg_adapters.geometry import vector_from_msg, vector_to_msg
-from msg_adapters.stamps import ns_after, stamp_ns_from_msg
+from msg_adapters.stamps import stamp_ns_from_msg
 from msg_adapters.tumbling import read_fit, write_fit
 
 if TYPE_CHECKING:

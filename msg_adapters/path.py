@@ -8,8 +8,9 @@ import numpy as np
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Path
 
+from contact_dynamics.constants import ns_after
 from msg_adapters.geometry import pose_to_msg
-from msg_adapters.stamps import ns_after, stamp_ns_from_msg, stamp_to_msg
+from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 
 if TYPE_CHECKING:
     from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg

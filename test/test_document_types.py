@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from mypy import api
 
-from contact_dynamics import BodyState, MassProperties
+from contact_dynamics import BodyState, ContactSet, MassProperties
 from running_server import ROOT
 
 PAGES = ("README.md", "docs/*.md", "contact_dynamics_interfaces/README.md")
@@ -129,6 +129,13 @@ LISTS: dict[str, dict[str, Any]] = {
     "AtTimes": {"times": [0, 1]},
     "AtStamps": {"stamps_ns": (0, 1)},
     "UntilPlane": {"plane_point": [0, 0, 0], "plane_normal": [0, 0, 1], "body_point": [0, 0, 0]},
+    "SpatialContactProblem": {
+        "body": MassProperties(mass=1, I_B=EYE),
+        "state": BodyState(**AT_REST),
+        "contacts": ContactSet(**ONE_CONTACT),
+        "force_W": [0, 0, -1],
+        "torque_W": [0, 0, 0],
+    },
     "UncertainState": {"state": BodyState(**AT_REST), "covariance": np.eye(12).tolist()},
 }
 

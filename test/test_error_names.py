@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics import contact_modes, impact
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.contact import Contact, ContactSet
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.landing.plane_arrival import first_contact
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
@@ -24,23 +24,22 @@ CONTACTS = ContactSet(
     frictions=np.array([0.3]),
     restitutions=np.array([0.5]),
 )
-STRIKES = {"p_WC_W": (0.0, 0.0, -0.5), "n_W": (0.0, 0.0, 1.0), "friction": 0.3, "restitution": 0.5}
+STRIKES = {"p_WC_W": (0.0, 0.0, -0.5), "normal_W": (0.0, 0.0, 1.0), "friction": 0.3, "restitution": 0.5}
 
 
-def modes(function: Callable[..., Any]) -> Callable[..., Any]:
+def loaded(function: Callable[..., Any]) -> Callable[..., Any]:
     return lambda **wrong: function(BODY, STATE, CONTACTS, **{"force_W": (0.0, 0.0, -9.8), **wrong})
 
 
+def problem(**wrong: Any) -> contact_modes.SpatialContactProblem:
+    good = {"body": BODY, "state": STATE, "contacts": CONTACTS, "force_W": (0.0, 0.0, -9.8)}
+    return contact_modes.SpatialContactProblem(**{**good, **wrong})
+
+
 CALLS: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
-    "spatial_impact": (
-        lambda **wrong: impact.spatial_impact(BODY, STATE, **{**STRIKES, **wrong}),
-        ("p_WC_W", "n_W"),
-    ),
-    "spatial_contact_modes": (modes(contact_modes.spatial_contact_modes), ("force_W", "torque_W")),
-    "spatial_mode_margins": (modes(contact_modes.spatial_mode_margins), ("force_W", "torque_W")),
-    "spatial_statics": (modes(contact_modes.spatial_statics), ("force_W", "torque_W")),
-    "spatial_wrench_sets": (modes(contact_modes.spatial_wrench_sets), ("force_W", "torque_W")),
-    "jamming_impact": (modes(contact_modes.jamming_impact), ("force_W", "torque_W")),
+    "Contact": (lambda **wrong: Contact(**{**STRIKES, **wrong}), ("p_WC_W", "normal_W")),
+    "SpatialContactProblem": (problem, ("force_W", "torque_W")),
+    "jamming_impact": (loaded(impact.jamming_impact), ("force_W", "torque_W")),
     "free_motion": (lambda **wrong: free_motion(BODY, STATE, **wrong), ("gravity_W",)),
     "impact_sequence_of": (
         lambda **wrong: impact.impact_sequence_of(BODY, STATE, CONTACTS, **wrong),
@@ -89,16 +88,8 @@ def test_what_is_not_finite_in_a_batch_is_named_with_its_row(field: str, value: 
 
 
 @pytest.mark.parametrize("facets", [2, 8.5, 1_000_000])
-@pytest.mark.parametrize("function", [contact_modes.spatial_contact_modes, contact_modes.spatial_wrench_sets])
-def test_facets_are_a_whole_number_within_bounds(function: Callable[..., Any], facets: float) -> None:
+def test_facets_are_a_whole_number_within_bounds(facets: float) -> None:
     with pytest.raises(
         InvalidFieldError, match=rf"^friction_facets: found {facets}, allowed is a whole number"
     ):
-        modes(function)(friction_facets=facets)
-
-
-def test_one_friction_for_a_set_of_contacts_is_refused_by_name() -> None:
-    with pytest.raises(
-        InvalidFieldError, match=r"^contacts.frictions: found 0.3, allowed is one number for each"
-    ):
-        ContactSet(p_WC_W=np.zeros((1, 3)), normals_W=np.eye(3)[2:], frictions=0.3, restitutions=np.zeros(1))  # type: ignore[arg-type]
+        problem(friction_facets=facets)

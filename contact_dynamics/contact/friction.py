@@ -22,6 +22,13 @@ MOST_FACETS: Final = 1000
 """Edges of a friction pyramid, which then leaves out 5e-6 of friction; far more would only take memory."""
 
 
+def check_facets(facets: int) -> int:
+    """Return the number of a friction pyramid's edges, or raise `InvalidFieldError`."""
+    if not isinstance(facets, (int, np.integer)) or not 3 <= facets <= MOST_FACETS:
+        raise InvalidFieldError("friction_facets", facets, f"a whole number >= 3 and <= {MOST_FACETS}")
+    return int(facets)
+
+
 def linearised_cone(
     normal: FloatArray, friction: float, facets: int, *, towards: FloatArray | None = None
 ) -> FloatArray:
@@ -34,8 +41,7 @@ def linearised_cone(
     Raises:
         InvalidFieldError: fewer than 3 facets, more than `MOST_FACETS`, or no whole number of them.
     """
-    if not isinstance(facets, (int, np.integer)) or not 3 <= facets <= MOST_FACETS:
-        raise InvalidFieldError("friction_facets", facets, f"a whole number >= 3 and <= {MOST_FACETS}")
+    check_facets(facets)
     one, two = tangents_towards(normal, towards)
     angles = 2.0 * math.pi * np.arange(facets) / facets
     edges: FloatArray = normal + friction * (np.outer(np.cos(angles), one) + np.outer(np.sin(angles), two))

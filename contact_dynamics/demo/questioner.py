@@ -16,11 +16,12 @@ from nav_msgs.msg import Odometry
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
+from contact_dynamics.constants import ns_after, seconds_between, to_seconds
 from contact_dynamics.demo.toss_publisher import QOS, WORLD_FRAME, topic_of
 from contact_dynamics.measured.velocity_estimate import WINDOW
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.odometry import body_state_from_odometry
-from msg_adapters.stamps import NS_PER_S, stamp_to_msg
+from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -137,11 +138,11 @@ class Questioner(Node):
     def _receive(self, msg: Odometry) -> None:
         state = body_state_from_odometry(msg, world_frame=WORLD_FRAME, p_FB_F=self._toss.body.p_FB_F)
         if self._epoch_ns is None:
-            self._epoch_ns = state.stamp_ns - round(float(self._toss.times[0]) * NS_PER_S)
+            self._epoch_ns = ns_after(state.stamp_ns, -float(self._toss.times[0]))
         self._newest = msg.header.stamp
-        self._now = (state.stamp_ns - self._epoch_ns) / NS_PER_S
+        self._now = seconds_between(self._epoch_ns, state.stamp_ns)
         late_ns = self.get_clock().now().nanoseconds - state.stamp_ns
-        self.latest = max(self.latest, late_ns / NS_PER_S)
+        self.latest = max(self.latest, to_seconds(late_ns))
         self._recent.append(state)
         self._heard = time.monotonic()
         self.received += 1
@@ -184,7 +185,7 @@ class Questioner(Node):
 
     def seconds_of(self, stamp: Any) -> float:
         """Return a stamp on the recording's clock, s."""
-        return (stamp.sec * NS_PER_S + stamp.nanosec - (self._epoch_ns or 0)) / NS_PER_S
+        return seconds_between(self._epoch_ns or 0, stamp_ns_from_msg(stamp))
 
     def _ask(self, request: Any) -> Asked:
         request.stamp = stamp_to_msg(self._recent[-1].stamp_ns)  # however far the toss has gone

@@ -12,6 +12,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
+from contact_dynamics.constants import to_ns, to_seconds
 from contact_dynamics.demo.arguments import toss_publisher_parser
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.measured.read_toss import read_toss
@@ -56,7 +57,7 @@ class TossPublisher(Node):
         sample waits for that, and all others come on time.
         """
         toss = self._toss
-        lead_ns = round((_LEAD_S - float(toss.times[0])) * 1e9)
+        lead_ns = to_ns(_LEAD_S - float(toss.times[0]))
         epoch_ns = self.get_clock().now().nanoseconds + lead_ns
         for sample in range(len(toss)):
             state = toss.state(sample, epoch_ns=epoch_ns)
@@ -65,7 +66,7 @@ class TossPublisher(Node):
             )
             wait_ns = state.stamp_ns - self.get_clock().now().nanoseconds
             if wait_ns > 0 and sample > 0:
-                time.sleep(wait_ns * 1e-9)
+                time.sleep(to_seconds(wait_ns))
             self._publisher.publish(msg)
 
     def drain(self) -> None:

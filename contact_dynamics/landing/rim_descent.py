@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 from typing import Final, NamedTuple
 
-from contact_dynamics.tolerances import GRAZING_DEPTH
+from contact_dynamics.tolerances import GRAZING_DEPTH, RIM_ACCURACY
 
 _MOST_STEPS: Final = 60
 """Newton's steps down to a root. Four are usual; where it is all but double, each halves the distance."""
@@ -66,14 +66,9 @@ class RimAbove(NamedTuple):
             if value >= 0.0 or slope >= 0.0:
                 break
             before, t = t, max(t - value / slope, 0.0)
-            if before - t <= _ACCURACY * before:
+            if before - t <= RIM_ACCURACY * before:
                 break
         return t
-
-
-_ACCURACY: Final = 1e-9
-"""Relative, of the last of Newton's steps, after which the square of it is left; at an all but double root as
-much again, where the depth is its square."""
 
 
 def _arrival(height: float, rate: float, pull: float) -> float:

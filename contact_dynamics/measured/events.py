@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.constants import to_ns
 from contact_dynamics.measured.flight_fit import FEWEST_FRAMES, FlightFit, MeasuredState, fit_flight
 from contact_dynamics.measured.flights import DEVIATIONS, ORIENTATION_SLACK, POSITION_SLACK, find_flights
 from contact_dynamics.rigid_body.body import BodyState
@@ -163,7 +164,7 @@ def _rest(toss: Toss) -> MeasuredRest | None:
         q_WB=turned(toss.q_WB[-1], mean[None, 3:])[0],
         v_WB_W=np.zeros(3),
         w_WB_W=np.zeros(3),
-        stamp_ns=round(float(toss.times[begin]) * 1e9),
+        stamp_ns=to_ns(float(toss.times[begin])),
     )
     return MeasuredRest(
         time=float(toss.times[begin]),

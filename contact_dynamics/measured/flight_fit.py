@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.constants import to_ns
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.many import matrices_of, rotation_vectors, turned
 
@@ -80,7 +81,7 @@ class FlightFit:
                 q_WB=q,
                 v_WB_W=self.v_W + after * self.gravity_W,
                 w_WB_W=inverse @ self.L_W,
-                stamp_ns=round(time * 1e9),
+                stamp_ns=to_ns(time),
             ),
             position_std=math.sqrt(to_p @ self.cov_p @ to_p),
             orientation_std=np.sqrt(cov_q.diagonal()),

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contact_dynamics.constants import ns_after
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.measured.velocity_estimate import frames_in_window, slope_noise
 from contact_dynamics.rigid_body.body import BodyState
@@ -82,7 +83,7 @@ class Toss:
             q_WB=self.q_WB[sample],
             v_WB_W=self.v_WB_W[sample],
             w_WB_W=self.w_WB_W[sample],
-            stamp_ns=epoch_ns + round(float(self.times[sample]) * 1e9),
+            stamp_ns=ns_after(epoch_ns, float(self.times[sample])),
         )
 
     @property

@@ -21,12 +21,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.constants import STANDARD_GRAVITY_W
+from contact_dynamics.constants import STANDARD_GRAVITY_W, seconds_since
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.motion.free_derivative import rotation_derivatives
 from contact_dynamics.numerics.gauss_newton import gauss_newton
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import matrices_of, rotation_vectors, turned
+from contact_dynamics.tolerances import SMALL_STEP
 from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
 from contact_dynamics.validation import FloatArray, check_array, check_positive
 
@@ -40,9 +41,6 @@ FEWEST_STATES: Final = 3
 
 MOST_STATES: Final = 2000
 """A window of seconds; longer ones are no short windows, and cost."""
-
-SMALL_STEP: Final = 1e-9
-"""rad of attitude, m of position, anywhere in the window: a round that changes less is the last."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -106,7 +104,7 @@ def fit_free_motion(
     for earlier, later in itertools.pairwise(since_newest):
         if earlier >= later:
             raise InvalidFieldError("fit window: stamps", f"{later - earlier} ns from one to the next", "> 0")
-    seconds = np.array(since_newest) * 1e-9
+    seconds = seconds_since(0, since_newest)
     gravity = check_array("gravity_W", gravity_W, (3,))
     place = _fit_place(states, seconds, gravity, noise)
     spin = _fit_rotation(body, states, seconds, noise)

@@ -35,7 +35,7 @@ from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, D
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, angular_momentum
 from contact_dynamics.rotations.many import make_continuous
 from contact_dynamics.rotations.one import Quaternion, conjugate, normalised, product, rotated
-from contact_dynamics.tolerances import LARGEST_NUMBER
+from contact_dynamics.tolerances import INTEGRATION_ABSOLUTE, INTEGRATION_RELATIVE, LARGEST_NUMBER
 from contact_dynamics.tumbling import FreeMotion, Sample, Trajectory, free_motion
 from contact_dynamics.tumbling.motion import check_extent
 from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_within
@@ -46,12 +46,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     WrenchFunction: TypeAlias = Callable[[float, Sample], tuple[Sequence[float], Sequence[float]]]
-
-RELATIVE_TOLERANCE: Final = 3e-14
-"""Of each step. SciPy allows 2e-14 at the least, where rounding begins to make steps pointlessly short."""
-
-ABSOLUTE_TOLERANCE: Final = 1e-15
-"""m, m/s, rad and rad/s of each step: far below what any sensor resolves."""
 
 MOST_STEPS: Final = 20_000
 """In one direction of time. Some 10 s of computing, and some 500 revolutions of a body."""
@@ -376,8 +370,8 @@ class _Steps:
                     0.0,
                     self.law.start,
                     self.end,
-                    rtol=RELATIVE_TOLERANCE,
-                    atol=ABSOLUTE_TOLERANCE,
+                    rtol=INTEGRATION_RELATIVE,
+                    atol=INTEGRATION_ABSOLUTE,
                 )
         while self.ends[-1] < distance:
             if len(self.dense) >= self.most:

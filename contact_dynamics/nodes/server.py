@@ -10,10 +10,9 @@ from __future__ import annotations
 import platform
 import time
 import traceback
+from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import scipy
 from nav_msgs.msg import Path
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
@@ -159,8 +158,8 @@ class Server(Node):
         """Return every parameter, and the versions that the last bits of an answer depend on."""
         versions = {
             "python": platform.python_version(),
-            "numpy": np.__version__,
-            "scipy": scipy.__version__,
+            "numpy": version("numpy"),
+            "scipy": version("scipy"),
         }
         names = sorted(self._parameters)
         return {**versions, **{name: str(self._parameters[name].value) for name in names}}

@@ -1,5 +1,10 @@
 """Nonlinear least squares by Gauss's and Newton's method, with steps that are halved until they help.
 
+SciPy's `least_squares` finds the same and serves as witness in the tests. It is not used here because a model
+is more than its parameters: an attitude is moved by a rotation vector, anew in each round, which there would
+be a start of its own; because the rounds end where a change counts as none in the measured quantities; and
+because its import takes tenths of a second, in the middle of the first question with a window of states.
+
 Not covered: bounds, outliers, starts so far off that linearisation says nothing.
 """
 
@@ -9,6 +14,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Generic, TypeVar
 
 import numpy as np
+
+from contact_dynamics.tolerances import SMALL_SHARE
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,10 +29,6 @@ MOST_ROUNDS: Final = 20
 
 MOST_HALVINGS: Final = 10
 """Of a step that does not make the residuals smaller."""
-
-SMALL_SHARE: Final = 1e-10
-"""Of the squares of the residuals: a round that explains less of them is the last. The parameters are then
-changed by some 1e-5 of their standard deviations, and by far less in a round to come."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

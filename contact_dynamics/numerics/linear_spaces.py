@@ -1,14 +1,23 @@
-"""How many of some vectors are independent, and orthonormal bases: Gram and Schmidt with one tolerance."""
+"""How many of some vectors are independent, and orthonormal bases of what they span and what they do not.
+
+A few plain vectors go through Gram's and Schmidt's method, rows of a matrix through its singular values.
+"""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from contact_dynamics.numerics.vectors import norm, normalised, without
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+
+    from contact_dynamics.numerics.vectors import Vector3
+    from contact_dynamics.validation import FloatArray
 
 
 def orthonormal(vectors: Iterable[Sequence[float]]) -> list[tuple[float, ...]]:
@@ -26,3 +35,48 @@ def orthonormal(vectors: Iterable[Sequence[float]]) -> list[tuple[float, ...]]:
             if len(basis) == len(rest):
                 break
     return basis
+
+
+def rough_span(vectors: Iterable[Vector3], *, tolerance: float) -> list[Vector3]:
+    """Return an orthonormal basis of the span of unit ``vectors``, and of zero ones, which add nothing.
+
+    What leans out of the span by no more than ``tolerance``, a sine, counts as in it. That is far more than
+    rounding leaves, so that one pass is enough, unlike in `orthonormal`.
+    """
+    basis: list[Vector3] = []
+    for vector in vectors:
+        rest = vector
+        for unit in basis:
+            rest = without(rest, unit)
+        if norm(rest) > tolerance:
+            basis.append(normalised(rest))
+    return basis
+
+
+def row_space(rows: FloatArray) -> FloatArray:
+    """Return an orthonormal basis, (k, d), of what the rows, (m, d), span."""
+    if len(rows) == 0:
+        return np.zeros(rows.shape)
+    sizes, basis = np.linalg.svd(rows)[1:]
+    return basis[: int((sizes > ROW_TOLERANCE * sizes[0]).sum())]
+
+
+def null_space(rows: FloatArray) -> FloatArray:
+    """Return an orthonormal basis, (d, k), of what the rows, (m, d), do not see."""
+    if len(rows) == 0:
+        return np.eye(rows.shape[1])
+    sizes, basis = np.linalg.svd(rows)[1:]
+    return np.ascontiguousarray(basis[int((sizes > ROW_TOLERANCE * sizes[0]).sum()) :].T)
+
+
+def seen_and_unseen(rows: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return orthonormal bases, (k, d) and (d - k, d), of what rows of about unit length see and do not.
+
+    Unlike in `row_space` and `null_space` the rows' unit is part of the question: rows that are all rounding
+    see nothing. And rows are many here, so that they become as few as columns first, with other last bits.
+    """
+    if len(rows) > rows.shape[1]:
+        rows = np.asarray(np.linalg.qr(rows, mode="r"))
+    sizes, basis = np.linalg.svd(rows)[1:]
+    seen = int((sizes > ROW_TOLERANCE * max(1.0, sizes.max(initial=0.0))).sum())
+    return basis[:seen], basis[seen:]

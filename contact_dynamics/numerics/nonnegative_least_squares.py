@@ -1,7 +1,11 @@
-"""One choice of contact forces where many balance a wrench.
+"""Non-negative least squares, after Lawson and Hanson (1974, ch. 23): a choice of forces, or the nearest.
 
-The choice is the one of least sum of squares where that has no negative force, as under a block on a row of
-feet, and otherwise one that few forces carry, found by the method of Lawson and Hanson (1974, ch. 23).
+`least_force` chooses where many forces balance a wrench: the one of least sum of squares where that has no
+negative force, as under a block on a row of feet, and otherwise one that few forces carry. It is written out,
+because a planar answer must not wait for SciPy, whose first import takes tenths of a second, longer than all
+else in the answer. And it leaves out directions that are no more than rounding, which SciPy's does not.
+
+`nearest_combination` is SciPy's, for margins and refusals in space, which need SciPy for hulls anyway.
 """
 
 from __future__ import annotations
@@ -10,14 +14,16 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.tolerances import INDEPENDENT_FORCES, WRENCH_ROUNDING
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.validation import FloatArray
 
-_ROUNDING: Final = 1e-13  # relative to the wrench: less is not left over
-_INDEPENDENT: Final = 1e-12  # ratio of singular values below which directions count as the same
+_NEAREST_STEPS: Final = 10
+"""Steps for each span in the search for the nearest sum. It takes one or two; SciPy alone stops at three."""
 
 
 def least_force(columns: Sequence[Vector3], target: Vector3, absent: Sequence[Vector3]) -> list[float]:
@@ -34,7 +40,7 @@ def least_force(columns: Sequence[Vector3], target: Vector3, absent: Sequence[Ve
     right = np.array(target)
     for direction in absent:
         right -= np.dot(direction, right) * np.array(direction)
-    least = np.linalg.lstsq(matrix, right, rcond=_INDEPENDENT)[0]
+    least = np.linalg.lstsq(matrix, right, rcond=INDEPENDENT_FORCES)[0]
     if least.min() >= 0.0:
         return [float(value) for value in least]
     return [float(value) for value in _few_forces(matrix, right)]
@@ -45,7 +51,7 @@ def _few_forces(matrix: FloatArray, right: FloatArray) -> FloatArray:
     count = matrix.shape[1]
     x = np.zeros(count)
     acting = np.zeros(count, dtype=bool)
-    smallest = _ROUNDING * float(np.linalg.norm(right))
+    smallest = WRENCH_ROUNDING * float(np.linalg.norm(right))
     for _ in range(10 * count):
         help_of = matrix.T @ (right - matrix @ x)
         help_of[acting] = -np.inf
@@ -55,7 +61,7 @@ def _few_forces(matrix: FloatArray, right: FloatArray) -> FloatArray:
         acting[best] = True
         while True:
             trial = np.zeros(count)
-            trial[acting] = np.linalg.lstsq(matrix[:, acting], right, rcond=_INDEPENDENT)[0]
+            trial[acting] = np.linalg.lstsq(matrix[:, acting], right, rcond=INDEPENDENT_FORCES)[0]
             pulling = acting & (trial <= 0.0)
             if not pulling.any():
                 break
@@ -65,3 +71,17 @@ def _few_forces(matrix: FloatArray, right: FloatArray) -> FloatArray:
             x[~acting] = 0.0
         x = trial
     return x
+
+
+def nearest_combination(columns: FloatArray, target: FloatArray) -> tuple[FloatArray, float] | None:
+    """Return x >= 0, (k,), for which columns @ x is nearest to a target, (d,), and its distance.
+
+    ``columns`` is (d, k). None: they are so nearly dependent that the search did not end.
+    """
+    from scipy.optimize import nnls
+
+    try:
+        x, left = nnls(columns, target, maxiter=_NEAREST_STEPS * max(1, columns.shape[1]))
+    except RuntimeError:
+        return None
+    return x, float(left)

@@ -20,6 +20,7 @@ import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.errors import OutOfPlaneError
+from contact_dynamics.numerics.linear_spaces import rough_span
 from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, scaled, without
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, Vector2
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
@@ -27,7 +28,7 @@ from contact_dynamics.tolerances import OUT_OF_PLANE_RATIO, OUT_OF_PLANE_SPEED
 from contact_dynamics.validation import FloatArray, check_unit
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator
 
     from numpy.typing import ArrayLike
 
@@ -212,7 +213,9 @@ def best_plane(
     Raises:
         OutOfPlaneError: contact normals and force span space: no plane contains them.
     """
-    fixed = _orthonormal_span([*_rows(contacts.normals_W), _normalised(_three(force_W))])
+    fixed = rough_span(
+        [*_rows(contacts.normals_W), _normalised(_three(force_W))], tolerance=OUT_OF_PLANE_RATIO
+    )
     if len(fixed) > 2:
         raise OutOfPlaneError(
             "contact normals", "normals and an applied force that span space", "vectors in a common plane"
@@ -292,17 +295,6 @@ def _ratio(part: float, whole: float) -> float:
 
 def _normalised(vector: Vector3) -> Vector3:
     return normalised(vector) if vector != (0.0, 0.0, 0.0) else vector
-
-
-def _orthonormal_span(vectors: Iterable[Vector3]) -> list[Vector3]:
-    span: list[Vector3] = []
-    for vector in vectors:
-        rest = vector
-        for direction in span:
-            rest = without(rest, direction)
-        if norm(rest) > OUT_OF_PLANE_RATIO:
-            span.append(normalised(rest))
-    return span
 
 
 def _three(vector: FloatArray) -> Vector3:

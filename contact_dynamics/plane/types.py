@@ -16,14 +16,8 @@ from typing import Any, TypeAlias
 
 from contact_dynamics.contact.curvature import planar_gap_acceleration
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.tolerances import LARGEST_NUMBER, UNIT_LENGTH_TOLERANCE
-from contact_dynamics.validation import (
-    LENGTH_ROUNDING,
-    check_finite,
-    check_not_negative,
-    check_positive,
-    check_within,
-)
+from contact_dynamics.tolerances import LARGEST_NUMBER, LENGTH_ROUNDING, UNIT_LENGTH_TOLERANCE
+from contact_dynamics.validation import check_finite, check_not_negative, check_positive, check_within
 
 Vector2: TypeAlias = tuple[float, float]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -13,23 +13,20 @@ from contact_dynamics.contact.velocities import spatial_contact_velocities
 from contact_dynamics.contact_modes import (
     BodyStatics,
     ModeVerdict,
+    PlanarContactProblem,
     RefusedMode,
     SpatialMode,
     SpatialModeMargin,
     SpatialWrenchSet,
-    planar_contact_modes,
-    planar_mode_map,
-    planar_mode_margins,
-    planar_statics,
-    spatial_contact_modes,
+    contact_modes,
+    mode_margins,
+    refused_modes,
     spatial_kinematic_modes,
-    spatial_mode_margins,
-    spatial_refused_modes,
-    spatial_statics,
-    spatial_wrench_sets,
+    statics,
+    wrench_sets,
 )
 from contact_dynamics.contact_modes.planar.problem import MOST_PLANAR_CONTACTS
-from contact_dynamics.contact_modes.spatial.answer import FRICTION_FACETS
+from contact_dynamics.contact_modes.spatial.problem import FRICTION_FACETS
 from contact_dynamics.contact_modes.spatial.wrench_sets import WRENCH_FACETS
 from contact_dynamics.errors import InvalidFieldError, OutOfPlaneError, TooLargeError
 from contact_dynamics.plane.lifting import check_mirrored, mirror_partners
@@ -278,42 +275,24 @@ def _planar_answer(
     question: ContactModeQuestion, case: ModeCase, problem: PlanarProblem, partners: tuple[int, ...]
 ) -> ContactModeAnswer:
     plane, subject = problem.plane, case.subject
-    found = planar_contact_modes(
-        problem.body,
-        problem.velocity,
-        problem.contacts,
-        problem.wrench,
+    asked = PlanarContactProblem(
+        body=problem.body,
+        velocity=problem.velocity,
+        contacts=problem.contacts,
+        wrench=problem.wrench,
         velocity_tolerance=case.velocity_tolerance,
     )
-    margins, wrench_sets, statics, settled = None, None, None, None
+    found = contact_modes(asked)
+    margins, sets, at_rest, settled = None, None, None, None
     if question.want_margins:
-        margins = tuple(
-            lifted_margin(margin, plane)
-            for margin in planar_mode_margins(
-                problem.body,
-                problem.velocity,
-                problem.contacts,
-                problem.wrench,
-                margin_length=question.margin_length,
-                velocity_tolerance=found.velocity_tolerance,
-            )
-        )
+        in_plane = mode_margins(asked, found, margin_length=question.margin_length)
+        margins = tuple(lifted_margin(margin, plane) for margin in in_plane)
     if question.want_wrenches:
-        wrench_sets = tuple(
-            lifted_wrench_set(wrenches, plane)
-            for wrenches in planar_mode_map(
-                problem.body,
-                problem.contacts,
-                velocity=problem.velocity,
-                velocity_tolerance=found.velocity_tolerance,
-            )
-        )
+        sets = tuple(lifted_wrench_set(wrenches, plane) for wrenches in wrench_sets(asked))
     if question.want_statics:
-        statics = planar_statics(
-            problem.body, problem.contacts, problem.wrench, margin_length=question.margin_length
-        )
+        at_rest = statics(asked, margin_length=question.margin_length)
     if question.want_impact:
-        settled = settled_in_plane(case, problem, found.verdict, partners)
+        settled = settled_in_plane(case, problem, asked, found.verdict, partners)
     return ContactModeAnswer(
         body_name=subject.body.name,
         p_FB_F=subject.body.p_FB_F,
@@ -326,8 +305,8 @@ def _planar_answer(
         contact_velocities_W=lifted_vectors(found.contact_velocities, problem),
         refused=found.refused,
         kinematic_modes=found.kinematic_modes,
-        wrench_sets=wrench_sets,
-        statics=statics,
+        wrench_sets=sets,
+        statics=at_rest,
         settled=settled,
         problem=Problem.PLANAR,
         plane=plane,
@@ -342,61 +321,20 @@ def _planar_answer(
 
 
 def _spatial_answer(question: ContactModeQuestion, case: ModeCase, reason: str) -> ContactModeAnswer:
-    subject, contacts = case.subject, case.contacts
-    body, state = subject.body.mass_properties, subject.state
-    found = spatial_contact_modes(
-        body,
-        state,
-        contacts,
-        force_W=case.force_W,
-        torque_W=case.torque_W,
-        friction_facets=case.friction_facets,
-        velocity_tolerance=case.velocity_tolerance,
-    )
-    margins, wrench_sets, statics, settled = None, None, None, None
+    subject, state, contacts = case.subject, case.subject.state, case.contacts
+    asked = case.in_space
+    found = contact_modes(asked)
+    margins, sets, at_rest, settled = None, None, None, None
     refused: tuple[RefusedMode, ...] = ()
     wrench_facets = 0
     if question.want_margins:
-        margins = spatial_mode_margins(
-            body,
-            state,
-            contacts,
-            force_W=case.force_W,
-            torque_W=case.torque_W,
-            friction_facets=case.friction_facets,  # those of the answer, so that the modes are the same
-            margin_length=question.margin_length,
-            velocity_tolerance=case.velocity_tolerance,
-        )
-        refused = spatial_refused_modes(
-            found,
-            body,
-            state,
-            contacts,
-            force_W=case.force_W,
-            torque_W=case.torque_W,
-            margin_length=question.margin_length,
-        )
+        margins = mode_margins(asked, found, margin_length=question.margin_length)
+        refused = refused_modes(asked, found, margin_length=question.margin_length)
     if question.want_wrenches:
         wrench_facets = question.friction_facets or WRENCH_FACETS
-        wrench_sets = spatial_wrench_sets(
-            body,
-            state,
-            contacts,
-            force_W=case.force_W,
-            torque_W=case.torque_W,
-            friction_facets=wrench_facets,
-            velocity_tolerance=case.velocity_tolerance,
-        )
+        sets = wrench_sets(replace(asked, friction_facets=wrench_facets))
     if question.want_statics:
-        statics = spatial_statics(
-            body,
-            state,
-            contacts,
-            force_W=case.force_W,
-            torque_W=case.torque_W,
-            friction_facets=case.friction_facets,
-            margin_length=question.margin_length,
-        )
+        at_rest = statics(asked, margin_length=question.margin_length)
     if question.want_impact:
         settled = settled_in_space(case, found.verdict)
     return ContactModeAnswer(
@@ -415,8 +353,8 @@ def _spatial_answer(question: ContactModeQuestion, case: ModeCase, reason: str) 
         kinematic_modes=tuple(
             spatial_kinematic_modes(state, contacts, velocity_tolerance=case.velocity_tolerance)
         ),
-        wrench_sets=wrench_sets,
-        statics=statics,
+        wrench_sets=sets,
+        statics=at_rest,
         settled=settled,
         problem=Problem.SPATIAL,
         plane=None,

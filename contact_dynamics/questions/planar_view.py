@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contact_dynamics.contact_modes.letters import SLIDES_LEFT, SLIDES_RIGHT
 from contact_dynamics.contact_modes.planar.result import PlanarMode
 from contact_dynamics.contact_modes.planar.wrench_sets import PlanarWrenchSet, WrenchHalfSpace
 from contact_dynamics.plane.types import PlanarContact, PlanarWrench
@@ -67,7 +68,7 @@ def sliding_directions(answer: ContactModeAnswer, mode: SpatialMode) -> FloatArr
     """
     if answer.plane is None:
         return mode.tangential_directions_W
-    ways = np.array([{"l": -1.0, "r": 1.0}.get(letter, 0.0) for letter in mode.mode])
+    ways = np.array([{SLIDES_LEFT: -1.0, SLIDES_RIGHT: 1.0}.get(letter, 0.0) for letter in mode.mode])
     tangents = np.array([contact.tangent for contact in seen_contacts(answer, answer.plane)]).reshape(-1, 2)
     directions: FloatArray = ways[:, None] * tangents @ answer.plane.axes_W
     return directions

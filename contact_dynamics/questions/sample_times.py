@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 
-from contact_dynamics.constants import NS_PER_S
+from contact_dynamics.constants import seconds_between
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.landing.earliest import next_landing
 from contact_dynamics.landing.plane_arrival import first_contact
@@ -97,7 +97,7 @@ class AtStamps(Record):
         _check_count("stamps_ns", len(stamps))
         for i, (earlier, later) in enumerate(itertools.pairwise(stamps)):
             if later < earlier:
-                before = (earlier - later) / NS_PER_S
+                before = seconds_between(later, earlier)
                 raise InvalidFieldError(
                     f"stamps_ns[{i + 1}]", f"{before:.9g} s before stamps_ns[{i}]", "ascending times"
                 )
@@ -217,7 +217,7 @@ def times_of(
         return sampling.times, None
     if isinstance(sampling, AtStamps):
         begin_ns = subject.state.stamp_ns
-        times = np.array([(stamp - begin_ns) / NS_PER_S for stamp in sampling.stamps_ns])
+        times = np.array([seconds_between(begin_ns, stamp) for stamp in sampling.stamps_ns])
         _check_reach("stamps_ns", motion, times)
         return times, None
     duration = or_default(sampling.duration, knowledge.defaults.horizon)

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Final
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import (
     ModeVerdict,
+    PlanarContactProblem,
+    SpatialContactProblem,
     SpatialMode,
-    planar_contact_modes,
-    spatial_contact_modes,
+    contact_modes,
 )
 from contact_dynamics.impact import outcomes_over_orders, planar_impact, several_impact, spatial_impact
 from contact_dynamics.impact.several.settling import settling_impact
@@ -82,6 +83,19 @@ class ModeCase:
     friction_facets: int
 
     @property
+    def in_space(self) -> SpatialContactProblem:
+        """The question about contact modes in space."""
+        return SpatialContactProblem(
+            body=self.subject.body.mass_properties,
+            state=self.subject.state,
+            contacts=self.contacts,
+            force_W=self.force_W,
+            torque_W=self.torque_W,
+            friction_facets=self.friction_facets,
+            velocity_tolerance=self.velocity_tolerance,
+        )
+
+    @property
     def before(self) -> Before:
         """The body before the impact that settles the case."""
         return Before(body=self.subject.body.mass_properties, state=self.subject.state)
@@ -91,18 +105,10 @@ def settled_in_space(case: ModeCase, verdict: ModeVerdict) -> SettledImpact | No
     """Return the impact, and the modes after it, where the verdict on a case in space calls for one."""
     if verdict not in _UNSETTLED:
         return None
-    before, contacts = case.before, case.contacts
+    before, contacts, problem = case.before, case.contacts, case.in_space
 
     def modes_after(state: BodyState) -> SpatialModeAnswer:
-        return spatial_contact_modes(
-            before.body,
-            state,
-            contacts,
-            force_W=case.force_W,
-            torque_W=case.torque_W,
-            friction_facets=case.friction_facets,
-            velocity_tolerance=case.velocity_tolerance,
-        )
+        return contact_modes(replace(problem, state=state))
 
     if len(contacts) == 1:
         impact = spatial_impact(
@@ -130,13 +136,18 @@ def settled_in_space(case: ModeCase, verdict: ModeVerdict) -> SettledImpact | No
 
 
 def settled_in_plane(
-    case: ModeCase, problem: PlanarProblem, verdict: ModeVerdict, partners: tuple[int, ...]
+    case: ModeCase,
+    problem: PlanarProblem,
+    in_plane: PlanarContactProblem,
+    verdict: ModeVerdict,
+    partners: tuple[int, ...],
 ) -> SettledImpact | None:
     """Return the impact, and the modes after it, where the verdict on a planar case calls for one.
 
     Args:
         case: The case in space.
-        problem: The same in its plane of motion.
+        problem: The same as its plane of motion sees it.
+        in_plane: The question about contact modes there.
         verdict: The verdict on it.
         partners: The mirror image of each contact in the plane, for the shares of forces and of impulses at
             once; impulses in turn belong to the contact that struck.
@@ -146,13 +157,7 @@ def settled_in_plane(
     plane, before = problem.plane, case.before
 
     def modes_after(velocity: PlanarVelocity) -> PlanarModeAnswer:
-        return planar_contact_modes(
-            problem.body,
-            velocity,
-            problem.contacts,
-            problem.wrench,
-            velocity_tolerance=case.velocity_tolerance,
-        )
+        return contact_modes(replace(in_plane, velocity=velocity))
 
     if len(problem.contacts) == 1:
         impact = planar_impact(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right, insort
 from typing import TYPE_CHECKING
 
-from contact_dynamics.constants import NS_PER_S
+from contact_dynamics.constants import to_ns, to_seconds
 from contact_dynamics.errors import NoStateError, StaleStateError
 
 if TYPE_CHECKING:
@@ -17,8 +17,8 @@ class StateStore:
 
     def __init__(self, *, history: float, timeout: float) -> None:
         """Keep ``history`` seconds of states; refuse one older than ``timeout`` seconds when asked about."""
-        self._history_ns = round(history * NS_PER_S)
-        self._timeout_ns = round(timeout * NS_PER_S)
+        self._history_ns = to_ns(history)
+        self._timeout_ns = to_ns(timeout)
         self._states: dict[str, list[BodyState]] = {}
 
     def add(self, body_name: str, state: BodyState) -> None:
@@ -49,7 +49,7 @@ class StateStore:
     def window(self, body_name: str, newest: BodyState, seconds: float) -> list[BodyState]:
         """Return the states of the last ``seconds`` up to ``newest``, in order of time, one a stamp."""
         states = self._states.get(body_name, [])
-        first = bisect_left(states, newest.stamp_ns - round(seconds * NS_PER_S), key=_stamp)
+        first = bisect_left(states, newest.stamp_ns - to_ns(seconds), key=_stamp)
         last = bisect_right(states, newest.stamp_ns, key=_stamp)
         return list({state.stamp_ns: state for state in states[first:last]}.values())
 
@@ -72,8 +72,8 @@ class StateStore:
         age_ns = asked_ns - state.stamp_ns
         if age_ns > self._timeout_ns:
             message = (
-                f"state of {body_name!r}: the newest is {age_ns / NS_PER_S:.3f} s old, "
-                f"allowed is at most {self._timeout_ns / NS_PER_S:g} s (parameter state_timeout)"
+                f"state of {body_name!r}: the newest is {to_seconds(age_ns):.3f} s old, "
+                f"allowed is at most {to_seconds(self._timeout_ns):g} s (parameter state_timeout)"
             )
             raise StaleStateError(message)
         return state

@@ -14,9 +14,9 @@ import struct
 from dataclasses import dataclass
 from typing import Any, Final
 
+from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.errors import InvalidFieldError
 
-_NS_PER_S: Final = 1_000_000_000
 _LITTLE_ENDIAN: Final = 1
 _LEADING_STAMP: Final = {True: struct.Struct("<4xiI"), False: struct.Struct(">4xiI")}
 _EVENT_INFO: Final = {True: struct.Struct("<4xB3xiI16s4xq"), False: struct.Struct(">4xB3xiI16s4xq")}
@@ -44,7 +44,7 @@ class EventInfo:
 def leading_stamp_ns(data: bytes) -> int:
     """Return the stamp, in ns, of a serialised message that begins with a ``std_msgs/Header`` or a time."""
     seconds, nanoseconds = _unpack(_LEADING_STAMP, data)
-    return int(seconds) * _NS_PER_S + int(nanoseconds)
+    return int(seconds) * NS_PER_S + int(nanoseconds)
 
 
 def event_info(data: bytes) -> EventInfo:
@@ -56,7 +56,7 @@ def event_info(data: bytes) -> EventInfo:
         raise InvalidFieldError("event_type", kind, "0 to 3") from None
     return EventInfo(
         event_type=event_type,
-        stamp_ns=seconds * _NS_PER_S + nanoseconds,
+        stamp_ns=seconds * NS_PER_S + nanoseconds,
         client_gid=gid,
         sequence_number=sequence_number,
     )

@@ -9,7 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Final
 
-_NS_PER_S: Final = 1_000_000_000
+from contact_dynamics.constants import NS_PER_S
+
 _FOREVER_NS: Final = 2**63 - 1
 
 
@@ -52,4 +53,4 @@ def _word(policy: Any) -> str:
 
 def _duration_lines(duration: Any) -> list[str]:
     nanoseconds = duration if isinstance(duration, int) else duration.nanoseconds
-    return [f"    sec: {nanoseconds // _NS_PER_S}", f"    nsec: {nanoseconds % _NS_PER_S}"]
+    return [f"    sec: {nanoseconds // NS_PER_S}", f"    nsec: {nanoseconds % NS_PER_S}"]

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.constants import STANDARD_GRAVITY_W
+from contact_dynamics.constants import STANDARD_GRAVITY_W, ns_after
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.arithmetic import Precision
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
@@ -45,8 +45,6 @@ if TYPE_CHECKING:
     from contact_dynamics.tumbling.attitude_form import AttitudeForm
     from contact_dynamics.tumbling.polhode import Rotation
     from contact_dynamics.tumbling.regime import Regime
-
-NANOSECONDS: Final = 1_000_000_000
 
 CHUNK: Final = 8192
 """Samples at a time: their intermediate arrays stay in the processor's cache."""
@@ -85,7 +83,7 @@ class Sample(NamedTuple):
             q_WB=np.array(self.q_WB),
             v_WB_W=np.array(self.v_WB_W),
             w_WB_W=np.array(self.w_WB_W),
-            stamp_ns=begin_ns + round(seconds * NANOSECONDS),
+            stamp_ns=ns_after(begin_ns, seconds),
         )
 
 

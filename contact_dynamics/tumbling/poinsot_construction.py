@@ -19,8 +19,9 @@ import numpy as np
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.arithmetic import ARRAYS, DOUBLES
 from contact_dynamics.rigid_body.body import angular_momentum
-from contact_dynamics.rigid_body.inertia.principal_axes import axes_of_bytes
+from contact_dynamics.rigid_body.inertia.axes_of_inertia import axes_of_bytes
 from contact_dynamics.rotations.one import rotated, rotation_matrix
+from contact_dynamics.tolerances import SEPARATRIX_END, SMALLEST_COMPLEMENT
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
 from contact_dynamics.tumbling.polhode import Rotation, Spin, Tumble, largest_rate
 from contact_dynamics.tumbling.regime import Regime
@@ -35,13 +36,6 @@ if TYPE_CHECKING:
 
 CONSTANT_RATE: Final = (Regime.AT_REST, Regime.SPHERICAL, Regime.PRINCIPAL_AXIS)
 """Where the angular velocity does not change, or only within rounding: there is no polhode to speak of."""
-
-SEPARATRIX_END: Final = 1e-6
-"""rad of Jacobi's amplitude. The motion is this near to spin about the middle axis 14 time constants before
-and after its flip."""
-
-SMALLEST_COMPLEMENT: Final = 1e-100
-"""Of 1 - m. Below it the sensitivity is beyond 1e90: infinite for all that numbers can say."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

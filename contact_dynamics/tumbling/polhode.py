@@ -17,9 +17,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Generic, TypeAlias
+from typing import TYPE_CHECKING, Generic, TypeAlias
 
 from contact_dynamics.numerics.arithmetic import Scalar, within
+from contact_dynamics.tolerances import MOTIONLESS
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
 
 if TYPE_CHECKING:
@@ -28,10 +29,6 @@ if TYPE_CHECKING:
 
     from contact_dynamics.numerics.arithmetic import Arithmetic
     from contact_dynamics.rigid_body.inertia.principal_frame import PrincipalFrame
-
-MOTIONLESS: Final = 1e-60
-"""Squared angle between the angular velocity and the major or minor axis, below which the spin is taken as
-steady. The motion left out is an angle of 1e-30 rad for ever, since spin about these axes is stable."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,6 +28,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from contact_dynamics.tolerances import SMALLEST
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from types import ModuleType
@@ -103,7 +105,7 @@ class Bumps:
         A_re, A_im = self.A_cos[0] * even, self.A_sin[0] * odd
         B_re, B_im = self.B_cos[0] * even, self.B_sin[0] * odd
         g = self.g
-        v = g / (w + 1e-300)  # both vanish where the period is beyond 1e300 rad
+        v = g / (w + SMALLEST)  # both vanish where the period is beyond 1e300 rad
         www, vvv = g * w**3, g * v**3
         for k, near, far in ((1, v, g * w * w), (2, g * v * v, g * g * www)):
             even, odd = near + far, side * (near - far)

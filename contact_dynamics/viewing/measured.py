@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.constants import seconds_since
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import HEIGHT, SPEED, TIMELINE, body_entity, entity, trail_entity
 
@@ -72,7 +73,7 @@ def draw_prediction_at(
     """
     if len(trajectory) == 0:
         return
-    seconds = (np.array(stamps_ns, dtype=np.int64) - begin_ns) * 1e-9
+    seconds = seconds_since(begin_ns, stamps_ns)
     inside = (seconds >= trajectory.seconds[0]) & (seconds <= trajectory.seconds[-1])
     reached = np.array(stamps_ns, dtype=np.int64)[inside]
     if len(reached) > 0:

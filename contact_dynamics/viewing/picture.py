@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
-from contact_dynamics.constants import NS_PER_S
+from contact_dynamics.constants import ns_after, to_ns
 from contact_dynamics.shapes.convex import NO_SHAPE
 from contact_dynamics.tumbling.regime import Regime
 from contact_dynamics.viewing.blueprint import WINDOW_S, Eye, eye_on, make_blueprint
@@ -114,7 +114,7 @@ class Picture:
             self._roll(body_name, states)
         self._newest[body_name] = states[-1]
         self._recent.extend((state.stamp_ns, state.p_WB_W) for state in states)
-        while self._recent[-1][0] - self._recent[0][0] > WINDOW_S * 1e9:
+        while self._recent[-1][0] - self._recent[0][0] > to_ns(WINDOW_S):
             self._recent.popleft()
 
     def show_tumbling(
@@ -162,7 +162,7 @@ class Picture:
         Arguments are those of `show_tumbling`.
         """
         stamp_ns, name, other = answer.state.stamp_ns, answer.body_name, answer.other
-        stamp_ns = stamp_ns - round(answer.seconds_to_contact * NS_PER_S) if stamp_ns else now_ns
+        stamp_ns = ns_after(stamp_ns, -answer.seconds_to_contact) if stamp_ns else now_ns
         set_time(self._recording, stamp_ns)
         other_shape = self._shape(other.name) if other is not None and other.name else None
         draw_impact(self._recording, self._shape(name), answer, other_shape=other_shape)

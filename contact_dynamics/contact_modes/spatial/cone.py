@@ -14,6 +14,8 @@ import numpy as np
 
 from contact_dynamics.errors import UndecidedError
 from contact_dynamics.numerics.convex_hull import hull_of
+from contact_dynamics.numerics.linear_spaces import null_space
+from contact_dynamics.numerics.nonnegative_least_squares import nearest_combination
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
@@ -32,9 +34,6 @@ takes SciPy, whose first import takes tenths of a second."""
 _TRIALS: Final = 60
 """Steps, of a few microseconds each, before a linear program, of milliseconds, has to find the inner
 point."""
-
-_NEAREST_STEPS: Final = 10
-"""Steps for each span in the search for the nearest sum. It takes one or two; SciPy alone stops at three."""
 
 
 class Cone(NamedTuple):
@@ -150,29 +149,16 @@ def _rays_by_choice(rows: FloatArray) -> FloatArray:
     return kept
 
 
-def null_space(rows: FloatArray) -> FloatArray:
-    """Return an orthonormal basis, (d, k), of what the rows, (m, d), do not see."""
-    d = rows.shape[1]
-    if len(rows) == 0:
-        return np.eye(d)
-    spread, basis = np.linalg.svd(rows)[1:]
-    seen = int((spread > ROW_TOLERANCE * spread[0]).sum())
-    return np.ascontiguousarray(basis[seen:].T)
-
-
 def nearest_sum(spans: FloatArray, target: FloatArray) -> tuple[FloatArray, float]:
     """Return shares >= 0, (k,), of spans, (k, d), whose sum is nearest to a target, (d,), and its distance.
 
     Raises:
         UndecidedError: spans so nearly dependent that the search does not end.
     """
-    from scipy.optimize import nnls
-
-    try:
-        shares, left = nnls(spans.T, target, maxiter=_NEAREST_STEPS * max(1, len(spans)))
-    except RuntimeError:
-        raise _undecided("non-negative least squares did not end") from None
-    return shares, float(left)
+    found = nearest_combination(spans.T, target)
+    if found is None:
+        raise _undecided("non-negative least squares did not end")
+    return found
 
 
 def _undecided(reason: str) -> UndecidedError:

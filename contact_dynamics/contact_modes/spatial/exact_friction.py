@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.contact_modes.spatial.dual_simplex import Program
-from contact_dynamics.contact_modes.spatial.options import STRICT
+from contact_dynamics.tolerances import SETTLED_DIRECTION, STRICT, TRIAL_TURN
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,17 +29,11 @@ _MOST_STEPS: Final = 12
 """Each solves as many times, 0.1 ms each, as there are sliding contacts. Four suffice where there is a
 solution nearby."""
 
-_TRIAL: Final = 1e-6
-"""rad, by which a direction is turned to see how the sliding turns; about the root of what rounding is."""
-
 _LONGEST_STEP: Final = 0.3
 """rad. Half a sector of the usual pyramid is 0.39."""
 
 _FAST: Final = 0.1
 """Share of its error that a step may leave where sliding is followed without asking how it would turn."""
-
-_SETTLED: Final = 1e-11
-"""rad. Directions that are as close as that are those of the rounded forces."""
 
 
 class Sharpened(NamedTuple):
@@ -65,7 +60,7 @@ def sharpened(mode: Sliding, forces: FloatArray) -> Sharpened | None:
         mode: As it was found.
         forces: (n, 3), those of the mode.
     """
-    turning = [i for i, one in enumerate(mode.pyramids) if mode.letters[i] == "c" and one.frame is not None]
+    turning = [i for i, one in enumerate(mode.pyramids) if mode.letters[i] == STAYS and one.frame is not None]
     angles: FloatArray = np.asarray([_against(mode.pyramids[i], forces[i]) for i in turning])
     return _followed(mode, turning, angles) or _by_newton(mode, turning, angles)
 
@@ -79,7 +74,7 @@ def _followed(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpene
             return None
         errors = _errors(mode, turning, angles, found)
         error = float(np.abs(errors).max())
-        if error <= _SETTLED:
+        if error <= SETTLED_DIRECTION:
             return found
         if not error <= _FAST * last:
             return None
@@ -95,24 +90,24 @@ def _by_newton(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpen
             continue
         angles = angles + step
         errors = _errors(mode, turning, angles, found)
-        if np.abs(errors).max() <= _SETTLED:
+        if np.abs(errors).max() <= SETTLED_DIRECTION:
             return found
         slopes = _slopes(mode, turning, angles, errors)
         if slopes is None:
             return None
         step = np.asarray(np.linalg.lstsq(slopes, -errors, rcond=None)[0], dtype=float)
-        step *= min(1.0, _LONGEST_STEP / max(float(np.abs(step).max()), _SETTLED))
+        step *= min(1.0, _LONGEST_STEP / max(float(np.abs(step).max()), SETTLED_DIRECTION))
     return None
 
 
 def _slopes(mode: Sliding, turning: list[int], angles: FloatArray, errors: FloatArray) -> FloatArray | None:
     """Return how the errors change with the directions, (k, k); None: the mode ends there."""
     found = np.zeros((len(turning), len(turning)))
-    for k, trial in enumerate(_TRIAL * np.eye(len(turning))):
+    for k, trial in enumerate(TRIAL_TURN * np.eye(len(turning))):
         beside = _solved(mode, turning, angles + trial)
         if beside is None:
             return None
-        found[:, k] = (_errors(mode, turning, angles + trial, beside) - errors) / _TRIAL
+        found[:, k] = (_errors(mode, turning, angles + trial, beside) - errors) / TRIAL_TURN
     return None if np.isnan(found).any() else found
 
 
@@ -124,7 +119,9 @@ def _against(pyramid: Pyramid, force: FloatArray) -> float:
 
 def _solved(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpened | None:
     """Return forces of a mode whose contacts have friction against given directions."""
-    edges = [one.edges if mode.letters[i] != "s" else one.edges[:0] for i, one in enumerate(mode.pyramids)]
+    edges = [
+        one.edges if mode.letters[i] != SEPARATES else one.edges[:0] for i, one in enumerate(mode.pyramids)
+    ]
     for i, angle in zip(turning, angles.tolist(), strict=True):
         one, two = mode.pyramids[i].frame or (np.zeros(3), np.zeros(3))
         way = math.cos(angle) * one + math.sin(angle) * two
@@ -155,9 +152,9 @@ def _forces(mode: Sliding, edges: list[FloatArray]) -> FloatArray | None:
     sizes[sizes == 0.0] = 1.0
     zero, positive = [np.zeros((0, 7))], [np.zeros((0, 7))]
     for contact, letter in zip(mode.touching, mode.letters, strict=True):
-        if letter == "s":
+        if letter == SEPARATES:
             positive.append((contact.normal @ contact.point)[None, :])
-        elif letter == "f":
+        elif letter == STICKS:
             zero.append(contact.point)
         else:
             zero.append((contact.normal @ contact.point)[None, :])

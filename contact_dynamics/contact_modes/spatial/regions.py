@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.spatial.options import MILDER, STRICT, acting_edges
-from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.contact_modes.spatial.options import MILDER, acting_edges
+from contact_dynamics.numerics.linear_spaces import seen_and_unseen
+from contact_dynamics.tolerances import ROW_TOLERANCE, STRICT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -117,7 +118,7 @@ def flat_of(normals: FloatArray, frames: FloatArray, chosen: tuple[int, ...]) ->
     image = image_of(np.vstack([normals, sticking]), frames)
     moves = np.abs(image.maps).max(axis=(1, 2), initial=0.0) > ROW_TOLERANCE
     stuck = frozenset(np.flatnonzero(~moves).tolist())
-    return Flat(chosen, stuck, _row_space(sticking)[0], image._replace(maps=image.maps[moves]))
+    return Flat(chosen, stuck, seen_and_unseen(sticking)[0], image._replace(maps=image.maps[moves]))
 
 
 def image_of(normals: FloatArray, frames: FloatArray) -> Image:
@@ -127,9 +128,9 @@ def image_of(normals: FloatArray, frames: FloatArray) -> Image:
         normals: (k, 6), normal accelerations of the contacts that stay, as functions of the motion.
         frames: (m, 2, 6), tangential ones, of those whose sliding is asked for.
     """
-    free = _row_space(normals)[1]
+    free = seen_and_unseen(normals)[1]
     along = frames.reshape(-1, 6) @ free.T
-    basis, rest = _row_space(along)
+    basis, rest = seen_and_unseen(along)
     return Image(basis @ free, rest @ free, (along @ basis.T).reshape(len(frames), 2, -1))
 
 
@@ -137,12 +138,3 @@ def whole(dimensions: int) -> Iterator[Region]:
     """Yield regions that together cover every direction; none where there is no dimension."""
     for signs in itertools.product((1.0, -1.0), repeat=dimensions) if dimensions else ():
         yield Region(np.diag(signs), np.array(signs) / math.sqrt(dimensions))
-
-
-def _row_space(rows: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return orthonormal bases of what the rows see and of what they do not."""
-    if len(rows) > rows.shape[1]:
-        rows = np.asarray(np.linalg.qr(rows, mode="r"))
-    sizes, basis = np.linalg.svd(rows)[1:]
-    seen = int((sizes > ROW_TOLERANCE * max(1.0, sizes.max(initial=0.0))).sum())
-    return basis[:seen], basis[seen:]

@@ -116,7 +116,7 @@ def impulse_path(  # noqa: C901, PLR0912, PLR0915, PLR0917 - one computation; ea
         p_c = -v_n / rate_1
         rate = rate_1
 
-    # The end, if the path does not bend during restitution.
+    # The end, if the path does not bend during restitution: the laws' closed forms (see `impact.law`).
     taken = 0.0
     if law == RestitutionLaw.POISSON:
         gain = restitution * p_c

@@ -17,18 +17,7 @@ from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
 from contact_dynamics.impact.spatial.stop import Stop, stop_ahead
 from contact_dynamics.impact.spatial.taylor import SlidingSeries, crossing, value
 from contact_dynamics.numerics.elementwise import Number
-
-STRAIGHT: Final = 1e-12
-"""Dimensionless, of the sliding law's scale. A direction that turns more slowly is invariant: what turns it
-is the rounding of contact axes and inertia, some 1e-15, which an unstable direction would amplify."""
-
-UNCOUPLED: Final = 1e-15
-"""Dimensionless, of the tangential inverse inertia. A slower turn is the rounding of a coupling that is zero,
-as of a sphere's, whose scale is rounding too."""
-
-STOPPED: Final = 1e-13
-"""Dimensionless, of the first sliding speed. The error in impulse from going the rest of the way straight is
-below this part of the impulse that stops the contact."""
+from contact_dynamics.tolerances import STOPPED, STRAIGHT, UNCOUPLED
 
 MOST_STRETCHES: Final = 2000
 
@@ -108,7 +97,7 @@ def slide(
     u1, u2 = u
     slowest = STOPPED * first_speed
     still = max(STRAIGHT * sliding.scale, UNCOUPLED * (sliding.l1 + sliding.l2))
-    with_work = progress.law == RestitutionLaw.ENERGETIC
+    with_work = progress.rule.needs_work
     for _ in range(MOST_STRETCHES):
         speed = math.sqrt(u1 * u1 + u2 * u2)
         d1, d2 = u1 / speed, u2 / speed

@@ -10,22 +10,17 @@ shares of the relative velocity.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from contact_dynamics.numerics.elementwise import Number, larger, sign, sqrt
 from contact_dynamics.numerics.vectors import combined, cross, dot, tangents_by_sign
 from contact_dynamics.rotations.one import rows_of
+from contact_dynamics.tolerances import LEAST_PIVOT, SMALLEST
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 Vector3: TypeAlias = "tuple[Number, Number, Number]"
-
-_LEAST_PIVOT: Final = 1e-30
-"""Relative to its diagonal entry. A pivot of an inertia matrix is > 0 but for rounding."""
-
-_NOT_ZERO: Final = 1e-300
-"""1/kg. Added to a sum that is 0 where its quotient is 0/0 and meant as 0."""
 
 
 class Responding(NamedTuple):
@@ -89,10 +84,10 @@ def responding(  # noqa: PLR0917 - the columns of one table
     (i_xx, i_xy, i_xz), (i_yx, i_yy, i_yz), (i_zx, i_zy, i_zz) = inertia
     i_xy, i_xz, i_yz = 0.5 * (i_xy + i_yx), 0.5 * (i_xz + i_zx), 0.5 * (i_yz + i_zy)
     l21, l31 = i_xy / i_xx, i_xz / i_xx
-    d2 = larger(i_yy - l21 * i_xy, _LEAST_PIVOT * i_yy)
+    d2 = larger(i_yy - l21 * i_xy, LEAST_PIVOT * i_yy)
     rest = i_yz - l31 * i_xy
     l32 = rest / d2
-    d3 = larger(i_zz - l31 * i_xz - l32 * rest, _LEAST_PIVOT * i_zz)
+    d3 = larger(i_zz - l31 * i_xz - l32 * rest, LEAST_PIVOT * i_zz)
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rows_of(*q)
     columns = ((xx, yx, zx), (xy, yy, zy), (xz, yz, zz))
     return Responding(1.0 / mass, (i_xx, d2, d3, l21, l31, l32), columns, r, v, w)
@@ -138,7 +133,7 @@ def contact_axes(body: Responding, other: Responding | None, normal: Vector3) ->
     # Jacobi's rotation by the smaller angle.
     difference = bb - aa
     root = sqrt(difference * difference + 4.0 * ab * ab)
-    tangent = sign(difference) * (2.0 * ab) / (abs(difference) + root + _NOT_ZERO)
+    tangent = sign(difference) * (2.0 * ab) / (abs(difference) + root + SMALLEST)
     c = 1.0 / sqrt(1.0 + tangent * tangent)
     s = tangent * c
     return ContactAxes(

@@ -23,6 +23,7 @@ import math
 from typing import Final, NamedTuple
 
 from contact_dynamics.numerics.elementwise import Number, larger, sqrt
+from contact_dynamics.tolerances import ESCAPE_ARRIVED
 
 ESCAPE_ROUNDS: Final = 60
 """Bound on the iterations for the direction in which a contact leaves; they converge quadratically."""
@@ -95,7 +96,7 @@ class SlidingLaw(NamedTuple):
         for _ in range(ESCAPE_ROUNDS):
             step = self.escape_step(g)[2]
             g += step
-            if step <= 1e-16 * g:
+            if step <= ESCAPE_ARRIVED * g:
                 break
         d1, d2, _ = self.escape_step(g)
         length = math.sqrt(d1 * d1 + d2 * d2)

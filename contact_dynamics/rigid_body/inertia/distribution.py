@@ -10,21 +10,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.rotations.one import rotation_matrix
-from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, TRIANGLE_TOLERANCE
+from contact_dynamics.tolerances import SUM_ROUNDING, SYMMETRY_TOLERANCE, TRIANGLE_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_positive, check_unit
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-ROUNDING: Final = 1e-14
-"""Relative to the largest term of a difference of inertias: some ten roundings of 1e-16, with room."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -161,7 +158,7 @@ def difference(minuend: FloatArray, subtrahend: FloatArray, *, terms: float) -> 
     inertia: FloatArray = minuend - subtrahend
     half_trace = 0.5 * float(np.trace(inertia))
     spreads, axes = np.linalg.eigh(half_trace * np.eye(3) - _symmetric(inertia))  # integrals of x^2, y^2, z^2
-    if not -ROUNDING * terms <= spreads[0] < 0.0:
+    if not -SUM_ROUNDING * terms <= spreads[0] < 0.0:
         return inertia
     return inertia_of_second_moments(_symmetric((axes * np.maximum(spreads, 0.0)) @ axes.T))
 

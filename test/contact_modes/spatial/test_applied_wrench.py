@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact_modes import spatial_contact_modes
+from contact_dynamics.contact_modes import SpatialContactProblem, contact_modes
 from contact_dynamics.contact_modes.spatial.applied_wrench import applied_wrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
@@ -39,7 +39,10 @@ def test_the_applied_wrench_follows_from_each_mode(seed: int) -> None:
         w_WB_W=state.w_WB_W,
     )
     force_W, torque_W = random.normal(size=3) - (0.0, 0.0, 5.0), 0.1 * random.normal(size=3)
-    found = spatial_contact_modes(BODY, state, contacts, force_W=force_W, torque_W=torque_W)
+    problem = SpatialContactProblem(
+        body=BODY, state=state, contacts=contacts, force_W=force_W, torque_W=torque_W
+    )
+    found = contact_modes(problem)
     assert found.modes
     for mode in found.modes:
         wrench_W = applied_wrench(BODY, state, contacts, mode)

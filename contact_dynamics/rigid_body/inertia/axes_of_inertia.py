@@ -5,7 +5,7 @@ This is the choice:
 
 - moments ascend, and the axes are right-handed;
 - of the first and the second axis the largest component is positive (of equally large ones the first; equal
-  means within `TIE`); the third is their cross product;
+  means within `AXIS_TIE`); the third is their cross product;
 - of two equal moments, the axis of the other moment has its largest component positive, and the frame is the
   one nearest to the body's: what the least rotation makes of x, y, z when it takes the body axis nearest to
   that axis onto it; so all three axes point the way of the body axes nearest to them;
@@ -26,7 +26,7 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.inertia.principal_frame import principal_frame
-from contact_dynamics.tolerances import EQUAL_MOMENTS_TOLERANCE, SYMMETRY_TOLERANCE
+from contact_dynamics.tolerances import AXIS_TIE, EQUAL_MOMENTS_TOLERANCE, SYMMETRY_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array, check_positive, check_unit
 
 if TYPE_CHECKING:
@@ -34,9 +34,6 @@ if TYPE_CHECKING:
 
 REMEMBERED: Final = 128
 """Bodies whose axes are kept."""
-
-TIE: Final = 1e-9
-"""Dimensionless, between components of a unit axis: far above the rounding of, say, (1, 1, 0) / sqrt(2)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -147,4 +144,4 @@ def _signed(axis: FloatArray) -> FloatArray:
 def _largest(axis: FloatArray) -> int:
     """Return the index of the largest component, the first among equals."""
     size = np.abs(axis)
-    return int(np.argmax(size >= size.max() * (1.0 - TIE)))
+    return int(np.argmax(size >= size.max() * (1.0 - AXIS_TIE)))
