@@ -21,7 +21,7 @@ import numpy as np
 from scipy.optimize import linprog
 
 from benchmarks._quotes import quote
-from contact_dynamics.contact_modes import planar_contact_modes
+from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.judgement import judge_all
 from contact_dynamics.contact_modes.planar.problem import planar_case
@@ -101,20 +101,21 @@ def best_of(task: Callable[[], object]) -> float:
     return best
 
 
-def problem_of(contacts: list[PlanarContact]) -> PlanarCase:
-    """Return the problem of a body at rest."""
+def case_of(contacts: list[PlanarContact]) -> PlanarCase:
+    """Return the case of a body at rest."""
     at_rest = [(0.0, 0.0)] * len(contacts)
-    return planar_case(BODY, AT_REST, contacts, at_rest, WRENCH, velocity_tolerance=0.0)
+    problem = PlanarContactProblem(body=BODY, contacts=contacts, wrench=WRENCH, velocity_tolerance=0.0)
+    return planar_case(problem, contacts, at_rest)
 
 
 def enumerate_only(contacts: list[PlanarContact]) -> dict[str, Cell]:
     """Return the kinematically possible modes."""
-    return kinematic_cells(problem_of(contacts))
+    return kinematic_cells(case_of(contacts))
 
 
 def slowest_mode(contacts: list[PlanarContact]) -> float:
     """Return the time of the mode that takes longest to judge, s, of some over all the set."""
-    problem = problem_of(contacts)
+    problem = case_of(contacts)
     cells = kinematic_cells(problem)
     chosen = sorted(cells)[:: 1 + len(cells) // MOST_TIMED]
 
@@ -186,9 +187,10 @@ def run() -> None:
         times = {}
         for n in COUNTS:
             contacts = make(n)
+            problem = PlanarContactProblem(body=BODY, velocity=AT_REST, contacts=contacts, wrench=WRENCH)
             modes = len(enumerate_only(contacts))
             times[n] = best_of(partial(enumerate_only, contacts))
-            answer = best_of(partial(planar_contact_modes, BODY, AT_REST, contacts, WRENCH))
+            answer = best_of(partial(contact_modes, problem))
             quote(f"contact_modes.{make.__name__}.{n}", 1e3 * answer, "ms")
             # One contact is answered in closed form, without enumeration.
             dynamics = (answer if n == 1 else max(0.0, answer - times[n])) / modes
@@ -207,7 +209,9 @@ def peers(make: Callable[[int], list[PlanarContact]], contacts: list[PlanarConta
     n = len(contacts)
     if n > MOST_PROGRAMS:
         return ""
-    answer = planar_contact_modes(BODY, AT_REST, contacts, WRENCH)
+    answer = contact_modes(
+        PlanarContactProblem(body=BODY, velocity=AT_REST, contacts=contacts, wrench=WRENCH)
+    )
     start = time.thread_time()
     found = [mode for mode in answer.kinematic_modes if program_of_mode(contacts, mode)]
     one = (time.thread_time() - start) / len(answer.kinematic_modes)

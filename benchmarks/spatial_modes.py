@@ -22,10 +22,11 @@ from benchmarks._quotes import quote
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes import (
-    spatial_contact_modes,
+    SpatialContactProblem,
+    contact_modes,
+    mode_margins,
     spatial_kinematic_modes,
-    spatial_mode_margins,
-    spatial_wrench_sets,
+    wrench_sets,
 )
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
@@ -191,15 +192,15 @@ def run_mechanics() -> None:
         contacts = make(n)
         force = WEIGHT * np.array([share, 0.05 * (share > 0.0), -1.0])
 
-        ask = partial(
-            spatial_contact_modes,
-            BODY,
-            state(),
-            contacts,
+        problem = SpatialContactProblem(
+            body=BODY,
+            state=state(),
+            contacts=contacts,
             force_W=force,
             friction_facets=facets,
             sharpen=False,
         )
+        ask = partial(contact_modes, problem)
         answer = ask()
         seconds = best_of(ask)
         peer = ""
@@ -215,13 +216,15 @@ def run_mechanics() -> None:
     contacts = flush(4)
     print("\na box that slides on a table already, friction exact: ", end="")
     down = (0.0, 0.0, -WEIGHT)
-    seconds = best_of(partial(spatial_contact_modes, BODY, state(1.0), contacts, force_W=down))
+    problem = SpatialContactProblem(body=BODY, state=state(1.0), contacts=contacts, force_W=down)
+    seconds = best_of(partial(contact_modes, problem))
     print(f"{1e3 * seconds:.2f} ms")
     leaning, force = drawn(4), np.array([6.0, 0.5, -WEIGHT])
     for sharpen in (False, True):
-        seconds = best_of(
-            partial(spatial_contact_modes, BODY, state(), leaning, force_W=force, sharpen=sharpen)
+        problem = SpatialContactProblem(
+            body=BODY, state=state(), contacts=leaning, force_W=force, sharpen=sharpen
         )
+        seconds = best_of(partial(contact_modes, problem))
         how = "turned exactly" if sharpen else "on facets"
         print(f"four drawn contacts, friction {how}: {1e3 * seconds:.2f} ms")
 
@@ -233,14 +236,14 @@ def run_answers() -> None:
     )
     costs: dict[int, list[float]] = {}
     for n, (what, (x, y, *torque)) in itertools.product(COUNTS[2:], LOADS.items()):
-        ask = partial(
-            spatial_contact_modes,
-            BODY,
-            state(),
-            flush(n),
+        problem = SpatialContactProblem(
+            body=BODY,
+            state=state(),
+            contacts=flush(n),
             force_W=WEIGHT * np.array([x, y, -1.0]),
             torque_W=WEIGHT * np.array(torque),
         )
+        ask = partial(contact_modes, problem)
         answer = ask()
         alone = all(mode.motion_unique for mode in answer.modes)
         costs.setdefault(n, []).append(1e3 * best_of(ask))
@@ -257,15 +260,25 @@ def run_evidence() -> None:
     feet, costs = flush(4), []
     print(f"\n{'margins of':>12} {'what':>22} {'answer':>12}")
     for what, (x, y, *torque) in LOADS.items():
-        loads = {"force_W": WEIGHT * np.array([x, y, -1.0]), "torque_W": WEIGHT * np.array(torque)}
-        ask = partial(spatial_mode_margins, BODY, state(), feet, **loads)
+        problem = SpatialContactProblem(
+            body=BODY,
+            state=state(),
+            contacts=feet,
+            force_W=WEIGHT * np.array([x, y, -1.0]),
+            torque_W=WEIGHT * np.array(torque),
+            friction_facets=16,
+        )
+        ask = partial(mode_margins, problem)
         start = time.thread_time()  # once, because some take seconds
         ask()
         costs.append(time.thread_time() - start)
         print(f"{'flush':>12} {what:>22} {1e3 * costs[-1]:9.0f} ms")
     quote("spatial_modes.margins", [1e3 * spent for spent in costs], "ms", digits=1)
     for facets in FEW_AND_MANY:
-        ask_sets = partial(spatial_wrench_sets, BODY, state(), feet, friction_facets=facets)
+        problem = SpatialContactProblem(
+            body=BODY, state=state(), contacts=feet, force_W=np.zeros(3), friction_facets=facets
+        )
+        ask_sets = partial(wrench_sets, problem)
         sets, seconds = len(ask_sets()), best_of(ask_sets)
         print(f"{sets} sets of wrenches with {facets} facets: {1e3 * seconds / sets:.2f} ms each")
         quote(f"spatial_modes.wrench_sets.{facets}", 1e3 * seconds / sets, "ms", digits=1)

@@ -13,7 +13,7 @@ The table of contents, chapters in reading order; everything here needs NumPy an
 - Contacts: `ContactSet` in space (`contact`), of all kinds (`contact.curvature`), from geometry
   (`find_contacts`); `PlanarContact` and its kin in the plane (`planar`), reached from space by a
   `PlaneOfMotion`.
-- Lecture 26, contact modes: `planar_contact_modes`, `spatial_contact_modes` (`contact_modes`).
+- Lecture 26, contact modes: `PlanarContactProblem`, `SpatialContactProblem` (`contact_modes`).
 - Lecture 27, impact: `planar_impact`, `spatial_impact`, several contacts at once `several_impact`, strikes in
   time `impact_sequence` (`impact`).
 - What is refused, and how: `errors`. What counts as zero: `tolerances`.
@@ -24,14 +24,12 @@ from contact_dynamics.contact.curvature import Curvatures
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact_modes import (
     ModeVerdict,
+    PlanarContactProblem,
     PlanarMode,
     PlanarModeAnswer,
     Refusal,
     RefusedMode,
-    planar_contact_modes,
-    planar_mode_margins,
-    spatial_contact_modes,
-    spatial_mode_margins,
+    SpatialContactProblem,
 )
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.impact import (
@@ -52,6 +50,7 @@ from contact_dynamics.motion.integrated import motion_of
 from contact_dynamics.motion.integrated_fit import fit_motion
 from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, best_plane, project_onto_plane
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import (
     BodyState,
     MassProperties,
@@ -93,6 +92,7 @@ __all__ = [
     "Obstacle",
     "PlanarBody",
     "PlanarContact",
+    "PlanarContactProblem",
     "PlanarImpact",
     "PlanarMode",
     "PlanarModeAnswer",
@@ -104,6 +104,7 @@ __all__ = [
     "RefusedMode",
     "Regime",
     "RestitutionLaw",
+    "SpatialContactProblem",
     "SpatialImpact",
     "Surface",
     "Trajectory",
@@ -117,18 +118,15 @@ __all__ = [
     "fit_motion",
     "free_motion",
     "impact_sequence",
+    "inertia",
     "kinetic_energy",
     "momentum",
     "motion_of",
     "next_landing",
-    "planar_contact_modes",
     "planar_impact",
-    "planar_mode_margins",
     "project_onto_plane",
     "propagate_covariance",
     "several_impact",
-    "spatial_contact_modes",
     "spatial_impact",
-    "spatial_mode_margins",
     "states_of_many",
 ]

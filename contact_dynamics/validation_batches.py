@@ -119,4 +119,6 @@ def check_covariance(field: str, value: ArrayLike) -> FloatArray:
         raise InvalidFieldError(
             field, f"correlations with an eigenvalue of {lowest:g}", "a positive semidefinite matrix"
         )
-    return 0.5 * (matrix + matrix.T)
+    symmetric: FloatArray = 0.5 * (matrix + matrix.T)
+    symmetric.flags.writeable = False
+    return symmetric

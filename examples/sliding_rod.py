@@ -7,9 +7,9 @@ from contact_dynamics import (
     PlanarContact,
     PlanarVelocity,
     PlanarWrench,
-    planar_contact_modes,
     planar_impact,
 )
+from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes
 
 rod = PlanarBody(mass=1.0, inertia=1.0)
 theta = math.radians(75.0)
@@ -20,15 +20,17 @@ contact = PlanarContact(
 )
 
 sliding = PlanarVelocity(v=(-1.0, 0.0), w=0.0)
-answer = planar_contact_modes(rod, sliding, [contact], PlanarWrench(f=(0.0, -9.81)))
+answer = contact_modes(
+    PlanarContactProblem(body=rod, velocity=sliding, contacts=[contact], wrench=PlanarWrench(f=(0.0, -9.81)))
+)
 print(f"sliding left under gravity: {answer.verdict.name.lower()}")
 for refused in answer.refused:
     print(f"  {refused.mode}: {refused.refusal.name.lower()}, {refused.amount:.4f}")
 impact = planar_impact(rod, sliding, contact)
 print(f"  as an impact: {impact.outcome.name.lower()}, v = {impact.velocity.v}, w = {impact.velocity.w:.4f}")
 
-at_rest = PlanarVelocity(v=(0.0, 0.0), w=0.0)
-answer = planar_contact_modes(rod, at_rest, [contact], PlanarWrench(f=(-1.0, 0.0)))
+at_rest = PlanarContactProblem(body=rod, contacts=[contact], wrench=PlanarWrench(f=(-1.0, 0.0)))
+answer = contact_modes(at_rest)
 print(f"at rest, pulled along the wall: {answer.verdict.name.lower()}")
 for mode in answer.modes:
     print(f"  {mode.mode}: force (t, n) = {mode.contact_forces[0]}, acceleration {mode.acceleration}")

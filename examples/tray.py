@@ -13,12 +13,9 @@ import rerun.blueprint as rrb
 from contact_dynamics import (
     PlanarBody,
     PlanarContact,
-    PlanarVelocity,
     PlanarWrench,
-    planar_contact_modes,
-    planar_mode_margins,
 )
-from contact_dynamics.contact_modes import planar_mode_map
+from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes, mode_margins, wrench_sets
 from contact_dynamics.viewing.force_dual import draw_force_dual
 from contact_dynamics.viewing.mode_map import color_of_modes, draw_mode_map
 from contact_dynamics.viewing.palette import BACKGROUND
@@ -52,13 +49,13 @@ contacts = [
     for point in points
 ]
 
-modes = planar_mode_map(key, contacts)
+applied = PlanarWrench(f=(0.5, 0.1), moment=0.03)  # gravity along the tilted tray, and a finger
+problem = PlanarContactProblem(body=key, contacts=contacts, wrench=applied)  # at rest
+modes = wrench_sets(problem)
 print(f"{len(modes)} of 4^{len(contacts)} strings are possible: {', '.join(one.mode for one in modes)}")
 
-applied = PlanarWrench(f=(0.5, 0.1), moment=0.03)  # gravity along the tilted tray, and a finger
-at_rest = PlanarVelocity(v=(0.0, 0.0), w=0.0)
-answer = planar_contact_modes(key, at_rest, contacts, applied)
-(margin,) = planar_mode_margins(key, at_rest, contacts, applied)
+answer = contact_modes(problem)
+(margin,) = mode_margins(problem, answer)
 print(f"{applied} brings about {margin.mode}; {margin.margin:.3f} N more: {' or '.join(margin.modes_beyond)}")
 
 outline = np.vstack([outer, inner[::-1], outer[:1]]) - mass_centre

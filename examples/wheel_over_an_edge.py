@@ -2,7 +2,8 @@
 
 import math
 
-from contact_dynamics import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, planar_contact_modes
+from contact_dynamics import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes
 
 RADIUS, MASS, GRAVITY = 0.25, 2.0, 9.81
 wheel = PlanarBody(mass=MASS, inertia=0.5 * MASS * RADIUS**2)
@@ -18,6 +19,8 @@ on_its_edge = PlanarContact(
 for speed in (0.5, 1.5, 1.6):
     rolling = PlanarVelocity(v=(speed, 0.0), w=-speed / RADIUS)
     for where, contact in (("on the table", on_the_table), ("on its edge ", on_its_edge)):
-        (mode,) = planar_contact_modes(wheel, rolling, [contact], weight).modes
+        (mode,) = contact_modes(
+            PlanarContactProblem(body=wheel, velocity=rolling, contacts=[contact], wrench=weight)
+        ).modes
         print(f"{speed} m/s {where}: {mode.mode}, presses with {mode.contact_forces[0][1]:.3f} N")
 print(f"it flies off above sqrt(g R) = {math.sqrt(GRAVITY * RADIUS):.3f} m/s")

@@ -7,7 +7,7 @@ inside it.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -16,6 +16,17 @@ from contact_dynamics.numerics.vectors import tangents_towards
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
+
+
+MOST_FACETS: Final = 1000
+"""Edges of a friction pyramid, which then leaves out 5e-6 of friction; far more would only take memory."""
+
+
+def check_facets(facets: int) -> int:
+    """Return the number of a friction pyramid's edges, or raise `InvalidFieldError`."""
+    if not isinstance(facets, (int, np.integer)) or not 3 <= facets <= MOST_FACETS:
+        raise InvalidFieldError("friction_facets", facets, f"a whole number >= 3 and <= {MOST_FACETS}")
+    return int(facets)
 
 
 def linearised_cone(
@@ -28,10 +39,9 @@ def linearised_cone(
     leans towards ``towards``, (3,), if given.
 
     Raises:
-        InvalidFieldError: fewer than 3 facets.
+        InvalidFieldError: fewer than 3 facets, more than `MOST_FACETS`, or no whole number of them.
     """
-    if facets < 3:
-        raise InvalidFieldError("friction_facets", facets, "a whole number >= 3")
+    check_facets(facets)
     one, two = tangents_towards(normal, towards)
     angles = 2.0 * math.pi * np.arange(facets) / facets
     edges: FloatArray = normal + friction * (np.outer(np.cos(angles), one) + np.outer(np.sin(angles), two))

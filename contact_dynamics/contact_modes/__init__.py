@@ -1,67 +1,72 @@
 """Contact modes (Mason, lecture 26): does the body, at each contact, separate, slide or stay fixed?
 
-In reading order: verdicts and evidence (`result`); one contact in closed form (`single`); any planar set
-(`planar`, `coincident`), stated as a cone (`problem`, `cone`), its modes enumerated (`enumeration`) and
-judged (`dynamics`, `independent`, `edges`, `wrench_cone`, `least_force`); applied wrenches of each mode
-(`wrench_sets`), their map and margins (`margins`); equilibrium, jamming and wedging (`statics`). In space:
-contacting and separating modes (`spatial`, `spatial_cone`), and with ways of sliding (`spatial.sliding`);
-sticking and sliding with mechanics (`spatial.answer`, `spatial_result`, `spatial.problem`): every combination
-of letters (`search`, `options`, `regions`, `dual_simplex`), shown with exact
-friction (`exact_friction`) and shared forces (`least_forces`); why other strings are refused
-(`refusals`); applied wrenches of each mode (`spatial_wrench_sets`, `wrenches`) and way of
-sliding (`ways_of_sliding`), margins (`spatial.margins`, `margins_of_sliding`); statics (`spatial_statics`).
-What follows where no mode is consistent though no contact approaches: `jamming`, by `complementarity`, until
-it is over (`settling`).
+State a `PlanarContactProblem` or a `SpatialContactProblem`, and ask it: `contact_modes` for every consistent
+mode, `mode_margins` for how far the wrench is from leaving them, `refused_modes` for why the others are not,
+`wrench_sets` for the wrenches of each mode, `statics` for whether a body at rest stays (`plane_or_space`).
+A mode is a string with one of the `letters` for each contact; what plane and space share is in `result`.
+
+The files of `planar` and `spatial` have the same names where they do the same. Each begins with `problem`:
+the question, and its case in the coordinates that it is answered in. `answer` gives the verdict with all
+modes, `margins`, `statics` and `wrench_sets` the rest, and `result` holds what they return.
+
+- In the plane, one contact is a closed form (`one_contact`). Of several, those that coincide are taken
+  together (`coincident`), the modes that kinematics allows are enumerated on a `cone` (`enumeration`), and
+  judged (`judgement`): from their own equations where these are independent (`determined`), else by the cone
+  of their wrenches (`wrench_cone`, `friction_edges`), with least forces as evidence (`least_force`).
+- In space, `kinematic` gives the strings of contacting and separating, and `sliding` those with ways of
+  sliding. With mechanics, all combinations of `options` are searched (`search`, `regions`, `dual_simplex`),
+  and shown with exact friction (`exact_friction`) and shared forces (`least_forces`). `refusals` says why
+  others are refused. The wrenches of a mode (`wrenches`, on a `cone`) come in ways of sliding
+  (`ways_of_sliding`), and so do margins (`margins_of_sliding`).
 """
 
-from contact_dynamics.contact_modes.planar.answer import planar_contact_modes
-from contact_dynamics.contact_modes.planar.margins import (
-    PlanarModeMargin,
-    planar_mode_map,
-    planar_mode_margins,
-)
-from contact_dynamics.contact_modes.planar.result import (
-    ModeVerdict,
-    PlanarMode,
-    PlanarModeAnswer,
-    Refusal,
-    RefusedMode,
-)
-from contact_dynamics.contact_modes.planar.statics import BodyStatics, Certainty, planar_statics
+from contact_dynamics.contact_modes.letters import Letter
+from contact_dynamics.contact_modes.planar.margins import PlanarModeMargin
+from contact_dynamics.contact_modes.planar.problem import PlanarContactProblem
+from contact_dynamics.contact_modes.planar.result import PlanarMode, PlanarModeAnswer
 from contact_dynamics.contact_modes.planar.wrench_sets import PlanarWrenchSet, WrenchHalfSpace
-from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
+from contact_dynamics.contact_modes.plane_or_space import (
+    contact_modes,
+    mode_margins,
+    refused_modes,
+    statics,
+    wrench_sets,
+)
+from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict, Refusal, RefusedMode
 from contact_dynamics.contact_modes.spatial.kinematic import spatial_kinematic_modes
-from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin, spatial_mode_margins
-from contact_dynamics.contact_modes.spatial.refusals import spatial_refused_modes
+from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
+from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
 from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial.sliding import spatial_sliding_modes
-from contact_dynamics.contact_modes.spatial.statics import spatial_statics
-from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet, spatial_wrench_sets
+from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
 
 __all__ = [
     "BodyStatics",
     "Certainty",
+    "Letter",
     "ModeVerdict",
+    "PlanarContactProblem",
     "PlanarMode",
     "PlanarModeAnswer",
     "PlanarModeMargin",
     "PlanarWrenchSet",
     "Refusal",
     "RefusedMode",
+    "SpatialContactProblem",
     "SpatialMode",
     "SpatialModeAnswer",
     "SpatialModeMargin",
     "SpatialWrenchSet",
     "WrenchHalfSpace",
-    "planar_contact_modes",
-    "planar_mode_map",
-    "planar_mode_margins",
-    "planar_statics",
-    "spatial_contact_modes",
+    "contact_modes",
+    "mode_margins",
+    "refused_modes",
     "spatial_kinematic_modes",
-    "spatial_mode_margins",
-    "spatial_refused_modes",
     "spatial_sliding_modes",
-    "spatial_statics",
-    "spatial_wrench_sets",
+    "statics",
+    "wrench_sets",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

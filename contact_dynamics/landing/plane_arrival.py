@@ -80,8 +80,8 @@ def first_contact(
     search = Descent(
         motion,
         shape_B if isinstance(shape_B, ConvexShape) else ConvexShape(vertices=np.asarray(shape_B)),
-        check_array("plane_point", p_WS_W, (3,)),
-        check_unit("plane_normal", normal_W, 3),
+        check_array("p_WS_W", p_WS_W, (3,)),
+        check_unit("normal_W", normal_W, 3),
     )
     if search.shape.is_empty:
         raise InvalidFieldError("shape_B", "nothing", "a shape or at least one corner, which can arrive")

@@ -105,7 +105,7 @@ def fit_free_motion(
         if earlier >= later:
             raise InvalidFieldError("fit window: stamps", f"{later - earlier} ns from one to the next", "> 0")
     seconds = seconds_since(0, since_newest)
-    gravity = check_array("gravity", gravity_W, (3,))
+    gravity = check_array("gravity_W", gravity_W, (3,))
     place = _fit_place(states, seconds, gravity, noise)
     spin = _fit_rotation(body, states, seconds, noise)
     covariance = np.zeros((12, 12))

@@ -189,7 +189,7 @@ def motion_of(
             most_steps=most_steps,
         )
         return ChosenMotion(forced, Method.INTEGRATED)
-    fall = check_array("gravity", gravity_W, (3,)) + wrench.force / body.mass
+    fall = check_array("gravity_W", gravity_W, (3,)) + wrench.force / body.mass
     return ChosenMotion(free_motion(body, state, gravity_W=fall), Method.CLOSED_FORM)
 
 
@@ -220,7 +220,7 @@ def forced_motion(
             and whenever the motion is asked for, the function returns anything but twice three finite
             numbers.
     """
-    gravity = check_array("gravity", gravity_W, (3,))
+    gravity = check_array("gravity_W", gravity_W, (3,))
     check_extent(body, state, gravity)
     law = _Law(body, state, gravity, wrench=wrench, drag=drag, wrench_of=wrench_of)
     law.rates(0.0, law.start)  # a function that returns nonsense is refused at once

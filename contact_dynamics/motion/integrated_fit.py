@@ -60,7 +60,7 @@ def fit_motion(
         InvalidFieldError, TooLargeError: as `fit_free_motion` and `forced_motion`; or the motion grows
             without bounds within the window, into the past.
     """
-    gravity = check_array("gravity", gravity_W, (3,))
+    gravity = check_array("gravity_W", gravity_W, (3,))
     if not turns_or_drags(wrench, drag, wrench_of):
         return fit_free_motion(body, states, gravity_W=gravity + wrench.force / body.mass, noise=noise)
     free = fit_free_motion(body, states, gravity_W=gravity, noise=noise)

@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.contact.velocities import spatial_contact_velocities
 from contact_dynamics.contact_modes import (
-    planar_contact_modes,
-    planar_mode_map,
-    planar_mode_margins,
-    planar_statics,
-    spatial_contact_modes,
+    PlanarContactProblem,
+    contact_modes,
+    mode_margins,
+    refused_modes,
     spatial_kinematic_modes,
-    spatial_mode_margins,
-    spatial_refused_modes,
-    spatial_statics,
-    spatial_wrench_sets,
+    statics,
+    wrench_sets,
 )
 from contact_dynamics.contact_modes.planar.problem import MOST_PLANAR_CONTACTS
-from contact_dynamics.contact_modes.spatial.answer import FRICTION_FACETS
+from contact_dynamics.contact_modes.spatial.problem import FRICTION_FACETS
 from contact_dynamics.contact_modes.spatial.wrench_sets import WRENCH_FACETS
 from contact_dynamics.errors import InvalidFieldError, OutOfPlaneError, TooLargeError
 from contact_dynamics.nodes.settled_impact import Question, settle_in_plane, settle_in_space
@@ -123,37 +121,23 @@ def _in_plane(
 def _answer_in_plane(
     request: Any, response: Any, question: Question, problem: PlanarProblem, partners: tuple[int, ...]
 ) -> None:
-    answer = planar_contact_modes(
-        problem.body,
-        problem.velocity,
-        problem.contacts,
-        problem.wrench,
+    asked = PlanarContactProblem(
+        body=problem.body,
+        velocity=problem.velocity,
+        contacts=problem.contacts,
+        wrench=problem.wrench,
         velocity_tolerance=question.velocity_tolerance,
     )
+    answer = contact_modes(asked)
     write_planar_answer(response, answer, problem, partners)
     if request.want_margins:
-        margins = planar_mode_margins(
-            problem.body,
-            problem.velocity,
-            problem.contacts,
-            problem.wrench,
-            margin_length=_margin_length(request),
-            velocity_tolerance=answer.velocity_tolerance,
-        )
+        margins = mode_margins(asked, answer, margin_length=_margin_length(request))
         write_planar_margins(response, margins, problem.plane)
     if request.want_wrenches:
-        sets = planar_mode_map(
-            problem.body,
-            problem.contacts,
-            velocity=problem.velocity,
-            velocity_tolerance=answer.velocity_tolerance,
-        )
+        sets = wrench_sets(asked)
         response.wrench_sets = [wrench_set_to_msg(wrenches, problem.plane) for wrenches in sets]
     if request.want_statics:
-        statics = planar_statics(
-            problem.body, problem.contacts, problem.wrench, margin_length=_margin_length(request)
-        )
-        write_statics(response, statics)
+        write_statics(response, statics(asked, margin_length=_margin_length(request)))
     if request.want_impact:
         settle_in_plane(response, question, problem, answer.verdict, partners)
     response.plane_normal = vector_to_msg(problem.plane.normal_W)
@@ -161,71 +145,28 @@ def _answer_in_plane(
 
 
 def _answer_in_space(request: Any, response: Any, question: Question) -> None:
-    subject, contacts = question.subject, question.contacts
-    answer = spatial_contact_modes(
-        subject.body.mass_properties,
-        subject.state,
-        contacts,
-        force_W=question.force_W,
-        torque_W=question.torque_W,
-        friction_facets=question.friction_facets,
-        velocity_tolerance=question.velocity_tolerance,
-    )
+    asked, state, contacts = question.in_space, question.subject.state, question.contacts
+    answer = contact_modes(asked)
     write_spatial_answer(
         response,
         answer,
         kinematic_modes=spatial_kinematic_modes(
-            subject.state, contacts, velocity_tolerance=question.velocity_tolerance
+            state, contacts, velocity_tolerance=question.velocity_tolerance
         ),
         contact_velocities_W=spatial_contact_velocities(
-            subject.state, contacts, velocity_tolerance=question.velocity_tolerance
+            state, contacts, velocity_tolerance=question.velocity_tolerance
         ),
     )
     if request.want_margins:
-        margins = spatial_mode_margins(
-            subject.body.mass_properties,
-            subject.state,
-            contacts,
-            force_W=question.force_W,
-            torque_W=question.torque_W,
-            friction_facets=question.friction_facets,  # those of the answer, so that the modes are the same
-            margin_length=_margin_length(request),
-            velocity_tolerance=question.velocity_tolerance,
-        )
+        margins = mode_margins(asked, answer, margin_length=_margin_length(request))
         write_spatial_margins(response, margins)
-        refused = spatial_refused_modes(
-            answer,
-            subject.body.mass_properties,
-            subject.state,
-            contacts,
-            force_W=question.force_W,
-            torque_W=question.torque_W,
-            margin_length=_margin_length(request),
-        )
-        write_refused(response, refused)
+        write_refused(response, refused_modes(asked, answer, margin_length=_margin_length(request)))
     if request.want_wrenches:
         response.wrench_facets = int(request.friction_facets) or WRENCH_FACETS
-        sets = spatial_wrench_sets(
-            subject.body.mass_properties,
-            subject.state,
-            contacts,
-            force_W=question.force_W,
-            torque_W=question.torque_W,
-            friction_facets=response.wrench_facets,
-            velocity_tolerance=question.velocity_tolerance,
-        )
+        sets = wrench_sets(replace(asked, friction_facets=response.wrench_facets))
         response.wrench_sets = [spatial_wrench_set_to_msg(wrenches) for wrenches in sets]
     if request.want_statics:
-        statics = spatial_statics(
-            subject.body.mass_properties,
-            subject.state,
-            contacts,
-            force_W=question.force_W,
-            torque_W=question.torque_W,
-            friction_facets=question.friction_facets,
-            margin_length=_margin_length(request),
-        )
-        write_statics(response, statics)
+        write_statics(response, statics(asked, margin_length=_margin_length(request)))
     if request.want_impact:
         settle_in_space(response, question, answer.verdict)
     response.out_of_plane = math.nan

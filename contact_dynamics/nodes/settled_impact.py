@@ -5,7 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
-from contact_dynamics.contact_modes import ModeVerdict, planar_contact_modes, spatial_contact_modes
+from contact_dynamics.contact_modes import (
+    ModeVerdict,
+    PlanarContactProblem,
+    SpatialContactProblem,
+    contact_modes,
+)
 from contact_dynamics.impact import (
     outcomes_over_orders,
     planar_impact,
@@ -55,6 +60,19 @@ class Question:
     friction_facets: int  # edges of each friction pyramid in space
 
     @property
+    def in_space(self) -> SpatialContactProblem:
+        """Return what is asked about contact modes in space."""
+        return SpatialContactProblem(
+            body=self.subject.body.mass_properties,
+            state=self.subject.state,
+            contacts=self.contacts,
+            force_W=self.force_W,
+            torque_W=self.torque_W,
+            friction_facets=self.friction_facets,
+            velocity_tolerance=self.velocity_tolerance,
+        )
+
+    @property
     def before(self) -> Before:
         """Return what the adapters need of the body."""
         subject = self.subject
@@ -70,15 +88,7 @@ def settle_in_space(response: Any, question: Question, verdict: ModeVerdict) -> 
     body, state, contacts = question.before.body, question.before.state, question.contacts
 
     def modes_after(state: BodyState) -> SpatialModeAnswer:
-        return spatial_contact_modes(
-            body,
-            state,
-            contacts,
-            force_W=question.force_W,
-            torque_W=question.torque_W,
-            friction_facets=question.friction_facets,
-            velocity_tolerance=question.velocity_tolerance,
-        )
+        return contact_modes(replace(question.in_space, state=state))
 
     if len(contacts) == 1:
         impact = spatial_impact(
@@ -129,12 +139,14 @@ def settle_in_plane(
     plane = problem.plane
 
     def modes_after(velocity: PlanarVelocity) -> PlanarModeAnswer:
-        return planar_contact_modes(
-            problem.body,
-            velocity,
-            problem.contacts,
-            problem.wrench,
-            velocity_tolerance=question.velocity_tolerance,
+        return contact_modes(
+            PlanarContactProblem(
+                body=problem.body,
+                velocity=velocity,
+                contacts=problem.contacts,
+                wrench=problem.wrench,
+                velocity_tolerance=question.velocity_tolerance,
+            )
         )
 
     if len(problem.contacts) == 1:

@@ -38,13 +38,14 @@ def hull_of(field: str, points: FloatArray) -> Hull:
     """
     from scipy.spatial import ConvexHull, QhullError
 
-    middle = points.mean(axis=0)
+    middle = np.zeros(points.shape[1])  # first as they are: most hulls need no more
     rotation = np.eye(points.shape[1])
     chance = np.random.default_rng(0)
     for _ in range(_TRIALS):
         try:
             hull = ConvexHull((points - middle) @ rotation)
         except (QhullError, ValueError):  # the latter: numbers so large that their differences are infinite
+            middle = points.mean(axis=0)
             rotation = np.linalg.qr(chance.normal(size=rotation.shape))[0]
             if np.linalg.det(rotation) < 0.0:
                 rotation[:, 0] *= -1.0  # keeps what is counterclockwise

@@ -26,7 +26,7 @@ def planar_in_space(
     body: PlanarBody, velocity: PlanarVelocity, contacts: Sequence[PlanarContact], *, axes_W: ArrayLike
 ) -> tuple[MassProperties, BodyState, ContactSet]:
     """Return a problem in space that moves as a planar one does, with the plane's x and y, (2, 3)."""
-    axes = check_array("axes", axes_W, (2, 3))
+    axes = check_array("axes_W", axes_W, (2, 3))
     state = BodyState(
         p_WB_W=np.zeros(3),
         q_WB=np.array([0.0, 0.0, 0.0, 1.0]),

@@ -18,4 +18,4 @@ class NotALogError(ContactDynamicsError):
 
 
 class DamagedLogWarning(UserWarning):
-    """A log ends early (crash, full disk) or fails its checksums; what comes before was still read."""
+    """A log ends early (crash, full disk) or fails its checksums; all but the damage was still read."""

@@ -15,7 +15,13 @@ from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.arithmetic import ARRAYS, FloatArray
 from contact_dynamics.rotations.many import matrices_of, products
-from contact_dynamics.tolerances import MOTIONLESS, SMALLEST, SYMMETRY_TOLERANCE, UNIT_LENGTH_TOLERANCE
+from contact_dynamics.tolerances import (
+    MOTIONLESS,
+    SMALLEST,
+    SYMMETRY_TOLERANCE,
+    TRIANGLE_TOLERANCE,
+    UNIT_LENGTH_TOLERANCE,
+)
 from contact_dynamics.tumbling.attitude_form import SWITCH, bumps, harmonics, zeros
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
 from contact_dynamics.tumbling.motion import Trajectory
@@ -58,20 +64,20 @@ def states_of_many(
         InvalidFieldError: an array of another shape, a number that is not finite, a quaternion that is not
             unit, an inertia that is not symmetric and positive definite.
     """
-    w = check_array("angular_velocities", w_WB_W, (None, 3))
+    w = check_array("w_WB_W", w_WB_W, (None, 3))
     n = len(w)
-    p, v = check_array("positions", p_WB_W, (n, 3)), check_array("linear_velocities", v_WB_W, (n, 3))
-    q = _unit(check_array("orientations", q_WB, (n, 4)))
-    given = check_array("inertia", I_B, (3, 3) if np.ndim(I_B) == 2 else (n, 3, 3))
+    p, v = _rows("p_WB_W", p_WB_W, n, (3,)), _rows("v_WB_W", v_WB_W, n, (3,))
+    q = _unit(_rows("q_WB", q_WB, n, (4,)))
+    given = check_array("I_B", I_B, (3, 3)) if np.ndim(I_B) == 2 else _rows("I_B", I_B, n, (3, 3))
     moments, R_BP = _principal(given)
-    times = np.broadcast_to(check_array("times", seconds, () if np.ndim(seconds) == 0 else (n,)), (n,))
+    times = np.broadcast_to(_times(seconds, n), (n,))
     R_WP = matrices_of(q) @ R_BP
     turn, w_P = rotations_of_many(moments, np.einsum("nij,ni->nj", R_WP, w), times)
     # The turn is in principal axes at time 0; as a rotation of the world it is R_WP turn R_WP^T.
     onto_W = np.einsum("nij,nj->ni", R_WP, turn[:, :3])
     then = products(np.column_stack([onto_W, turn[:, 3]]), q)
     w_then = np.einsum("nij,nj->ni", matrices_of(then) @ R_BP, w_P)
-    gravity = check_array("gravity", gravity_W, (3,))
+    gravity = check_array("gravity_W", gravity_W, (3,))
     elapsed = times[:, None]
     return Trajectory(
         seconds=times.copy(),
@@ -82,13 +88,25 @@ def states_of_many(
     )
 
 
+def _rows(field: str, value: ArrayLike, n: int, shape: tuple[int, ...]) -> FloatArray:
+    """Return finite numbers, (n, *shape); what is not finite is refused by its row."""
+    rows = check_array(field, value, (None, *shape))
+    if len(rows) != n:
+        raise InvalidFieldError(field, f"{len(rows)} rows", f"{n}, one for each body")
+    return rows
+
+
+def _times(seconds: ArrayLike, n: int) -> FloatArray:
+    return check_array("seconds", seconds, ()) if np.ndim(seconds) == 0 else _rows("seconds", seconds, n, ())
+
+
 def _unit(q: FloatArray) -> FloatArray:
     """Return quaternions (n, 4) scaled to norm 1; refuse those that are not so within tolerance."""
     norms = np.sqrt(np.einsum("ni,ni->n", q, q))
     off = np.flatnonzero(np.abs(norms - 1.0) > UNIT_LENGTH_TOLERANCE)
     if len(off):
         raise InvalidFieldError(
-            f"orientations[{off[0]}]", f"norm {norms[off[0]]:g}", f"1 within {UNIT_LENGTH_TOLERANCE:g}"
+            f"q_WB[{off[0]}]", f"norm {norms[off[0]]:g}", f"1 within {UNIT_LENGTH_TOLERANCE:g}"
         )
     unit: FloatArray = q / norms[:, None]
     return unit
@@ -99,10 +117,14 @@ def _principal(I_B: FloatArray) -> tuple[FloatArray, FloatArray]:
     apart = np.abs(I_B - np.swapaxes(I_B, -1, -2)).max(axis=(-1, -2))
     bent = np.flatnonzero(apart > SYMMETRY_TOLERANCE * np.abs(I_B).max(axis=(-1, -2)))
     if len(bent):
-        raise InvalidFieldError("inertia", I_B.reshape(-1, 3, 3)[bent[0]].tolist(), "a symmetric matrix")
+        raise InvalidFieldError("I_B", I_B.reshape(-1, 3, 3)[bent[0]].tolist(), "a symmetric matrix")
     moments, axes = np.linalg.eigh(I_B)
     if moments.size and not float(moments.min()) > 0.0:
-        raise InvalidFieldError("inertia", f"a principal moment of {moments.min():g}", "numbers > 0")
+        raise InvalidFieldError("I_B", f"a principal moment of {moments.min():g}", "numbers > 0")
+    above = moments[..., 2] - moments[..., 0] - moments[..., 1] > TRIANGLE_TOLERANCE * moments[..., 2]
+    if above.any():
+        found = moments.reshape(-1, 3)[np.atleast_1d(above).argmax()].tolist()
+        raise InvalidFieldError("I_B", f"principal moments {found}", "those of a body: I1 + I2 >= I3")
     axes[..., 2] *= np.linalg.det(axes)[..., None]
     return moments, axes
 
@@ -124,7 +146,7 @@ def rotations_of_many(
     """
     w, given = _checked(moments, w_P)
     n = len(w)
-    times = np.broadcast_to(check_array("times", seconds, () if np.ndim(seconds) == 0 else (n,)), (n,))
+    times = np.broadcast_to(_times(seconds, n), (n,))
     q, w_then = np.empty((n, 4)), np.empty((n, 3))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # in rows of steady spin, set after
         for start in range(0, n, CHUNK):
@@ -148,7 +170,7 @@ def flips_of_many(moments: ArrayLike, w_P: ArrayLike) -> tuple[FloatArray, Float
 
 def _checked(moments: ArrayLike, w_P: ArrayLike) -> tuple[FloatArray, FloatArray]:
     """Return the angular velocities and the moments, (n, 3) each."""
-    w = check_array("angular_velocities", w_P, (None, 3))
+    w = check_array("w_P", w_P, (None, 3))
     given = check_array("moments", moments, (3,) if np.ndim(moments) == 1 else (len(w), 3))
     if not (given > 0.0).all():
         raise InvalidFieldError("moments", float(given.min()), "numbers > 0")

@@ -229,7 +229,7 @@ def free_motion(
             (`LARGEST_NUMBER`).
     """
     check_choice("precision", precision, Precision)
-    gravity = check_array("gravity", gravity_W, (3,))
+    gravity = check_array("gravity_W", gravity_W, (3,))
     check_extent(body, state, gravity)
     constants = constants_of(body.I_B.tobytes(), state.q_WB.tobytes(), state.w_WB_W.tobytes(), precision)
     return FreeMotion(

@@ -49,7 +49,7 @@ def draw_force_dual(
 
     Args:
         recording: to draw into.
-        one: the mode's applied wrenches, of `planar_mode_map`.
+        one: the mode's applied wrenches, of `contact_modes.wrench_sets`.
         contacts: all contacts, in the order of the mode's letters.
         chart: how much of the plane to show.
         outlines: strips, (k, 2) each, m from the centre of mass, drawn below: the body, walls.

@@ -102,7 +102,7 @@ def draw_mode_map(
 
     Args:
         recording: to draw into.
-        sets: of `planar_mode_map`.
+        sets: of `contact_modes.wrench_sets`.
         chart: how wrenches are laid out.
         entity: where the picture is put.
         applied: a wrench to mark.
@@ -163,7 +163,7 @@ def chart_for(
     """Return the chart that suits: all directions of a body at rest, else forces at the applied torque.
 
     Args:
-        sets: of `planar_mode_map`.
+        sets: of `contact_modes.wrench_sets`.
         length: m, the radius of gyration.
         applied: the wrench in question, if known.
         resolution: points on a side.

@@ -21,6 +21,7 @@ CHAPTERS = (
     "constants",
     "tolerances",
     "records",
+    "version",
     "validation",
     "validation_batches",
     "numerics",
@@ -189,5 +190,6 @@ def test_the_root_keeps_few_files() -> None:
         "tolerances",
         "validation",
         "validation_batches",
+        "version",
         "world",
     }

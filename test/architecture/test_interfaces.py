@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from contact_dynamics.contact_modes.planar.result import ModeVerdict, Refusal
+from contact_dynamics.contact_modes.result import ModeVerdict, Refusal
 from contact_dynamics.impact import ImpactOutcome, PathEvent, RestitutionLaw, SequenceEnd
 from contact_dynamics_interfaces.msg import Impact, Poinsot
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling

@@ -4,11 +4,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from contact_dynamics.contact_modes import PlanarContactProblem
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.contact_modes import PlanarMode, PlanarModeAnswer
     from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+
+
+def planar_problem(
+    body: PlanarBody,
+    velocity: PlanarVelocity,
+    contacts: Sequence[PlanarContact],
+    wrench: PlanarWrench,
+    **tolerances: float,
+) -> PlanarContactProblem:
+    """Return the problem of a case that is drawn as a tuple."""
+    return PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=wrench, **tolerances)
+
 
 ROUNDING = 1e-9  # relative to the forces at work: internal forces of narrow cones are large
 

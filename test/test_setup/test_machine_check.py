@@ -23,7 +23,7 @@ def script(path: Path, text: str) -> Path:
 
 def pretender(folder: Path, name: str, pretence: str) -> Path:
     """A Python of which something is not so: it runs `pretence` before what it is asked."""
-    return script(folder / name, f'exec {sys.executable} -c "{pretence}\n$2"')
+    return script(folder / name, f'exec "{sys.executable}" -c "{pretence}\n$2"')
 
 
 def check(python: Path | str, **environment: str) -> subprocess.CompletedProcess[str]:

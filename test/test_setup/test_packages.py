@@ -13,6 +13,7 @@ from pathlib import Path
 from xml.etree import ElementTree as ET
 
 import pytest
+from catkin_pkg.packages import find_packages
 
 from contact_dynamics.command_line import VERBS
 
@@ -41,8 +42,10 @@ SOURCES = (
 
 # Where a rosdep key is not called what is imported; None: there is no key, and pip installs it.
 KEYS = {
+    "catkin_pkg": "python3-catkin-pkg-modules",
     "colcon_core": "python3-colcon-common-extensions",
     "hypothesis": "python3-hypothesis",
+    "lz4": "mcap-ros2-support",  # the mcap library needs it, and zstandard
     "mcap": "mcap-ros2-support",
     "mcap_ros2": "mcap-ros2-support",
     "mpmath": None,
@@ -54,6 +57,7 @@ KEYS = {
     "scipy": "python3-scipy",
     "typing_extensions": "python3-typing-extensions",
     "yaml": "python3-yaml",
+    "zstandard": "mcap-ros2-support",
 }
 
 
@@ -190,6 +194,47 @@ def test_colcon_finds_both_packages_from_the_root() -> None:
         ["contact_dynamics", ".", "(ros.ament_python)"],
         ["contact_dynamics_interfaces", "contact_dynamics_interfaces", "(ros.ament_cmake)"],
     ]
+
+
+def paths_of_readme(command: str) -> list[list[str]]:
+    """The folders that the README names in each line that begins so."""
+    lines = re.findall(
+        rf"^{command} ([^-\n]*)", (ROOT / "README.md").read_text(encoding="utf-8"), re.MULTILINE
+    )
+    return [line.split() for line in lines]
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Path:
+    """A workspace with the project in src/."""
+    for manifest in MANIFESTS:
+        copy = tmp_path / "src" / "contact_dynamics" / manifest.relative_to(ROOT)
+        copy.parent.mkdir(parents=True)
+        shutil.copy(manifest, copy)
+    return tmp_path
+
+
+def test_rosdep_finds_both_packages_in_the_folders_that_the_readme_names(workspace: Path) -> None:
+    named = paths_of_readme("rosdep install --from-paths")
+    assert len(named) == 2
+    for folder, paths in zip((workspace, workspace / "src" / "contact_dynamics"), named, strict=True):
+        # What rosdep asks; it looks no further below a folder that is a package.
+        found = [package.name for path in paths for package in find_packages(folder / path).values()]
+        assert sorted(found) == ["contact_dynamics", "contact_dynamics_interfaces"], paths
+
+
+def test_colcon_finds_both_packages_from_the_root_of_a_workspace(workspace: Path) -> None:
+    (paths,) = paths_of_readme("colcon build --base-paths")
+    listing = "from colcon_core.command import main; raise SystemExit(main())"
+    answer = subprocess.run(
+        [sys.executable, "-c", listing, "list", "--names-only", "--base-paths", *paths],
+        cwd=workspace,
+        env={name: value for name, value in os.environ.items() if not name.startswith("COLCON_")},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert answer.stdout.split() == ["contact_dynamics", "contact_dynamics_interfaces"]
 
 
 def test_every_ros_wheel_is_pinned_where_what_it_pulls_in_is() -> None:

@@ -119,7 +119,7 @@ def test_every_dot_of_a_path_that_swerves_lies_on_the_line_that_names_it(
     up = np.array([0.0, 0.0, 1.0])
     assume(state.velocity_of_point(np.zeros(3))[2] < -0.05)
     impact = spatial_impact(
-        body, state, p_WC_W=np.zeros(3), n_W=up, friction=friction, restitution=restitution
+        body, state, Contact(p_WC_W=np.zeros(3), normal_W=up, friction=friction, restitution=restitution)
     )
     picture = replace(
         sliding_rod(in_plane=False),

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from contact_dynamics.contact_modes import PlanarWrenchSet, planar_contact_modes, planar_mode_map
+from contact_dynamics.contact_modes import PlanarContactProblem, PlanarWrenchSet, contact_modes, wrench_sets
 from contact_dynamics.plane.force_dual import acceleration_centre
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.viewing import palette
@@ -52,7 +52,14 @@ PIVOT = [PlanarContact(r=(0.0, -0.5), normal=(0.0, 1.0), friction=0.5)]
 def test_each_point_has_the_modes_of_its_wrench(
     contacts: list[PlanarContact], velocity: PlanarVelocity, chart: WrenchChart
 ) -> None:
-    regions = mode_regions(planar_mode_map(BODY, contacts, velocity=velocity), chart)
+    regions = mode_regions(
+        wrench_sets(
+            PlanarContactProblem(
+                body=BODY, velocity=velocity, contacts=contacts, wrench=PlanarWrench(f=(0.0, 0.0))
+            )
+        ),
+        chart,
+    )
     wrenches, shown = chart.wrenches()
     assert np.array_equal(regions.classes == OUTSIDE, ~shown)
     inner = np.zeros(shown.shape, dtype=bool)  # on a boundary strictness decides, which the map does not draw
@@ -67,25 +74,41 @@ def test_each_point_has_the_modes_of_its_wrench(
     places = np.argwhere(inner & shown)
     for row, column in np.random.default_rng(0).permutation(places)[:150]:
         f_x, f_y, moment = wrenches[row, column].tolist()
-        answer = planar_contact_modes(BODY, velocity, contacts, PlanarWrench(f=(f_x, f_y), moment=moment))
+        answer = contact_modes(
+            PlanarContactProblem(
+                body=BODY,
+                velocity=velocity,
+                contacts=contacts,
+                wrench=PlanarWrench(f=(f_x, f_y), moment=moment),
+            )
+        )
         assert {mode.mode for mode in answer.modes} == set(regions.modes[regions.classes[row, column]])
 
 
 def test_the_tray_has_regions_with_several_modes_and_a_sliding_rod_one_with_none() -> None:
     chart = DirectionChart(length=RHO, resolution=64)
-    regions = mode_regions(planar_mode_map(BODY, TRAY), chart)
+    regions = mode_regions(
+        wrench_sets(PlanarContactProblem(body=BODY, contacts=TRAY, wrench=PlanarWrench(f=(0.0, 0.0)))), chart
+    )
     assert ("ffff", "rsrs") in {tuple(sorted(modes)) for modes in regions.modes}
     assert not (regions.classes == NO_MODE).any()
     rod = PlanarBody(mass=1.0, inertia=1.0)
     tip = PlanarContact(r=(-1.04, -3.86), normal=(0.0, 1.0), friction=0.58)
     sliding = PlanarVelocity(v=(-1.0, 0.0), w=0.0)
-    regions = mode_regions(planar_mode_map(rod, [tip], velocity=sliding), chart)
+    regions = mode_regions(
+        wrench_sets(
+            PlanarContactProblem(
+                body=rod, velocity=sliding, contacts=[tip], wrench=PlanarWrench(f=(0.0, 0.0))
+            )
+        ),
+        chart,
+    )
     assert (regions.classes == NO_MODE).any()
 
 
 def test_borders_lie_between_regions() -> None:
     chart = DirectionChart(length=RHO, resolution=200)
-    sets = planar_mode_map(BODY, TRAY)
+    sets = wrench_sets(PlanarContactProblem(body=BODY, contacts=TRAY, wrench=PlanarWrench(f=(0.0, 0.0))))
     classes = mode_regions(sets, chart).classes
     for one in sets:
         strips = borders_of(one, chart)
@@ -96,7 +119,9 @@ def test_borders_lie_between_regions() -> None:
 
 def test_a_name_stands_inside_its_region() -> None:
     chart = DirectionChart(length=RHO, resolution=200)
-    regions = mode_regions(planar_mode_map(BODY, TRAY), chart)
+    regions = mode_regions(
+        wrench_sets(PlanarContactProblem(body=BODY, contacts=TRAY, wrench=PlanarWrench(f=(0.0, 0.0)))), chart
+    )
     widest = widest_places(regions, chart)
     assert {one.region for one in widest} == set(np.unique(regions.classes).tolist()) - {OUTSIDE}
     for one in widest:
@@ -118,8 +143,22 @@ def test_colours_say_what_a_region_is() -> None:
 
 def test_the_chart_suits_the_motion() -> None:
     wrench = PlanarWrench(f=(3.0, -4.0), moment=0.2)
-    assert isinstance(chart_for(planar_mode_map(BODY, TRAY), length=RHO, applied=wrench), DirectionChart)
-    turning = planar_mode_map(BODY, PIVOT, velocity=PlanarVelocity(v=(-1.5, 0.0), w=-3.0))
+    assert isinstance(
+        chart_for(
+            wrench_sets(PlanarContactProblem(body=BODY, contacts=TRAY, wrench=PlanarWrench(f=(0.0, 0.0)))),
+            length=RHO,
+            applied=wrench,
+        ),
+        DirectionChart,
+    )
+    turning = wrench_sets(
+        PlanarContactProblem(
+            body=BODY,
+            velocity=PlanarVelocity(v=(-1.5, 0.0), w=-3.0),
+            contacts=PIVOT,
+            wrench=PlanarWrench(f=(0.0, 0.0)),
+        )
+    )
     chart = chart_for(turning, length=RHO, applied=wrench)
     assert isinstance(chart, ForceChart)
     assert chart.moment == 0.2
@@ -129,7 +168,7 @@ def test_the_chart_suits_the_motion() -> None:
 def test_the_map_is_drawn_with_the_wrench_and_its_way_out(
     recording: rr.RecordingStream, read: Callable[[], Drawn]
 ) -> None:
-    sets = planar_mode_map(BODY, TRAY)
+    sets = wrench_sets(PlanarContactProblem(body=BODY, contacts=TRAY, wrench=PlanarWrench(f=(0.0, 0.0))))
     chart = DirectionChart(length=RHO, resolution=160)
     applied, change = PlanarWrench(f=(1.0, -3.0), moment=0.1), PlanarWrench(f=(-3.0, 0.5), moment=0.2)
     draw_mode_map(recording, sets, chart, applied=applied, change=change)
@@ -144,7 +183,13 @@ def test_the_map_is_drawn_with_the_wrench_and_its_way_out(
 
 
 def test_the_construction_of_rsrs(recording: rr.RecordingStream, read: Callable[[], Drawn]) -> None:
-    rsrs = next(one for one in planar_mode_map(BODY, TRAY) if one.mode == "rsrs")
+    rsrs = next(
+        one
+        for one in wrench_sets(
+            PlanarContactProblem(body=BODY, contacts=TRAY, wrench=PlanarWrench(f=(0.0, 0.0)))
+        )
+        if one.mode == "rsrs"
+    )
     forces, motions = split_generators(rsrs, TRAY)
     assert sorted(number for number, _ in forces) == [1, 3]
     (motion,) = motions

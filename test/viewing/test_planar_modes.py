@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from contact_dynamics.contact_modes import planar_contact_modes, planar_mode_map, planar_mode_margins
+from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes, mode_margins, wrench_sets
 from contact_dynamics.nodes.pictured_contact_modes import applied_wrench
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.viewing.planar_modes import (
@@ -38,14 +38,18 @@ ALONG = PlanarWrench(f=(-1.0, 0.0))
 
 
 def picture_of(*, applied: PlanarWrench, velocity: PlanarVelocity) -> PlanarModesPicture:
-    answer = planar_contact_modes(ROD, velocity, [TIP], applied)
-    margins = planar_mode_margins(ROD, velocity, [TIP], applied)
+    answer = contact_modes(PlanarContactProblem(body=ROD, velocity=velocity, contacts=[TIP], wrench=applied))
+    margins = mode_margins(PlanarContactProblem(body=ROD, velocity=velocity, contacts=[TIP], wrench=applied))
     return PlanarModesPicture(
         contacts=(TIP,),
         modes=answer.modes,
         margins=tuple(f"({margin.margin:.2f} N)" for margin in margins),
         verdict="no consistent mode",
-        sets=planar_mode_map(ROD, [TIP], velocity=velocity),
+        sets=wrench_sets(
+            PlanarContactProblem(
+                body=ROD, velocity=velocity, contacts=[TIP], wrench=PlanarWrench(f=(0.0, 0.0))
+            )
+        ),
         length=ROD.radius_of_gyration,
         applied=applied,
         change=margins[0].change if margins else None,
@@ -82,8 +86,21 @@ def test_a_map_that_looks_as_before_is_not_drawn_again(
 ) -> None:
     picture = picture_of(applied=ALONG, velocity=AT_REST)
     turned = replace(TIP, r=(TIP.r[0] * 1.001, TIP.r[1]))
-    nearly = replace(picture, sets=planar_mode_map(ROD, [turned]), applied=PlanarWrench(f=(0.0, -1.0)))
-    far = replace(picture, sets=planar_mode_map(ROD, [replace(TIP, friction=0.9)]))
+    nearly = replace(
+        picture,
+        sets=wrench_sets(
+            PlanarContactProblem(body=ROD, contacts=[turned], wrench=PlanarWrench(f=(0.0, 0.0)))
+        ),
+        applied=PlanarWrench(f=(0.0, -1.0)),
+    )
+    far = replace(
+        picture,
+        sets=wrench_sets(
+            PlanarContactProblem(
+                body=ROD, contacts=[replace(TIP, friction=0.9)], wrench=PlanarWrench(f=(0.0, 0.0))
+            )
+        ),
+    )
     drawn_map = draw_planar_map(recording, picture, None)
     assert draw_planar_map(recording, nearly, drawn_map) is drawn_map
     other = draw_planar_map(recording, far, drawn_map)
@@ -107,7 +124,9 @@ def test_a_map_of_too_many_modes_is_left_out(
 
 @pytest.mark.parametrize("applied", [ALONG, PlanarWrench(f=(0.3, -2.0), moment=0.4)])
 def test_the_applied_wrench_follows_from_a_mode(applied: PlanarWrench) -> None:
-    for mode in planar_contact_modes(ROD, AT_REST, [TIP], applied).modes:
+    for mode in contact_modes(
+        PlanarContactProblem(body=ROD, velocity=AT_REST, contacts=[TIP], wrench=applied)
+    ).modes:
         found = applied_wrench(mode, [TIP], mass=ROD.mass, inertia=ROD.inertia)
         assert found.f == pytest.approx(applied.f, abs=1e-12)
         assert found.moment == pytest.approx(applied.moment, abs=1e-12)

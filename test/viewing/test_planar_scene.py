@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from contact_dynamics.contact_modes import planar_contact_modes
+from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.viewing.planar_scene import cone_edges, draw_planar_scene
 
@@ -37,7 +37,11 @@ def test_letters_forces_and_accelerations_of_a_mode(
 ) -> None:
     body = PlanarBody(mass=1.0, inertia=0.5)
     wrench = PlanarWrench(f=(8.0, -10.0))  # more than friction holds
-    (mode,) = planar_contact_modes(body, PlanarVelocity(v=(0.0, 0.0), w=0.0), BLOCK, wrench).modes
+    (mode,) = contact_modes(
+        PlanarContactProblem(
+            body=body, velocity=PlanarVelocity(v=(0.0, 0.0), w=0.0), contacts=BLOCK, wrench=wrench
+        )
+    ).modes
     draw_planar_scene(recording, OUTLINE, BLOCK, mode=mode)
     drawn = read()
     assert drawn.last("/planar_scene/letters", "Points2D:labels") == [

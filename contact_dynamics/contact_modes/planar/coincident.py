@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from contact_dynamics.contact_modes.planar.result import PlanarMode, RefusedMode
+from contact_dynamics.contact_modes.planar.result import PlanarMode
+from contact_dynamics.contact_modes.result import RefusedMode
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -12,7 +12,7 @@ import math
 from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 from contact_dynamics.contact_modes.planar.enumeration import FIXED, LEFT, RIGHT, Letters
-from contact_dynamics.contact_modes.planar.result import Refusal, RefusedMode
+from contact_dynamics.contact_modes.result import Refusal, RefusedMode
 from contact_dynamics.numerics.vectors import Vector3, dot, norm
 from contact_dynamics.tolerances import ROW_TOLERANCE, SUM_ROUNDING
 

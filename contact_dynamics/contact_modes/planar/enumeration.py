@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
+from contact_dynamics.contact_modes.letters import SEPARATES, SLIDES_LEFT, SLIDES_RIGHT, STICKS
 from contact_dynamics.contact_modes.planar.cone import PolyhedralCone, Sector, bits
 from contact_dynamics.contact_modes.planar.problem import PlanarCase, lifted
 from contact_dynamics.numerics.vectors import Vector3, dot, normalised
@@ -21,10 +22,10 @@ from contact_dynamics.tolerances import ROW_TOLERANCE
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-SEPARATE = ord("s")
-LEFT = ord("l")
-RIGHT = ord("r")
-FIXED = ord("f")
+SEPARATE = ord(SEPARATES)
+LEFT = ord(SLIDES_LEFT)
+RIGHT = ord(SLIDES_RIGHT)
+FIXED = ord(STICKS)
 
 _SLIDING: Final = {-1.0: LEFT, 0.0: 0, 1.0: RIGHT}
 
@@ -63,7 +64,7 @@ def kinematic_cells(case: PlanarCase) -> dict[str, Cell]:
             for row in case.rows
         ]
     cone = PolyhedralCone(normals, tolerance=ROW_TOLERANCE)
-    base = bytearray(b"s" * len(case.contacts))
+    base = bytearray(SEPARATES.encode() * len(case.contacts))
     cells: dict[str, Cell] = {}
     if cone.has_interior:
         cells[base.decode()] = Cell((), [ray for ray, _ in cone.edges()])

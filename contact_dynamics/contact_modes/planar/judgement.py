@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING
 
 from contact_dynamics.contact_modes.planar.determined import IndependentModes
 from contact_dynamics.contact_modes.planar.enumeration import FIXED, Cell
-from contact_dynamics.contact_modes.planar.result import PlanarMode, Refusal, RefusedMode
+from contact_dynamics.contact_modes.planar.result import PlanarMode
 from contact_dynamics.contact_modes.planar.wrench_cone import ModeWrenches
+from contact_dynamics.contact_modes.result import Refusal, RefusedMode
 from contact_dynamics.numerics.vectors import Vector3
 
 if TYPE_CHECKING:

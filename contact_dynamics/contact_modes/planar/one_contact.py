@@ -17,7 +17,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from contact_dynamics.contact_modes.planar.result import PlanarMode, Refusal, RefusedMode
+from contact_dynamics.contact_modes.letters import SEPARATES, SLIDES_LEFT, SLIDES_RIGHT, STICKS
+from contact_dynamics.contact_modes.planar.result import PlanarMode
+from contact_dynamics.contact_modes.result import Refusal, RefusedMode
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench, Vector2
 from contact_dynamics.tolerances import LARGEST_NUMBER, ROW_TOLERANCE, SUM_ROUNDING
 
@@ -88,13 +90,13 @@ def single_contact_modes(
         accuracy: Relative size of what counts as zero.
     """
     axes = _contact_axes(body, contact, wrench, v_t=v_t, w=w, accuracy=accuracy)
-    trials: list[tuple[str, _Solution | _Failure]] = [("s", _separating(axes))]
+    trials: list[tuple[str, _Solution | _Failure]] = [(SEPARATES, _separating(axes))]
     if v_t <= 0.0:
-        trials.append(("l", _sliding(axes, direction=-1.0, at_rest=v_t == 0.0)))
+        trials.append((SLIDES_LEFT, _sliding(axes, direction=-1.0, at_rest=v_t == 0.0)))
     if v_t >= 0.0:
-        trials.append(("r", _sliding(axes, direction=1.0, at_rest=v_t == 0.0)))
+        trials.append((SLIDES_RIGHT, _sliding(axes, direction=1.0, at_rest=v_t == 0.0)))
     if v_t == 0.0:
-        trials.append(("f", _fixed(axes)))
+        trials.append((STICKS, _fixed(axes)))
     consistent: list[PlanarMode] = []
     refused: list[RefusedMode] = []
     for letter, outcome in trials:

@@ -1,7 +1,8 @@
-"""The planar contact problem in coordinates where accelerations and wrenches live in one space (lecture 26).
+"""A question about contact modes in the plane, and its case: the question in coordinates (lecture 26).
 
-With the radius of gyration rho as the unit of length of rotations, an acceleration is q = (a_x, a_y, rho
-alpha) and a wrench is w = (f_x, f_y, moment / rho), so that Newton's law is m q = w, contact forces included.
+In a case accelerations and wrenches live in one space. With the radius of gyration rho as the unit of length
+of rotations, an acceleration is q = (a_x, a_y, rho alpha) and a wrench is w = (f_x, f_y, moment / rho), so
+that Newton's law is m q = w, contact forces included.
 The accelerations of a contact's point along its normal and its tangent are
 
     a_n = N . q + b_n,  a_t = T . q + b_t,  N = (n, r x n / rho),  T = (t, r x t / rho),  b = -w^2 r . (n, t),
@@ -18,20 +19,74 @@ one that stands for the centripetal terms.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, tangents, without
-from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, LARGEST_NUMBER, ROW_TOLERANCE
+from contact_dynamics.plane.types import PlanarVelocity
+from contact_dynamics.tolerances import (
+    ACCELERATION_TOLERANCE,
+    LARGEST_NUMBER,
+    ROW_TOLERANCE,
+    VELOCITY_TOLERANCE,
+)
+from contact_dynamics.validation import check_not_negative
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, Vector2
-
+    from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench, Vector2
 
 MOST_PLANAR_CONTACTS: Final = 1000
 """Longest list of contacts accepted: the mode strings of n contacts are about 4 n^2 letters."""
+
+
+AT_REST: Final = PlanarVelocity(v=(0.0, 0.0), w=0.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PlanarContactProblem:
+    """A question about the contact modes of one planar body; its sister in space is `SpatialContactProblem`.
+
+    Raises:
+        InvalidFieldError: a tolerance is negative.
+        TooLargeError: more than `MOST_PLANAR_CONTACTS` contacts.
+    """
+
+    body: PlanarBody  # mass and angular inertia
+    velocity: PlanarVelocity = AT_REST  # of the body
+    contacts: Sequence[PlanarContact]  # any may coincide, oppose or repeat another
+    wrench: PlanarWrench  # on the body besides its contact forces, gravity included
+    velocity_tolerance: float = VELOCITY_TOLERANCE
+    """m/s, >= 0. A component of a contact's velocity within it counts as zero, and so does an angular
+    velocity that moves no contact relative to the centre of mass by more than that."""
+    acceleration_tolerance: float = ACCELERATION_TOLERANCE
+    """Relative to the applied wrench and the centripetal terms, >= 0: forces and accelerations whose sign a
+    change by that part turns count as zero."""
+
+    def __post_init__(self) -> None:
+        """Check the tolerances and the number of contacts."""
+        n = len(self.contacts)
+        if n > MOST_PLANAR_CONTACTS:
+            raise TooLargeError("contacts", f"{n} contacts", f"at most {MOST_PLANAR_CONTACTS}")
+        object.__setattr__(self, "contacts", tuple(self.contacts))
+        for name in ("velocity_tolerance", "acceleration_tolerance"):
+            object.__setattr__(self, name, check_not_negative(name, getattr(self, name)))
+
+    def contact_velocities(self) -> tuple[Vector2, ...]:
+        """Return (v_t, v_n), m/s, of each contact, with values within the tolerance as an exact 0."""
+        tolerance = self.velocity_tolerance
+        (v_x, v_y), w = self.velocity.v, self.velocity.w
+        found = []
+        for contact in self.contacts:
+            n_x, n_y = contact.normal
+            c_x = v_x - w * contact.r[1]
+            c_y = v_y + w * contact.r[0]
+            v_t = c_x * n_y - c_y * n_x
+            v_n = c_x * n_x + c_y * n_y
+            found.append((0.0 if abs(v_t) <= tolerance else v_t, 0.0 if abs(v_n) <= tolerance else v_n))
+        return tuple(found)
 
 
 class ContactRow(NamedTuple):
@@ -75,42 +130,23 @@ class PlanarCase(NamedTuple):
         return norm(self.w) + (self.mass * self.lift.scale if self.lift else 0.0)
 
 
-def contact_velocities(
-    velocity: PlanarVelocity, contacts: Sequence[PlanarContact], tolerance: float
-) -> tuple[Vector2, ...]:
-    """Return (v_t, v_n), m/s, of each contact, with values within ``tolerance`` as an exact 0.
-
-    Raises:
-        TooLargeError: more than `MOST_PLANAR_CONTACTS` contacts.
-    """
-    if len(contacts) > MOST_PLANAR_CONTACTS:
-        raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MOST_PLANAR_CONTACTS}")
-    (v_x, v_y), w = velocity.v, velocity.w
-    found = []
-    for contact in contacts:
-        n_x, n_y = contact.normal
-        c_x = v_x - w * contact.r[1]
-        c_y = v_y + w * contact.r[0]
-        v_t = c_x * n_y - c_y * n_x
-        v_n = c_x * n_x + c_y * n_y
-        found.append((0.0 if abs(v_t) <= tolerance else v_t, 0.0 if abs(v_n) <= tolerance else v_n))
-    return tuple(found)
+def touching_case(problem: PlanarContactProblem) -> PlanarCase | None:
+    """Return the case of the contacts that touch; None: none does, or one approaches."""
+    velocities = problem.contact_velocities()
+    if any(v_n < 0.0 for _, v_n in velocities) or all(v_n > 0.0 for _, v_n in velocities):
+        return None
+    return planar_case(problem, problem.contacts, velocities)
 
 
 def planar_case(
-    body: PlanarBody,
-    velocity: PlanarVelocity,
-    contacts: Sequence[PlanarContact],
-    contact_velocities: Sequence[Vector2],
-    wrench: PlanarWrench,
-    *,
-    velocity_tolerance: float,
+    problem: PlanarContactProblem, contacts: Sequence[PlanarContact], contact_velocities: Sequence[Vector2]
 ) -> PlanarCase:
-    """Return the problem of the contacts whose normal velocity in ``contact_velocities`` is an exact 0.
+    """Return the case of those ``contacts`` whose normal velocity in ``contact_velocities`` is an exact 0.
 
-    An angular velocity that moves no contact relative to the centre of mass by more than
-    ``velocity_tolerance``, m/s, counts as zero.
+    They are the problem's, or one for each group of them that coincides.
     """
+    body, velocity, wrench = problem.body, problem.velocity, problem.wrench
+    velocity_tolerance = problem.velocity_tolerance
     rho = body.radius_of_gyration
     touching: list[tuple[int, float, Vector3, Vector3]] = []
     resting: list[Vector3] = []

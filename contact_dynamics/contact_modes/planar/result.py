@@ -8,40 +8,9 @@ left, `r` slide right, `f` fixed. Contact axes are (tangent, normal), the tangen
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
 
+from contact_dynamics.contact_modes.result import ModeVerdict, RefusedMode
 from contact_dynamics.plane.types import Vector2
-
-
-class ModeVerdict(IntEnum):
-    """What rigid-body mechanics says about a contact set as a whole."""
-
-    UNIQUE = 0
-    """One mode is consistent."""
-    INDETERMINATE = 1
-    """Several are; mechanics does not choose."""
-    INCONSISTENT = 2
-    """None is: the case is an impact without approach (lectures 26 and 27)."""
-    IMPACT = 3
-    """A contact approaches. Modes apply only after that impact."""
-
-
-class Refusal(IntEnum):
-    """Why mechanics refuses a mode that is possible kinematically."""
-
-    PENETRATES = 0
-    """Amount: normal acceleration < 0, m/s^2."""
-    PULLS = 1
-    """Amount: normal force < 0, N."""
-    OUTSIDE_CONE = 2
-    """Amount: |f_t| - mu f_n > 0, N."""
-    WRONG_MOTION = 3
-    """Amount: the acceleration that contradicts the contact's letter, m/s^2; 0 where the letter asks for more
-    than 0."""
-    NO_SOLUTION = 4
-    """Amount: for one contact the factor of the normal force (1/kg, lecture 26, eq. 2) that is not > 0; for
-    several the distance, N, of the applied wrench from those that can bring the mode about, a torque being
-    divided by the radius of gyration. No contact forces give the mode's accelerations."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,16 +24,6 @@ class PlanarMode:
     contact_accelerations: tuple[Vector2, ...]  # m/s^2, (a_t, a_n) of the body's point at each contact
     forces_unique: bool  # whether the forces above are the only ones with this mode
     motion_unique: bool  # whether the accelerations above are the only ones with this mode
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RefusedMode:
-    """A mode that is possible kinematically and refused by mechanics."""
-
-    mode: str  # one letter a contact
-    refusal: Refusal  # the first reason found
-    contact: int  # the contact whose letter fails; -1: the mode as a whole
-    amount: float  # by how much, in the unit that the refusal states
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,10 +42,3 @@ class PlanarModeAnswer:
     def kinematic_modes(self) -> tuple[str, ...]:
         """Return every mode that some acceleration realises without penetration, in alphabetical order."""
         return tuple(sorted([found.mode for found in self.modes] + [found.mode for found in self.refused]))
-
-
-def verdict_on(modes: tuple[PlanarMode, ...]) -> ModeVerdict:
-    """Return the verdict on a set without approaching contacts from its consistent modes."""
-    if len(modes) == 1:
-        return ModeVerdict.UNIQUE
-    return ModeVerdict.INDETERMINATE if modes else ModeVerdict.INCONSISTENT

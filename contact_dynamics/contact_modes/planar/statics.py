@@ -12,81 +12,44 @@ hold is not known from the wrench. How the body came to be pressed is outside th
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from enum import IntEnum
-from typing import TYPE_CHECKING, Final
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from contact_dynamics.contact_modes.planar.answer import planar_contact_modes
 from contact_dynamics.contact_modes.planar.cone import PolyhedralCone
-from contact_dynamics.contact_modes.planar.result import ModeVerdict
+from contact_dynamics.contact_modes.planar.problem import AT_REST
+from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict
 from contact_dynamics.numerics.vectors import Vector3, dot, normalised
 from contact_dynamics.plane.force_dual import friction_cone
-from contact_dynamics.plane.types import PlanarVelocity
-from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, ROW_TOLERANCE
-from contact_dynamics.validation import check_not_negative, check_positive
+from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
 
-    from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench
-
-_AT_REST: Final = PlanarVelocity(v=(0.0, 0.0), w=0.0)
-
-
-class Certainty(IntEnum):
-    """How far rigid-body mechanics answers yes."""
-
-    NO = 1
-    POSSIBLE = 2
-    """Consistent, and so is something else."""
-    CERTAIN = 3
+    from contact_dynamics.contact_modes.planar.problem import PlanarContactProblem
+    from contact_dynamics.plane.types import PlanarWrench
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BodyStatics:
-    """What holds a body at rest, and how well."""
-
-    equilibrium: Certainty  # whether it stays at rest
-    jammed: Certainty  # whether friction alone keeps it at rest
-    wedged: bool  # whether the contacts can press against each other without an applied wrench
-    stable_disturbance: float  # N: equilibrium is possible under every change of the wrench up to this size;
-    # infinite: under every change at all (force closure); NaN: no equilibrium
-    margin_length: float  # m, of the metric |f|^2 + (moment / length)^2 of that size
-
-    def is_stable_against(self, disturbance: float) -> bool:
-        """Return whether equilibrium stays possible under every change of the wrench up to this size, N."""
-        return self.stable_disturbance >= disturbance  # NaN compares as false
-
-
-def planar_statics(
-    body: PlanarBody,
-    contacts: Sequence[PlanarContact],
-    wrench: PlanarWrench,
-    *,
-    margin_length: float | None = None,
-    acceleration_tolerance: float = ACCELERATION_TOLERANCE,
-) -> BodyStatics:
+def planar_statics(problem: PlanarContactProblem, *, margin_length: float | None = None) -> BodyStatics:
     """Return whether and how well a body at rest stays at rest.
 
     Args:
-        body: Mass and angular inertia.
-        contacts: All that touch.
-        wrench: Applied to the body besides its contact forces, gravity included.
+        problem: The question; its velocity plays no part.
         margin_length: m, > 0, makes a moment comparable with a force; None: the radius of gyration.
-        acceleration_tolerance: Relative to the wrench, >= 0: what counts as zero.
 
     Raises:
-        InvalidFieldError: the tolerance is negative, or the length is not > 0.
-        TooLargeError: more contacts than `planar_contact_modes` accepts.
+        InvalidFieldError: the length is not > 0.
 
     Source: Mason 5.5 to 6.5 and lecture 26; D. E. Whitney, J. Dyn. Sys. Meas. Control 104 (1982), jamming and
     wedging.
     """
-    accuracy = check_not_negative("acceleration_tolerance", acceleration_tolerance)
+    body, contacts, wrench = problem.body, problem.contacts, problem.wrench
+    accuracy = problem.acceleration_tolerance
     length = (
         body.radius_of_gyration if margin_length is None else check_positive("margin_length", margin_length)
     )
-    answer = planar_contact_modes(body, _AT_REST, contacts, wrench, acceleration_tolerance=accuracy)
+    answer = planar_contact_modes(replace(problem, velocity=AT_REST))
     target = (wrench.f[0], wrench.f[1], wrench.moment / length)
     balance = _balance((edge for contact in contacts for edge in friction_cone(contact)), length)
     smooth = _balance((friction_cone(replace(contact, friction=0.0))[0] for contact in contacts), length)

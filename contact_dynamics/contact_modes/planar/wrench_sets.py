@@ -14,12 +14,17 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
+from contact_dynamics.contact_modes.letters import PLANAR_LETTERS, check_modes
+from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
+from contact_dynamics.contact_modes.planar.problem import touching_case
 from contact_dynamics.contact_modes.planar.wrench_cone import ModeWrenches
 from contact_dynamics.plane.types import PlanarWrench
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from contact_dynamics.contact_modes.planar.enumeration import Cell
-    from contact_dynamics.contact_modes.planar.problem import PlanarCase
+    from contact_dynamics.contact_modes.planar.problem import PlanarCase, PlanarContactProblem
     from contact_dynamics.numerics.vectors import Vector3
 
 
@@ -60,7 +65,32 @@ class PlanarWrenchSet:
         return min((side.depth(wrench, length) for side in self.half_spaces), default=math.inf)
 
 
-def planar_wrench_set(case: PlanarCase, mode: str, cell: Cell) -> PlanarWrenchSet:
+def planar_wrench_sets(
+    problem: PlanarContactProblem, *, modes: Collection[str] | None = None
+) -> tuple[PlanarWrenchSet, ...]:
+    """Return the applied wrenches of every kinematically possible mode, in alphabetical order.
+
+    Empty where a contact approaches, or where none touches. The problem's own wrench plays no part.
+
+    Args:
+        problem: The contacts and the velocity.
+        modes: Letters, one a contact, of the modes that are wanted; None: all. What is impossible whatever
+            the wrench has no set.
+
+    Raises:
+        InvalidFieldError: modes that are not strings of s, l, r and f.
+
+    Source: lecture 26, "Force dual for dynamic contact problem" and "Contact modes for wrench in tray".
+    """
+    check_modes(modes or (), len(problem.contacts), PLANAR_LETTERS)
+    case = touching_case(problem)
+    if case is None:
+        return ()
+    cells = sorted(kinematic_cells(case).items())
+    return tuple(wrench_set_of(case, mode, cell) for mode, cell in cells if modes is None or mode in modes)
+
+
+def wrench_set_of(case: PlanarCase, mode: str, cell: Cell) -> PlanarWrenchSet:
     """Return the wrenches of one mode; the problem's own wrench plays no part."""
     wrenches = ModeWrenches(case, cell)
     rho = case.rho

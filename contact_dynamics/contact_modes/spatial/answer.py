@@ -15,83 +15,47 @@ Does not cover: margins (`spatial.margins`).
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.contact_modes.planar.result import ModeVerdict
+from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
+from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
 from contact_dynamics.contact_modes.spatial.exact_friction import Sliding, sharpened
 from contact_dynamics.contact_modes.spatial.least_forces import least_forces, misdirection
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
-from contact_dynamics.tolerances import SAME_MOTION, STRICT, VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_array, check_not_negative
+from contact_dynamics.tolerances import SAME_MOTION, STRICT
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.contact_modes.spatial.search import Found, Search
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
 
-FRICTION_FACETS: Final = 8
-"""Edges of a friction pyramid where nothing else is asked for: it holds at least 92 % of the round cone's."""
 
-
-def spatial_contact_modes(
-    body: MassProperties,
-    state: BodyState,
-    contacts: ContactSet,
-    *,
-    force_W: ArrayLike,
-    torque_W: ArrayLike = (0.0, 0.0, 0.0),
-    friction_facets: int = FRICTION_FACETS,
-    sharpen: bool = True,
-    velocity_tolerance: float = VELOCITY_TOLERANCE,
-) -> SpatialModeAnswer:
+def spatial_contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer:
     """Return the verdict on a contact set in space and all consistent modes.
 
-    Args:
-        body: Mass and angular inertia.
-        state: Of the body, with its origin at the centre of mass.
-        contacts: Of any kind (`contact.curvature`); at most `spatial.problem.MOST_DYNAMIC_CONTACTS` touch.
-        force_W: (3,), N, applied to the body besides its contact forces, gravity included, world axes.
-        torque_W: (3,), N m, applied about the centre of mass, world axes.
-        friction_facets: Edges of the pyramid that stands for a friction cone at rest, >= 3.
-        sharpen: Whether the pyramids' sectors are left behind: friction is turned exactly against the
-            sliding, in modes of unique motion where that has a solution (`exact_friction`), and modes
-            with the same letters are one if their motion is the same, or where some of them has none that is
-            unique. Otherwise each sector counts, hundreds where the motion under many feet is not unique.
-        velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero, and so
-            does an angular velocity that moves no contact relative to the centre of mass by more than that.
-
     Raises:
-        InvalidFieldError: a wrench that is not finite, a negative tolerance, too few facets.
         TooLargeError: more contacts touch than `spatial.problem.MOST_DYNAMIC_CONTACTS`; or the search takes
             more trials than `search.MOST_EXAMINED`, as for hundreds of sectors without ``sharpen``.
     """
-    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
-    wrench = np.concatenate([check_array("force", force_W, (3,)), check_array("torque", torque_W, (3,))])
-    case = spatial_case(body, state, contacts, wrench, tolerance)
+    case = spatial_case(problem)
     modes: list[SpatialMode] = []
     examined = 0
     approaching: tuple[int, ...] = ()
     if isinstance(case, SpatialCase):
-        search = search_of(case, friction_facets)
-        modes = [mode for mode, _ in evidenced(case, search, sharpen=sharpen)]
+        search = search_of(case, problem.friction_facets)
+        modes = [mode for mode, _ in evidenced(case, search, sharpen=problem.sharpen)]
         examined = search.examined
     else:
         approaching = case
-    verdict = ModeVerdict.UNIQUE if len(modes) == 1 else ModeVerdict.INDETERMINATE
-    if not modes:
-        verdict = ModeVerdict.IMPACT if approaching else ModeVerdict.INCONSISTENT
     return SpatialModeAnswer(
-        verdict=verdict,
+        verdict=ModeVerdict.IMPACT if approaching else verdict_on(modes),
         modes=tuple(modes),
         approaching=approaching,
-        velocity_tolerance=tolerance,
-        friction_facets=friction_facets,
+        velocity_tolerance=problem.velocity_tolerance,
+        friction_facets=problem.friction_facets,
         examined=examined,
     )
 
@@ -143,15 +107,15 @@ def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool)
     body = motion.free + motion.of_forces @ forces.ravel()
     points = (motion.points @ body).reshape(-1, 3) + motion.turning
     across = points - np.sum(points * contacts.normals_W, axis=1)[:, None] * contacts.normals_W
-    letters = ["s"] * len(contacts)
+    letters = [SEPARATES] * len(contacts)
     directions = np.zeros_like(points)
     for i, letter in zip(touching.tolist(), found.letters, strict=True):
         way = sliding[i] if np.any(sliding[i]) else across[i]
         size = float(np.linalg.norm(way))
         # Without friction one letter stands for both, and the acceleration says which it is.
-        rests = letter.letter == "c" and not np.any(sliding[i]) and size <= STRICT * motion.scale
-        letters[i] = "f" if rests else letter.letter
-        if letters[i] == "c":
+        rests = letter.letter == STAYS and not np.any(sliding[i]) and size <= STRICT * motion.scale
+        letters[i] = STICKS if rests else letter.letter
+        if letters[i] == STAYS:
             directions[i] = way / size
     return SpatialMode(
         mode="".join(letters),

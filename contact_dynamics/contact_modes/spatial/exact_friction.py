@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.contact_modes.spatial.dual_simplex import Program
 from contact_dynamics.tolerances import SETTLED_DIRECTION, STRICT, TRIAL_TURN
 
@@ -59,7 +60,7 @@ def sharpened(mode: Sliding, forces: FloatArray) -> Sharpened | None:
         mode: As it was found.
         forces: (n, 3), those of the mode.
     """
-    turning = [i for i, one in enumerate(mode.pyramids) if mode.letters[i] == "c" and one.frame is not None]
+    turning = [i for i, one in enumerate(mode.pyramids) if mode.letters[i] == STAYS and one.frame is not None]
     angles: FloatArray = np.asarray([_against(mode.pyramids[i], forces[i]) for i in turning])
     return _followed(mode, turning, angles) or _by_newton(mode, turning, angles)
 
@@ -118,7 +119,9 @@ def _against(pyramid: Pyramid, force: FloatArray) -> float:
 
 def _solved(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpened | None:
     """Return forces of a mode whose contacts have friction against given directions."""
-    edges = [one.edges if mode.letters[i] != "s" else one.edges[:0] for i, one in enumerate(mode.pyramids)]
+    edges = [
+        one.edges if mode.letters[i] != SEPARATES else one.edges[:0] for i, one in enumerate(mode.pyramids)
+    ]
     for i, angle in zip(turning, angles.tolist(), strict=True):
         one, two = mode.pyramids[i].frame or (np.zeros(3), np.zeros(3))
         way = math.cos(angle) * one + math.sin(angle) * two
@@ -149,9 +152,9 @@ def _forces(mode: Sliding, edges: list[FloatArray]) -> FloatArray | None:
     sizes[sizes == 0.0] = 1.0
     zero, positive = [np.zeros((0, 7))], [np.zeros((0, 7))]
     for contact, letter in zip(mode.touching, mode.letters, strict=True):
-        if letter == "s":
+        if letter == SEPARATES:
             positive.append((contact.normal @ contact.point)[None, :])
-        elif letter == "f":
+        elif letter == STICKS:
             zero.append(contact.point)
         else:
             zero.append((contact.normal @ contact.point)[None, :])

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact.kinds import velocity_accelerations
+from contact_dynamics.contact_modes.letters import SEPARATES, STAYS
 from contact_dynamics.contact_modes.spatial.cone import cone_of
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, ROW_TOLERANCE, VELOCITY_TOLERANCE
@@ -64,7 +65,7 @@ def spatial_kinematic_modes(
         return ()
     touching = np.flatnonzero(v_n <= tolerance)
     if touching.size == 0:
-        return ("s" * n,)
+        return (SEPARATES * n,)
     r_W = contacts.p_WC_W - state.p_WB_W
     rows = _contact_rows(r_W[touching], contacts.normals_W[touching])
     w_W = state.w_WB_W
@@ -115,8 +116,8 @@ def _mask(chosen: NDArray[np.bool_]) -> int:
 
 
 def _string(n: int, touching: NDArray[np.intp], face: int) -> str:
-    letters = bytearray(b"s" * n)
+    letters = bytearray(SEPARATES.encode() * n)
     for position, contact in enumerate(touching.tolist()):
         if face >> position & 1:
-            letters[contact] = ord("c")
+            letters[contact] = ord(STAYS)
     return letters.decode()

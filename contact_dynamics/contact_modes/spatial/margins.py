@@ -12,34 +12,26 @@ rest begin to slide, which way depends on the wrench, and the wrenches are a uni
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.contact_modes.planar.result import ModeVerdict
+from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
 from contact_dynamics.contact_modes.spatial.answer import evidenced, spatial_contact_modes
 from contact_dynamics.contact_modes.spatial.margins_of_sliding import union_margin
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial.statics import MOST_EDGES
 from contact_dynamics.contact_modes.spatial.wrenches import Way, supports, wrench_generators
 from contact_dynamics.errors import TooLargeError
-from contact_dynamics.tolerances import BEYOND_MARGIN, ROW_TOLERANCE, VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_array, check_not_negative, check_positive
+from contact_dynamics.tolerances import BEYOND_MARGIN, ROW_TOLERANCE
+from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike
-
-    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.contact_modes.spatial.result import SpatialModeAnswer
     from contact_dynamics.contact_modes.spatial.search import Found, Search
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
-
-MARGIN_FACETS: Final = 16
-"""Edges of a friction pyramid in margins where nothing else is asked for: 2 % of friction are left out."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -55,60 +47,38 @@ class SpatialModeMargin:
 
 
 def spatial_mode_margins(
-    body: MassProperties,
-    state: BodyState,
-    contacts: ContactSet,
+    problem: SpatialContactProblem,
+    answer: SpatialModeAnswer | None = None,
     *,
-    force_W: ArrayLike,
-    torque_W: ArrayLike = (0.0, 0.0, 0.0),
-    friction_facets: int = MARGIN_FACETS,
     margin_length: float | None = None,
-    velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> tuple[SpatialModeMargin, ...]:
-    """Return the margin of a wrench in each of its consistent modes, in the order of their answer.
+    """Return the margin of the wrench in each of its consistent modes, in the order of their answer.
 
     Empty where a contact approaches.
 
     Args:
-        body: As for `spatial_contact_modes`.
-        state: As for `spatial_contact_modes`.
-        contacts: As for `spatial_contact_modes`.
-        force_W: As for `spatial_contact_modes`.
-        torque_W: As for `spatial_contact_modes`.
-        friction_facets: Edges of a friction pyramid, >= 3. The more, the nearer is a margin of sticking.
+        problem: The question. The more facets it has, the nearer is a margin of sticking.
+        answer: To that question, where it is known: it is not sought again.
         margin_length: m, > 0, makes a torque comparable with a force; None: the radius of gyration, root mean
             square over the axes.
-        velocity_tolerance: As for `spatial_contact_modes`.
 
     Raises:
-        InvalidFieldError: as for `spatial_contact_modes`, or the length is not > 0.
+        InvalidFieldError: the length is not > 0.
         TooLargeError: as for `spatial_contact_modes`, or more than `MOST_EDGES` edges of all pyramids.
     """
-    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
-    wrench = np.concatenate([check_array("force", force_W, (3,)), check_array("torque", torque_W, (3,))])
+    body, wrench, friction_facets = problem.body, problem.wrench_W, problem.friction_facets
     own = body.mean_radius_of_gyration
     length = own if margin_length is None else check_positive("margin_length", margin_length)
-    case = spatial_case(body, state, contacts, wrench, tolerance)
+    case = spatial_case(problem)
     if not isinstance(case, SpatialCase):
         return ()
-
-    def ask(changed: FloatArray) -> SpatialModeAnswer:
-        return spatial_contact_modes(
-            body,
-            state,
-            contacts,
-            force_W=changed[:3],
-            torque_W=changed[3:],
-            friction_facets=friction_facets,
-            velocity_tolerance=tolerance,
-        )
 
     search = search_of(case, friction_facets)
     edges = sum(len(pyramid.edges) for pyramid in search.pyramids)
     if edges > MOST_EDGES:
         raise TooLargeError("contacts", f"{edges} edges of friction pyramids", f"at most {MOST_EDGES}")
     metric = np.array([1.0, 1.0, 1.0, length, length, length])
-    present = ask(wrench)
+    present = None if answer is None or not problem.sharpen else tuple(one.mode for one in answer.modes)
     margins = []
     for mode, found in evidenced(case, search, sharpen=True):
         beyond = None
@@ -116,35 +86,42 @@ def spatial_mode_margins(
             margin, way, beyond = union_margin(case, search, found, metric, friction_facets)
         else:
             margin, way = _nearest(case, search, found, metric)
-        there = present
-        if math.isfinite(margin) and beyond is None:
-            size = float(np.linalg.norm(wrench / metric))
-            # A pyramid that turns as the wrench changes may hold a little longer: the round cone's part.
-            rest = (1.0 / math.cos(math.pi / friction_facets) - 1.0) * size
-            for further in (0.0, rest):
-                step = margin + further + BEYOND_MARGIN * max(margin, size)
-                there = ask(wrench + step * way * metric)
-                if mode.mode not in [one.mode for one in there.modes]:
-                    break
+        if beyond is None and math.isfinite(margin):
+            beyond = _beyond(problem, mode.mode, margin, way, metric)
         if beyond is None:
-            beyond = tuple(one.mode for one in there.modes)
+            beyond = _modes_under(problem, wrench) if present is None else present
         margins.append(
             SpatialModeMargin(
                 mode=mode.mode,
                 margin=margin,
                 length=length,
                 change_W=margin * way * metric if math.isfinite(margin) else np.zeros(6),
-                verdict_beyond=_verdict(beyond),
+                verdict_beyond=verdict_on(beyond),
                 modes_beyond=tuple(dict.fromkeys(beyond)),
             )
         )
     return tuple(margins)
 
 
-def _verdict(modes: Sequence[str]) -> ModeVerdict:
-    if not modes:
-        return ModeVerdict.INCONSISTENT
-    return ModeVerdict.UNIQUE if len(modes) == 1 else ModeVerdict.INDETERMINATE
+def _beyond(
+    problem: SpatialContactProblem, mode: str, margin: float, way: FloatArray, metric: FloatArray
+) -> tuple[str, ...]:
+    """Return the modes just behind the boundary that lies ``margin``, N, away, ``way`` in the metric."""
+    size = float(np.linalg.norm(problem.wrench_W / metric))
+    # A pyramid that turns as the wrench changes may hold a little longer: the round cone's part.
+    rest = (1.0 / math.cos(math.pi / problem.friction_facets) - 1.0) * size
+    found: tuple[str, ...] = ()
+    for further in (0.0, rest):
+        step = margin + further + BEYOND_MARGIN * max(margin, size)
+        found = _modes_under(problem, problem.wrench_W + step * way * metric)
+        if mode not in found:
+            break
+    return found
+
+
+def _modes_under(problem: SpatialContactProblem, wrench_W: FloatArray) -> tuple[str, ...]:
+    there = replace(problem, force_W=wrench_W[:3], torque_W=wrench_W[3:], sharpen=True)
+    return tuple(one.mode for one in spatial_contact_modes(there).modes)
 
 
 def _nearest(case: SpatialCase, search: Search, found: Found, metric: FloatArray) -> tuple[float, FloatArray]:

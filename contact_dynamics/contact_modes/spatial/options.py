@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.contact.friction import linearised_cone
+from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.numerics.vectors import tangents_towards
 from contact_dynamics.tolerances import AT_SECTORS_BORDER, STRICT
 
@@ -90,12 +91,12 @@ def any_letter(pyramid: Pyramid, point: FloatArray, normal_name: int) -> Option:
     """
     own = range(pyramid.first, pyramid.first + len(pyramid.edges))
     nothing = np.zeros((0, 7))
-    separates = Option("s", -1, frozenset(own), normal_name, nothing, 0, ())
+    separates = Option(SEPARATES, -1, frozenset(own), normal_name, nothing, 0, ())
     zeroed = frozenset([normal_name])
     if pyramid.frame is None:
-        stays = Option("c", -1, zeroed, None, nothing, 0, ())
+        stays = Option(STAYS, -1, zeroed, None, nothing, 0, ())
     else:
-        sticks = Option("f", -1, frozenset(), None, np.array(pyramid.frame) @ point, 2, ())
+        sticks = Option(STICKS, -1, frozenset(), None, np.array(pyramid.frame) @ point, 2, ())
         stays = Option("", -1, zeroed, None, nothing, 0, (sticks,))
     return Option("", -1, frozenset(), None, nothing, 0, (separates, stays))
 
@@ -142,15 +143,15 @@ def _slides(arc: list[int], first_name: int, along: FloatArray) -> Option:
         ]
         halves = (arc[: len(arc) // 2], arc[len(arc) // 2 :])
         parts = tuple(_slides(half, first_name, along) for half in halves)
-        return Option("c", -1, silent, None, np.array([middle, *sides]), 0, parts)
+        return Option(STAYS, -1, silent, None, np.array([middle, *sides]), 0, parts)
     first %= 2 * count
     j, k = first // 2, (first + 1) // 2 % count
     sides = [along[(j - 1) % count] - along[j], along[(k + 1) % count] - along[k]]
     for side in sides:
         side[-1] -= STRICT
     if j == k:
-        return Option("c", first, silent, None, np.array(sides), 0, ())
-    return Option("c", first, silent, None, np.array([along[j] - along[k], *sides]), 1, ())
+        return Option(STAYS, first, silent, None, np.array(sides), 0, ())
+    return Option(STAYS, first, silent, None, np.array([along[j] - along[k], *sides]), 1, ())
 
 
 def acting_edges(directions: FloatArray, count: int) -> NDArray[np.bool_]:

@@ -7,18 +7,22 @@ stated in units in which those of contact points are about 1, so that one tolera
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.contact.friction import check_facets
 from contact_dynamics.contact.kinds import velocity_accelerations
 from contact_dynamics.contact_modes.spatial.search import Search, Touching
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.numerics.vectors import point_jacobians
 from contact_dynamics.rigid_body.body import inverse_mass_matrix
+from contact_dynamics.tolerances import VELOCITY_TOLERANCE
+from contact_dynamics.validation import check_array, check_not_negative
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
@@ -26,6 +30,71 @@ if TYPE_CHECKING:
 
 MOST_DYNAMIC_CONTACTS: Final = 32
 """Longest list of touching contacts accepted: a tenth of a second, two where many modes are consistent."""
+
+
+FRICTION_FACETS: Final = 8
+"""Edges of a friction pyramid where nothing else is asked for: it holds at least 92 % of the round cone's."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SpatialContactProblem:
+    """A question about the contact modes of one body in space; its sister is `PlanarContactProblem`.
+
+    Friction cones are pyramids where contacts are at rest, and 8 edges serve most questions. Margins of
+    sticking are short by the part 1 - cos(pi / facets) of friction, 8 % with 8 edges and 2 % with 16: state
+    the problem with more edges where that matters. The sets of wrenches grow as the square or cube of the
+    edges, some 200 to 350 for a box on four feet with 4 edges and 1300 with 8: state it with 4 for these
+    (`dataclasses.replace`). Statics take 128 edges in all.
+
+    Raises:
+        InvalidFieldError: a wrench that is not finite, a negative tolerance, fewer than 3 facets or
+            more than 1000.
+    """
+
+    body: MassProperties  # mass and angular inertia
+    state: BodyState  # of the body, with its origin at the centre of mass
+    contacts: ContactSet  # of any kind; at most `MOST_DYNAMIC_CONTACTS` of them touch
+    force_W: FloatArray  # (3,), N, on the body besides its contact forces, gravity included, world axes
+    torque_W: FloatArray = field(
+        default_factory=lambda: np.zeros(3)
+    )  # (3,), N m, likewise, about the centre of mass, world axes
+    friction_facets: int = FRICTION_FACETS  # edges of the pyramid that stands for a friction cone, >= 3
+    sharpen: bool = True
+    """Whether the pyramids' sectors are left behind: friction is turned exactly against the sliding, in modes
+    of unique motion where that has a solution (`exact_friction`), and modes with the same letters are one if
+    their motion is the same, or where some of them has none that is unique. Otherwise each sector counts,
+    hundreds where the motion under many feet is not unique. Margins are always of the sharpened modes."""
+    velocity_tolerance: float = VELOCITY_TOLERANCE
+    """m/s, >= 0. A component of a contact's velocity within it counts as zero, and so does an angular
+    velocity that moves no contact relative to the centre of mass by more than that."""
+
+    if TYPE_CHECKING:  # what the constructor takes, beside what the fields then hold
+
+        def __init__(
+            self,
+            *,
+            body: MassProperties,
+            state: BodyState,
+            contacts: ContactSet,
+            force_W: ArrayLike,
+            torque_W: ArrayLike = (0.0, 0.0, 0.0),
+            friction_facets: int = FRICTION_FACETS,
+            sharpen: bool = True,
+            velocity_tolerance: float = VELOCITY_TOLERANCE,
+        ) -> None: ...
+
+    def __post_init__(self) -> None:
+        """Check the wrench, the facets and the tolerance."""
+        object.__setattr__(self, "force_W", check_array("force_W", self.force_W, (3,)))
+        object.__setattr__(self, "torque_W", check_array("torque_W", self.torque_W, (3,)))
+        tolerance = check_not_negative("velocity_tolerance", self.velocity_tolerance)
+        object.__setattr__(self, "velocity_tolerance", tolerance)
+        object.__setattr__(self, "friction_facets", check_facets(self.friction_facets))
+
+    @property
+    def wrench_W(self) -> FloatArray:
+        """Return the applied force, N, and torque, N m, (6,)."""
+        return np.concatenate([self.force_W, self.torque_W])
 
 
 class AccelerationMap:
@@ -73,21 +142,14 @@ class SpatialCase(NamedTuple):
     touching: NDArray[np.intp]  # contacts that neither approach nor leave
 
 
-def spatial_case(
-    body: MassProperties, state: BodyState, contacts: ContactSet, wrench_W: FloatArray, tolerance: float
-) -> SpatialCase | tuple[int, ...]:
+def spatial_case(problem: SpatialContactProblem) -> SpatialCase | tuple[int, ...]:
     """Return the case, or the contacts that approach.
-
-    Args:
-        body: Mass and angular inertia.
-        state: Of the body, with its origin at the centre of mass.
-        contacts: Of any kind.
-        wrench_W: (6,), applied force and torque, world axes.
-        tolerance: m/s, within which velocities count as zero.
 
     Raises:
         TooLargeError: more contacts touch than `MOST_DYNAMIC_CONTACTS`.
     """
+    body, state, contacts = problem.body, problem.state, problem.contacts
+    tolerance = problem.velocity_tolerance
     r_W = contacts.p_WC_W - state.p_WB_W
     velocities = state.velocity_of_point(contacts.p_WC_W)
     v_n = np.sum(contacts.normals_W * velocities, axis=1)
@@ -106,7 +168,7 @@ def spatial_case(
         body.inertia_in_world(state.R_WB),
         r_W=r_W,
         w_W=w,
-        wrench_W=wrench_W,
+        wrench_W=problem.wrench_W,
         rolling_W=velocity_accelerations(contacts, sliding, w),
     )
     return SpatialCase(motion, contacts, sliding, touching)

@@ -17,21 +17,19 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact_modes.planar.result import Refusal, RefusedMode
+from contact_dynamics.contact_modes.letters import STAYS, STICKS
+from contact_dynamics.contact_modes.result import Refusal, RefusedMode
 from contact_dynamics.contact_modes.spatial.cone import nearest_sum
 from contact_dynamics.contact_modes.spatial.kinematic import spatial_kinematic_modes
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial.wrenches import Way, wrench_generators
 from contact_dynamics.tolerances import NO_DISTANCE, ROW_TOLERANCE
-from contact_dynamics.validation import check_array, check_positive
+from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.contact_modes.spatial.result import SpatialModeAnswer
     from contact_dynamics.contact_modes.spatial.search import Search
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
 
 _EXACT: Final = 1e4
@@ -39,14 +37,7 @@ _EXACT: Final = 1e4
 
 
 def spatial_refused_modes(
-    answer: SpatialModeAnswer,
-    body: MassProperties,
-    state: BodyState,
-    contacts: ContactSet,
-    *,
-    force_W: ArrayLike,
-    torque_W: ArrayLike = (0.0, 0.0, 0.0),
-    margin_length: float | None = None,
+    problem: SpatialContactProblem, answer: SpatialModeAnswer, *, margin_length: float | None = None
 ) -> tuple[RefusedMode, ...]:
     """Return each contacting and separating string without a consistent mode, in alphabetical order, and why.
 
@@ -57,32 +48,27 @@ def spatial_refused_modes(
     Empty where a contact approaches. A millisecond for each string.
 
     Args:
-        answer: Of `spatial_contact_modes` to the same question, whose facets and tolerance are used.
-        body: As for `spatial_contact_modes`.
-        state: As for `spatial_contact_modes`.
-        contacts: As for `spatial_contact_modes`.
-        force_W: As for `spatial_contact_modes`.
-        torque_W: As for `spatial_contact_modes`.
+        problem: The question.
+        answer: To that question.
         margin_length: m, > 0, makes a torque comparable with a force; None: the radius of gyration, root mean
             square over the axes.
 
     Raises:
-        InvalidFieldError: a wrench that is not finite, or the length is not > 0.
+        InvalidFieldError: the length is not > 0.
         TooLargeError: more contacts than `spatial_contact_modes` accepts.
     """
-    wrench = np.concatenate([check_array("force", force_W, (3,)), check_array("torque", torque_W, (3,))])
+    body, tolerance = problem.body, problem.velocity_tolerance
     own = body.mean_radius_of_gyration
     length = own if margin_length is None else check_positive("margin_length", margin_length)
-    tolerance = answer.velocity_tolerance
-    case = spatial_case(body, state, contacts, wrench, tolerance)
+    case = spatial_case(problem)
     if not isinstance(case, SpatialCase):
         return ()
-    search = search_of(case, answer.friction_facets)
-    consistent = {mode.mode.replace("f", "c") for mode in answer.modes}
+    search = search_of(case, problem.friction_facets)
+    consistent = {mode.mode.replace(STICKS, STAYS) for mode in answer.modes}
     metric = np.array([1.0, 1.0, 1.0, length, length, length])
     return tuple(
         _known(case, search, string) or _short(case, search, string, metric)
-        for string in spatial_kinematic_modes(state, contacts, velocity_tolerance=tolerance)
+        for string in spatial_kinematic_modes(problem.state, problem.contacts, velocity_tolerance=tolerance)
         if string not in consistent
     )
 
@@ -90,7 +76,7 @@ def spatial_refused_modes(
 def _known(case: SpatialCase, search: Search, string: str) -> RefusedMode | None:
     """Return the refusal where the forces are known; None: they are not."""
     motion, touching = case.motion, case.touching.tolist()
-    staying = [k for k, i in enumerate(touching) if string[i] == "c"]
+    staying = [k for k, i in enumerate(touching) if string[i] == STAYS]
     if any(len(search.pyramids[k].edges) > 1 for k in staying):
         return None
     normals = np.array([one.normal @ one.point for one in search.touching]).reshape(-1, 7)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from contact_dynamics.contact_modes.planar.result import ModeVerdict
+    from contact_dynamics.contact_modes.result import ModeVerdict
     from contact_dynamics.validation import FloatArray
 
 

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.contact_modes.letters import SEPARATES, STAYS
 from contact_dynamics.contact_modes.spatial.dual_simplex import Ends, Program
 from contact_dynamics.contact_modes.spatial.options import any_letter, pyramid_of, ways_of_sliding
 from contact_dynamics.contact_modes.spatial.regions import Image, Region, flat_of, whole
@@ -207,7 +208,7 @@ class Search:
                 trials = [*trials[:i], any_way, *trials[i + 1 :]]
             self._decide_letters(program, trials, [0] * len(trials))
             return
-        staying = [i for i, letters in enumerate(trials) if letters.letter != "s"]
+        staying = [i for i, letters in enumerate(trials) if letters.letter != SEPARATES]
         normals, frames = self._normals[staying, :-1], frames[:, :, :-1]
         at_rest = flat_of(normals, frames, tuple(range(len(open_ones))))
         if self._holds(self._within(program, at_rest)):
@@ -237,7 +238,7 @@ class Search:
         open_ones = [i for i, letters in enumerate(trials) if letters.parts]
         if not open_ones:
             return False
-        trials = [letters._replace(letter="c") if letters.parts else letters for letters in trials]
+        trials = [letters._replace(letter=STAYS) if letters.parts else letters for letters in trials]
         self._goal = "".join(letters.letter for letters in trials)
         common = self._common(image, open_ones)
         may_hold = False
@@ -326,7 +327,7 @@ class Search:
             return
         program = self._root
         for i, letter in enumerate(letters):
-            program = self._narrowed(program, i, letter, staying=letter.letter != "s")
+            program = self._narrowed(program, i, letter, staying=letter.letter != SEPARATES)
         if not self._holds(program):
             return
         mixture = np.random.default_rng(26).normal(size=6)

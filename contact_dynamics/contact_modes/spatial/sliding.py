@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.contact_modes.letters import SEPARATES, STICKS
 from contact_dynamics.contact_modes.spatial.kinematic import cone_faces
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.numerics.linear_spaces import null_space
@@ -76,7 +77,7 @@ def spatial_sliding_modes(contacts: ContactSet, *, planes: int = 2) -> tuple[str
         free = null_space(unit[stay])
         cut = np.vstack([np.zeros((0, 6)), *(across[i] for i in stay)]) @ free
         for signs in open_faces(unit[leave] @ free, cut):
-            letters = ["s"] * n
+            letters = [SEPARATES] * n
             for position, i in enumerate(stay):
                 letters[i] = _letter(signs[position * planes : (position + 1) * planes])
             found.append("".join(letters))
@@ -92,7 +93,7 @@ def _letter(signs: list[int]) -> str:
     """Return how a contact slides, from the side of each of its lines that it slides to."""
     count = len(signs)
     if not any(signs):
-        return "f"
+        return STICKS
     # From line k on its side is +, or 0 along it, and the next ones' are -; half a turn on, lines come again.
     around = [signs[j % count] * (-1) ** (j // count) for j in range(3 * count)]
     k = next(k for k in range(2 * count) if around[k] >= 0 and max(around[k + 1 : k + count]) < 0)

@@ -9,63 +9,43 @@ polyhedral cone in R^6, torques being divided by a length; its facets are the ex
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.contact.friction import linearised_cone
-from contact_dynamics.contact_modes.planar.result import ModeVerdict
-from contact_dynamics.contact_modes.planar.statics import BodyStatics, Certainty
-from contact_dynamics.contact_modes.spatial.answer import FRICTION_FACETS, spatial_contact_modes
+from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict
+from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
 from contact_dynamics.contact_modes.spatial.cone import cone_of
 from contact_dynamics.errors import TooLargeError
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, ROW_TOLERANCE
-from contact_dynamics.validation import check_array, check_not_negative, check_positive
+from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.validation import FloatArray
 
 MOST_EDGES: Final = 128
 """Most edges of all friction pyramids together: a cone of so many in R^6 has thousands of facets."""
 
 
-def spatial_statics(
-    body: MassProperties,
-    state: BodyState,
-    contacts: ContactSet,
-    *,
-    force_W: ArrayLike,
-    torque_W: ArrayLike = (0.0, 0.0, 0.0),
-    friction_facets: int = FRICTION_FACETS,
-    margin_length: float | None = None,
-    acceleration_tolerance: float = ACCELERATION_TOLERANCE,
-) -> BodyStatics:
+def spatial_statics(problem: SpatialContactProblem, *, margin_length: float | None = None) -> BodyStatics:
     """Return whether and how well a body at rest stays at rest.
 
     Args:
-        body: Mass and angular inertia.
-        state: Its pose; velocities play no part.
-        contacts: All that touch.
-        force_W: (3,), N, applied besides contact forces, gravity included, world axes.
-        torque_W: (3,), N m, applied about the centre of mass, world axes.
-        friction_facets: Edges of each friction pyramid, >= 3; the first leans against the motion that the
-            contact would begin without contact forces.
+        problem: The question; its velocities play no part. The first edge of each friction pyramid leans
+            against the motion that the contact would begin without contact forces.
         margin_length: m, > 0, makes a torque comparable with a force; None: the radius of gyration, root mean
             square over the axes.
-        acceleration_tolerance: Relative to the wrench, >= 0: what counts as zero.
 
     Raises:
-        InvalidFieldError: a number that is not allowed, too few facets.
+        InvalidFieldError: the length is not > 0.
         UndecidedError: contacts so nearly the same that rounding decides the answer.
         TooLargeError: more than `MOST_EDGES` edges, or more contacts than `spatial_contact_modes` accepts.
     """
-    accuracy = check_not_negative("acceleration_tolerance", acceleration_tolerance)
-    force = check_array("force", force_W, (3,))
-    torque = check_array("torque", torque_W, (3,))
+    body, state, contacts = problem.body, problem.state, problem.contacts
+    force, torque, friction_facets = problem.force_W, problem.torque_W, problem.friction_facets
     own = body.mean_radius_of_gyration
     length = own if margin_length is None else check_positive("margin_length", margin_length)
     if len(contacts) * friction_facets > MOST_EDGES:
@@ -80,16 +60,12 @@ def spatial_statics(
         for normal, friction, away in zip(contacts.normals_W, contacts.frictions, start, strict=True)
     ]
     target = np.concatenate([force, torque / length])
-    room, wedged = _room(_rows(arms, pyramids, length), target, accuracy)
-    smooth, _ = _room(
-        _rows(arms, [normal[None, :] for normal in contacts.normals_W], length), target, accuracy
-    )
+    room, wedged = _room(_rows(arms, pyramids, length), target)
+    smooth, _ = _room(_rows(arms, [normal[None, :] for normal in contacts.normals_W], length), target)
     equilibrium = Certainty.NO
     if room >= 0.0:
-        at_rest = BodyState(p_WB_W=state.p_WB_W, q_WB=state.q_WB, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3))
-        answer = spatial_contact_modes(
-            body, at_rest, contacts, force_W=force, torque_W=torque, friction_facets=friction_facets
-        )
+        at_rest = replace(state, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3))
+        answer = spatial_contact_modes(replace(problem, state=at_rest, sharpen=True))
         alone = answer.verdict == ModeVerdict.UNIQUE and answer.modes[0].motion_unique
         equilibrium = Certainty.CERTAIN if alone else Certainty.POSSIBLE
     return BodyStatics(
@@ -111,12 +87,12 @@ def _rows(arms: FloatArray, pyramids: list[FloatArray], length: float) -> FloatA
     return unit
 
 
-def _room(rows: FloatArray, target: FloatArray, accuracy: float) -> tuple[float, bool]:
+def _room(rows: FloatArray, target: FloatArray) -> tuple[float, bool]:
     """Return how far inside the cone of positive combinations of rows a wrench lies, N; < 0: outside.
 
     And whether some combination, not of zeros alone, vanishes.
     """
-    tolerance = max(accuracy, ROW_TOLERANCE) * float(np.linalg.norm(target))
+    tolerance = max(ACCELERATION_TOLERANCE, ROW_TOLERANCE) * float(np.linalg.norm(target))
     if len(rows) == 0:
         return (0.0 if float(np.linalg.norm(target)) <= tolerance else -1.0), False
     cone = cone_of(rows)

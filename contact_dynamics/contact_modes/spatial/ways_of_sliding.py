@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.contact_modes.spatial.kinematic import cone_faces
 from contact_dynamics.contact_modes.spatial.sliding import open_faces
 from contact_dynamics.contact_modes.spatial.wrenches import Way
@@ -51,7 +52,7 @@ def ways_of(search: Search) -> list[tuple[Way, ...]]:
         above, cut = rows[leave] @ free, np.vstack([np.zeros((0, 7)), *(cuts[i] for i in stay)]) @ free
         _check_size(np.vstack([above, cut]))
         for signs in open_faces(above, cut):
-            ways, at = [Way("s", -1)] * len(touching), 0
+            ways, at = [Way(SEPARATES, -1)] * len(touching), 0
             for i in stay:
                 ways[i] = _way(signs[at : at + len(cuts[i])], len(search.pyramids[i].edges))
                 at += len(cuts[i])
@@ -94,17 +95,17 @@ def _way(signs: list[int], count: int) -> Way:
     ``count``: edges of its pyramid.
     """
     if not signs:
-        return Way("c", -1)
+        return Way(STAYS, -1)
     if not any(signs):
-        return Way("f", -1)
+        return Way(STICKS, -1)
     if len(signs) < count:
         signs = [*signs, *(-sign for sign in signs)]
     for k, sign in enumerate(signs):
         after = signs[(k + 1) % count]
         if sign == 0 and after < 0:
-            return Way("c", 2 * k + 1)
+            return Way(STAYS, 2 * k + 1)
         if sign > 0 and after < 0:
-            return Way("c", 2 * ((k + 1) % count))
+            return Way(STAYS, 2 * ((k + 1) % count))
     raise ArithmeticError(f"no direction has the signs {signs}")
 
 

@@ -22,28 +22,26 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.contact_modes.letters import SEPARATES, SPATIAL_LETTERS, check_modes
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial.statics import MOST_EDGES
 from contact_dynamics.contact_modes.spatial.ways_of_sliding import sliding_range, ways_of
 from contact_dynamics.contact_modes.spatial.wrenches import distinct, supports, wrench_generators
-from contact_dynamics.errors import InvalidFieldError, TooLargeError
-from contact_dynamics.tolerances import ROW_TOLERANCE, VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_array, check_not_negative
+from contact_dynamics.errors import TooLargeError
+from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from numpy.typing import ArrayLike
 
-    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.contact_modes.spatial.wrenches import Way
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
 
 WRENCH_FACETS: Final = 4
-"""Edges of a friction pyramid where nothing else is asked for: ways of sliding grow as their square or
-cube."""
+"""Edges of a friction pyramid that keep the sets few: ways of sliding grow as their square or cube."""
 
 MOST_WRENCH_SETS: Final = 2000
 """Most sets of one answer, of a millisecond or two each. A box on four feet has 200 to 350 with pyramids of
@@ -78,46 +76,30 @@ class SpatialWrenchSet:
 
 
 def spatial_wrench_sets(
-    body: MassProperties,
-    state: BodyState,
-    contacts: ContactSet,
-    *,
-    modes: Collection[str] | None = None,
-    force_W: ArrayLike = (0.0, 0.0, 0.0),
-    torque_W: ArrayLike = (0.0, 0.0, 0.0),
-    friction_facets: int = WRENCH_FACETS,
-    velocity_tolerance: float = VELOCITY_TOLERANCE,
+    problem: SpatialContactProblem, *, modes: Collection[str] | None = None
 ) -> tuple[SpatialWrenchSet, ...]:
     """Return the applied wrenches of every mode and way of sliding, in alphabetical order of the letters.
 
-    Empty where a contact approaches. Sets of one mode follow each other.
+    Empty where a contact approaches. Sets of one mode follow each other. The problem's own wrench says how
+    the friction pyramids lie, and plays no other part.
 
     Args:
-        body: As for `spatial_contact_modes`.
-        state: As for `spatial_contact_modes`.
-        contacts: As for `spatial_contact_modes`.
+        problem: The contacts, the state and the facets: 4 keep the sets few.
         modes: Letters, one a contact, of the modes that are wanted; None: all. What is impossible whatever
             the wrench has no set.
-        force_W: (3,), N: friction pyramids lie as `spatial_contact_modes` has them under this wrench.
-        torque_W: (3,), N m, of that wrench; it plays no other part.
-        friction_facets: Edges of a friction pyramid, >= 3.
-        velocity_tolerance: As for `spatial_contact_modes`.
 
     Raises:
-        InvalidFieldError: as for `spatial_contact_modes`, or modes that are not strings of s, f and c.
+        InvalidFieldError: modes that are not strings of s, f and c.
         UndecidedError: contacts so nearly the same that rounding decides the sets.
         TooLargeError: as for `spatial_contact_modes`; more than `MOST_WRENCH_SETS` sets, more than
-            `spatial_statics.MOST_EDGES` edges of all pyramids, or too many ways of sliding
+            `spatial.statics.MOST_EDGES` edges of all pyramids, or too many ways of sliding
             (`ways_of_sliding.MOST_MEETINGS`).
 
     Source: lecture 26, "Force dual for dynamic contact problem"; Huang, Cheng and Mason 2020 for the ways.
     """
-    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
-    wrench = np.concatenate([check_array("force", force_W, (3,)), check_array("torque", torque_W, (3,))])
-    for mode in modes or ():
-        if len(mode) != len(contacts) or set(mode) - set("sfc"):
-            raise InvalidFieldError("modes", mode, f"{len(contacts)} letters of s, f and c")
-    case = spatial_case(body, state, contacts, wrench, tolerance)
+    body, wrench, friction_facets = problem.body, problem.wrench_W, problem.friction_facets
+    check_modes(modes or (), len(problem.contacts), SPATIAL_LETTERS)
+    case = spatial_case(problem)
     if not isinstance(case, SpatialCase):
         return ()
     search = search_of(case, friction_facets)
@@ -137,7 +119,7 @@ def spatial_wrench_sets(
 
 
 def _letters(case: SpatialCase, ways: Sequence[Way]) -> str:
-    letters = ["s"] * len(case.contacts)
+    letters = [SEPARATES] * len(case.contacts)
     for i, way in zip(case.touching.tolist(), ways, strict=True):
         letters[i] = way.letter
     return "".join(letters)

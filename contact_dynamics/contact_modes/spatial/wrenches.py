@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.contact_modes.letters import SEPARATES, STICKS
 from contact_dynamics.contact_modes.spatial.cone import cone_of
 from contact_dynamics.numerics.linear_spaces import null_space
 from contact_dynamics.tolerances import ROW_TOLERANCE
@@ -96,9 +97,9 @@ def supports(generators: Generators) -> tuple[FloatArray, FloatArray]:
 def _conditions(contact: Touching, pyramid: Pyramid, way: Way) -> _Conditions:
     nothing = np.zeros((0, 7))
     normal = (contact.normal @ contact.point)[None, :]
-    if way.letter == "s":
+    if way.letter == SEPARATES:
         return _Conditions(nothing, normal, np.zeros((0, 3)))
-    if way.letter == "f":
+    if way.letter == STICKS:
         return _Conditions(contact.point, nothing, pyramid.edges)
     if way.item < 0 or pyramid.frame is None:
         return _Conditions(normal, nothing, pyramid.edges)

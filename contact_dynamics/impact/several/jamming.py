@@ -96,8 +96,8 @@ def jamming_impact(
         TooLargeError: more than `MOST_JAMMED_CONTACTS` contacts.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
-    force = check_array("force", force_W, (3,))
-    torque = check_array("torque", torque_W, (3,))
+    force = check_array("force_W", force_W, (3,))
+    torque = check_array("torque_W", torque_W, (3,))
     if len(contacts) == 0:
         raise InvalidFieldError("contacts", "none", "at least one contact")
     if len(contacts) > MOST_JAMMED_CONTACTS:

@@ -6,7 +6,7 @@ import random
 
 import pytest
 
-from contact_dynamics.contact_modes import ModeVerdict, PlanarModeAnswer, planar_contact_modes
+from contact_dynamics.contact_modes import ModeVerdict, PlanarContactProblem, PlanarModeAnswer, contact_modes
 from contact_dynamics.contact_modes.planar import cone
 from contact_dynamics.contact_modes.planar import friction_edges as edges
 from contact_modes.evidence import check_evidence
@@ -52,7 +52,7 @@ DEGENERATE = {
 
 def ask(case: FloatCase) -> PlanarModeAnswer:
     body, velocity, contacts, wrench = case
-    return planar_contact_modes(body, velocity, contacts, wrench)
+    return contact_modes(PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=wrench))
 
 
 def compare(exact: ExactCase, case: FloatCase) -> PlanarModeAnswer:

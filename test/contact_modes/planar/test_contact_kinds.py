@@ -12,9 +12,10 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.curvature import Curvatures
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact_modes import (
+    PlanarContactProblem,
     PlanarMode,
-    planar_contact_modes,
-    spatial_contact_modes,
+    SpatialContactProblem,
+    contact_modes,
     spatial_kinematic_modes,
 )
 from contact_dynamics.errors import OutOfPlaneError
@@ -38,7 +39,9 @@ def contact(
 
 
 def only(velocity: PlanarVelocity, *contacts: PlanarContact, body: PlanarBody = DISC) -> PlanarMode:
-    answer = planar_contact_modes(body, velocity, contacts, WEIGHT)
+    answer = contact_modes(
+        PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=WEIGHT)
+    )
     assert len(answer.modes) == 1, [mode.mode for mode in answer.modes]
     return answer.modes[0]
 
@@ -119,7 +122,11 @@ def test_several_contacts_have_their_own_terms() -> None:
         )
         for side in (-1.0, 1.0)
     ]
-    answer = planar_contact_modes(DISC, PlanarVelocity(v=(0.0, 0.0), w=20.0), walls, WEIGHT)
+    answer = contact_modes(
+        PlanarContactProblem(
+            body=DISC, velocity=PlanarVelocity(v=(0.0, 0.0), w=20.0), contacts=walls, wrench=WEIGHT
+        )
+    )
     assert len(answer.modes) == 1
     for _, f_n in answer.modes[0].contact_forces:
         assert f_n == pytest.approx(M * G * slope, rel=1e-9)
@@ -155,7 +162,11 @@ def test_a_ball_found_on_the_floor_rolls_and_pivots_without_force_but_its_weight
     )
     now = state((0.1, 0.7, -0.1, 0.7), (1.0, -0.5, 0.0), (0.5 / R, 1.0 / R, 6.0))
     contacts = find_contacts(ball, now, [FLOOR])
-    answer = spatial_contact_modes(ball.mass_properties, now, contacts, force_W=(0.0, 0.0, -M * G))
+    answer = contact_modes(
+        SpatialContactProblem(
+            body=ball.mass_properties, state=now, contacts=contacts, force_W=(0.0, 0.0, -M * G)
+        )
+    )
     assert [mode.mode for mode in answer.modes] == ["f"]
     np.testing.assert_allclose(answer.modes[0].contact_forces_W, [[0.0, 0.0, M * G]], atol=1e-6)
     np.testing.assert_allclose(answer.modes[0].acceleration_W, np.zeros(3), atol=1e-6)
@@ -179,10 +190,18 @@ def test_a_can_found_on_its_side_rolls_in_space_as_in_its_plane() -> None:
         torque_W=np.zeros(3),
     )
     assert [flat.body_curvature for flat in problem.contacts] == pytest.approx([1.0 / R] * 2)
-    answer = planar_contact_modes(problem.body, problem.velocity, problem.contacts, problem.wrench)
+    answer = contact_modes(
+        PlanarContactProblem(
+            body=problem.body, velocity=problem.velocity, contacts=problem.contacts, wrench=problem.wrench
+        )
+    )
     assert [mode.mode for mode in answer.modes] == ["ff"]
     assert sum(f_n for _, f_n in answer.modes[0].contact_forces) == pytest.approx(M * G, rel=1e-9)
-    in_space = spatial_contact_modes(can.mass_properties, lying, contacts, force_W=(0.0, 0.0, -M * G))
+    in_space = contact_modes(
+        SpatialContactProblem(
+            body=can.mass_properties, state=lying, contacts=contacts, force_W=(0.0, 0.0, -M * G)
+        )
+    )
     assert "ff" in [mode.mode for mode in in_space.modes]
     total = in_space.modes[0].contact_forces_W.sum(axis=0)
     np.testing.assert_allclose(total, [0.0, 0.0, M * G], atol=1e-5)

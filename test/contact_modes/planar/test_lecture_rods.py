@@ -6,7 +6,13 @@ import math
 
 import pytest
 
-from contact_dynamics.contact_modes import ModeVerdict, PlanarModeAnswer, Refusal, planar_contact_modes
+from contact_dynamics.contact_modes import (
+    ModeVerdict,
+    PlanarContactProblem,
+    PlanarModeAnswer,
+    Refusal,
+    contact_modes,
+)
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 
 LENGTH = 4.0
@@ -25,7 +31,9 @@ def rod_tip(friction: float) -> PlanarContact:
 
 
 def ask(velocity: PlanarVelocity, wrench: PlanarWrench, friction: float) -> PlanarModeAnswer:
-    return planar_contact_modes(ROD, velocity, [rod_tip(friction)], wrench)
+    return contact_modes(
+        PlanarContactProblem(body=ROD, velocity=velocity, contacts=[rod_tip(friction)], wrench=wrench)
+    )
 
 
 def test_no_mode_of_the_sliding_rod_is_consistent() -> None:

@@ -13,9 +13,10 @@ from fractions import Fraction
 
 import pytest
 
-from contact_dynamics.contact_modes import planar_contact_modes
+from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_modes.evidence import planar_problem
 from oracles.contact_mode_cases import contact, draw, resting, rounded
 from oracles.contact_modes import ExactCase, consistent_modes, kinematic_modes
 
@@ -38,7 +39,7 @@ def compare(seed: int, power: int, most_contacts: int) -> None:
     if seed % 2:  # a wrench whose moment counts as much as its force does
         exact = replace(exact, moment=exact.moment * factor)
     kinematic = kinematic_modes(exact)
-    answer = planar_contact_modes(*rounded(exact), acceleration_tolerance=ACCURACY)
+    answer = contact_modes(planar_problem(*rounded(exact), acceleration_tolerance=ACCURACY))
     assert set(answer.kinematic_modes) == kinematic
     assert {mode.mode for mode in answer.modes} == consistent_modes(exact, kinematic)
 
@@ -65,7 +66,7 @@ def test_a_body_on_two_feet_tips_where_its_weight_passes_a_foot(
         replace(foot, r=(foot.r[0] * reach, foot.r[1] * reach)) for foot in (contact(-1, -1), contact(1, -1))
     ]
     case = replace(resting(*feet), moment=-share * reach)
-    answer = planar_contact_modes(*rounded(case))  # with the default tolerance
+    answer = contact_modes(planar_problem(*rounded(case)))  # with the default tolerance
     assert ("ff" in {mode.mode for mode in answer.modes}) == rests
     assert {mode.mode for mode in answer.modes} == consistent_modes(case, kinematic_modes(case))
 
@@ -95,8 +96,13 @@ def test_numbers_of_any_size_give_finite_evidence(seed: int) -> None:
     velocity = PlanarVelocity(v=(0.0, 0.0), w=0.0)
     if chance.random() < 0.4:
         velocity = PlanarVelocity(v=(number(), number()), w=number())
-    answer = planar_contact_modes(
-        body, velocity, contacts, PlanarWrench(f=(number(), number()), moment=number())
+    answer = contact_modes(
+        PlanarContactProblem(
+            body=body,
+            velocity=velocity,
+            contacts=contacts,
+            wrench=PlanarWrench(f=(number(), number()), moment=number()),
+        )
     )
     for mode in answer.modes:
         pairs = (mode.acceleration, *mode.contact_forces, *mode.contact_accelerations)

@@ -10,11 +10,13 @@ from contact_dynamics.contact_modes import (
     BodyStatics,
     Certainty,
     ModeVerdict,
-    planar_contact_modes,
-    planar_statics,
+    PlanarContactProblem,
+    contact_modes,
+    statics,
 )
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_modes.evidence import planar_problem
 
 BODY = PlanarBody(mass=2.0, inertia=0.7)
 AT_REST = PlanarVelocity(v=(0.0, 0.0), w=0.0)
@@ -33,7 +35,7 @@ def on_incline(slope: float, friction: float, width: float, height: float) -> tu
 
 
 def modes_on_incline(slope: float, friction: float, width: float, height: float) -> list[str]:
-    answer = planar_contact_modes(BODY, AT_REST, *on_incline(slope, friction, width, height))
+    answer = contact_modes(planar_problem(BODY, AT_REST, *on_incline(slope, friction, width, height)))
     return [mode.mode for mode in answer.modes]
 
 
@@ -43,7 +45,7 @@ def test_a_low_block_slides_above_the_angle_of_friction(friction: float) -> None
     assert modes_on_incline(slope - NEAR, friction, 2.0, 1.0) == ["ff"]
     assert modes_on_incline(slope + NEAR, friction, 2.0, 1.0) == ["ll"]
     steep = 0.8
-    answer = planar_contact_modes(BODY, AT_REST, *on_incline(steep, 0.5, 2.0, 0.5))
+    answer = contact_modes(planar_problem(BODY, AT_REST, *on_incline(steep, 0.5, 2.0, 0.5)))
     downhill = G * (math.sin(steep) - 0.5 * math.cos(steep))
     assert answer.modes[0].acceleration == pytest.approx((-downhill, 0.0))
 
@@ -55,7 +57,9 @@ def test_a_tall_block_tips_when_its_weight_leaves_its_base(width: float, height:
     assert modes_on_incline(slope + NEAR, 2.0, width, height) == ["fs"]
     # It turns about the lower foot with the moment of its weight about it.
     feet, weight = on_incline(slope + 0.1, 2.0, width, height)
-    (tipping,) = planar_contact_modes(BODY, AT_REST, feet, weight).modes
+    (tipping,) = contact_modes(
+        PlanarContactProblem(body=BODY, velocity=AT_REST, contacts=feet, wrench=weight)
+    ).modes
     x, y = feet[0].r
     moment = -(x * weight.f[1] - y * weight.f[0])
     assert tipping.angular_acceleration == pytest.approx(
@@ -65,11 +69,13 @@ def test_a_tall_block_tips_when_its_weight_leaves_its_base(width: float, height:
 
 def test_the_slope_that_is_exactly_the_angle_of_friction_holds() -> None:
     feet = [PlanarContact(r=(x, -0.5), normal=(0.0, 1.0), friction=0.75) for x in (-1.0, 1.0)]
-    answer = planar_contact_modes(BODY, AT_REST, feet, PlanarWrench(f=(-3.0, -4.0)))
+    answer = contact_modes(
+        PlanarContactProblem(body=BODY, velocity=AT_REST, contacts=feet, wrench=PlanarWrench(f=(-3.0, -4.0)))
+    )
     assert [mode.mode for mode in answer.modes] == ["ff"]
-    statics = planar_statics(BODY, feet, PlanarWrench(f=(-3.0, -4.0)))
-    assert statics.equilibrium == Certainty.CERTAIN
-    assert statics.stable_disturbance == pytest.approx(0.0, abs=1e-12)
+    held = statics(PlanarContactProblem(body=BODY, contacts=feet, wrench=PlanarWrench(f=(-3.0, -4.0))))
+    assert held.equilibrium == Certainty.CERTAIN
+    assert held.stable_disturbance == pytest.approx(0.0, abs=1e-12)
 
 
 def ladder(angle: float, floor: float, wall: float) -> BodyStatics:
@@ -79,7 +85,9 @@ def ladder(angle: float, floor: float, wall: float) -> BodyStatics:
         PlanarContact(r=(-x, -y), normal=(0.0, 1.0), friction=floor),
         PlanarContact(r=(x, y), normal=(-1.0, 0.0), friction=wall),
     ]
-    return planar_statics(BODY, contacts, PlanarWrench(f=(0.0, -BODY.mass * G)))
+    return statics(
+        PlanarContactProblem(body=BODY, contacts=contacts, wrench=PlanarWrench(f=(0.0, -BODY.mass * G)))
+    )
 
 
 @pytest.mark.parametrize("floor", [0.2, 0.5, 1.0])
@@ -104,10 +112,10 @@ def test_two_fingers_hold_when_the_line_between_them_is_in_both_cones(friction: 
             PlanarContact(r=(-1.0, -offset), normal=(1.0, 0.0), friction=friction),
             PlanarContact(r=(1.0, offset), normal=(-1.0, 0.0), friction=friction),
         ]
-        statics = planar_statics(BODY, fingers, nothing)
-        assert statics.wedged == holds
-        assert math.isinf(statics.stable_disturbance) == holds
-        assert statics.is_stable_against(1e9) == holds
+        held = statics(PlanarContactProblem(body=BODY, contacts=fingers, wrench=nothing))
+        assert held.wedged == holds
+        assert math.isinf(held.stable_disturbance) == holds
+        assert held.is_stable_against(1e9) == holds
 
 
 def peg(
@@ -122,7 +130,9 @@ def peg(
         PlanarContact(r=(-radius, 0.0), normal=(1.0, 0.0), friction=friction),
         PlanarContact(r=(radius, depth), normal=(-1.0, 0.0), friction=friction),
     ]
-    return planar_statics(BODY, contacts, PlanarWrench(f=(f_x, -f_z), moment=moment))
+    return statics(
+        PlanarContactProblem(body=BODY, contacts=contacts, wrench=PlanarWrench(f=(f_x, -f_z), moment=moment))
+    )
 
 
 @pytest.mark.parametrize("friction", [0.1, 0.3])
@@ -176,9 +186,9 @@ def test_a_shallow_peg_wedges(friction: float) -> None:
 
 
 def test_no_contact_holds_nothing_but_no_wrench() -> None:
-    falling = planar_statics(BODY, [], PlanarWrench(f=(0.0, -1.0)))
+    falling = statics(PlanarContactProblem(body=BODY, contacts=[], wrench=PlanarWrench(f=(0.0, -1.0))))
     assert falling.equilibrium == Certainty.NO
-    floating = planar_statics(BODY, [], PlanarWrench(f=(0.0, 0.0)))
+    floating = statics(PlanarContactProblem(body=BODY, contacts=[], wrench=PlanarWrench(f=(0.0, 0.0))))
     assert floating.equilibrium == Certainty.CERTAIN
     assert floating.stable_disturbance == 0.0
     assert not floating.wedged
@@ -192,21 +202,29 @@ def test_a_rod_against_a_wall_may_stay_or_fall() -> None:
         friction=math.tan(math.pi / 6.0),
     )
     body, sideways = PlanarBody(mass=1.0, inertia=1.0), PlanarWrench(f=(-1.0, 0.0))
-    statics = planar_statics(body, [tip], sideways)
+    held = statics(PlanarContactProblem(body=body, contacts=[tip], wrench=sideways))
     # The fixed rod of lecture 26 swings about its tip: it does not stay at rest.
-    assert statics.equilibrium == Certainty.NO
-    assert planar_contact_modes(body, AT_REST, [tip], sideways).verdict == ModeVerdict.INDETERMINATE
+    assert held.equilibrium == Certainty.NO
+    assert (
+        contact_modes(
+            PlanarContactProblem(body=body, velocity=AT_REST, contacts=[tip], wrench=sideways)
+        ).verdict
+        == ModeVerdict.INDETERMINATE
+    )
 
 
 def test_disturbance_of_a_block_in_both_metrics() -> None:
     feet = [PlanarContact(r=(x, -1.0), normal=(0.0, 1.0), friction=0.5) for x in (-0.5, 0.5)]
     weight = PlanarWrench(f=(0.0, -20.0))
-    long = planar_statics(BODY, feet, weight, margin_length=1e3)
+    long = statics(PlanarContactProblem(body=BODY, contacts=feet, wrench=weight), margin_length=1e3)
     assert long.stable_disturbance == pytest.approx(20.0 * 0.5 / 1e3, rel=1e-5)
     assert long.is_stable_against(0.00999)
     assert not long.is_stable_against(0.01001)
     assert long.margin_length == 1e3
-    assert planar_statics(BODY, feet, weight).margin_length == BODY.radius_of_gyration
+    assert (
+        statics(PlanarContactProblem(body=BODY, contacts=feet, wrench=weight)).margin_length
+        == BODY.radius_of_gyration
+    )
     assert long.jammed == Certainty.NO, "a block on a level floor needs no friction"
     with pytest.raises(InvalidFieldError, match="margin_length"):
-        planar_statics(BODY, feet, weight, margin_length=-1.0)
+        statics(PlanarContactProblem(body=BODY, contacts=feet, wrench=weight), margin_length=-1.0)

@@ -19,9 +19,10 @@ from contact_dynamics.contact_modes import (
     BodyStatics,
     Certainty,
     ModeVerdict,
-    planar_contact_modes,
-    planar_mode_map,
-    planar_statics,
+    PlanarContactProblem,
+    contact_modes,
+    statics,
+    wrench_sets,
 )
 from contact_dynamics.plane.force_dual import friction_cone
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
@@ -48,7 +49,12 @@ def feet(width: float, height: float, friction: float) -> list[PlanarContact]:
 def modes_of(
     contacts: list[PlanarContact], wrench: PlanarWrench, velocity: PlanarVelocity = AT_REST
 ) -> list[str]:
-    return [mode.mode for mode in planar_contact_modes(BODY, velocity, contacts, wrench).modes]
+    return [
+        mode.mode
+        for mode in contact_modes(
+            PlanarContactProblem(body=BODY, velocity=velocity, contacts=contacts, wrench=wrench)
+        ).modes
+    ]
 
 
 def along_incline(slope: float, push: float = 0.0) -> PlanarWrench:
@@ -87,7 +93,11 @@ def test_a_sliding_block_is_braked_and_its_leading_foot_carries_more(
     assume(friction * centre_height < 0.99 * half_base)
     contacts = feet(2.0 * half_base, 2.0 * centre_height, friction)
     down = PlanarWrench(f=(0.0, -WEIGHT))
-    answer = planar_contact_modes(BODY, PlanarVelocity(v=(3.0, 0.0), w=0.0), contacts, down)
+    answer = contact_modes(
+        PlanarContactProblem(
+            body=BODY, velocity=PlanarVelocity(v=(3.0, 0.0), w=0.0), contacts=contacts, wrench=down
+        )
+    )
     (mode,) = answer.modes
     assert mode.mode == "rr"
     assert mode.acceleration == pytest.approx((-friction * G, 0.0), abs=1e-9)
@@ -107,7 +117,11 @@ def test_a_sliding_block_trips_where_friction_times_height_exceeds_its_half_base
         assert modes_of(contacts, down, moving) == [expected]
     # It turns over its leading foot, which goes on sliding: N = m g / (1 + m b (b - mu h) / I).
     height = 1.1 * threshold
-    answer = planar_contact_modes(BODY, moving, feet(2.0 * half_base, 2.0 * height, friction), down)
+    answer = contact_modes(
+        PlanarContactProblem(
+            body=BODY, velocity=moving, contacts=feet(2.0 * half_base, 2.0 * height, friction), wrench=down
+        )
+    )
     (mode,) = answer.modes
     lever = half_base - friction * height
     load = WEIGHT / (1.0 + BODY.mass * half_base * lever / BODY.inertia)
@@ -127,7 +141,7 @@ def ladder(angle: float, share: float, floor: float, wall: float) -> BodyStatics
         PlanarContact(r=(-below * x, -below * y), normal=(0.0, 1.0), friction=floor),
         PlanarContact(r=(above * x, above * y), normal=(-1.0, 0.0), friction=wall),
     ]
-    return planar_statics(BODY, contacts, PlanarWrench(f=(0.0, -WEIGHT)))
+    return statics(PlanarContactProblem(body=BODY, contacts=contacts, wrench=PlanarWrench(f=(0.0, -WEIGHT))))
 
 
 @given(st.floats(0.2, 1.0), st.floats(0.1, 1.0), st.floats(0.0, 1.0))
@@ -164,7 +178,8 @@ def jams(side: float, moment: float) -> set[str]:
     return {
         name
         for name, contacts in HOLDS.items()
-        if planar_statics(BODY, contacts, wrench).equilibrium != Certainty.NO
+        if statics(PlanarContactProblem(body=BODY, contacts=contacts, wrench=wrench)).equilibrium
+        != Certainty.NO
     }
 
 
@@ -201,7 +216,15 @@ def test_its_upright_sides_are_contact_along_a_wall(sign: float) -> None:
 
 def test_the_held_wrenches_of_two_points_end_at_the_parallelograms_side() -> None:
     # M + mu r (1 + lambda) F_x - lambda r F_y' <= 0 with F_y' = -F_z is a half-space of the map's set.
-    (held,) = [one for one in planar_mode_map(BODY, HOLDS["two points, leaning right"]) if one.mode == "ff"]
+    (held,) = [
+        one
+        for one in wrench_sets(
+            PlanarContactProblem(
+                body=BODY, contacts=HOLDS["two points, leaning right"], wrench=PlanarWrench(f=(0.0, 0.0))
+            )
+        )
+        if one.mode == "ff"
+    ]
     expected = np.array([MU * RADIUS * (1.0 + RATIO), -RATIO * RADIUS, 1.0])
     found = [np.array(side.a) / side.a[2] for side in held.half_spaces if side.a[2] > 0.0]
     assert any(np.allclose(row, expected, rtol=1e-12) for row in found)
@@ -233,9 +256,9 @@ def test_two_fingers_close_a_grasp_where_their_line_is_in_both_cones(
         ),
     ]
     closes = min(margins) > 0.0
-    statics = planar_statics(BODY, fingers, PlanarWrench(f=(0.0, 0.0)))
-    assert statics.wedged == closes
-    assert math.isinf(statics.stable_disturbance) == closes
+    held = statics(PlanarContactProblem(body=BODY, contacts=fingers, wrench=PlanarWrench(f=(0.0, 0.0))))
+    assert held.wedged == closes
+    assert math.isinf(held.stable_disturbance) == closes
 
 
 # ----------------------------------------------------------------------------------------- lecture 26
@@ -254,7 +277,12 @@ def test_the_rod_is_inconsistent_below_a_moment_of_inertia() -> None:
         (threshold * (1.0 + NEAR), ModeVerdict.UNIQUE),
     ):
         rod = PlanarBody(mass=1.0, inertia=inertia)
-        assert planar_contact_modes(rod, sliding, [tip], down).verdict == verdict
+        assert (
+            contact_modes(
+                PlanarContactProblem(body=rod, velocity=sliding, contacts=[tip], wrench=down)
+            ).verdict
+            == verdict
+        )
 
 
 @given(st.floats(0.3, 1.4), st.floats(0.05, 20.0), st.floats(0.2, 5.0))
@@ -273,7 +301,12 @@ def test_the_rod_along_its_wall_can_stay_from_a_friction_on(
     rod, sideways = PlanarBody(mass=mass, inertia=inertia), PlanarWrench(f=(-mass * G, 0.0))
     for friction, expected in ((ratio * (1.0 - NEAR), {"l"}), (ratio * (1.0 + NEAR), {"l", "f"})):
         tip = PlanarContact(r=(-length * cosine, -length * sine), normal=(0.0, 1.0), friction=friction)
-        by_letter = {mode.mode: mode for mode in planar_contact_modes(rod, AT_REST, [tip], sideways).modes}
+        by_letter = {
+            mode.mode: mode
+            for mode in contact_modes(
+                PlanarContactProblem(body=rod, velocity=AT_REST, contacts=[tip], wrench=sideways)
+            ).modes
+        }
         assert set(by_letter) == expected
         assert by_letter["l"].contact_forces == ((0.0, 0.0),)
         if "f" in by_letter:
@@ -290,7 +323,12 @@ TRAY = (
 
 def test_the_strings_of_a_wrench_in_a_tray_are_those_of_an_exact_trial_of_all_256() -> None:
     body, _, contacts, _ = rounded(resting(*TRAY))
-    strings = {one.mode for one in planar_mode_map(body, contacts)}
+    strings = {
+        one.mode
+        for one in wrench_sets(
+            PlanarContactProblem(body=body, contacts=contacts, wrench=PlanarWrench(f=(0.0, 0.0)))
+        )
+    }
     assert strings == kinematic_modes(resting(*TRAY))
     assert {"ffff", "rsrs", "ssss"} <= strings
     assert len(strings) <= 4 * len(TRAY) + 2
@@ -304,7 +342,9 @@ def test_wrenches_accelerations_and_contact_forces_are_related_as_the_lecture_sa
     for _ in range(300):
         f_x, f_y, moment = chance.normal(size=3) * [1.0, 1.0, 15.0]
         wrench = PlanarWrench(f=(float(f_x), float(f_y)), moment=float(moment))
-        for mode in planar_contact_modes(body, AT_REST, contacts, wrench).modes:
+        for mode in contact_modes(
+            PlanarContactProblem(body=body, velocity=AT_REST, contacts=contacts, wrench=wrench)
+        ).modes:
             seen.add(mode.mode)
             edges = []
             for letter, touching in zip(mode.mode, contacts, strict=True):

@@ -9,11 +9,12 @@ import pytest
 
 from contact_dynamics.contact_modes import (
     ModeVerdict,
+    PlanarContactProblem,
     PlanarModeMargin,
     PlanarWrenchSet,
-    planar_contact_modes,
-    planar_mode_map,
-    planar_mode_margins,
+    contact_modes,
+    mode_margins,
+    wrench_sets,
 )
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
@@ -29,16 +30,26 @@ CLEAR = 1e-6  # N: what is nearer to a boundary than this is left to the exact t
 def consistent(
     body: PlanarBody, velocity: PlanarVelocity, contacts: list[PlanarContact], wrench: PlanarWrench
 ) -> set[str]:
-    answer = planar_contact_modes(body, velocity, contacts, wrench)
+    answer = contact_modes(
+        PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=wrench)
+    )
     return {mode.mode for mode in answer.modes}
 
 
 @pytest.mark.parametrize("seed", range(60))
 def test_the_map_says_what_the_modes_say(seed: int) -> None:
     body, velocity, contacts, _ = rounded(draw(seed, most_contacts=4))
-    sets = planar_mode_map(body, contacts, velocity=velocity)
+    sets = wrench_sets(
+        PlanarContactProblem(
+            body=body, velocity=velocity, contacts=contacts, wrench=PlanarWrench(f=(0.0, 0.0))
+        )
+    )
     if not sets:
-        answer = planar_contact_modes(body, velocity, contacts, PlanarWrench(f=(0.0, 0.0)))
+        answer = contact_modes(
+            PlanarContactProblem(
+                body=body, velocity=velocity, contacts=contacts, wrench=PlanarWrench(f=(0.0, 0.0))
+            )
+        )
         leaves = all(v_n > 0.0 for _, v_n in answer.contact_velocities)
         assert leaves or answer.kinematic_modes == ()
         return
@@ -68,12 +79,18 @@ def combination(one: PlanarWrenchSet, chance: random.Random) -> PlanarWrench:
 def test_what_the_generators_make_brings_the_mode_about(seed: int) -> None:
     body, velocity, contacts, _ = rounded(draw(seed, most_contacts=4))
     chance = random.Random(seed)
-    for one in planar_mode_map(body, contacts, velocity=velocity):
+    for one in wrench_sets(
+        PlanarContactProblem(
+            body=body, velocity=velocity, contacts=contacts, wrench=PlanarWrench(f=(0.0, 0.0))
+        )
+    ):
         assert one.mode in consistent(body, velocity, contacts, combination(one, chance))
 
 
 def test_half_spaces_and_generators_touch() -> None:
-    for one in planar_mode_map(BODY, BLOCK):
+    for one in wrench_sets(
+        PlanarContactProblem(body=BODY, contacts=BLOCK, wrench=PlanarWrench(f=(0.0, 0.0)))
+    ):
         for generator in one.generators:
             size = math.hypot(*generator.f, generator.moment)
             depth = one.depth(generator, BODY.radius_of_gyration)
@@ -81,7 +98,9 @@ def test_half_spaces_and_generators_touch() -> None:
 
 
 def test_the_margin_of_a_resting_block_to_tipping_and_sliding() -> None:
-    (fixed,) = planar_mode_margins(BODY, AT_REST, BLOCK, WEIGHT, margin_length=1e3)
+    (fixed,) = mode_margins(
+        PlanarContactProblem(body=BODY, velocity=AT_REST, contacts=BLOCK, wrench=WEIGHT), margin_length=1e3
+    )
     # With a long length moments cost nothing: the block tips at half its width.
     assert fixed.mode == "ff"
     assert fixed.margin == pytest.approx(20.0 * 0.5 / 1e3, rel=1e-5)
@@ -89,7 +108,9 @@ def test_the_margin_of_a_resting_block_to_tipping_and_sliding() -> None:
     assert fixed.modes_beyond in {("fs",), ("sf",)}
     # With a short one they cost all: it slides at mu times the weight, at right angles to the cone's edge.
     low = [PlanarContact(r=(x, -1e-3), normal=(0.0, 1.0), friction=0.5) for x in (-0.5, 0.5)]
-    (sliding,) = planar_mode_margins(BODY, AT_REST, low, WEIGHT, margin_length=1e-3)
+    (sliding,) = mode_margins(
+        PlanarContactProblem(body=BODY, velocity=AT_REST, contacts=low, wrench=WEIGHT), margin_length=1e-3
+    )
     assert sliding.margin == pytest.approx(20.0 * 0.5 / math.sqrt(1.0 + 0.25), rel=1e-4)
     assert sliding.verdict_beyond == ModeVerdict.UNIQUE
     assert sliding.modes_beyond in {("ll",), ("rr",)}
@@ -100,7 +121,10 @@ def test_the_margin_is_the_least_change_that_leaves_the_mode(seed: int) -> None:
     body, velocity, contacts, wrench = rounded(draw(seed, most_contacts=3))
     chance = random.Random(seed)
     length = body.radius_of_gyration * chance.uniform(0.2, 5.0)
-    for margin in planar_mode_margins(body, velocity, contacts, wrench, margin_length=length):
+    for margin in mode_margins(
+        PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=wrench),
+        margin_length=length,
+    ):
         if math.isinf(margin.margin):
             assert margin.change == PlanarWrench(f=(0.0, 0.0))
             continue
@@ -129,9 +153,17 @@ def test_just_inside_the_margin_the_mode_holds_and_just_outside_are_those_told(s
         part, change = step / margin.margin, margin.change
         f = (wrench.f[0] + part * change.f[0], wrench.f[1] + part * change.f[1])
         there = PlanarWrench(f=f, moment=wrench.moment + part * change.moment)
-        return tuple(mode.mode for mode in planar_contact_modes(body, velocity, contacts, there).modes)
+        return tuple(
+            mode.mode
+            for mode in contact_modes(
+                PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=there)
+            ).modes
+        )
 
-    for margin in planar_mode_margins(body, velocity, contacts, wrench, margin_length=length):
+    for margin in mode_margins(
+        PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=wrench),
+        margin_length=length,
+    ):
         if math.isinf(margin.margin) or margin.margin <= 1e-5 * size:
             continue
         largest = max(size, margin.margin)
@@ -147,12 +179,17 @@ def test_a_wrench_in_a_tray_has_modes_like_rsrs() -> None:
         PlanarContact(r=(-1.2, 0.2), normal=(1.0, 0.0), friction=0.25),
         PlanarContact(r=(1.2, 0.4), normal=(-1.0, 0.0), friction=0.25),
     ]
-    sets = {one.mode: one for one in planar_mode_map(BODY, tray)}
+    sets = {
+        one.mode: one
+        for one in wrench_sets(
+            PlanarContactProblem(body=BODY, contacts=tray, wrench=PlanarWrench(f=(0.0, 0.0)))
+        )
+    }
     assert "ffff" in sets
     assert "rsrs" in sets
     chance = random.Random(0)
     wrench = combination(sets["rsrs"], chance)
-    answer = planar_contact_modes(BODY, AT_REST, tray, wrench)
+    answer = contact_modes(PlanarContactProblem(body=BODY, velocity=AT_REST, contacts=tray, wrench=wrench))
     mode = next(mode for mode in answer.modes if mode.mode == "rsrs")
     assert mode.contact_accelerations[0][0] > 0.0
     assert mode.contact_accelerations[1][1] > 0.0
@@ -162,8 +199,12 @@ def test_a_wrench_in_a_tray_has_modes_like_rsrs() -> None:
 @pytest.mark.parametrize("seed", range(200, 260))
 def test_margins_are_in_the_order_of_the_answer(seed: int) -> None:
     body, velocity, contacts, wrench = rounded(draw(seed, most_contacts=2))
-    answer = planar_contact_modes(body, velocity, contacts, wrench)
-    margins = planar_mode_margins(body, velocity, contacts, wrench)
+    answer = contact_modes(
+        PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=wrench)
+    )
+    margins = mode_margins(
+        PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=wrench)
+    )
     if margins:
         assert [margin.mode for margin in margins] == [mode.mode for mode in answer.modes]
 
@@ -172,19 +213,37 @@ def test_margins_of_an_indeterminate_rod_are_in_the_order_of_the_answer() -> Non
     rod = PlanarBody(mass=1.0, inertia=1.0)
     tip = PlanarContact(r=(-1.0353, -3.8637), normal=(0.0, 1.0), friction=0.57735)
     wrench = PlanarWrench(f=(-1.0, 0.0))
-    margins = planar_mode_margins(rod, AT_REST, [tip], wrench)
+    margins = mode_margins(PlanarContactProblem(body=rod, velocity=AT_REST, contacts=[tip], wrench=wrench))
     assert [one.mode for one in margins] == ["l", "f"]
-    assert [one.mode for one in planar_contact_modes(rod, AT_REST, [tip], wrench).modes] == ["l", "f"]
+    assert [
+        one.mode
+        for one in contact_modes(
+            PlanarContactProblem(body=rod, velocity=AT_REST, contacts=[tip], wrench=wrench)
+        ).modes
+    ] == ["l", "f"]
 
 
 def test_no_map_without_touching_contacts() -> None:
     up = PlanarVelocity(v=(0.0, 1.0), w=0.0)
     down = PlanarVelocity(v=(0.0, -1.0), w=0.0)
-    assert planar_mode_map(BODY, BLOCK, velocity=up) == ()
-    assert planar_mode_map(BODY, BLOCK, velocity=down) == ()
-    assert planar_mode_margins(BODY, up, BLOCK, WEIGHT) == ()
+    assert (
+        wrench_sets(
+            PlanarContactProblem(body=BODY, velocity=up, contacts=BLOCK, wrench=PlanarWrench(f=(0.0, 0.0)))
+        )
+        == ()
+    )
+    assert (
+        wrench_sets(
+            PlanarContactProblem(body=BODY, velocity=down, contacts=BLOCK, wrench=PlanarWrench(f=(0.0, 0.0)))
+        )
+        == ()
+    )
+    assert mode_margins(PlanarContactProblem(body=BODY, velocity=up, contacts=BLOCK, wrench=WEIGHT)) == ()
 
 
 def test_a_length_that_is_none_is_refused() -> None:
     with pytest.raises(InvalidFieldError, match="margin_length"):
-        planar_mode_margins(BODY, AT_REST, BLOCK, WEIGHT, margin_length=0.0)
+        mode_margins(
+            PlanarContactProblem(body=BODY, velocity=AT_REST, contacts=BLOCK, wrench=WEIGHT),
+            margin_length=0.0,
+        )

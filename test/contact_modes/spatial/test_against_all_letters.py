@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.friction import linearised_cone
-from contact_dynamics.contact_modes import ModeVerdict, spatial_contact_modes
+from contact_dynamics.contact_modes import ModeVerdict, SpatialContactProblem, contact_modes
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from oracles.spatial_modes import consistent_combinations
 
@@ -33,8 +33,16 @@ def contact_set(points: list, normals: list, frictions: list) -> ContactSet:
 
 def check(now: BodyState, contacts: ContactSet, wrench: np.ndarray, facets: int) -> int:
     """Compare letters, and accelerations where they are unique; return the number of modes."""
-    answer = spatial_contact_modes(
-        BODY, now, contacts, force_W=wrench[:3], torque_W=wrench[3:], friction_facets=facets, sharpen=False
+    answer = contact_modes(
+        SpatialContactProblem(
+            body=BODY,
+            state=now,
+            contacts=contacts,
+            force_W=wrench[:3],
+            torque_W=wrench[3:],
+            friction_facets=facets,
+            sharpen=False,
+        )
     )
     r, w = contacts.p_WC_W, now.w_WB_W
     velocities = now.v_WB_W + np.cross(w, r)

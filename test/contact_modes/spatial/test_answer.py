@@ -10,9 +10,10 @@ import pytest
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import (
     ModeVerdict,
+    PlanarContactProblem,
+    SpatialContactProblem,
     SpatialModeAnswer,
-    planar_contact_modes,
-    spatial_contact_modes,
+    contact_modes,
 )
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
@@ -83,7 +84,9 @@ def test_a_pushed_block_slides_at_the_angle_of_friction_in_any_direction(heading
     for share, mode in ((0.999, "ffff"), (1.001, "cccc")):
         push = share * 0.4 * WEIGHT
         wrench = np.array([push * math.cos(heading), push * math.sin(heading), -WEIGHT, 0.0, 0.0, 0.0])
-        answer = spatial_contact_modes(BODY, state(), contacts, force_W=wrench[:3])
+        answer = contact_modes(
+            SpatialContactProblem(body=BODY, state=state(), contacts=contacts, force_W=wrench[:3])
+        )
         assert answer.verdict == ModeVerdict.UNIQUE
         assert [one.mode for one in answer.modes] == [mode]
         assert answer.modes[0].motion_unique
@@ -103,7 +106,7 @@ def test_a_sliding_block_is_braked_against_its_motion(heading: float) -> None:
     now = state(v=tuple(3.0 * way))
     wrench = np.array([0.0, 0.0, -WEIGHT, 0.0, 0.0, 0.0])
     contacts = on_floor(FEET, 0.4)
-    answer = spatial_contact_modes(BODY, now, contacts, force_W=wrench[:3])
+    answer = contact_modes(SpatialContactProblem(body=BODY, state=now, contacts=contacts, force_W=wrench[:3]))
     (mode,) = answer.modes
     assert mode.mode == "cccc"
     np.testing.assert_allclose(mode.acceleration_W, -4.0 * way, atol=1e-6)
@@ -113,10 +116,18 @@ def test_a_sliding_block_is_braked_against_its_motion(heading: float) -> None:
 
 def test_a_block_tips_about_an_edge() -> None:
     contacts = on_floor([(x, y, -1.0) for x, y, _ in FEET], 2.0)
-    answer = spatial_contact_modes(BODY, state(), contacts, force_W=(0.0, 0.51 * WEIGHT, -WEIGHT))
+    answer = contact_modes(
+        SpatialContactProblem(
+            body=BODY, state=state(), contacts=contacts, force_W=(0.0, 0.51 * WEIGHT, -WEIGHT)
+        )
+    )
     # Pushed at its centre, height 1, half-width 0.5: it tips once the push is half its weight.
     assert [one.mode for one in answer.modes] == ["ssff"]
-    still = spatial_contact_modes(BODY, state(), contacts, force_W=(0.0, 0.49 * WEIGHT, -WEIGHT))
+    still = contact_modes(
+        SpatialContactProblem(
+            body=BODY, state=state(), contacts=contacts, force_W=(0.0, 0.49 * WEIGHT, -WEIGHT)
+        )
+    )
     assert [one.mode for one in still.modes] == ["ffff"]
 
 
@@ -134,7 +145,9 @@ def test_more_contacts_than_the_motion_has_dimensions(contacts: int) -> None:
         restitutions=np.zeros(contacts),
     )
     wrench = np.array([0.3, 0.2, -WEIGHT, 0.1, 0.0, 0.2])
-    answer = spatial_contact_modes(BODY, state(), cup, force_W=wrench[:3], torque_W=wrench[3:])
+    answer = contact_modes(
+        SpatialContactProblem(body=BODY, state=state(), contacts=cup, force_W=wrench[:3], torque_W=wrench[3:])
+    )
     assert "f" * contacts in [mode.mode for mode in answer.modes]
     check_evidence(answer, BODY, state(), cup, wrench)
 
@@ -143,7 +156,11 @@ def test_more_contacts_than_the_motion_has_dimensions(contacts: int) -> None:
 def test_a_block_on_many_feet_slides_as_on_four(corners: int) -> None:
     angles = 2.0 * math.pi * np.arange(corners) / corners
     feet = [(math.cos(angle), math.sin(angle), -0.2) for angle in angles]
-    answer = spatial_contact_modes(BODY, state(), on_floor(feet, 0.4), force_W=(10.0, 0.0, -WEIGHT))
+    answer = contact_modes(
+        SpatialContactProblem(
+            body=BODY, state=state(), contacts=on_floor(feet, 0.4), force_W=(10.0, 0.0, -WEIGHT)
+        )
+    )
     (mode,) = answer.modes
     assert mode.mode == "c" * corners
     np.testing.assert_allclose(mode.acceleration_W, [5.0 - 4.0, 0.0, 0.0], atol=1e-9)
@@ -151,10 +168,14 @@ def test_a_block_on_many_feet_slides_as_on_four(corners: int) -> None:
 
 def test_a_frictionless_block_slides_freely() -> None:
     contacts = on_floor(FEET, 0.0)
-    pushed = spatial_contact_modes(BODY, state(), contacts, force_W=(1.0, 0.0, -WEIGHT))
+    pushed = contact_modes(
+        SpatialContactProblem(body=BODY, state=state(), contacts=contacts, force_W=(1.0, 0.0, -WEIGHT))
+    )
     assert [one.mode for one in pushed.modes] == ["cccc"]
     np.testing.assert_allclose(pushed.modes[0].acceleration_W, [0.5, 0.0, 0.0], atol=1e-6)
-    resting = spatial_contact_modes(BODY, state(), contacts, force_W=(0.0, 0.0, -WEIGHT))
+    resting = contact_modes(
+        SpatialContactProblem(body=BODY, state=state(), contacts=contacts, force_W=(0.0, 0.0, -WEIGHT))
+    )
     assert [one.mode for one in resting.modes] == ["ffff"]
 
 
@@ -179,11 +200,20 @@ def in_space(case: FloatCase) -> tuple[MassProperties, BodyState, ContactSet, np
 def test_every_planar_mode_is_one_in_space(seed: int) -> None:
     case = rounded(draw(seed, most_contacts=2))
     body, now, contacts, wrench = in_space(case)
-    answer = spatial_contact_modes(
-        body, now, contacts, force_W=wrench[:3], torque_W=wrench[3:], friction_facets=4
+    answer = contact_modes(
+        SpatialContactProblem(
+            body=body,
+            state=now,
+            contacts=contacts,
+            force_W=wrench[:3],
+            torque_W=wrench[3:],
+            friction_facets=4,
+        )
     )
     check_evidence(answer, body, now, contacts, wrench)
-    planar = planar_contact_modes(case[0], case[1], case[2], case[3])
+    planar = contact_modes(
+        PlanarContactProblem(body=case[0], velocity=case[1], contacts=case[2], wrench=case[3])
+    )
     for mode in planar.modes:
         # A frictionless contact that stays is c or f by its acceleration.
         letters = "".join("c" if letter in "lr" else letter for letter in mode.mode)
@@ -209,7 +239,7 @@ def rod(velocity: tuple[float, float], force: tuple[float, float]) -> SpatialMod
     body, now, contacts, wrench = in_space(
         (PlanarBody(mass=1.0, inertia=1.0), PlanarVelocity(v=velocity, w=0.0), [tip], PlanarWrench(f=force))
     )
-    answer = spatial_contact_modes(body, now, contacts, force_W=wrench[:3])
+    answer = contact_modes(SpatialContactProblem(body=body, state=now, contacts=contacts, force_W=wrench[:3]))
     check_evidence(answer, body, now, contacts, wrench)
     return answer
 
@@ -222,15 +252,25 @@ def test_the_rods_of_lecture_26_in_space() -> None:
 
 
 def test_free_leaving_and_approaching_bodies() -> None:
-    free = spatial_contact_modes(BODY, state(w=(1, 2, 3)), on_floor([], 0.5), force_W=(0, 0, -WEIGHT))
+    free = contact_modes(
+        SpatialContactProblem(
+            body=BODY, state=state(w=(1, 2, 3)), contacts=on_floor([], 0.5), force_W=(0, 0, -WEIGHT)
+        )
+    )
     (mode,) = free.modes
     assert mode.mode == ""
     L = BODY.I_B @ [1.0, 2.0, 3.0]
     np.testing.assert_allclose(BODY.I_B @ mode.angular_acceleration_W, -np.cross([1.0, 2.0, 3.0], L))
     contacts = on_floor(FEET, 0.5)
-    leaving = spatial_contact_modes(BODY, state(v=(0, 0, 1)), contacts, force_W=(0, 0, -WEIGHT))
+    leaving = contact_modes(
+        SpatialContactProblem(body=BODY, state=state(v=(0, 0, 1)), contacts=contacts, force_W=(0, 0, -WEIGHT))
+    )
     assert [one.mode for one in leaving.modes] == ["ssss"]
-    strikes = spatial_contact_modes(BODY, state(v=(0, 0, -1)), contacts, force_W=(0, 0, -WEIGHT))
+    strikes = contact_modes(
+        SpatialContactProblem(
+            body=BODY, state=state(v=(0, 0, -1)), contacts=contacts, force_W=(0, 0, -WEIGHT)
+        )
+    )
     assert strikes.verdict == ModeVerdict.IMPACT
     assert strikes.approaching == (0, 1, 2, 3)
 
@@ -252,8 +292,15 @@ def drawn_feet(seed: int) -> tuple[ContactSet, np.ndarray]:
 def test_sharpened_friction_is_coulombs_and_knows_no_facets(seed: int) -> None:
     contacts, wrench = drawn_feet(seed)
     answers = [
-        spatial_contact_modes(
-            BODY, state(), contacts, force_W=wrench[:3], torque_W=wrench[3:], friction_facets=facets
+        contact_modes(
+            SpatialContactProblem(
+                body=BODY,
+                state=state(),
+                contacts=contacts,
+                force_W=wrench[:3],
+                torque_W=wrench[3:],
+                friction_facets=facets,
+            )
         )
         for facets in (6, 13)
     ]
@@ -276,20 +323,26 @@ def test_sharpened_friction_is_coulombs_and_knows_no_facets(seed: int) -> None:
 def test_a_pyramid_turns_friction_by_half_a_sector_at_most(seed: int) -> None:
     contacts, wrench = drawn_feet(seed)
     for facets in (6, 24):
-        answer = spatial_contact_modes(
-            BODY,
-            state(),
-            contacts,
-            force_W=wrench[:3],
-            torque_W=wrench[3:],
-            friction_facets=facets,
-            sharpen=False,
+        answer = contact_modes(
+            SpatialContactProblem(
+                body=BODY,
+                state=state(),
+                contacts=contacts,
+                force_W=wrench[:3],
+                torque_W=wrench[3:],
+                friction_facets=facets,
+                sharpen=False,
+            )
         )
         assert all(1e-6 < mode.misdirection <= math.pi / facets + 1e-9 for mode in answer.modes)
 
 
 def test_four_feet_share_a_load_and_one_foot_has_no_choice() -> None:
-    resting = spatial_contact_modes(BODY, state(), on_floor(FEET, 0.4), force_W=(2.0, 0.0, -WEIGHT))
+    resting = contact_modes(
+        SpatialContactProblem(
+            body=BODY, state=state(), contacts=on_floor(FEET, 0.4), force_W=(2.0, 0.0, -WEIGHT)
+        )
+    )
     (mode,) = resting.modes
     assert (mode.motion_unique, mode.forces_unique) == (True, False)
     # Least squares: the load's line of force meets the floor 0.02 m from the middle.
@@ -297,8 +350,10 @@ def test_four_feet_share_a_load_and_one_foot_has_no_choice() -> None:
     np.testing.assert_allclose(
         mode.contact_forces_W[:, 2], WEIGHT / 4.0 * np.array([0.98, 1.02, 1.02, 0.98]), atol=1e-9
     )
-    balanced = spatial_contact_modes(
-        BODY, state(), on_floor([(0, 0, -0.2)], 0.4), force_W=(0.0, 0.0, -WEIGHT)
+    balanced = contact_modes(
+        SpatialContactProblem(
+            body=BODY, state=state(), contacts=on_floor([(0, 0, -0.2)], 0.4), force_W=(0.0, 0.0, -WEIGHT)
+        )
     )
     (mode,) = balanced.modes
     assert (mode.mode, mode.motion_unique, mode.forces_unique) == ("f", True, True)
@@ -308,18 +363,34 @@ def test_a_pushed_and_turned_block_is_one_mode_of_several_motions() -> None:
     # How its feet share the load decides how much it turns, so that one pyramid's sectors are as good as
     # another's; the letters are the same.
     asked = {"force_W": (12.0, 0.1, -WEIGHT), "torque_W": (0.0, 0.0, 0.5)}
-    answer = spatial_contact_modes(BODY, state(), on_floor(FEET, 0.4), **asked)
+    answer = contact_modes(
+        SpatialContactProblem(body=BODY, state=state(), contacts=on_floor(FEET, 0.4), **asked)
+    )
     assert answer.verdict == ModeVerdict.UNIQUE
     assert [(mode.mode, mode.motion_unique) for mode in answer.modes] == [("cccc", False)]
-    sectors = spatial_contact_modes(BODY, state(), on_floor(FEET, 0.4), sharpen=False, **asked)
+    sectors = contact_modes(
+        SpatialContactProblem(body=BODY, state=state(), contacts=on_floor(FEET, 0.4), sharpen=False, **asked)
+    )
     assert len(sectors.modes) > 1
     assert {mode.mode for mode in sectors.modes} == {"cccc"}
 
 
 def test_misuse_is_refused_by_name() -> None:
     with pytest.raises(InvalidFieldError, match="friction_facets"):
-        spatial_contact_modes(BODY, state(), on_floor(FEET, 0.5), force_W=(0, 0, -1), friction_facets=2)
+        contact_modes(
+            SpatialContactProblem(
+                body=BODY, state=state(), contacts=on_floor(FEET, 0.5), force_W=(0, 0, -1), friction_facets=2
+            )
+        )
     with pytest.raises(InvalidFieldError, match="force"):
-        spatial_contact_modes(BODY, state(), on_floor(FEET, 0.5), force_W=(0, 0, math.nan))
+        contact_modes(
+            SpatialContactProblem(
+                body=BODY, state=state(), contacts=on_floor(FEET, 0.5), force_W=(0, 0, math.nan)
+            )
+        )
     with pytest.raises(TooLargeError, match="contacts"):
-        spatial_contact_modes(BODY, state(), on_floor(FEET * 9, 0.5), force_W=(0, 0, -1))
+        contact_modes(
+            SpatialContactProblem(
+                body=BODY, state=state(), contacts=on_floor(FEET * 9, 0.5), force_W=(0, 0, -1)
+            )
+        )

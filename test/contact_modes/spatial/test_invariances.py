@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact_modes import SpatialModeAnswer, spatial_contact_modes
+from contact_dynamics.contact_modes import SpatialContactProblem, SpatialModeAnswer, contact_modes
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
 SEEDS = st.integers(0, 100_000)
@@ -34,20 +34,22 @@ class Case:
 
     def answer(self, facets: int = 7) -> SpatialModeAnswer:
         n = len(self.points)
-        return spatial_contact_modes(
-            MassProperties(mass=self.mass, I_B=self.inertia),
-            BodyState(
-                p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=self.v, w_WB_W=np.zeros(3)
-            ),
-            ContactSet(
-                p_WC_W=self.points,
-                normals_W=self.normals,
-                frictions=self.frictions,
-                restitutions=np.zeros(n),
-            ),
-            force_W=self.wrench[:3],
-            torque_W=self.wrench[3:],
-            friction_facets=facets,
+        return contact_modes(
+            SpatialContactProblem(
+                body=MassProperties(mass=self.mass, I_B=self.inertia),
+                state=BodyState(
+                    p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=self.v, w_WB_W=np.zeros(3)
+                ),
+                contacts=ContactSet(
+                    p_WC_W=self.points,
+                    normals_W=self.normals,
+                    frictions=self.frictions,
+                    restitutions=np.zeros(n),
+                ),
+                force_W=self.wrench[:3],
+                torque_W=self.wrench[3:],
+                friction_facets=facets,
+            )
         )
 
 

@@ -226,7 +226,7 @@ def test_a_few_contacts_do_not_import_scipy() -> None:
 import sys
 import numpy as np
 from contact_dynamics import BodyState, ContactSet, MassProperties
-from contact_dynamics.contact_modes import spatial_contact_modes, spatial_kinematic_modes
+from contact_dynamics.contact_modes import SpatialContactProblem, contact_modes, spatial_kinematic_modes
 still = np.zeros(3)
 body = MassProperties(mass=1.0, I_B=np.eye(3))
 state = BodyState(p_WB_W=still, q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=still, w_WB_W=still)
@@ -234,7 +234,8 @@ feet = ContactSet(
     p_WC_W=np.array([[x, y, -1.0] for x in (-1.0, 1.0) for y in (-1.0, 1.0)]),
     normals_W=np.tile([0.0, 0.0, 1.0], (4, 1)), frictions=np.full(4, 0.3), restitutions=np.zeros(4),
 )
-answer = spatial_contact_modes(body, state, feet, force_W=(0.0, 0.0, -9.8))
+problem = SpatialContactProblem(body=body, state=state, contacts=feet, force_W=(0.0, 0.0, -9.8))
+answer = contact_modes(problem)
 assert [mode.mode for mode in answer.modes] == ["ffff"]
 assert len(spatial_kinematic_modes(state, feet)) == 10
 sys.exit("scipy" in sys.modules)

@@ -9,7 +9,7 @@ import pytest
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.friction import linearised_cone
-from contact_dynamics.contact_modes import spatial_contact_modes
+from contact_dynamics.contact_modes import SpatialContactProblem, contact_modes
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from oracles.pressed_feet import drawn_loads, motion_under
 
@@ -47,7 +47,11 @@ def ring(n: int, height: float = 0.2) -> ContactSet:
 def test_many_feet_take_few_trials(
     feet: int, push: tuple[float, float], torque: tuple[float, float, float], first: str, modes: int | None
 ) -> None:
-    answer = spatial_contact_modes(BODY, AT_REST, ring(feet), force_W=(*push, -WEIGHT), torque_W=torque)
+    answer = contact_modes(
+        SpatialContactProblem(
+            body=BODY, state=AT_REST, contacts=ring(feet), force_W=(*push, -WEIGHT), torque_W=torque
+        )
+    )
     if modes is not None:
         assert len(answer.modes) == modes
     if torque[1] == 25.0:  # N m, more than its weight has about the outermost foot
@@ -67,8 +71,10 @@ def test_one_mode_stands_for_all_with_its_letters(seed: int) -> None:
         "force_W": (*chance.normal(0.0, 6.0, size=2), -WEIGHT),
         "torque_W": (0.0, 0.0, chance.normal(0.0, 4.0)),
     }
-    every = spatial_contact_modes(BODY, AT_REST, contacts, sharpen=False, **asked)
-    few = spatial_contact_modes(BODY, AT_REST, contacts, **asked)
+    every = contact_modes(
+        SpatialContactProblem(body=BODY, state=AT_REST, contacts=contacts, sharpen=False, **asked)
+    )
+    few = contact_modes(SpatialContactProblem(body=BODY, state=AT_REST, contacts=contacts, **asked))
     assert {mode.mode for mode in few.modes} == {mode.mode for mode in every.modes}
     letters = [mode.mode for mode in few.modes if not mode.motion_unique]
     assert all(letters.count(one) == 1 for one in letters)
@@ -82,14 +88,16 @@ def test_every_distribution_of_the_load_has_its_mode(push: tuple[float, float], 
     # At the height of the centre of mass friction does not move the load. Each load has one motion.
     facets, contacts = 8, ring(8, height=0.0)
     force = np.array([*push, -WEIGHT])
-    answer = spatial_contact_modes(
-        BODY,
-        AT_REST,
-        contacts,
-        force_W=force,
-        torque_W=(0.0, 0.0, twist),
-        friction_facets=facets,
-        sharpen=False,
+    answer = contact_modes(
+        SpatialContactProblem(
+            body=BODY,
+            state=AT_REST,
+            contacts=contacts,
+            force_W=force,
+            torque_W=(0.0, 0.0, twist),
+            friction_facets=facets,
+            sharpen=False,
+        )
     )
     corners = contacts.p_WC_W[:, :2]
     # Without contact forces each foot would begin its own way: its pyramid's first edge is against it.

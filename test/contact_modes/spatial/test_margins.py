@@ -10,10 +10,11 @@ import pytest
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import (
     ModeVerdict,
+    SpatialContactProblem,
     SpatialWrenchSet,
-    spatial_contact_modes,
-    spatial_mode_margins,
-    spatial_wrench_sets,
+    contact_modes,
+    mode_margins,
+    wrench_sets,
 )
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
@@ -42,8 +43,11 @@ def feet(height: float, friction: float) -> ContactSet:
 
 @pytest.mark.parametrize("facets", [4, 8, 16])
 def test_a_block_at_rest_slips_at_the_edge_of_its_friction_cone(facets: int) -> None:
-    (margin,) = spatial_mode_margins(
-        BODY, state(), feet(0.2, 0.4), force_W=DOWN, margin_length=SHORT, friction_facets=facets
+    (margin,) = mode_margins(
+        SpatialContactProblem(
+            body=BODY, state=state(), contacts=feet(0.2, 0.4), force_W=DOWN, friction_facets=facets
+        ),
+        margin_length=SHORT,
     )
     # The nearest point of a pyramid whose sides are mu cos(pi / facets) from its axis.
     slope = math.atan(0.4 * math.cos(math.pi / facets))
@@ -56,29 +60,60 @@ def test_a_block_at_rest_slips_at_the_edge_of_its_friction_cone(facets: int) -> 
 
 
 def test_a_tall_block_tips_over_its_nearer_edge() -> None:
-    (margin,) = spatial_mode_margins(BODY, state(), feet(1.0, 2.0), force_W=DOWN, margin_length=SHORT)
+    (margin,) = mode_margins(
+        SpatialContactProblem(
+            body=BODY, state=state(), contacts=feet(1.0, 2.0), force_W=DOWN, friction_facets=16
+        ),
+        margin_length=SHORT,
+    )
     assert margin.margin == pytest.approx(WEIGHT * math.sin(math.atan(0.5)), rel=1e-6)
     assert margin.modes_beyond in (("ssff",), ("ffss",))
     # Pushed to the limit there is none left, and a torque about the edge is worth its lever.
-    (limit,) = spatial_mode_margins(
-        BODY, state(), feet(1.0, 2.0), force_W=(0.0, 0.5 * WEIGHT, -WEIGHT), margin_length=SHORT
+    (limit,) = mode_margins(
+        SpatialContactProblem(
+            body=BODY,
+            state=state(),
+            contacts=feet(1.0, 2.0),
+            force_W=(0.0, 0.5 * WEIGHT, -WEIGHT),
+            friction_facets=16,
+        ),
+        margin_length=SHORT,
     )
     assert limit.margin == pytest.approx(0.0, abs=1e-9)
-    (by_torque,) = spatial_mode_margins(BODY, state(), feet(1.0, 2.0), force_W=DOWN, margin_length=1e3)
+    (by_torque,) = mode_margins(
+        SpatialContactProblem(
+            body=BODY, state=state(), contacts=feet(1.0, 2.0), force_W=DOWN, friction_facets=16
+        ),
+        margin_length=1e3,
+    )
     assert by_torque.margin == pytest.approx(WEIGHT * 0.5 / 1e3, rel=1e-5)
 
 
 def test_a_sliding_block_tips_forward_or_lifts_off() -> None:
     # It slides along x with friction at its feet, which the load has to balance about the centre of mass:
     # it moves forward by mu h = 0.2 of the half-length 1.
-    (margin,) = spatial_mode_margins(
-        BODY, state(v=(2.0, 0.0, 0.0)), feet(0.5, 0.4), force_W=DOWN, margin_length=1e3
+    (margin,) = mode_margins(
+        SpatialContactProblem(
+            body=BODY,
+            state=state(v=(2.0, 0.0, 0.0)),
+            contacts=feet(0.5, 0.4),
+            force_W=DOWN,
+            friction_facets=16,
+        ),
+        margin_length=1e3,
     )
     # By torque alone: sideways WEIGHT * 0.5, forward WEIGHT * (1 - 0.2); sideways is nearer.
     assert margin.mode == "cccc"
     assert margin.margin == pytest.approx(WEIGHT * 0.5 / 1e3, rel=1e-5)
-    lifts = spatial_mode_margins(
-        BODY, state(v=(2.0, 0.0, 0.0)), feet(0.0, 0.4), force_W=DOWN, margin_length=SHORT
+    lifts = mode_margins(
+        SpatialContactProblem(
+            body=BODY,
+            state=state(v=(2.0, 0.0, 0.0)),
+            contacts=feet(0.0, 0.4),
+            force_W=DOWN,
+            friction_facets=16,
+        ),
+        margin_length=SHORT,
     )
     assert lifts[0].margin == pytest.approx(WEIGHT, rel=1e-5)  # only lifting, and a little torque
 
@@ -102,28 +137,59 @@ def turning_case(seed: int) -> tuple[BodyState, ContactSet, np.ndarray]:
 def test_no_smaller_change_ends_a_mode_and_the_stated_one_does(seed: int) -> None:
     now, contacts, wrench = turning_case(seed)
     chance = np.random.default_rng(seed + 100)
-    margins = spatial_mode_margins(
-        BODY, now, contacts, force_W=wrench[:3], torque_W=wrench[3:], margin_length=0.5
+    margins = mode_margins(
+        SpatialContactProblem(
+            body=BODY,
+            state=now,
+            contacts=contacts,
+            force_W=wrench[:3],
+            torque_W=wrench[3:],
+            friction_facets=16,
+        ),
+        margin_length=0.5,
     )
     metric = np.array([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])
     for margin in margins:
         assert 0.0 <= margin.margin < math.inf
         for part, stays in ((0.999, True), (1.001, False)):
             changed = wrench + part * margin.change_W
-            there = spatial_contact_modes(BODY, now, contacts, force_W=changed[:3], torque_W=changed[3:])
+            there = contact_modes(
+                SpatialContactProblem(
+                    body=BODY, state=now, contacts=contacts, force_W=changed[:3], torque_W=changed[3:]
+                )
+            )
             assert (margin.mode in [mode.mode for mode in there.modes]) == stays
         for _ in range(6):
             way = chance.normal(size=6)
             changed = wrench + 0.999 * margin.margin * way / np.linalg.norm(way) * metric
-            there = spatial_contact_modes(BODY, now, contacts, force_W=changed[:3], torque_W=changed[3:])
+            there = contact_modes(
+                SpatialContactProblem(
+                    body=BODY, state=now, contacts=contacts, force_W=changed[:3], torque_W=changed[3:]
+                )
+            )
             assert margin.mode in [mode.mode for mode in there.modes]
 
 
 def test_modes_without_a_margin_and_without_an_end() -> None:
-    (free,) = spatial_mode_margins(BODY, state(v=(0, 0, 1.0)), feet(0.2, 0.4), force_W=DOWN)
+    (free,) = mode_margins(
+        SpatialContactProblem(
+            body=BODY, state=state(v=(0, 0, 1.0)), contacts=feet(0.2, 0.4), force_W=DOWN, friction_facets=16
+        )
+    )
     assert (free.mode, free.margin, free.modes_beyond) == ("ssss", math.inf, ("ssss",))
     np.testing.assert_array_equal(free.change_W, np.zeros(6))
-    assert spatial_mode_margins(BODY, state(v=(0, 0, -1.0)), feet(0.2, 0.4), force_W=DOWN) == ()
+    assert (
+        mode_margins(
+            SpatialContactProblem(
+                body=BODY,
+                state=state(v=(0, 0, -1.0)),
+                contacts=feet(0.2, 0.4),
+                force_W=DOWN,
+                friction_facets=16,
+            )
+        )
+        == ()
+    )
 
 
 @pytest.mark.parametrize(("push", "facets"), [((9.0, 0.0), 4), ((10.0, 2.0), 8), ((-7.0, 7.0), 8)])
@@ -131,8 +197,15 @@ def test_a_block_that_begins_to_slide_stops_at_the_edge_of_its_cone(
     push: tuple[float, float], facets: int
 ) -> None:
     # The first edge of each pyramid opposes the push, so that the way back to the cone is exact.
-    (margin,) = spatial_mode_margins(
-        BODY, state(), feet(0.2, 0.4), force_W=(*push, -WEIGHT), margin_length=SHORT, friction_facets=facets
+    (margin,) = mode_margins(
+        SpatialContactProblem(
+            body=BODY,
+            state=state(),
+            contacts=feet(0.2, 0.4),
+            force_W=(*push, -WEIGHT),
+            friction_facets=facets,
+        ),
+        margin_length=SHORT,
     )
     assert margin.mode == "cccc"
     assert margin.margin == pytest.approx((math.hypot(*push) - 0.4 * WEIGHT) / math.hypot(1.0, 0.4), rel=1e-4)
@@ -154,10 +227,14 @@ def test_margins_of_a_foot_that_begins_to_slide_beside_the_whole_map(seed: int) 
     asked = {"force_W": wrench[:3], "torque_W": wrench[3:], "friction_facets": 6}
     length = float(chance.choice([0.1, 0.45, 2.0]))
     metric = np.array([1.0, 1.0, 1.0, length, length, length])
-    for margin in spatial_mode_margins(BODY, state(), foot, margin_length=length, **asked):
+    for margin in mode_margins(
+        SpatialContactProblem(body=BODY, state=state(), contacts=foot, **asked), margin_length=length
+    ):
         assert 0.0 < margin.margin < math.inf
         assert np.linalg.norm(margin.change_W / metric) == pytest.approx(margin.margin, rel=1e-9)
-        sets = spatial_wrench_sets(BODY, state(), foot, modes=[margin.mode], **asked)
+        sets = wrench_sets(
+            SpatialContactProblem(body=BODY, state=state(), contacts=foot, **asked), modes=[margin.mode]
+        )
 
         def depth(change: np.ndarray, sets: tuple[SpatialWrenchSet, ...] = sets) -> float:
             return max(one.depth(wrench + change, 0.45) for one in sets)
@@ -177,7 +254,11 @@ def test_what_is_not_known_of_a_mode_that_begins_to_slide_is_not_told() -> None:
         frictions=np.full(6, 0.4),
         restitutions=np.zeros(6),
     )
-    (margin,) = spatial_mode_margins(BODY, state(), ring, force_W=(10.0, 0.0, -WEIGHT), friction_facets=4)
+    (margin,) = mode_margins(
+        SpatialContactProblem(
+            body=BODY, state=state(), contacts=ring, force_W=(10.0, 0.0, -WEIGHT), friction_facets=4
+        )
+    )
     assert margin.mode == "cccccc"
     assert math.isnan(margin.margin)
     assert margin.modes_beyond == ("cccccc",)
@@ -188,12 +269,29 @@ def test_ways_of_sliding_that_are_too_many_leave_the_margin_unknown(monkeypatch:
         raise TooLargeError("contacts", "many", "fewer")
 
     monkeypatch.setattr("contact_dynamics.contact_modes.spatial.margins_of_sliding.search_of", given_up)
-    (margin,) = spatial_mode_margins(BODY, state(), feet(0.2, 0.4), force_W=(10.0, 0.0, -WEIGHT))
+    (margin,) = mode_margins(
+        SpatialContactProblem(
+            body=BODY,
+            state=state(),
+            contacts=feet(0.2, 0.4),
+            force_W=(10.0, 0.0, -WEIGHT),
+            friction_facets=16,
+        )
+    )
     assert (margin.mode, math.isnan(margin.margin)) == ("cccc", True)
 
 
 def test_misuse_is_refused_by_name() -> None:
     with pytest.raises(InvalidFieldError, match="margin_length"):
-        spatial_mode_margins(BODY, state(), feet(0.2, 0.4), force_W=DOWN, margin_length=0.0)
+        mode_margins(
+            SpatialContactProblem(
+                body=BODY, state=state(), contacts=feet(0.2, 0.4), force_W=DOWN, friction_facets=16
+            ),
+            margin_length=0.0,
+        )
     with pytest.raises(TooLargeError, match="edges"):
-        spatial_mode_margins(BODY, state(), feet(0.2, 0.4), force_W=DOWN, friction_facets=40)
+        mode_margins(
+            SpatialContactProblem(
+                body=BODY, state=state(), contacts=feet(0.2, 0.4), force_W=DOWN, friction_facets=40
+            )
+        )

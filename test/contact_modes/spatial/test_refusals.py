@@ -11,9 +11,10 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import (
     Refusal,
     RefusedMode,
-    spatial_contact_modes,
+    SpatialContactProblem,
+    contact_modes,
+    refused_modes,
     spatial_kinematic_modes,
-    spatial_refused_modes,
 )
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
@@ -44,10 +45,11 @@ def refused(
     """Return the refusals by their strings, which with the consistent ones are all, each once."""
     now = now or state()
     force, torque = wrench[:3], wrench[3:]
-    answer = spatial_contact_modes(
-        BODY, now, contacts, force_W=force, torque_W=torque, friction_facets=facets
+    problem = SpatialContactProblem(
+        body=BODY, state=now, contacts=contacts, force_W=force, torque_W=torque, friction_facets=facets
     )
-    found = spatial_refused_modes(answer, BODY, now, contacts, force_W=force, torque_W=torque)
+    answer = contact_modes(problem)
+    found = refused_modes(problem, answer)
     consistent = {mode.mode.replace("f", "c") for mode in answer.modes}
     strings = [one.mode for one in found]
     assert not consistent & set(strings)
@@ -118,8 +120,15 @@ def test_the_least_change_is_what_the_string_is_short_of(seed: int) -> None:
         changed = wrench + change * [1.0, 1.0, 1.0, LENGTH, LENGTH, LENGTH]
         slack = 0.01 * float(np.linalg.norm(wrench / [1.0, 1.0, 1.0, LENGTH, LENGTH, LENGTH]))
         if one.amount > 10.0 * slack:
-            there = spatial_contact_modes(
-                BODY, state(), contacts, force_W=changed[:3], torque_W=changed[3:], friction_facets=24
+            there = contact_modes(
+                SpatialContactProblem(
+                    body=BODY,
+                    state=state(),
+                    contacts=contacts,
+                    force_W=changed[:3],
+                    torque_W=changed[3:],
+                    friction_facets=24,
+                )
             )
             assert string not in {mode.mode.replace("f", "c") for mode in there.modes}
 

@@ -11,7 +11,13 @@ from scipy.optimize import linprog
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact_modes import BodyStatics, Certainty, planar_statics, spatial_statics
+from contact_dynamics.contact_modes import (
+    BodyStatics,
+    Certainty,
+    PlanarContactProblem,
+    SpatialContactProblem,
+    statics,
+)
 from contact_dynamics.errors import InvalidFieldError, TooLargeError, UndecidedError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
@@ -43,13 +49,15 @@ def on_floor(points: list[tuple[float, ...]], friction: float = MU) -> ContactSe
 def pushed(
     x: float = 0.0, y: float = 0.0, *, length: float = 1e3, facets: int = 8, friction: float = MU
 ) -> BodyStatics:
-    return spatial_statics(
-        BODY,
-        STATE,
-        on_floor(FEET, friction),
-        force_W=(x, y, -WEIGHT),
+    return statics(
+        SpatialContactProblem(
+            body=BODY,
+            state=STATE,
+            contacts=on_floor(FEET, friction),
+            force_W=(x, y, -WEIGHT),
+            friction_facets=facets,
+        ),
         margin_length=length,
-        friction_facets=facets,
     )
 
 
@@ -77,8 +85,11 @@ def test_it_slides_at_the_angle_of_friction_in_any_direction(heading: float) -> 
 def test_the_disturbance_is_the_pyramids_within_the_round_cone(facets: int) -> None:
     # Short length: torques cost all. A regular pyramid's sides are nearer than the cone by cos(pi / facets).
     low = on_floor([(x, y, -1e-6) for x, y, _ in FEET])
-    found = spatial_statics(
-        BODY, STATE, low, force_W=(0.0, 0.0, -WEIGHT), margin_length=1e-4, friction_facets=facets
+    found = statics(
+        SpatialContactProblem(
+            body=BODY, state=STATE, contacts=low, force_W=(0.0, 0.0, -WEIGHT), friction_facets=facets
+        ),
+        margin_length=1e-4,
     )
     slope = MU * math.cos(math.pi / facets)
     assert found.stable_disturbance == pytest.approx(WEIGHT * slope / math.hypot(1.0, slope), rel=1e-4)
@@ -89,17 +100,26 @@ def test_two_soft_less_fingers_cannot_hold_a_twist_but_three_hold_all() -> None:
     # Points without torsional friction: a body turns about the line of two, and not about three.
     two = touching([(-1.0, 0.0, 0.0), (1.0, 0.0, 0.0)], [(1.0, 0.0, 0.0), (-1.0, 0.0, 0.0)])
     nothing = {"force_W": (0.0, 0.0, 0.0)}
-    found = spatial_statics(BODY, STATE, two, **nothing)
+    found = statics(SpatialContactProblem(body=BODY, state=STATE, contacts=two, **nothing))
     assert found.wedged
     assert found.stable_disturbance == 0.0
-    twisted = spatial_statics(BODY, STATE, two, force_W=(0.0, 0.0, 0.0), torque_W=(0.1, 0.0, 0.0))
+    twisted = statics(
+        SpatialContactProblem(
+            body=BODY, state=STATE, contacts=two, force_W=(0.0, 0.0, 0.0), torque_W=(0.1, 0.0, 0.0)
+        )
+    )
     assert twisted.equilibrium == Certainty.NO
-    assert spatial_statics(BODY, STATE, two, force_W=(0.0, 0.0, -5.0)).equilibrium != Certainty.NO
+    assert (
+        statics(
+            SpatialContactProblem(body=BODY, state=STATE, contacts=two, force_W=(0.0, 0.0, -5.0))
+        ).equilibrium
+        != Certainty.NO
+    )
     angles = [0.0, 2.0 * math.pi / 3.0, 4.0 * math.pi / 3.0]
     three = touching(
         [(math.cos(a), math.sin(a), 0.0) for a in angles], [(-math.cos(a), -math.sin(a), 0.0) for a in angles]
     )
-    held = spatial_statics(BODY, STATE, three, **nothing)
+    held = statics(SpatialContactProblem(body=BODY, state=STATE, contacts=three, **nothing))
     assert held.wedged
     assert math.isinf(held.stable_disturbance)
     slippery = touching(
@@ -107,7 +127,7 @@ def test_two_soft_less_fingers_cannot_hold_a_twist_but_three_hold_all() -> None:
         [(-math.cos(a), -math.sin(a), 0.0) for a in angles],
         0.0,
     )
-    loose = spatial_statics(BODY, STATE, slippery, **nothing)
+    loose = statics(SpatialContactProblem(body=BODY, state=STATE, contacts=slippery, **nothing))
     assert loose.wedged
     assert loose.stable_disturbance == 0.0
 
@@ -129,16 +149,22 @@ def test_planar_cases_have_the_planes_answer(seed: int) -> None:
         parts = [chance.uniform(0.1, 1.0) * np.array(one.normal) for one in contacts]
         force = -sum(parts, np.zeros(2))
         moment = -sum(one.r[0] * f[1] - one.r[1] * f[0] for one, f in zip(contacts, parts, strict=True))
-    plane = planar_statics(
-        PlanarBody(mass=2.0, inertia=0.7), contacts, PlanarWrench(f=(force[0], force[1]), moment=moment)
+    plane = statics(
+        PlanarContactProblem(
+            body=PlanarBody(mass=2.0, inertia=0.7),
+            contacts=contacts,
+            wrench=PlanarWrench(f=(force[0], force[1]), moment=moment),
+        )
     )
-    space = spatial_statics(
-        BODY,
-        STATE,
-        touching(points, normals),
-        force_W=(force[0], 0.0, force[1]),
-        torque_W=(0.0, -moment, 0.0),
-        friction_facets=16,
+    space = statics(
+        SpatialContactProblem(
+            body=BODY,
+            state=STATE,
+            contacts=touching(points, normals),
+            force_W=(force[0], 0.0, force[1]),
+            torque_W=(0.0, -moment, 0.0),
+            friction_facets=16,
+        )
     )
     assert space.wedged == plane.wedged
     if not math.isnan(plane.stable_disturbance) and plane.stable_disturbance < 1e-3:
@@ -163,13 +189,15 @@ def test_corners_found_twice_have_an_answer_in_every_attitude() -> None:
     force = -normals.sum(axis=0) + [0.1, 0.05, 0.0]
     torque = -np.cross(CORNERS, normals).sum(axis=0)
     found = [
-        spatial_statics(
-            BODY,
-            STATE,
-            touching(list(map(tuple, CORNERS @ R.T)), list(map(tuple, normals @ R.T))),
-            force_W=R @ force,
-            torque_W=R @ torque,
-            friction_facets=16,
+        statics(
+            SpatialContactProblem(
+                body=BODY,
+                state=STATE,
+                contacts=touching(list(map(tuple, CORNERS @ R.T)), list(map(tuple, normals @ R.T))),
+                force_W=R @ force,
+                torque_W=R @ torque,
+                friction_facets=16,
+            )
         )
         for R in Rotation.random(16, random_state=22).as_matrix()
     ]
@@ -187,8 +215,14 @@ def test_contacts_that_nearly_coincide_are_answered_or_refused_by_name(apart: fl
         points = [tuple(point), tuple(point + apart * chance.normal(size=3))]
         force, torque = chance.normal(size=3), chance.normal(size=3)
         with contextlib.suppress(UndecidedError):
-            found = spatial_statics(
-                BODY, STATE, touching(points, list(map(tuple, normals)), 0.3), force_W=force, torque_W=torque
+            found = statics(
+                SpatialContactProblem(
+                    body=BODY,
+                    state=STATE,
+                    contacts=touching(points, list(map(tuple, normals)), 0.3),
+                    force_W=force,
+                    torque_W=torque,
+                )
             )
             assert found.equilibrium == Certainty.NO  # a torque about the one point cannot be balanced
 
@@ -220,21 +254,32 @@ def test_linear_programs_over_the_forces_agree(seed: int) -> None:
     found = touching(list(map(tuple, points)), list(map(tuple, normals)))
     wrench = -np.concatenate([normals.sum(axis=0), np.cross(points, normals).sum(axis=0)])
     wrench += 0.3 * chance.normal(size=6) * (seed % 3)
-    statics = spatial_statics(BODY, STATE, found, force_W=wrench[:3], torque_W=wrench[3:], margin_length=1.0)
+    held = statics(
+        SpatialContactProblem(
+            body=BODY, state=STATE, contacts=found, force_W=wrench[:3], torque_W=wrench[3:]
+        ),
+        margin_length=1.0,
+    )
     inner, outer = math.cos(math.pi / 8.0), 1.0 / math.cos(math.pi / 64.0)
     if can_balance(found, wrench, inner):
-        assert statics.equilibrium != Certainty.NO
-    if statics.equilibrium != Certainty.NO:
+        assert held.equilibrium != Certainty.NO
+    if held.equilibrium != Certainty.NO:
         assert can_balance(found, wrench, outer)
-        room = min(statics.stable_disturbance, 10.0)
+        room = min(held.stable_disturbance, 10.0)
         for way in chance.normal(size=(5, 6)):
             assert can_balance(found, wrench + 0.999 * room * way / np.linalg.norm(way), outer)
 
 
 def test_without_contacts_only_nothing_is_held() -> None:
     none = on_floor([])
-    assert spatial_statics(BODY, STATE, none, force_W=(0, 0, -1)).equilibrium == Certainty.NO
-    assert spatial_statics(BODY, STATE, none, force_W=(0, 0, 0)).equilibrium == Certainty.CERTAIN
+    assert (
+        statics(SpatialContactProblem(body=BODY, state=STATE, contacts=none, force_W=(0, 0, -1))).equilibrium
+        == Certainty.NO
+    )
+    assert (
+        statics(SpatialContactProblem(body=BODY, state=STATE, contacts=none, force_W=(0, 0, 0))).equilibrium
+        == Certainty.CERTAIN
+    )
 
 
 def test_misuse_is_refused_by_name() -> None:

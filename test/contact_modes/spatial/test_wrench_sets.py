@@ -12,10 +12,11 @@ from scipy.optimize import nnls
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import (
+    SpatialContactProblem,
     SpatialWrenchSet,
-    spatial_contact_modes,
-    spatial_mode_margins,
-    spatial_wrench_sets,
+    contact_modes,
+    mode_margins,
+    wrench_sets,
 )
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
@@ -50,11 +51,13 @@ def feet(height: float, friction: float) -> ContactSet:
 def check(now: BodyState, contacts: ContactSet, wrench: np.ndarray, facets: int) -> int:
     """Compare the sets that hold a wrench with its modes, one for one; return how many there are."""
     asked = {"force_W": wrench[:3], "torque_W": wrench[3:], "friction_facets": facets}
-    sets = spatial_wrench_sets(BODY, now, contacts, **asked)
+    sets = wrench_sets(SpatialContactProblem(body=BODY, state=now, contacts=contacts, **asked))
     depths = [one.depth(wrench, LENGTH) for one in sets]
     if any(abs(depth) < CLEAR for depth in depths):
         return 0
-    answer = spatial_contact_modes(BODY, now, contacts, sharpen=False, **asked)
+    answer = contact_modes(
+        SpatialContactProblem(body=BODY, state=now, contacts=contacts, sharpen=False, **asked)
+    )
 
     def shown(mode: str) -> str:  # a frictionless contact that stays is f or c by its acceleration
         return "".join(
@@ -143,7 +146,11 @@ def drawn_wrenches(count: int) -> np.ndarray:
 
 def test_a_block_on_a_floor_has_a_mode_under_every_wrench() -> None:
     # Too little friction to jam it. How four feet share its weight as it turns is open, and so is the mode.
-    sets = spatial_wrench_sets(BODY, state(), feet(0.2, 0.4))
+    sets = wrench_sets(
+        SpatialContactProblem(
+            body=BODY, state=state(), contacts=feet(0.2, 0.4), force_W=(0.0, 0.0, 0.0), friction_facets=4
+        )
+    )
     reached = set()
     for wrench in drawn_wrenches(300):
         depths = np.array([one.depth(wrench, LENGTH) for one in sets])
@@ -154,7 +161,15 @@ def test_a_block_on_a_floor_has_a_mode_under_every_wrench() -> None:
 
 
 def test_one_foot_has_one_mode_under_every_wrench() -> None:
-    sets = spatial_wrench_sets(BODY, state(), contact_set([(0.3, 0.1, -0.2)], [(0, 0, 1)], [0.4]))
+    sets = wrench_sets(
+        SpatialContactProblem(
+            body=BODY,
+            state=state(),
+            contacts=contact_set([(0.3, 0.1, -0.2)], [(0, 0, 1)], [0.4]),
+            force_W=(0.0, 0.0, 0.0),
+            friction_facets=4,
+        )
+    )
     reached = set()
     for wrench in drawn_wrenches(300):
         holding = [i for i, one in enumerate(sets) if one.depth(wrench, LENGTH) > -1e-9 * WEIGHT]
@@ -177,7 +192,11 @@ def test_one_foot_has_one_mode_under_every_wrench() -> None:
 )
 def test_both_forms_are_one_set(now: BodyState, contacts: ContactSet) -> None:
     chance = np.random.default_rng(0)
-    sets = spatial_wrench_sets(BODY, now, contacts, friction_facets=3)
+    sets = wrench_sets(
+        SpatialContactProblem(
+            body=BODY, state=now, contacts=contacts, friction_facets=3, force_W=(0.0, 0.0, 0.0)
+        )
+    )
     assert sets
     for one in sets:
         shares = chance.uniform(size=len(one.vertices))
@@ -201,12 +220,22 @@ def test_both_forms_are_one_set(now: BodyState, contacts: ContactSet) -> None:
 
 
 def test_a_block_is_held_up_to_the_side_of_its_pyramid_and_to_its_edges() -> None:
-    (held,) = spatial_wrench_sets(BODY, state(), feet(0.2, 0.4), modes=["ffff"])
+    (held,) = wrench_sets(
+        SpatialContactProblem(
+            body=BODY, state=state(), contacts=feet(0.2, 0.4), force_W=(0.0, 0.0, 0.0), friction_facets=4
+        ),
+        modes=["ffff"],
+    )
     slope = math.atan(0.4 * math.cos(math.pi / 4.0))
     assert held.depth(DOWN, 1e-3) == pytest.approx(
         WEIGHT * math.sin(slope), rel=1e-4
     )  # torques cost nearly all
-    (tall,) = spatial_wrench_sets(BODY, state(), feet(1.0, 2.0), modes=["ffff"])
+    (tall,) = wrench_sets(
+        SpatialContactProblem(
+            body=BODY, state=state(), contacts=feet(1.0, 2.0), force_W=(0.0, 0.0, 0.0), friction_facets=4
+        ),
+        modes=["ffff"],
+    )
     assert tall.depth(DOWN, 1e3) == pytest.approx(WEIGHT * 0.5 / 1e3, rel=1e-4)  # they cost next to nothing
     assert held.vertices == pytest.approx(np.zeros((1, 6)))
     assert not held.sliding_from_W.any()
@@ -214,7 +243,11 @@ def test_a_block_is_held_up_to_the_side_of_its_pyramid_and_to_its_edges() -> Non
 
 def test_one_foot_has_sets_all_around() -> None:
     foot = contact_set([(0, 0, -1)], [(0, 0, 1)], [0.5])
-    sets = spatial_wrench_sets(BODY, state(), foot)
+    sets = wrench_sets(
+        SpatialContactProblem(
+            body=BODY, state=state(), contacts=foot, force_W=(0.0, 0.0, 0.0), friction_facets=4
+        )
+    )
     assert [one.mode for one in sets] == ["c"] * 8 + ["f", "s"]
     ranges = [
         (
@@ -225,8 +258,28 @@ def test_one_foot_has_sets_all_around() -> None:
     ]
     widths = sorted((high - low) % (2.0 * math.pi) for low, high in ranges)
     assert widths == pytest.approx([0.0] * 4 + [0.5 * math.pi] * 4)
-    assert spatial_wrench_sets(BODY, state(), foot, modes=["f"])[0].mode == "f"
-    assert spatial_wrench_sets(BODY, state(np.array([1.0, 0.0, 0.0])), foot, modes=["f"]) == ()
+    assert (
+        wrench_sets(
+            SpatialContactProblem(
+                body=BODY, state=state(), contacts=foot, force_W=(0.0, 0.0, 0.0), friction_facets=4
+            ),
+            modes=["f"],
+        )[0].mode
+        == "f"
+    )
+    assert (
+        wrench_sets(
+            SpatialContactProblem(
+                body=BODY,
+                state=state(np.array([1.0, 0.0, 0.0])),
+                contacts=foot,
+                force_W=(0.0, 0.0, 0.0),
+                friction_facets=4,
+            ),
+            modes=["f"],
+        )
+        == ()
+    )
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -235,24 +288,69 @@ def test_depths_are_the_margins(seed: int) -> None:
     wrench = DOWN + chance.normal(size=6)
     for now in (state(), state(np.array([1.0, 2.0, 0.0]))):
         asked = {"force_W": wrench[:3], "torque_W": wrench[3:], "friction_facets": 8}
-        (margin,) = spatial_mode_margins(BODY, now, feet(0.2, 0.4), margin_length=LENGTH, **asked)
-        (one,) = spatial_wrench_sets(BODY, now, feet(0.2, 0.4), modes=[margin.mode], **asked)
+        (margin,) = mode_margins(
+            SpatialContactProblem(body=BODY, state=now, contacts=feet(0.2, 0.4), **asked),
+            margin_length=LENGTH,
+        )
+        (one,) = wrench_sets(
+            SpatialContactProblem(body=BODY, state=now, contacts=feet(0.2, 0.4), **asked), modes=[margin.mode]
+        )
         assert one.depth(wrench, LENGTH) == pytest.approx(margin.margin, rel=1e-9)
 
 
 def test_a_body_that_leaves_and_one_that_approaches() -> None:
-    (free,) = spatial_wrench_sets(BODY, state(np.array([0.0, 0.0, 1.0])), feet(0.2, 0.4))
+    (free,) = wrench_sets(
+        SpatialContactProblem(
+            body=BODY,
+            state=state(np.array([0.0, 0.0, 1.0])),
+            contacts=feet(0.2, 0.4),
+            force_W=(0.0, 0.0, 0.0),
+            friction_facets=4,
+        )
+    )
     assert (free.mode, len(free.half_spaces), free.depth(DOWN, 1.0)) == ("ssss", 0, math.inf)
-    assert spatial_wrench_sets(BODY, state(np.array([0.0, 0.0, -1.0])), feet(0.2, 0.4)) == ()
+    assert (
+        wrench_sets(
+            SpatialContactProblem(
+                body=BODY,
+                state=state(np.array([0.0, 0.0, -1.0])),
+                contacts=feet(0.2, 0.4),
+                force_W=(0.0, 0.0, 0.0),
+                friction_facets=4,
+            )
+        )
+        == ()
+    )
 
 
 def test_misuse_is_refused_by_name() -> None:
     with pytest.raises(InvalidFieldError, match="modes: found lll"):
-        spatial_wrench_sets(BODY, state(), feet(0.2, 0.4), modes=["lll"])
+        wrench_sets(
+            SpatialContactProblem(
+                body=BODY, state=state(), contacts=feet(0.2, 0.4), force_W=(0.0, 0.0, 0.0), friction_facets=4
+            ),
+            modes=["lll"],
+        )
     ring = [(math.cos(a), math.sin(a), -1.0) for a in np.linspace(0.0, 6.0, 12)]
     with pytest.raises(TooLargeError, match="sets of planes"):
-        spatial_wrench_sets(BODY, state(), contact_set(ring, [(0, 0, 1)] * 12, [0.5] * 12), friction_facets=8)
+        wrench_sets(
+            SpatialContactProblem(
+                body=BODY,
+                state=state(),
+                contacts=contact_set(ring, [(0, 0, 1)] * 12, [0.5] * 12),
+                friction_facets=8,
+                force_W=(0.0, 0.0, 0.0),
+            )
+        )
     with pytest.raises(TooLargeError, match="edges"):
-        spatial_wrench_sets(BODY, state(), feet(0.2, 0.4), friction_facets=40)
+        wrench_sets(
+            SpatialContactProblem(
+                body=BODY, state=state(), contacts=feet(0.2, 0.4), friction_facets=40, force_W=(0.0, 0.0, 0.0)
+            )
+        )
     with pytest.raises(TooLargeError, match="sets of wrenches"):
-        spatial_wrench_sets(BODY, state(), feet(0.2, 0.4), friction_facets=12)
+        wrench_sets(
+            SpatialContactProblem(
+                body=BODY, state=state(), contacts=feet(0.2, 0.4), friction_facets=12, force_W=(0.0, 0.0, 0.0)
+            )
+        )

@@ -9,7 +9,12 @@ import numpy as np
 import pytest
 
 from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact_modes import ModeVerdict, planar_contact_modes, spatial_contact_modes
+from contact_dynamics.contact_modes import (
+    ModeVerdict,
+    PlanarContactProblem,
+    SpatialContactProblem,
+    contact_modes,
+)
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact import SeveralImpact, SeveralVerdict, planar_impact
 from contact_dynamics.impact.several.jamming import jamming_impact
@@ -18,6 +23,7 @@ from contact_dynamics.numerics.lemke import solve_complementarity
 from contact_dynamics.plane.in_space import planar_in_space
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, kinetic_energy
+from contact_modes.evidence import planar_problem
 from oracles.contact_mode_cases import FloatCase, draw, rounded
 
 AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
@@ -73,7 +79,7 @@ def slot(friction: float) -> FloatCase:
 def test_a_point_in_a_slot_stops_dead() -> None:
     case = slot(2.0)
     body, _, (side, _), wrench = case
-    assert planar_contact_modes(*case).verdict == ModeVerdict.INCONSISTENT
+    assert contact_modes(planar_problem(*case)).verdict == ModeVerdict.INCONSISTENT
     impact, _, _ = jam(case)
     # By hand: the point's inverse inertia takes its velocity (-1, 0) to zero.
     x, y = side.r
@@ -82,17 +88,21 @@ def test_a_point_in_a_slot_stops_dead() -> None:
     np.testing.assert_allclose(impact.impulses_W.sum(axis=0)[:2], expected, atol=SOLVED)
     np.testing.assert_allclose(impact.velocities_after_W, 0.0, atol=SOLVED)
     # Then the body turns about the point, freely.
-    after = planar_contact_modes(body, velocity_of(impact.state), case[2], wrench)
+    after = contact_modes(
+        PlanarContactProblem(body=body, velocity=velocity_of(impact.state), contacts=case[2], wrench=wrench)
+    )
     assert [mode.mode for mode in after.modes] == ["ff"]
 
 
 def test_a_slot_with_little_friction_does_not_jam() -> None:
-    assert planar_contact_modes(*slot(0.1)).verdict != ModeVerdict.INCONSISTENT
+    assert contact_modes(planar_problem(*slot(0.1))).verdict != ModeVerdict.INCONSISTENT
 
 
 def inconsistent_cases(seeds: range) -> list[FloatCase]:
     cases = [rounded(draw(seed, most_contacts=4)) for seed in seeds]
-    found = [case for case in cases if planar_contact_modes(*case).verdict == ModeVerdict.INCONSISTENT]
+    found = [
+        case for case in cases if contact_modes(planar_problem(*case)).verdict == ModeVerdict.INCONSISTENT
+    ]
     assert len(found) > 20
     return found
 
@@ -122,7 +132,11 @@ def test_laws_of_impact_on_drawn_sets(*, in_space: bool) -> None:
         v_n = np.einsum("ij,ij->i", impact.velocities_after_W, touching.normals_W)
         assert (v_n >= -1e-7).all()
         assert kinetic_energy(body, impact.state) <= kinetic_energy(body, before) * (1.0 + SOLVED)
-        after = planar_contact_modes(case[0], velocity_of(impact.state), case[2], case[3])
+        after = contact_modes(
+            PlanarContactProblem(
+                body=case[0], velocity=velocity_of(impact.state), contacts=case[2], wrench=case[3]
+            )
+        )
         settled += after.verdict in {ModeVerdict.UNIQUE, ModeVerdict.INDETERMINATE}
     # A few of these sets, degenerate by design, jam again.
     assert settled >= 0.9 * len(cases)
@@ -146,7 +160,7 @@ def inconsistent_in_space(seed: int) -> tuple[MassProperties, BodyState, Contact
     body = MassProperties(mass=1.0, I_B=np.diag([0.1, 0.2, 0.25]))
     state = BodyState(p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=way, w_WB_W=np.zeros(3))
     force = chance.normal(size=3) - 2.0 * normals.sum(axis=0)
-    answer = spatial_contact_modes(body, state, touching, force_W=force)
+    answer = contact_modes(SpatialContactProblem(body=body, state=state, contacts=touching, force_W=force))
     return (body, state, touching, force) if answer.verdict == ModeVerdict.INCONSISTENT else None
 
 
@@ -161,7 +175,9 @@ def test_what_jams_in_space_is_settled() -> None:
             touching: ContactSet = touching,
             force: np.ndarray = force,
         ) -> ModeVerdict:
-            return spatial_contact_modes(body, now, touching, force_W=force).verdict
+            return contact_modes(
+                SpatialContactProblem(body=body, state=now, contacts=touching, force_W=force)
+            ).verdict
 
         impact = settling_impact(
             body,

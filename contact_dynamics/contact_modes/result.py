@@ -1,0 +1,83 @@
+"""What questions about contact modes come to, in the plane as in space: verdicts, refusals, statics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sized
+
+
+class ModeVerdict(IntEnum):
+    """What rigid-body mechanics says about a contact set as a whole."""
+
+    UNIQUE = 0
+    """One mode is consistent."""
+    INDETERMINATE = 1
+    """Several are; mechanics does not choose."""
+    INCONSISTENT = 2
+    """None is: the case is an impact without approach (lectures 26 and 27)."""
+    IMPACT = 3
+    """A contact approaches. Modes apply only after that impact."""
+
+
+class Refusal(IntEnum):
+    """Why mechanics refuses a mode that is possible kinematically."""
+
+    PENETRATES = 0
+    """Amount: normal acceleration < 0, m/s^2."""
+    PULLS = 1
+    """Amount: normal force < 0, N."""
+    OUTSIDE_CONE = 2
+    """Amount: |f_t| - mu f_n > 0, N."""
+    WRONG_MOTION = 3
+    """Amount: the acceleration that contradicts the contact's letter, m/s^2; 0 where the letter asks for more
+    than 0."""
+    NO_SOLUTION = 4
+    """Amount: for one contact the factor of the normal force (1/kg, lecture 26, eq. 2) that is not > 0; for
+    several the distance, N, of the applied wrench from those that can bring the mode about, a torque being
+    divided by the radius of gyration. No contact forces give the mode's accelerations."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RefusedMode:
+    """A mode that is possible kinematically and refused by mechanics."""
+
+    mode: str  # one letter a contact
+    refusal: Refusal  # the first reason found
+    contact: int  # the contact whose letter fails; -1: the mode as a whole
+    amount: float  # by how much, in the unit that the refusal states
+
+
+def verdict_on(modes: Sized) -> ModeVerdict:
+    """Return the verdict on a set without approaching contacts from its consistent modes."""
+    if len(modes) == 1:
+        return ModeVerdict.UNIQUE
+    return ModeVerdict.INDETERMINATE if len(modes) > 0 else ModeVerdict.INCONSISTENT
+
+
+class Certainty(IntEnum):
+    """How far rigid-body mechanics answers yes."""
+
+    NO = 1
+    POSSIBLE = 2
+    """Consistent, and so is something else."""
+    CERTAIN = 3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BodyStatics:
+    """What holds a body at rest, and how well."""
+
+    equilibrium: Certainty  # whether it stays at rest
+    jammed: Certainty  # whether friction alone keeps it at rest
+    wedged: bool  # whether the contacts can press against each other without an applied wrench
+    stable_disturbance: float  # N: equilibrium is possible under every change of the wrench up to this size;
+    # infinite: under every change at all (force closure); NaN: no equilibrium
+    margin_length: float  # m, of the metric |f|^2 + (moment / length)^2 of that size
+
+    def is_stable_against(self, disturbance: float) -> bool:
+        """Return whether equilibrium stays possible under every change of the wrench up to this size, N."""
+        return self.stable_disturbance >= disturbance  # NaN compares as false
