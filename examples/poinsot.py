@@ -10,7 +10,7 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from contact_dynamics import BodyState, MassProperties, free_motion
-from contact_dynamics.tumbling.poinsot_construction import poinsot, rolling_curves
+from contact_dynamics.tumbling import poinsot, rolling_curves
 from contact_dynamics.viewing.blueprint import poinsot_view
 from contact_dynamics.viewing.entities import TIMELINE
 from contact_dynamics.viewing.measured import set_time

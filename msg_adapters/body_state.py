@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.questions.subject import UncertainState
 from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rigid_body.published_frame import origin_of_published_frame, turned
 from contact_dynamics.validation import check_unit
-from contact_dynamics.validation_batches import check_covariance
 from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
-from msg_adapters.frames import check_frame, origin_of_published_frame, turned
+from msg_adapters.frames import check_frame
 from msg_adapters.geometry import quaternion_from_msg, vector_from_msg
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 
@@ -65,16 +66,21 @@ def body_state_to_msg(
     return msg
 
 
-def covariance_from_msg(msg: BodyStateMsg) -> FloatArray | None:
-    """Return the state's covariance, (12, 12), in the message's order, or None where it has none.
+def known_state_from_msg(
+    msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArray
+) -> BodyState | UncertainState:
+    """Return the state, with its covariance where the message has one.
 
     Raises:
-        InvalidFieldError: another length than 144; or as `check_covariance`.
+        InvalidFieldError: a covariance of another length than 144; or as `body_state_from_msg` and
+            `UncertainState`.
+        FrameMismatchError: as `body_state_from_msg`.
     """
+    state = body_state_from_msg(msg, world_frame=world_frame, p_FB_F=p_FB_F)
     if len(msg.covariance) == 0:
-        return None
+        return state
     if len(msg.covariance) != _COVARIANCE_LENGTH:
         raise InvalidFieldError(
             "state.covariance", f"{len(msg.covariance)} numbers", f"none or {_COVARIANCE_LENGTH}"
         )
-    return check_covariance("state.covariance", np.array(msg.covariance).reshape(12, 12))
+    return UncertainState(state=state, covariance=np.array(msg.covariance).reshape(12, 12))

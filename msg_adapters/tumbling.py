@@ -1,4 +1,4 @@
-"""Trajectories and Poinsot's picture to messages."""
+"""Answers about tumbling to the service's response: trajectories, Poinsot's picture, events."""
 
 from __future__ import annotations
 
@@ -7,20 +7,62 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contact_dynamics.rigid_body.published_frame import origins_of_published_frame
 from contact_dynamics_interfaces.msg import Poinsot as PoinsotMsg
 from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
+from contact_dynamics_interfaces.srv import PredictTumbling
+from msg_adapters.body_state import body_state_to_msg
 from msg_adapters.contacts import flat
-from msg_adapters.frames import origins_of_published_frame
+from msg_adapters.geometry import point_to_msg, vector_to_msg
 from msg_adapters.stamps import stamp_to_msg
 
 if TYPE_CHECKING:
     from contact_dynamics.motion.covariance import CarriedCovariance
-    from contact_dynamics.motion.free_fit import FitResult
+    from contact_dynamics.questions.subject import FitQuality
+    from contact_dynamics.questions.tumbling import TumblingAnswer
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.tumbling.flips import Flips
     from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
+    from contact_dynamics_interfaces.srv import PredictImpact
+
+
+def tumbling_answer_to_msg(
+    answer: TumblingAnswer, *, world_frame: str, into: PredictTumbling.Response | None = None
+) -> PredictTumbling.Response:
+    """Return an answer as a response: a new one, or the empty one to fill."""
+    msg = PredictTumbling.Response() if into is None else into
+    if answer.poinsot is None or answer.flips is None:
+        msg.poinsot = torque_acts()
+    else:
+        poinsot_to_msg(answer.poinsot, answer.flips, answer.curves, into=msg.poinsot)
+    trajectory_to_msg(
+        answer.trajectory,
+        stamp_ns=answer.state.stamp_ns,
+        world_frame=world_frame,
+        p_FB_F=answer.p_FB_F,
+        into=msg.trajectory,
+    )
+    if answer.covariance is not None:
+        write_covariances(msg.trajectory, answer.covariance)
+    write_fit(msg, answer.fit)
+    msg.method = int(answer.method)
+    event = answer.event
+    msg.event = msg.NONE if event is None else int(event.kind)
+    msg.event_time = math.nan
+    if event is not None:
+        msg.event_time = event.seconds
+        msg.event_point = point_to_msg(event.point_W)
+        msg.event_velocity = vector_to_msg(event.velocity_W)
+        msg.event_surface = event.surface
+    body_state_to_msg(
+        answer.state,
+        body_name=answer.body_name,
+        world_frame=world_frame,
+        p_FB_F=answer.p_FB_F,
+        into=msg.state,
+    )
+    return msg
 
 
 def trajectory_to_msg(
@@ -52,7 +94,7 @@ def write_covariances(msg: TrajectoryMsg, carried: CarriedCovariance) -> None:
     msg.covariances_trusted = carried.trusted.tolist()
 
 
-def write_fit(response: PredictImpact.Response | PredictTumbling.Response, fit: FitResult | None) -> None:
+def write_fit(response: PredictImpact.Response | PredictTumbling.Response, fit: FitQuality | None) -> None:
     """Write into a response which fit its state came from."""
     if fit is not None:
         response.fit_count = fit.count

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
-
-import numpy as np
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body import inertia
@@ -19,8 +17,8 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.inertia import MassDistribution
     from contact_dynamics.validation import FloatArray
 
-    ShapeMaker: TypeAlias = Callable[[Any], ConvexShape]
-    MassMaker: TypeAlias = Callable[[Any, float], MassDistribution]
+    ShapeMaker: TypeAlias = Callable[[FloatArray], ConvexShape]
+    MassMaker: TypeAlias = Callable[[FloatArray, float], MassDistribution]
 
 DESCRIPTIONS: Final = {
     "box": "Full side lengths of a box, m: x, y, z.",
@@ -85,13 +83,13 @@ class ShapeParameters:
         if name == "vertices":
             if len(values) % 3 > 0:
                 raise InvalidFieldError(name, f"{len(values)} numbers", "3 for each (or [0.0]: none)")
-            return check_array(name, np.array(values).reshape(-1, 3), (None, 3))
+            return check_array(name, values, (None,)).reshape(-1, 3)
         if len(values) != _COUNTS[name]:
             allowed = f"{_COUNTS[name]} (or [0.0]: none)"
             raise InvalidFieldError(name, f"{len(values)} numbers", allowed)
         may_be_zero = name in {"capsule", "cylinder"}
         checks = [check_positive, check_not_negative if may_be_zero else check_positive, check_positive]
-        return np.array([checks[i](f"{name}[{i}]", value) for i, value in enumerate(values)])
+        return check_array(name, [checks[i](f"{name}[{i}]", x) for i, x in enumerate(values)], (None,))
 
 
 def _of_cylinder(radius: float, length: float, mass: float) -> MassDistribution:

@@ -18,7 +18,6 @@ import warnings
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-import numpy as np
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
@@ -45,6 +44,7 @@ from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.recording import BagReader, DamagedLogWarning
+from contact_dynamics.validation import check_array
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import DEFAULT_PORT, OpenRecording, Sinks, ViewerMode, raise_errors
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
@@ -72,6 +72,7 @@ LOGGED_AT_ONCE: Final = 1000
 """Messages of a log between two drawings of their states."""
 
 _POLL_S: Final = 0.02
+_ORIGIN: Final = check_array("origin", (0.0, 0.0, 0.0), (3,))
 _ANSWERS: Final = (
     (PredictTumbling, "predict_tumbling", TUMBLING, show_tumbling),
     (PredictImpact, "predict_impact", IMPACT, show_impact),
@@ -184,7 +185,7 @@ class Visualizer(Node):
             show_error(self._picture, kind, response, now_ns=now_ns)
             return
         offsets = [body.p_FB_F for body in self._world.bodies if body.name == body_name_of(response)]
-        show(self._picture, response, p_FB_F=offsets[0] if offsets else np.zeros(3), now_ns=now_ns)
+        show(self._picture, response, p_FB_F=offsets[0] if offsets else _ORIGIN, now_ns=now_ns)
 
     def _guarded(self, kind: str, draw: Callable[[], None]) -> None:
         try:

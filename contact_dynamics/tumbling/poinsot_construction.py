@@ -19,7 +19,7 @@ import numpy as np
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.arithmetic import ARRAYS, DOUBLES
 from contact_dynamics.rigid_body.body import angular_momentum
-from contact_dynamics.rigid_body.inertia.principal_axes import axes_of_bytes
+from contact_dynamics.rigid_body.inertia.axes_of_inertia import axes_of_bytes
 from contact_dynamics.rotations.one import rotated, rotation_matrix
 from contact_dynamics.tolerances import SEPARATRIX_END, SMALLEST_COMPLEMENT
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf

@@ -10,7 +10,11 @@ from contact_dynamics.contact_modes.letters import PLANAR_LETTERS
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.judgement import judge_all
 from contact_dynamics.contact_modes.planar.problem import touching_case
-from contact_dynamics.contact_modes.planar.wrench_sets import wrench_set_of
+from contact_dynamics.contact_modes.planar.wrench_sets import (
+    PlanarWrenchSet,
+    WrenchHalfSpace,
+    wrench_set_of,
+)
 from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
 from contact_dynamics.plane.types import PlanarWrench
 from contact_dynamics.tolerances import BEYOND_MARGIN

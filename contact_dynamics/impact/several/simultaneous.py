@@ -59,8 +59,8 @@ def simultaneous_impulses(
     approach[approach >= -tolerance] = 0.0
 
     none = np.zeros(len(contacts))
-    # Not by `RestitutionRule`, which is for a path: here Newton's law asks for velocities, in one problem,
-    # and Poisson's for impulses, in a second one. The energetic law has neither, and is refused before.
+    # `RestitutionRule` is for a path. Here Newton's law asks for velocities, in one problem, and Poisson's
+    # for impulses, in a second one. The energetic law has neither, and is refused before.
     if law == RestitutionLaw.NEWTON:
         bounce = -contacts.restitutions * approach
         return _solve(jacobian, inverse_mass, twist, normals, frictions, least=none, bounce=bounce)
