@@ -16,6 +16,7 @@ from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rigid_body.published_frame import origin_of_published_frame, turned
 from contact_dynamics.validation import check_unit
 from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
+from msg_adapters.contacts import flat
 from msg_adapters.frames import check_frame
 from msg_adapters.geometry import quaternion_from_msg, vector_from_msg
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
@@ -94,3 +95,19 @@ def known_state_from_msg(
             "state.covariance", f"{len(msg.covariance)} numbers", f"none or {_COVARIANCE_LENGTH}"
         )
     return UncertainState(state=state, covariance=np.array(msg.covariance).reshape(12, 12))
+
+
+def known_state_to_msg(
+    known: BodyState | UncertainState,
+    *,
+    body_name: str,
+    world_frame: str,
+    p_FB_F: FloatArray,
+    into: BodyStateMsg | None = None,
+) -> BodyStateMsg:
+    """Return the state, with its covariance where that is known: a new message, or the one to fill."""
+    state = known if isinstance(known, BodyState) else known.state
+    msg = body_state_to_msg(state, body_name=body_name, world_frame=world_frame, p_FB_F=p_FB_F, into=into)
+    if isinstance(known, UncertainState):
+        msg.covariance = flat(known.covariance)
+    return msg
