@@ -27,6 +27,7 @@ from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_o
 from contact_dynamics.contact_modes.spatial.ways_of_sliding import sliding_range, ways_of
 from contact_dynamics.contact_modes.spatial.wrenches import distinct, supports, wrench_generators
 from contact_dynamics.errors import TooLargeError
+from contact_dynamics.records import Record
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
@@ -47,19 +48,27 @@ MOST_WRENCH_SETS: Final = 2000
 four edges, some 1300 with eight."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SpatialWrenchSet:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class SpatialWrenchSet(Record):
     """The applied wrenches that can bring about one mode with one way of sliding: a closed convex set.
 
     Wrenches are force, N, then torque about the centre of mass, N m, world axes.
+
+    Attributes:
+        mode: One letter a contact: s, f or c.
+        sliding_from_W: (n, 3), unit; a contact that begins to slide does between this direction.
+        sliding_to_W: (n, 3), and this, anticlockwise about its normal; zero: none is asked for.
+        vertices: (k, 6), N and N m: the set is all averages of these plus.
+        generators: (k, 6), all positive combinations of these, any scale.
+        half_spaces: (k, 7), the same set: a . w <= b, a then b; none: every wrench.
     """
 
-    mode: str  # one letter a contact: s, f or c
-    sliding_from_W: FloatArray  # (n, 3), unit; a contact that begins to slide does between this direction
-    sliding_to_W: FloatArray  # (n, 3), and this, anticlockwise about its normal; zero: none is asked for
-    vertices: FloatArray  # (k, 6), N and N m: the set is all averages of these plus
-    generators: FloatArray  # (k, 6), all positive combinations of these, any scale
-    half_spaces: FloatArray  # (k, 7), the same set: a . w <= b, a then b; none: every wrench
+    mode: str
+    sliding_from_W: FloatArray
+    sliding_to_W: FloatArray
+    vertices: FloatArray
+    generators: FloatArray
+    half_spaces: FloatArray
 
     def depth(self, wrench_W: ArrayLike, length: float) -> float:
         """Return how far inside the set a wrench, (6,), lies, N, in |f|^2 + |torque / length|^2.

@@ -15,6 +15,7 @@ from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact.energy import ManyEnergies
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
+from contact_dynamics.records import Record
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_choice, check_not_negative
 from contact_dynamics.validation_batches import (
@@ -47,18 +48,29 @@ _OUTCOMES: Final = np.array(
 )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PlanarImpacts(ManyEnergies):
-    """The answers to N planar impacts; row i belongs to case i. Meanings as in `PlanarImpact`."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class PlanarImpacts(ManyEnergies, Record):
+    """The answers to N planar impacts; row i belongs to case i. Meanings as in `PlanarImpact`.
 
-    restitution_law: RestitutionLaw  # the restitution law of all of them
-    outcomes: NDArray[np.int64]  # (N,), values of ImpactOutcome
-    v: FloatArray  # (N, 2), m/s, of the centres of mass afterwards, axes of the plane
-    w: FloatArray  # (N,), rad/s, afterwards
-    impulses_C: FloatArray  # (N, 2), N s, contact axes
-    compressions_C: FloatArray  # (N, 2), N s, contact axes
-    velocities_before_C: FloatArray  # (N, 2), m/s, of the contacts, contact axes
-    velocities_after_C: FloatArray  # (N, 2), m/s, of the contacts, contact axes
+    Attributes:
+        restitution_law: The restitution law of all of them.
+        outcomes: (N,), values of ImpactOutcome.
+        v: (N, 2), m/s, of the centres of mass afterwards, axes of the plane.
+        w: (N,), rad/s, afterwards.
+        impulses_C: (N, 2), N s, contact axes.
+        compressions_C: (N, 2), N s, contact axes.
+        velocities_before_C: (N, 2), m/s, of the contacts, contact axes.
+        velocities_after_C: (N, 2), m/s, of the contacts, contact axes.
+    """
+
+    restitution_law: RestitutionLaw
+    outcomes: NDArray[np.int64]
+    v: FloatArray
+    w: FloatArray
+    impulses_C: FloatArray
+    compressions_C: FloatArray
+    velocities_before_C: FloatArray
+    velocities_after_C: FloatArray
 
     def _at_contacts(self) -> tuple[list[FloatArray], ...]:
         return list(self.impulses_C.T), list(self.velocities_before_C.T), list(self.velocities_after_C.T)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import MassProperties, check_symmetric
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.tolerances import SUM_ROUNDING, TRIANGLE_TOLERANCE
@@ -24,18 +25,23 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class MassDistribution:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class MassDistribution(Record):
     """A rigid distribution of mass in a frame F.
+
+    Attributes:
+        mass: kg, > 0.
+        p_FB_F: (3,), m, centre of mass, F's axes.
+        I_B: (3, 3), kg m^2, about the centre of mass, F's axes.
 
     Raises:
         InvalidFieldError: mass not > 0, a number not finite, a centre beyond `LARGEST_NUMBER`, or an inertia
             that no mass has: not symmetric, or principal moments that break I1 + I2 >= I3.
     """
 
-    mass: float  # kg, > 0
-    p_FB_F: FloatArray  # (3,), m, centre of mass, F's axes
-    I_B: FloatArray  # (3, 3), kg m^2, about the centre of mass, F's axes
+    mass: float
+    p_FB_F: FloatArray
+    I_B: FloatArray
 
     def __post_init__(self) -> None:
         """Check all fields."""
