@@ -16,11 +16,16 @@ if TYPE_CHECKING:
 
 
 class Verb(NamedTuple):
-    """One verb: where its `main(arguments) -> exit code` is, where its parser, and what it does."""
+    """One verb: where its `main(arguments) -> exit code` is, where its parser, and what it does.
+
+    Attributes:
+        parser: Module:function; neither needs ROS, so that `--help` works everywhere.
+        needs: Modules that `pip install .` does not bring.
+    """
 
     module: str
-    parser: str  # module:function; neither needs ROS, so that `--help` works everywhere
-    needs: tuple[str, ...]  # modules that `pip install .` does not bring
+    parser: str
+    needs: tuple[str, ...]
     help: str
 
 

@@ -42,11 +42,17 @@ if TYPE_CHECKING:
 
 
 class Site(NamedTuple):
-    """Where a body is nearest to an obstacle, or deepest in it."""
+    """Where a body is nearest to an obstacle, or deepest in it.
 
-    gap: float  # m, along the normal; negative: penetration
-    normal_W: FloatArray  # (3,), unit, out of the obstacle, into the body
-    level: float  # m, the obstacle's furthest extent along the normal: its points have n . p <= level
+    Attributes:
+        gap: m, along the normal; negative: penetration.
+        normal_W: (3,), unit, out of the obstacle, into the body.
+        level: m, the obstacle's furthest extent along the normal: its points have n . p <= level.
+    """
+
+    gap: float
+    normal_W: FloatArray
+    level: float
 
 
 def site_of(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, obstacle: Obstacle) -> Site:

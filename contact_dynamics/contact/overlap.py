@@ -21,11 +21,17 @@ if TYPE_CHECKING:
 
 
 class Outline(NamedTuple):
-    """A convex polygon, a line or a point in the touching plane."""
+    """A convex polygon, a line or a point in the touching plane.
 
-    points: FloatArray  # (k, 3), m, world, in order
-    flat: FloatArray  # (k, 2), m, in the plane, counterclockwise
-    order: list[int]  # (k,), which of the points that were given
+    Attributes:
+        points: (k, 3), m, world, in order.
+        flat: (k, 2), m, in the plane, counterclockwise.
+        order: (k,), which of the points that were given.
+    """
+
+    points: FloatArray
+    flat: FloatArray
+    order: list[int]
 
     def side_at(self, place: FloatArray, frame: FloatArray, *, sharp: float, slack: float) -> Side | None:
         """Return the curvatures of what is at a place, (2,), m: a face, an edge or a corner; None: nothing.
@@ -69,10 +75,15 @@ def outline(points: FloatArray, frame: FloatArray) -> Outline:
 
 
 class Rounded(NamedTuple):
-    """That the body's outline is that of a hull over which a ball rolls."""
+    """That the body's outline is that of a hull over which a ball rolls.
 
-    curvature: float  # 1/m, the ball's
-    slack: float  # m, within which its corners and lines are on edges and corners
+    Attributes:
+        curvature: 1/m, the ball's.
+        slack: m, within which its corners and lines are on edges and corners.
+    """
+
+    curvature: float
+    slack: float
 
 
 def overlap(

@@ -9,11 +9,11 @@ the plane the path is known: there the three ends are closed forms in the middle
 from __future__ import annotations
 
 import math
-from enum import IntEnum
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
+from contact_dynamics.records import NamedInt
 from contact_dynamics.validation import check_choice
 from contact_dynamics.validation_batches import check_rows
 
@@ -27,7 +27,7 @@ Series = TypeVar("Series")
 """What is known of a quantity along a path."""
 
 
-class RestitutionLaw(IntEnum):
+class RestitutionLaw(NamedInt):
     """How the coefficient e decides where restitution ends."""
 
     POISSON = 0
@@ -156,7 +156,7 @@ RULES: Final = {rule.law: rule for rule in (RestitutionRule(), _Newton(), _Energ
 """The rule of each law."""
 
 
-class ImpactOutcome(IntEnum):
+class ImpactOutcome(NamedInt):
     """What the contact did while the impulse grew.
 
     Stopping counts as during compression where it coincides with the end of compression, and as never where
@@ -187,7 +187,7 @@ class ImpactOutcome(IntEnum):
         return self in _STICKING
 
 
-class PathEvent(IntEnum):
+class PathEvent(NamedInt):
     """What a vertex of the impulse path stands for."""
 
     START = 0

@@ -22,12 +22,19 @@ _MOST_STEPS: Final = 60
 
 
 class RimAbove(NamedTuple):
-    """A rim above a plane at one time."""
+    """A rim above a plane at one time.
 
-    height: float  # m, of its centre
-    rate: float  # m/s
-    a: tuple[float, float]  # m, of its radii, above the centre
-    b: tuple[float, float]  # m/s, their rates
+    Attributes:
+        height: m, of its centre.
+        rate: m/s.
+        a: m, of its radii, above the centre.
+        b: m/s, their rates.
+    """
+
+    height: float
+    rate: float
+    a: tuple[float, float]
+    b: tuple[float, float]
 
     def lowest(self) -> tuple[float, float, tuple[float, float]]:
         """Return the lowest point's height, m, its rate, m/s, and its direction (cos, sin).

@@ -31,6 +31,7 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion.free_derivative import state_derivatives
 from contact_dynamics.motion.integrated import ForcedMotion
 from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import rotation_vectors, turned
 from contact_dynamics.tolerances import NEGATIVE_VARIANCE_TOLERANCE
@@ -60,14 +61,22 @@ class PropagationMethod(enum.Enum):
     SAMPLED = "sampled"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class CarriedCovariance:
-    """The covariance of a body's state at n times."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class CarriedCovariance(Record):
+    """The covariance of a body's state at n times.
 
-    seconds: FloatArray  # (n,), s after the stamp of the state that the motion began with
-    covariances: FloatArray  # (n, 12, 12), in the module's order; NaN where no double holds it
-    orientation_deviations: FloatArray  # (n,), rad, largest standard deviation of orientation about any axis
-    trusted: NDArray[np.bool_]  # (n,), whether it has been below TRUSTED_DEVIATION all the way from time 0
+    Attributes:
+        seconds: (n,), s after the stamp of the state that the motion began with.
+        covariances: (n, 12, 12), in the module's order; NaN where no double holds it.
+        orientation_deviations: (n,), rad, largest standard deviation of orientation about any axis.
+        trusted: (n,), whether it has been below TRUSTED_DEVIATION all the way from time 0.
+        method: How the covariance was carried along.
+    """
+
+    seconds: FloatArray
+    covariances: FloatArray
+    orientation_deviations: FloatArray
+    trusted: NDArray[np.bool_]
     method: PropagationMethod
 
 

@@ -21,7 +21,6 @@ Not covered: forces that jump (each jump costs small steps), impacts, wind, lift
 
 from __future__ import annotations
 
-import enum
 import math
 from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
@@ -32,6 +31,7 @@ import numpy as np
 from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, angular_momentum
 from contact_dynamics.rotations.many import make_continuous
 from contact_dynamics.rotations.one import Quaternion, conjugate, normalised, product, rotated
@@ -51,26 +51,38 @@ MOST_STEPS: Final = 20_000
 """In one direction of time. Some 10 s of computing, and some 500 revolutions of a body."""
 
 
-class Method(enum.IntEnum):
+class Method(NamedInt):
     """How a motion is computed; the numbers are those of PredictTumbling.srv."""
 
     CLOSED_FORM = 0  # exact to rounding, the error does not grow with time
     INTEGRATED = 1  # stepped by an integrator
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ForcedMotion:
-    """Where a body under forces is at any time; made by `forced_motion`. Not to be shared between threads."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ForcedMotion(Record):
+    """Where a body under forces is at any time; made by `forced_motion`. Not to be shared between threads.
+
+    Attributes:
+        body: Mass and angular inertia.
+        state: At time 0.
+        gravity_W: (3,), m/s^2, world axes.
+        wrench: The constant wrench that acts besides gravity.
+        drag: Drag in still air.
+        wrench_of: A user's, of time and state.
+        law: What a caller adds to the wrench, as a function; None: nothing.
+        ahead: What has been stepped into the future.
+        back: And into the past.
+    """
 
     body: MassProperties
-    state: BodyState  # at time 0
-    gravity_W: FloatArray  # (3,), m/s^2, world axes
+    state: BodyState
+    gravity_W: FloatArray
     wrench: ConstantWrench
     drag: Drag
-    wrench_of: WrenchFunction | None  # a user's, of time and state
+    wrench_of: WrenchFunction | None
     law: _Law
-    ahead: _Steps  # what has been stepped into the future
-    back: _Steps  # and into the past
+    ahead: _Steps
+    back: _Steps
 
     @property
     def rotates_freely(self) -> bool:
@@ -148,12 +160,19 @@ class ForcedMotion:
 
 
 class IntegratedStep(NamedTuple):
-    """One step of the integrator: all variables are polynomials of degree 7 in time."""
+    """One step of the integrator: all variables are polynomials of degree 7 in time.
 
-    start: float  # s
-    end: float  # s, > start
-    variables: Callable[[FloatArray], FloatArray]  # (n,), s, to (13, n), as `_SIZE` says; L is scaled so:
-    scale: float  # kg m^2, L = scale times the last three variables
+    Attributes:
+        start: s.
+        end: s, > start.
+        variables: (n,), s, to (13, n), as `_SIZE` says; L is scaled so:
+        scale: kg m^2, L = scale times the last three variables.
+    """
+
+    start: float
+    end: float
+    variables: Callable[[FloatArray], FloatArray]
+    scale: float
 
 
 class ChosenMotion(NamedTuple):

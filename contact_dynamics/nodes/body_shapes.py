@@ -35,13 +35,21 @@ _COUNTS: Final = {"box": 3, "sphere": 1, "capsule": 2, "cylinder": 2, "cone": 2}
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ShapeParameters:
-    """A shape as it is configured, of a body or of an obstacle; lengths in m."""
+    """A shape as it is configured, of a body or of an obstacle; lengths in m.
 
-    numbers: dict[str, list[float]]  # of each of `DESCRIPTIONS`
-    rounding: float  # radius of the ball that rolls over it
-    position: list[float]  # of the shape in the body's frame, or in the world
-    orientation: list[float]  # x, y, z, w
-    pose_names: tuple[str, str] = ("shape_position", "shape_orientation")  # parameters of the two above
+    Attributes:
+        numbers: Of each of `DESCRIPTIONS`.
+        rounding: radius of the ball that rolls over it.
+        position: Of the shape in the body's frame, or in the world.
+        orientation: X, y, z, w.
+        pose_names: Parameters of the two above.
+    """
+
+    numbers: dict[str, list[float]]
+    rounding: float
+    position: list[float]
+    orientation: list[float]
+    pose_names: tuple[str, str] = ("shape_position", "shape_orientation")
 
     def shape_F(self) -> ConvexShape:
         """Return the shape in its frame; an empty one where none is configured.

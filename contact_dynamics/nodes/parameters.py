@@ -38,25 +38,38 @@ class ConfigurationError(ContactDynamicsError):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StateTopics:
-    """Where a body's states are published: one Odometry topic, or a pose and a twist topic."""
+    """Where a body's states are published: one Odometry topic, or a pose and a twist topic.
+
+    Attributes:
+        odometry: Topic of nav_msgs/Odometry; empty: the other two.
+        pose: Topic of geometry_msgs/PoseStamped.
+        twist: Topic of geometry_msgs/TwistStamped.
+        frame: The body's frame.
+    """
 
     body_name: str
-    odometry: str  # topic of nav_msgs/Odometry; empty: the other two
-    pose: str  # topic of geometry_msgs/PoseStamped
-    twist: str  # topic of geometry_msgs/TwistStamped
-    frame: str  # the body's frame
+    odometry: str
+    pose: str
+    twist: str
+    frame: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServerParameters:
-    """All that configures the server."""
+    """All that configures the server.
+
+    Attributes:
+        state_timeout: s.
+        state_history: s.
+        defaults: What holds where a question says nothing.
+    """
 
     world: World
     topics: tuple[StateTopics, ...]
     world_frame: str
-    state_timeout: float  # s
-    state_history: float  # s
-    defaults: Defaults  # what holds where a question says nothing
+    state_timeout: float
+    state_history: float
+    defaults: Defaults
     log: bool
     log_directory: str
 

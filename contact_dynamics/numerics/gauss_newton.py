@@ -33,13 +33,19 @@ MOST_HALVINGS: Final = 10
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fit(Generic[Model]):
-    """The model that fits best."""
+    """The model that fits best.
+
+    Attributes:
+        misses: (m,), weighted: measured less the model's.
+        inverse: (k, k): inverse @ inverse^T is the parameters' covariance for unit variances.
+        converged: Whether the last round changed next to nothing.
+    """
 
     model: Model
-    misses: FloatArray  # (m,), weighted: measured less the model's
-    inverse: FloatArray  # (k, k): inverse @ inverse^T is the parameters' covariance for unit variances
+    misses: FloatArray
+    inverse: FloatArray
     rounds: int
-    converged: bool  # whether the last round changed next to nothing
+    converged: bool
 
 
 def gauss_newton(

@@ -127,9 +127,14 @@ class ResolvedImpact(Record):
     limit_seconds: float | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Before:
-    """A body just before an impact."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Before(Record):
+    """A body just before an impact.
+
+    Attributes:
+        body: Mass and angular inertia.
+        state: Its state.
+    """
 
     body: MassProperties
     state: BodyState

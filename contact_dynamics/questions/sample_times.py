@@ -127,7 +127,12 @@ class AtRate(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class UntilContact(AtRate):
-    """Samples at a steady rate that end with the first contact of the body with a surface of the world."""
+    """Samples at a steady rate that end with the first contact of the body with a surface of the world.
+
+    Attributes:
+        rate: Hz, samples a second. None or zero: the default.
+        duration: s, >= 0, how far to go. None: the default horizon.
+    """
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

@@ -60,8 +60,8 @@ class SettledImpact(Record):
     modes: tuple[SpatialMode, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ModeCase:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ModeCase(Record):
     """What a question about contact modes comes to once all that it names is looked up.
 
     Attributes:

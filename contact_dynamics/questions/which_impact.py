@@ -94,8 +94,8 @@ class ImpactQuestion(Record):
             object.__setattr__(self, name, check_optional(name, getattr(self, name)))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Strike:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Strike(Record):
     """An impact that is to be resolved.
 
     Attributes:

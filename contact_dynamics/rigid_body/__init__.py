@@ -1,8 +1,8 @@
 """Rigid bodies (Mason, lectures 24 and 25): mass properties, states, momenta and energies.
 
-`body` has a body's mass properties, its state, and what follows from the two. `inertia` makes mass
-properties from particles, shapes and meshes, and has principal axes. `published_frame` goes between a body's
-own frame, which states are published in, and its centre of mass.
+`body` has a body's mass properties, its state, and what follows from the two. `published_frame`
+takes a state from a body's published frame to its centre of mass and back. `inertia` makes mass properties
+from particles, shapes and meshes, and has principal axes.
 """
 
 from contact_dynamics.rigid_body import inertia

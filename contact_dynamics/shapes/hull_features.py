@@ -22,12 +22,19 @@ _KEPT: Final = 64
 
 
 class Features(NamedTuple):
-    """Of a hull that is solid, a plate (two faces), a rod (one edge) or a point."""
+    """Of a hull that is solid, a plate (two faces), a rod (one edge) or a point.
 
-    corners: FloatArray  # (k, 3), m
-    normals: FloatArray  # (f, 3), unit, outward
-    edges: FloatArray  # (e, 3), unit, one for each direction
-    triangles: FloatArray  # (t, 3, 3), m, the faces
+    Attributes:
+        corners: (k, 3), m.
+        normals: (f, 3), unit, outward.
+        edges: (e, 3), unit, one for each direction.
+        triangles: (t, 3, 3), m, the faces.
+    """
+
+    corners: FloatArray
+    normals: FloatArray
+    edges: FloatArray
+    triangles: FloatArray
 
 
 @lru_cache(maxsize=_KEPT)

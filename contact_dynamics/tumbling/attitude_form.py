@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from contact_dynamics.numerics.arithmetic import DOUBLES, Number, Scalar, within
+from contact_dynamics.records import Record
 from contact_dynamics.tolerances import NEGLIGIBLE_TERM
 from contact_dynamics.tumbling.double_double import linear_phase
 from contact_dynamics.tumbling.elliptic import carlson_rf
@@ -25,13 +26,19 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 
-@dataclass(frozen=True, slots=True)
-class AttitudeForm:
-    """The attitude about L as a function of time."""
+@dataclass(frozen=True, slots=True, repr=False)
+class AttitudeForm(Record):
+    """The attitude about L as a function of time.
+
+    Attributes:
+        series: The theta functions, in the form that suits this rotation.
+        z: In the series' unit.
+        psi: Half turns.
+    """
 
     series: Steady | Harmonics | Bumps | OneFlip
-    z: LinearPhase  # in the series' unit
-    psi: LinearPhase  # half turns
+    z: LinearPhase
+    psi: LinearPhase
 
     def point(self, seconds: float) -> Values:
         """Return what `theta` says at a time, s."""

@@ -18,6 +18,7 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.arithmetic import ARRAYS, DOUBLES
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import angular_momentum
 from contact_dynamics.rigid_body.inertia.axes_of_inertia import axes_of_bytes
 from contact_dynamics.rotations.one import rotated, rotation_matrix
@@ -38,20 +39,33 @@ CONSTANT_RATE: Final = (Regime.AT_REST, Regime.SPHERICAL, Regime.PRINCIPAL_AXIS)
 """Where the angular velocity does not change, or only within rounding: there is no polhode to speak of."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Poinsot:
-    """The constants of a free rotation."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Poinsot(Record):
+    """The constants of a free rotation.
+
+    Attributes:
+        regime: What the rotation is called.
+        rotational_energy: J, T.
+        L_W: (3,), kg m^2/s, angular momentum, world axes: the normal of the invariable plane.
+        invariable_plane_distance: rad/s, 2 T / |L|; NaN at rest.
+        polhode_period: s; inf on the separatrix, NaN where the angular velocity is constant.
+        precession_per_period: rad, turn about L in one period; NaN where there is no period.
+        principal_moments: (3,), kg m^2, ascending.
+        principal_axes_B: (3, 3), columns: their axes in body coordinates; see `inertia.principal`.
+        ellipsoid_semi_axes: (3,), rad/s, of the energy ellipsoid, along those axes: sqrt(2 T / I).
+        sensitivity: Attitude error per rad turned and relative error of the rate; NaN at rest.
+    """
 
     regime: Regime
-    rotational_energy: float  # J, T
-    L_W: FloatArray  # (3,), kg m^2/s, angular momentum, world axes: the normal of the invariable plane
-    invariable_plane_distance: float  # rad/s, 2 T / |L|; NaN at rest
-    polhode_period: float  # s; inf on the separatrix, NaN where the angular velocity is constant
-    precession_per_period: float  # rad, turn about L in one period; NaN where there is no period
-    principal_moments: FloatArray  # (3,), kg m^2, ascending
-    principal_axes_B: FloatArray  # (3, 3), columns: their axes in body coordinates; see `inertia.principal`
-    ellipsoid_semi_axes: FloatArray  # (3,), rad/s, of the energy ellipsoid, along those axes: sqrt(2 T / I)
-    sensitivity: float  # attitude error per rad turned and relative error of the rate; NaN at rest
+    rotational_energy: float
+    L_W: FloatArray
+    invariable_plane_distance: float
+    polhode_period: float
+    precession_per_period: float
+    principal_moments: FloatArray
+    principal_axes_B: FloatArray
+    ellipsoid_semi_axes: FloatArray
+    sensitivity: float
 
 
 def poinsot(motion: FreeMotion) -> Poinsot:
@@ -141,16 +155,21 @@ def _sensitivity_of_spin(motion: FreeMotion) -> float:
     return math.inf if abs(middle_B @ w_B) > 0.5 * np.linalg.norm(w_B) else 1.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class RollingCurves:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class RollingCurves(Record):
     """Polhode and herpolhode, which roll on each other: row i of both is where they touch at ``seconds[i]``.
 
     Arcs of the two between the same rows are equally long.
+
+    Attributes:
+        seconds: (n,), s after the state's stamp, ascending; 0 throughout where nothing moves.
+        polhode_B: (n, 3), rad/s, angular velocity in body axes.
+        herpolhode_W: (n, 3), rad/s, the same in world axes, in the invariable plane.
     """
 
-    seconds: FloatArray  # (n,), s after the state's stamp, ascending; 0 throughout where nothing moves
-    polhode_B: FloatArray  # (n, 3), rad/s, angular velocity in body axes
-    herpolhode_W: FloatArray  # (n, 3), rad/s, the same in world axes, in the invariable plane
+    seconds: FloatArray
+    polhode_B: FloatArray
+    herpolhode_W: FloatArray
 
 
 def rolling_curves(motion: FreeMotion, count: int) -> RollingCurves:

@@ -38,22 +38,36 @@ _ARROW_WIDTH: Final = 0.01  # likewise
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class DrawnMode:
-    """One consistent mode, in world axes."""
+    """One consistent mode, in world axes.
 
-    mode: str  # one letter a contact
-    forces_W: FloatArray  # (n, 3), N, on the body
-    sliding_W: FloatArray  # (n, 3), unit direction in which each contact slides; zero: it does not
-    acceleration_W: FloatArray  # (3,), m/s^2, of the centre of mass
+    Attributes:
+        mode: One letter a contact.
+        forces_W: (n, 3), N, on the body.
+        sliding_W: (n, 3), unit direction in which each contact slides; zero: it does not.
+        acceleration_W: (3,), m/s^2, of the centre of mass.
+    """
+
+    mode: str
+    forces_W: FloatArray
+    sliding_W: FloatArray
+    acceleration_W: FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ContactModesPicture:
-    """What the picture of an answer about contact modes is made of."""
+    """What the picture of an answer about contact modes is made of.
 
-    p_WB_W: FloatArray  # (3,), m, centre of mass, world
-    q_WB: FloatArray  # (4,), unit quaternion x, y, z, w
-    contacts: ContactSet  # n contacts
-    modes: tuple[DrawnMode, ...]  # every consistent mode
+    Attributes:
+        p_WB_W: (3,), m, centre of mass, world.
+        q_WB: (4,), unit quaternion x, y, z, w.
+        contacts: n contacts.
+        modes: Every consistent mode.
+    """
+
+    p_WB_W: FloatArray
+    q_WB: FloatArray
+    contacts: ContactSet
+    modes: tuple[DrawnMode, ...]
 
 
 def draw_contact_modes(

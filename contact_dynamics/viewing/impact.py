@@ -49,39 +49,66 @@ _OUTLINE_WIDTH: Final = -1.2  # negative: points of the screen
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class DrawnStrike:
-    """One strike of a sequence in time."""
+    """One strike of a sequence in time.
 
-    seconds: float  # s after the first
-    contact: int  # index into the contacts
-    p_WC_W: FloatArray  # (3,), m, where the contact is then, world
-    impulse_W: FloatArray  # (3,), N s, on the body, world axes
-    p_WB_W: FloatArray  # (3,), m, centre of mass then, world
-    q_WB: FloatArray  # (4,), unit quaternion x, y, z, w
+    Attributes:
+        seconds: s after the first.
+        contact: Index into the contacts.
+        p_WC_W: (3,), m, where the contact is then, world.
+        impulse_W: (3,), N s, on the body, world axes.
+        p_WB_W: (3,), m, centre of mass then, world.
+        q_WB: (4,), unit quaternion x, y, z, w.
+    """
+
+    seconds: float
+    contact: int
+    p_WC_W: FloatArray
+    impulse_W: FloatArray
+    p_WB_W: FloatArray
+    q_WB: FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class OtherBody:
-    """A second moving body that is struck."""
+    """A second moving body that is struck.
+
+    Attributes:
+        state: Just before.
+        v_after_W: (3,), m/s, of its centre of mass just after, world axes.
+    """
 
     name: str
-    state: BodyState  # just before
-    v_after_W: FloatArray  # (3,), m/s, of its centre of mass just after, world axes
+    state: BodyState
+    v_after_W: FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ImpactPicture:
-    """What an impact's picture is made of; impulses act on the body."""
+    """What an impact's picture is made of; impulses act on the body.
 
-    state: BodyState  # just before
-    v_after_W: FloatArray  # (3,), m/s, of the centre of mass just after, world axes
-    contacts: ContactSet  # n contacts
-    impulses_W: FloatArray  # (n, 3), N s, world axes
-    path_W: FloatArray  # (k, 3), N s, vertices of the accumulated impulse, world axes
-    path_events: tuple[int, ...]  # (k,), what each vertex is, as `contact_dynamics.impact.PathEvent`
-    path_contacts: tuple[int, ...]  # (k,), contact that each vertex belongs to
-    plane_normal_W: FloatArray | None  # (3,), unit, plane of motion, world axes; none in space
-    other: OtherBody | None = None  # the body that is struck; none: the world
-    strikes: tuple[DrawnStrike, ...] = ()  # in the order of time; empty: all at once
+    Attributes:
+        state: Just before.
+        v_after_W: (3,), m/s, of the centre of mass just after, world axes.
+        contacts: n contacts.
+        impulses_W: (n, 3), N s, world axes.
+        path_W: (k, 3), N s, vertices of the accumulated impulse, world axes.
+        path_events: (k,), what each vertex is, as `contact_dynamics.impact.PathEvent`.
+        path_contacts: (k,), contact that each vertex belongs to.
+        plane_normal_W: (3,), unit, plane of motion, world axes; none in space.
+        other: The body that is struck; none: the world.
+        strikes: In the order of time; empty: all at once.
+    """
+
+    state: BodyState
+    v_after_W: FloatArray
+    contacts: ContactSet
+    impulses_W: FloatArray
+    path_W: FloatArray
+    path_events: tuple[int, ...]
+    path_contacts: tuple[int, ...]
+    plane_normal_W: FloatArray | None
+    other: OtherBody | None = None
+    strikes: tuple[DrawnStrike, ...] = ()
 
     @property
     def main_contact(self) -> int:

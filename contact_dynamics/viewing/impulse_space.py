@@ -60,10 +60,15 @@ _EVENTS: Final = {
 
 
 class Line(NamedTuple):
-    """Impulses x with ``normal . x + offset = 0``: a component of the contact's velocity is zero there."""
+    """Impulses x with ``normal . x + offset = 0``: a component of the contact's velocity is zero there.
 
-    normal: FloatArray  # (2,), 1/kg, tangential, normal
-    offset: float  # m/s
+    Attributes:
+        normal: (2,), 1/kg, tangential, normal.
+        offset: m/s.
+    """
+
+    normal: FloatArray
+    offset: float
 
 
 class _ContactMotion(NamedTuple):

@@ -39,16 +39,26 @@ _WALL: Final = 0.15  # half of the length of a contact's flat, likewise
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PlanarModesPicture:
-    """What the 2D pictures of a planar answer are made of; positions from the centre of mass."""
+    """What the 2D pictures of a planar answer are made of; positions from the centre of mass.
+
+    Attributes:
+        modes: Every consistent mode.
+        margins: What to say of each mode's margin; empty: nothing.
+        verdict: What to say where there is no mode.
+        sets: Of all modes; empty: not told.
+        length: m, the radius of gyration.
+        applied: The wrench in question, if known.
+        change: The least change that takes it out of the first mode, if told.
+    """
 
     contacts: tuple[PlanarContact, ...]
-    modes: tuple[PlanarMode, ...]  # every consistent mode
-    margins: tuple[str, ...]  # what to say of each mode's margin; empty: nothing
-    verdict: str  # what to say where there is no mode
-    sets: tuple[PlanarWrenchSet, ...]  # of all modes; empty: not told
-    length: float  # m, the radius of gyration
-    applied: PlanarWrench | None  # the wrench in question, if known
-    change: PlanarWrench | None  # the least change that takes it out of the first mode, if told
+    modes: tuple[PlanarMode, ...]
+    margins: tuple[str, ...]
+    verdict: str
+    sets: tuple[PlanarWrenchSet, ...]
+    length: float
+    applied: PlanarWrench | None
+    change: PlanarWrench | None
 
 
 def draw_planar_modes(

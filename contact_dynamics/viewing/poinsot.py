@@ -46,14 +46,23 @@ _ARROW_WIDTH: Final = 0.02  # relative to the largest semi-axis
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PoinsotPicture:
-    """What Poinsot's picture is made of."""
+    """What Poinsot's picture is made of.
 
-    semi_axes: FloatArray  # (3,), rad/s, > 0, of the ellipsoid, along the principal axes
-    principal_axes_B: FloatArray  # (3, 3), columns, body axes
-    L_W: FloatArray  # (3,), kg m^2/s, not zero, angular momentum, world axes
-    distance: float  # rad/s, of the invariable plane from the centre
-    polhode_B: FloatArray  # (n, 3), rad/s, body axes
-    herpolhode_W: FloatArray  # (n, 3), rad/s, world axes
+    Attributes:
+        semi_axes: (3,), rad/s, > 0, of the ellipsoid, along the principal axes.
+        principal_axes_B: (3, 3), columns, body axes.
+        L_W: (3,), kg m^2/s, not zero, angular momentum, world axes.
+        distance: rad/s, of the invariable plane from the centre.
+        polhode_B: (n, 3), rad/s, body axes.
+        herpolhode_W: (n, 3), rad/s, world axes.
+    """
+
+    semi_axes: FloatArray
+    principal_axes_B: FloatArray
+    L_W: FloatArray
+    distance: float
+    polhode_B: FloatArray
+    herpolhode_W: FloatArray
 
     @property
     def I_B(self) -> FloatArray:

@@ -46,10 +46,15 @@ _END_WIDTH: Final = -1.5
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PositionUncertainty:
-    """How uncertain the centre of mass is at each sample of a trajectory."""
+    """How uncertain the centre of mass is at each sample of a trajectory.
 
-    covariances_W: FloatArray  # (n, 3, 3), m^2, world axes
-    trusted: tuple[bool, ...]  # (n,), whether each can be relied on
+    Attributes:
+        covariances_W: (n, 3, 3), m^2, world axes.
+        trusted: (n,), whether each can be relied on.
+    """
+
+    covariances_W: FloatArray
+    trusted: tuple[bool, ...]
 
 
 def draw_trajectory(

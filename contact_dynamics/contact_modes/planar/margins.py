@@ -17,6 +17,7 @@ from contact_dynamics.contact_modes.planar.wrench_sets import (
 )
 from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
 from contact_dynamics.plane.types import PlanarWrench
+from contact_dynamics.records import Record
 from contact_dynamics.tolerances import BEYOND_MARGIN
 from contact_dynamics.validation import check_positive
 
@@ -28,16 +29,25 @@ if TYPE_CHECKING:
 _NO_WRENCH: Final = PlanarWrench(f=(0.0, 0.0))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanarModeMargin:
-    """How far an applied wrench is from leaving one of its consistent modes, and where it would go."""
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class PlanarModeMargin(Record):
+    """How far an applied wrench is from leaving one of its consistent modes, and where it would go.
 
-    mode: str  # one letter a contact
-    margin: float  # N, length of the least change in |f|^2 + (moment / length)^2; infinite: none does
-    length: float  # m, of that metric
-    change: PlanarWrench  # the least change itself; zero where there is none
-    verdict_beyond: ModeVerdict  # just behind the boundary; the present one where there is none
-    modes_beyond: tuple[str, ...]  # the consistent modes there
+    Attributes:
+        mode: One letter a contact.
+        margin: N, length of the least change in |f|^2 + (moment / length)^2; infinite: none does.
+        length: m, of that metric.
+        change: The least change itself; zero where there is none.
+        verdict_beyond: Just behind the boundary; the present one where there is none.
+        modes_beyond: The consistent modes there.
+    """
+
+    mode: str
+    margin: float
+    length: float
+    change: PlanarWrench
+    verdict_beyond: ModeVerdict
+    modes_beyond: tuple[str, ...]
 
 
 def planar_mode_margins(

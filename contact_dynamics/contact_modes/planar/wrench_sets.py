@@ -19,6 +19,7 @@ from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.problem import touching_case
 from contact_dynamics.contact_modes.planar.wrench_cone import ModeWrenches
 from contact_dynamics.plane.types import PlanarWrench
+from contact_dynamics.records import Record
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -29,10 +30,15 @@ if TYPE_CHECKING:
 
 
 class WrenchHalfSpace(NamedTuple):
-    """Applied wrenches with a . (f_x, f_y, moment) <= b."""
+    """Applied wrenches with a . (f_x, f_y, moment) <= b.
 
-    a: Vector3  # (1, 1, 1/m); of unit length once its third part is multiplied by the radius of gyration
-    b: float  # N
+    Attributes:
+        a: (1, 1, 1/m); of unit length once its third part is multiplied by the radius of gyration.
+        b: N.
+    """
+
+    a: Vector3
+    b: float
 
     def depth(self, wrench: PlanarWrench, length: float) -> float:
         """Return how far inside the wrench lies, N, in the metric of ``length``, m; < 0: outside."""
@@ -48,14 +54,21 @@ class WrenchHalfSpace(NamedTuple):
         return self.a[0] ** 2 + self.a[1] ** 2 + (self.a[2] * length) ** 2
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanarWrenchSet:
-    """The applied wrenches that can bring one mode about, as the closure of their set in two forms."""
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class PlanarWrenchSet(Record):
+    """The applied wrenches that can bring one mode about, as the closure of their set in two forms.
 
-    mode: str  # one letter a contact
-    vertices: tuple[PlanarWrench, ...]  # the set is all averages of these plus
-    generators: tuple[PlanarWrench, ...]  # all positive combinations of these, any scale
-    half_spaces: tuple[WrenchHalfSpace, ...]  # the same set; empty: every wrench
+    Attributes:
+        mode: One letter a contact.
+        vertices: The set is all averages of these plus.
+        generators: All positive combinations of these, any scale.
+        half_spaces: The same set; empty: every wrench.
+    """
+
+    mode: str
+    vertices: tuple[PlanarWrench, ...]
+    generators: tuple[PlanarWrench, ...]
+    half_spaces: tuple[WrenchHalfSpace, ...]
 
     def depth(self, wrench: PlanarWrench, length: float) -> float:
         """Return how far inside the set a wrench lies, N, in the metric of ``length``, m.

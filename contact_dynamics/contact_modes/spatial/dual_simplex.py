@@ -36,11 +36,17 @@ _MOST_STEPS: Final = 500
 
 
 class Ends(NamedTuple):
-    """What a weighted sum of edge forces ranges over."""
+    """What a weighted sum of edge forces ranges over.
 
-    unique: bool  # it is one number
-    low: FloatArray | None  # (K,), edge forces where it is least; None: it has no bound
-    high: FloatArray | None  # (K,), and largest
+    Attributes:
+        unique: It is one number.
+        low: (K,), edge forces where it is least; None: it has no bound.
+        high: (K,), and largest.
+    """
+
+    unique: bool
+    low: FloatArray | None
+    high: FloatArray | None
 
 
 class Program:

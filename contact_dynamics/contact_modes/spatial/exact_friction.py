@@ -37,20 +37,33 @@ _FAST: Final = 0.1
 
 
 class Sharpened(NamedTuple):
-    """Forces with exact friction at the contacts that slide."""
+    """Forces with exact friction at the contacts that slide.
 
-    forces: FloatArray  # (n, 3), in the units of the motion
-    edges: list[FloatArray]  # (k, 3) for each contact, those that may act
+    Attributes:
+        forces: (n, 3), in the units of the motion.
+        edges: (k, 3) for each contact, those that may act.
+    """
+
+    forces: FloatArray
+    edges: list[FloatArray]
 
 
 class Sliding(NamedTuple):
-    """A mode whose friction is to be turned."""
+    """A mode whose friction is to be turned.
 
-    touching: Sequence[Touching]  # the n contacts
-    pyramids: Sequence[Pyramid]  # their force edges
-    letters: str  # s, c or f for each contact
-    of_forces: FloatArray  # (6, 3 n), motion for unit forces
-    free: FloatArray  # (6,), motion without forces
+    Attributes:
+        touching: The n contacts.
+        pyramids: Their force edges.
+        letters: s, c or f for each contact.
+        of_forces: (6, 3 n), motion for unit forces.
+        free: (6,), motion without forces.
+    """
+
+    touching: Sequence[Touching]
+    pyramids: Sequence[Pyramid]
+    letters: str
+    of_forces: FloatArray
+    free: FloatArray
 
 
 def sharpened(mode: Sliding, forces: FloatArray) -> Sharpened | None:

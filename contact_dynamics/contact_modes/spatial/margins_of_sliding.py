@@ -41,11 +41,17 @@ MOST_BEGINNING: Final = 4
 
 
 class UnionMargin(NamedTuple):
-    """How far a wrench is from leaving a mode, and where it would."""
+    """How far a wrench is from leaving a mode, and where it would.
 
-    margin: float  # N, in the metric; infinite: nowhere; NaN: unknown
-    way: FloatArray  # (6,), unit, there, in the metric
-    beyond: tuple[str, ...] | None  # the consistent modes just behind; None: there is none, or it is unknown
+    Attributes:
+        margin: N, in the metric; infinite: nowhere; NaN: unknown.
+        way: (6,), unit, there, in the metric.
+        beyond: The consistent modes just behind; None: there is none, or it is unknown.
+    """
+
+    margin: float
+    way: FloatArray
+    beyond: tuple[str, ...] | None
 
 
 class _Cone(NamedTuple):

@@ -29,23 +29,39 @@ MILDER: Final = 0.1
 
 
 class Option(NamedTuple):
-    """A letter of one contact, or several together; rows are (motion, constant), 7 numbers."""
+    """A letter of one contact, or several together; rows are (motion, constant), 7 numbers.
 
-    letter: str  # s, f, c; c also for an arc of sliding directions; empty: several
-    item: int  # of sliding; -1: none, or several
-    zeroed: frozenset[int]  # edge forces, and normal acceleration, that are zero
-    raised: int | None  # the normal acceleration's name, where that is positive
-    rows: FloatArray  # (k, 7), zero or not negative
-    equalities: int  # how many rows are zero; the first ones
-    parts: tuple[Option, ...]  # what it stands for, in groups; empty where it is a letter
+    Attributes:
+        letter: s, f, c; c also for an arc of sliding directions; empty: several.
+        item: Of sliding; -1: none, or several.
+        zeroed: Edge forces, and normal acceleration, that are zero.
+        raised: The normal acceleration's name, where that is positive.
+        rows: (k, 7), zero or not negative.
+        equalities: How many rows are zero; the first ones.
+        parts: What it stands for, in groups; empty where it is a letter.
+    """
+
+    letter: str
+    item: int
+    zeroed: frozenset[int]
+    raised: int | None
+    rows: FloatArray
+    equalities: int
+    parts: tuple[Option, ...]
 
 
 class Pyramid(NamedTuple):
-    """The edges of a contact's force: a friction pyramid, or one edge where friction or sliding is known."""
+    """The edges of a contact's force: a friction pyramid, or one edge where friction or sliding is known.
 
-    edges: FloatArray  # (K, 3), of unit normal force
-    frame: tuple[FloatArray, FloatArray] | None  # unit tangents, edge 0 along the first; None: one edge
-    first: int  # name of the first edge force; the others follow
+    Attributes:
+        edges: (K, 3), of unit normal force.
+        frame: Unit tangents, edge 0 along the first; None: one edge.
+        first: Name of the first edge force; the others follow.
+    """
+
+    edges: FloatArray
+    frame: tuple[FloatArray, FloatArray] | None
+    first: int
 
     def tangential(self) -> FloatArray:
         """Return the edges' parts along the frame, (K, 2)."""

@@ -42,13 +42,21 @@ FEW: Final = 32
 
 
 class SpatialPaths(NamedTuple):
-    """Many impulse paths, in contact axes; element i of each array belongs to contact i."""
+    """Many impulse paths, in contact axes; element i of each array belongs to contact i.
 
-    outcomes: NDArray[np.int64]  # values of ImpactOutcome
-    compression: tuple[FloatArray, FloatArray, FloatArray]  # N s, at the end of compression
-    impulse: tuple[FloatArray, FloatArray, FloatArray]  # N s, total
-    u: tuple[FloatArray, FloatArray]  # m/s, sliding velocities afterwards
-    v_n: FloatArray  # m/s, normal velocities afterwards
+    Attributes:
+        outcomes: Values of ImpactOutcome.
+        compression: N s, at the end of compression.
+        impulse: N s, total.
+        u: m/s, sliding velocities afterwards.
+        v_n: m/s, normal velocities afterwards.
+    """
+
+    outcomes: NDArray[np.int64]
+    compression: tuple[FloatArray, FloatArray, FloatArray]
+    impulse: tuple[FloatArray, FloatArray, FloatArray]
+    u: tuple[FloatArray, FloatArray]
+    v_n: FloatArray
 
 
 def trace_all(

@@ -23,15 +23,25 @@ MOST_STRETCHES: Final = 2000
 
 
 class SpatialPath(NamedTuple):
-    """An impulse path in contact axes: the two principal tangents, then the normal."""
+    """An impulse path in contact axes: the two principal tangents, then the normal.
 
-    outcome: ImpactOutcome  # what the contact did
-    jams: bool  # whether sliding drove the contact into compression at first
-    vertices: list[tuple[PathEvent, Impulse]]  # N s
-    compression: Impulse  # N s, at the end of compression
-    impulse: Impulse  # N s, total
-    u: tuple[float, float]  # m/s, sliding velocity afterwards
-    v_n: float  # m/s, normal velocity afterwards
+    Attributes:
+        outcome: What the contact did.
+        jams: Whether sliding drove the contact into compression at first.
+        vertices: N s.
+        compression: N s, at the end of compression.
+        impulse: N s, total.
+        u: m/s, sliding velocity afterwards.
+        v_n: m/s, normal velocity afterwards.
+    """
+
+    outcome: ImpactOutcome
+    jams: bool
+    vertices: list[tuple[PathEvent, Impulse]]
+    compression: Impulse
+    impulse: Impulse
+    u: tuple[float, float]
+    v_n: float
 
 
 def trace(

@@ -24,14 +24,23 @@ Vector3: TypeAlias = "tuple[Number, Number, Number]"
 
 
 class Responding(NamedTuple):
-    """A body at a contact: what its change of velocity follows from, world axes."""
+    """A body at a contact: what its change of velocity follows from, world axes.
 
-    per_mass: Number  # 1/kg
-    inertia: tuple[Number, ...]  # kg m^2, body axes: pivots d1, d2, d3, then L's l21, l31, l32 (I = L D L^T)
-    rotation: tuple[Vector3, Vector3, Vector3]  # columns of R_WB: the body's axes in the world
-    r: Vector3  # m, from the centre of mass to the contact
-    v: Vector3  # m/s, of the centre of mass
-    w: Vector3  # rad/s
+    Attributes:
+        per_mass: 1/kg.
+        inertia: kg m^2, body axes: pivots d1, d2, d3, then L's l21, l31, l32 (I = L D L^T).
+        rotation: Columns of R_WB: the body's axes in the world.
+        r: m, from the centre of mass to the contact.
+        v: m/s, of the centre of mass.
+        w: rad/s.
+    """
+
+    per_mass: Number
+    inertia: tuple[Number, ...]
+    rotation: tuple[Vector3, Vector3, Vector3]
+    r: Vector3
+    v: Vector3
+    w: Vector3
 
 
 class Response(NamedTuple):
@@ -46,16 +55,27 @@ class Response(NamedTuple):
 
 
 class ContactAxes(NamedTuple):
-    """The principal tangents and the normal, world axes, with the response in them."""
+    """The principal tangents and the normal, world axes, with the response in them.
 
-    t1: Vector3  # unit
-    t2: Vector3  # unit
-    n: Vector3  # unit
-    l1: Number  # 1/kg, tangential response, first direction
-    l2: Number  # 1/kg, second direction
-    k1: Number  # 1/kg, between the first and the normal
-    k2: Number  # 1/kg, between the second and the normal
-    kn: Number  # 1/kg, normal response
+    Attributes:
+        t1: Unit.
+        t2: Unit.
+        n: Unit.
+        l1: 1/kg, tangential response, first direction.
+        l2: 1/kg, second direction.
+        k1: 1/kg, between the first and the normal.
+        k2: 1/kg, between the second and the normal.
+        kn: 1/kg, normal response.
+    """
+
+    t1: Vector3
+    t2: Vector3
+    n: Vector3
+    l1: Number
+    l2: Number
+    k1: Number
+    k2: Number
+    kn: Number
 
     def components(self, vector: Vector3) -> Vector3:
         """Return the contact components of a vector in world axes."""

@@ -30,14 +30,23 @@ ESCAPE_ROUNDS: Final = 60
 
 
 class SlidingLaw(NamedTuple):
-    """Coefficients of the equations above, in 1/kg, friction included where named so."""
+    """Coefficients of the equations above, in 1/kg, friction included where named so.
 
-    l1: Number  # 1/kg, first principal tangential inverse inertia, > 0
-    l2: Number  # 1/kg, second, > 0
-    k1: Number  # 1/kg, coupling of the first tangential direction with the normal
-    k2: Number  # 1/kg, coupling of the second
-    kn: Number  # 1/kg, normal inverse inertia, > 0
-    mu: Number  # Coulomb's coefficient, >= 0
+    Attributes:
+        l1: 1/kg, first principal tangential inverse inertia, > 0.
+        l2: 1/kg, second, > 0.
+        k1: 1/kg, coupling of the first tangential direction with the normal.
+        k2: 1/kg, coupling of the second.
+        kn: 1/kg, normal inverse inertia, > 0.
+        mu: Coulomb's coefficient, >= 0.
+    """
+
+    l1: Number
+    l2: Number
+    k1: Number
+    k2: Number
+    kn: Number
+    mu: Number
 
     @property
     def holds(self) -> Number:

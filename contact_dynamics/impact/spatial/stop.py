@@ -41,12 +41,19 @@ SLOW_TERMS: Final = 10
 
 
 class Stop(NamedTuple):
-    """What lies between a sliding contact and its stop."""
+    """What lies between a sliding contact and its stop.
 
-    p: Number  # N s, normal impulse
-    dissipated: Number  # J, by friction; NaN where it was not asked for
-    d1: Number  # the sliding direction at the stop, first component
-    d2: Number  # second
+    Attributes:
+        p: N s, normal impulse.
+        dissipated: J, by friction; NaN where it was not asked for.
+        d1: The sliding direction at the stop, first component.
+        d2: Second.
+    """
+
+    p: Number
+    dissipated: Number
+    d1: Number
+    d2: Number
 
 
 def stop_ahead(

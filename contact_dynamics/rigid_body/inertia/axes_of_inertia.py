@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.inertia.principal_frame import principal_frame
 from contact_dynamics.tolerances import AXIS_TIE, EQUAL_MOMENTS_TOLERANCE, SYMMETRY_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array, check_positive, check_unit
@@ -36,22 +37,34 @@ REMEMBERED: Final = 128
 """Bodies whose axes are kept."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PrincipalAxes:
-    """Principal moments and axes, in the order and with the signs of this module."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class PrincipalAxes(Record):
+    """Principal moments and axes, in the order and with the signs of this module.
 
-    moments: FloatArray  # (3,), kg m^2, ascending
-    R_BP: FloatArray  # (3, 3), a rotation; columns: the axis of each moment, body axes
+    Attributes:
+        moments: (3,), kg m^2, ascending.
+        R_BP: (3, 3), a rotation; columns: the axis of each moment, body axes.
+    """
+
+    moments: FloatArray
+    R_BP: FloatArray
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class InertiaEllipsoid:
-    """The surface r^T I r = a about the centre of mass (lecture 25, eq. 14)."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class InertiaEllipsoid(Record):
+    """The surface r^T I r = a about the centre of mass (lecture 25, eq. 14).
 
-    I_B: FloatArray  # (3, 3), kg m^2
-    level: float  # a, kg m^4 where r is in m
-    semi_axes: FloatArray  # (3,), m, descending: sqrt(a / I); inf where a moment is 0
-    R_BP: FloatArray  # (3, 3), columns: their directions, body axes
+    Attributes:
+        I_B: (3, 3), kg m^2.
+        level: A, kg m^4 where r is in m.
+        semi_axes: (3,), m, descending: sqrt(a / I); inf where a moment is 0.
+        R_BP: (3, 3), columns: their directions, body axes.
+    """
+
+    I_B: FloatArray
+    level: float
+    semi_axes: FloatArray
+    R_BP: FloatArray
 
     def distance(self, axis_B: ArrayLike) -> float:
         """Return the distance sqrt(a / I_n), m, to the surface along a unit axis, (3,) (lecture 25, eq. 16).

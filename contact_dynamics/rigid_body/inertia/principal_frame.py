@@ -29,13 +29,17 @@ _MOST_SWEEPS: Final = 30
 
 @dataclass(frozen=True, slots=True)
 class PrincipalFrame(Generic[Scalar]):
-    """The principal moments in ascending order, and their axes."""
+    """The principal moments in ascending order, and their axes.
 
-    moments: tuple[Scalar, Scalar, Scalar]  # kg m^2
-    gaps: tuple[Scalar, Scalar, Scalar]  # kg m^2, >= 0: middle - small, large - middle, large - small
-    axes_B: tuple[
-        tuple[Scalar, Scalar, Scalar], ...
-    ]  # 3 rows: unit axes, body coordinates, either handedness
+    Attributes:
+        moments: kg m^2.
+        gaps: kg m^2, >= 0: middle - small, large - middle, large - small.
+        axes_B: 3 rows: unit axes, body coordinates, either handedness.
+    """
+
+    moments: tuple[Scalar, Scalar, Scalar]
+    gaps: tuple[Scalar, Scalar, Scalar]
+    axes_B: tuple[tuple[Scalar, Scalar, Scalar], ...]
 
 
 def principal_frame(I_B: FloatArray) -> PrincipalFrame[Decimal]:
