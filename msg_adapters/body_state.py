@@ -36,14 +36,22 @@ def body_state_from_msg(msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArr
         InvalidFieldError: a number is not finite, or the quaternion is not unit.
     """
     check_frame("state.header.frame_id", msg.header.frame_id or world_frame, world_frame)
-    q_WB = check_unit("state.pose.orientation", quaternion_from_msg(msg.pose.orientation), 4)
-    return BodyState(
-        p_WB_W=vector_from_msg(msg.pose.position) + turned(q_WB, p_FB_F),
-        q_WB=q_WB,
-        v_WB_W=vector_from_msg(msg.linear_velocity),
-        w_WB_W=vector_from_msg(msg.angular_velocity),
-        stamp_ns=stamp_ns_from_msg(msg.header.stamp),
-    )
+    p_WB_W, q_WB = vector_from_msg(msg.pose.position), quaternion_from_msg(msg.pose.orientation)
+    if p_FB_F.any():
+        q_WB = check_unit("state.pose.orientation", q_WB, 4)
+        p_WB_W = p_WB_W + turned(q_WB, p_FB_F)
+    try:
+        return BodyState(
+            p_WB_W=p_WB_W,
+            q_WB=q_WB,
+            v_WB_W=vector_from_msg(msg.linear_velocity),
+            w_WB_W=vector_from_msg(msg.angular_velocity),
+            stamp_ns=stamp_ns_from_msg(msg.header.stamp),
+        )
+    except InvalidFieldError as error:
+        if not error.field.startswith("orientation"):
+            raise
+        raise InvalidFieldError(f"state.pose.{error.field}", error.found, error.allowed) from None
 
 
 def body_state_to_msg(

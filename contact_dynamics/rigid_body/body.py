@@ -1,7 +1,7 @@
 """A rigid body: its mass properties, its state, and what follows from the two (Mason, lectures 24 and 25).
 
-Frames: W is the world; B is the body's, with its origin at the centre of mass. A body whose published frame
-has its origin elsewhere is converted where its messages are (`msg_adapters`).
+Frames: W is the world; B is the body's, with its origin at the centre of mass. Between B and a published
+frame whose origin is elsewhere stands `published_frame`.
 """
 
 from __future__ import annotations

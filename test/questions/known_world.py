@@ -13,9 +13,7 @@ from contact_dynamics.questions import (
     ImpactQuestion,
     Knowledge,
     TumblingQuestion,
-    contact_modes,
-    impact,
-    tumbling,
+    ask,
 )
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.world import Body, Surface, World, box_vertices
@@ -67,11 +65,11 @@ def ask_each() -> dict[str, Any]:
     spinning = state(v=(1.0, 0.0, 0.0), w=(0.0, 3.0, 0.1))
     falling = state(v=(0.3, 0.0, -1.0), w=(0.0, 2.0, 0.0))
     answers = {
-        "tumbling": tumbling.answer(
+        "tumbling": ask(
             TumblingQuestion(body=CUBE, state=spinning, sampling=AtTimes(times=[0.0, 0.1]), curve_points=3)
         ),
-        "impact": impact.answer(ImpactQuestion(body="cube", state=falling), KNOWLEDGE),
-        "contact_modes": contact_modes.answer(
+        "impact": ask(ImpactQuestion(body="cube", state=falling), KNOWLEDGE),
+        "contact_modes": ask(
             ContactModeQuestion(
                 body="cube", state=RESTING, force_W=[math.pi, 0, 0], want_margins=True, want_statics=True
             ),
