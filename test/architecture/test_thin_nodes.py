@@ -9,10 +9,7 @@ import pytest
 
 from architecture.test_chapters import PACKAGE, ROOT, imports_of, relative
 
-PICTURES = {"pictured_answers.py", "pictured_contact_modes.py"}
-"""What draws answers that are messages, and goes when pictures draw answers."""
-
-NODES = sorted(path for path in (PACKAGE / "nodes").glob("*.py") if path.name not in PICTURES)
+NODES = sorted((PACKAGE / "nodes").glob("*.py"))
 WAY = [
     *sorted((ROOT / "msg_adapters").glob("*.py")),
     *sorted((PACKAGE / "questions").glob("*.py")),
@@ -25,10 +22,6 @@ WAY = [
 def test_nodes_do_no_arithmetic(path: Path) -> None:
     roots = {module.split(".")[0] for module in imports_of(path)}
     assert not roots & {"numpy", "scipy"}, relative(path)
-
-
-def test_the_pictures_that_may_still_calculate_are_there() -> None:
-    assert {path.name for path in (PACKAGE / "nodes").glob("*.py")} >= PICTURES
 
 
 @pytest.mark.parametrize("path", WAY, ids=relative)

@@ -218,6 +218,9 @@ def test_numbers_without_sense_are_refused() -> None:
     for name in ("horizon", "out_of_plane_tolerance", "velocity_tolerance", "distance_tolerance"):
         with pytest.raises(InvalidFieldError, match=f"{name}: found -1"):
             ImpactQuestion(body=CUBE, **{name: -1.0})  # type: ignore[arg-type]
+    for name in ("problem", "restitution_law", "several_contacts_law"):
+        with pytest.raises(InvalidFieldError, match=f"{name}: found 'newton', allowed is"):
+            ImpactQuestion(body=CUBE, **{name: "newton"})  # type: ignore[arg-type]
     for name in ("strike_window", "hold_step"):
         with pytest.raises(InvalidFieldError, match=f"{name}: found nan"):
             InTime(**{name: math.nan})  # type: ignore[arg-type]
