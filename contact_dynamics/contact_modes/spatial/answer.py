@@ -26,7 +26,6 @@ from contact_dynamics.contact_modes.spatial.exact_friction import Sliding, sharp
 from contact_dynamics.contact_modes.spatial.exact_letters import forces_with_letters, letters_near
 from contact_dynamics.contact_modes.spatial.least_forces import least_forces, misdirection
 from contact_dynamics.contact_modes.spatial.one_contact import modes_of_one
-from contact_dynamics.contact_modes.spatial.options import STRICT
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial.round_cones import (
@@ -36,14 +35,12 @@ from contact_dynamics.contact_modes.spatial.round_cones import (
     sticking,
 )
 from contact_dynamics.errors import TooLargeError
+from contact_dynamics.tolerances import SAME_MOTION, STRICT
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.contact_modes.spatial.search import Found, Search
     from contact_dynamics.validation import FloatArray
-
-_SAME: Final = 1e-6
-"""Relative: how far the motions of two modes may lie apart where they count as the same."""
 
 
 _STRAIGHT: Final = 1e-8
@@ -271,7 +268,7 @@ def _are_twins(mode: SpatialMode, other: SpatialMode) -> bool:
         return True
     one = np.concatenate([mode.acceleration_W, mode.angular_acceleration_W])
     two = np.concatenate([other.acceleration_W, other.angular_acceleration_W])
-    return bool(np.abs(one - two).max() <= _SAME * (1.0 + np.abs(one).max()))
+    return bool(np.abs(one - two).max() <= SAME_MOTION * (1.0 + np.abs(one).max()))
 
 
 def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool) -> SpatialMode:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
-from contact_dynamics.contact_modes.spatial.options import STRICT
+from contact_dynamics.tolerances import STRICT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

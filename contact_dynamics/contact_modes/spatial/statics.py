@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final, cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
 from contact_dynamics.contact_modes.spatial.cone import cone_of
-from contact_dynamics.contact_modes.spatial.problem import search_of, spatial_case
+from contact_dynamics.contact_modes.spatial.problem import MOST_EDGES, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial.round_cones import held_by_round_cones
 from contact_dynamics.errors import TooLargeError, UndecidedError
 from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, ROW_TOLERANCE
@@ -27,9 +27,6 @@ from contact_dynamics.validation import check_positive
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialCase, SpatialContactProblem
     from contact_dynamics.validation import FloatArray
-
-MOST_EDGES: Final = 128
-"""Most edges of all friction pyramids together: a cone of so many in R^6 has thousands of facets."""
 
 
 def spatial_statics(problem: SpatialContactProblem, *, margin_length: float | None = None) -> BodyStatics:

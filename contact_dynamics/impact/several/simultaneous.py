@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.tolerances import SWEEPS_CONVERGED
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -29,9 +30,6 @@ if TYPE_CHECKING:
 
 MOST_SWEEPS: Final = 5000
 """Sweeps after which the problem counts as not converged."""
-
-CONVERGED: Final = 1e-13
-"""Relative to the largest approach velocity: what a sweep may still change in the contacts' velocities."""
 
 
 def simultaneous_impulses(
@@ -61,6 +59,8 @@ def simultaneous_impulses(
     approach[approach >= -tolerance] = 0.0
 
     none = np.zeros(len(contacts))
+    # `RestitutionRule` is for a path. Here Newton's law asks for velocities, in one problem, and Poisson's
+    # for impulses, in a second one. The energetic law has neither, and is refused before.
     if law == RestitutionLaw.NEWTON:
         bounce = -contacts.restitutions * approach
         return _solve(jacobian, inverse_mass, twist, normals, frictions, least=none, bounce=bounce)
@@ -108,6 +108,6 @@ def _solve(
             impulses[i] += step
             twist = twist + response[i] @ step
             change = max(change, float(abs(blocks[i] @ step).max()))
-        if change <= CONVERGED * scale:
+        if change <= SWEEPS_CONVERGED * scale:
             return impulses, True
     return impulses, False
