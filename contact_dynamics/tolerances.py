@@ -320,3 +320,70 @@ HELD_INDEPENDENT: Final = 1e-9
 ESCAPE_ARRIVED: Final = 1e-16
 """Relative. The last of Newton's steps towards the direction in which a contact leaves its stop: below the
 last bit."""
+
+MODE_STRAIGHT: Final = 1e-8
+"""rad, misdirection of friction that is rounding."""
+
+MODE_OBLIQUE: Final = 1e-3
+"""rad: surfaces that lean less are flush. Several modes are rare there with usual friction."""
+
+MODE_RESTS: Final = 1e-12
+"""Relative to the load: what forces that hold a body may leave over."""
+
+MODE_BETTER: Final = 1e-2
+"""Relative: less is rounding."""
+
+CAREFUL_UNMET: Final = 1e-9
+"""Relative to the largest acceleration: by how much equations that count as the same may ask for different
+accelerations, as where centripetal terms are rounded."""
+
+CAREFUL_LEAST_PIVOT: Final = 1e-13
+"""Entries of the table up to it may be rounding of the doubles that it is made from."""
+
+TABLE_SMALL_PIVOT: Final = 1e-3
+"""Division by a larger one counts as harmless: what rounding it adds is in `_FEASIBLE`."""
+
+TABLE_ROUNDING: Final = 1e-16
+"""Relative: what doubles lose in a step or two."""
+
+LETTERS_SETTLED: Final = 1e-13
+"""Relative to the largest acceleration: what the equations may miss, in its last step."""
+
+LETTERS_REGULAR: Final = 1e-11
+"""Ratio of singular values below which the unknowns count as dependent: loads are shared."""
+
+LETTERS_ON_CONE: Final = 1e-9
+"""Relative: how far outside of its cone a force that sticks may lie."""
+
+ONE_CONTACT_ON_CONE: Final = 1e-9
+"""Relative: how far outside of its cone a force that sticks may lie. Sliding begins as strictly."""
+
+ONE_CONTACT_ZERO: Final = 1e-13
+"""Relative to the largest acceleration, and to the largest coefficient: rounding."""
+
+ONE_CONTACT_ON_CIRCLE: Final = 1e-3
+"""How far from the unit circle a root may lie before it is polished: double roots are half as exact."""
+
+ONE_CONTACT_SAME_ANGLE: Final = 1e-6
+"""rad, within which two roots are one."""
+
+ROUND_CONE_HELD: Final = 1e-11
+"""Relative to the load: what forces may leave over that hold the contacts."""
+
+ROUND_CONE_NO_HELP: Final = 1e-12
+"""Cosine, of a force's effect to what is left over, below which it is rounding."""
+
+ROUND_CONE_INDEPENDENT: Final = 1e-15
+"""Relative: less is rounding."""
+
+ROUND_CONE_APART: Final = 1e-13
+"""Dimensionless, on rows of unit length: those that differ by more do so by more than rounding."""
+
+ROUND_CONE_ON_CONE: Final = 1e-12
+"""Relative to the largest force."""
+
+ROUND_CONE_REACHED: Final = 1e-10
+"""Relative: what all forces together do less than that in some direction is nothing."""
+
+ROUND_CONE_ROUNDING: Final = 1e-15
+"""Relative: what doubles lose in a step or two."""

@@ -35,7 +35,14 @@ from contact_dynamics.contact_modes.spatial.round_cones import (
     sticking,
 )
 from contact_dynamics.errors import TooLargeError
-from contact_dynamics.tolerances import SAME_MOTION, STRICT
+from contact_dynamics.tolerances import (
+    MODE_BETTER,
+    MODE_OBLIQUE,
+    MODE_RESTS,
+    MODE_STRAIGHT,
+    SAME_MOTION,
+    STRICT,
+)
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
@@ -43,25 +50,14 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 
-_STRAIGHT: Final = 1e-8
-"""rad, misdirection of friction that is rounding."""
-
 _MOST_SOUGHT_TWICE: Final = 4
 """Contacts whose modes are sought with finer pyramids too."""
 
 _FINER: Final = 4
 """Times as many edges as asked for."""
 
-_OBLIQUE: Final = 1e-3
-"""rad: surfaces that lean less are flush. Several modes are rare there with usual friction."""
-
 _MOST_FACETS: Final = 128
 """Edges of the finest pyramid that is searched where friction could not be turned against the sliding."""
-
-_RESTS: Final = 1e-12
-"""Relative to the load: what forces that hold a body may leave over."""
-
-_BETTER: Final = 1e-2
 
 _DOUBT: Final = "rounding decides whether some modes are consistent: contacts or normals are nearly the same"
 
@@ -135,7 +131,7 @@ def evidenced(case: SpatialCase, search: Search, *, facets: int) -> Evidence:
 
 def _are_oblique(search: Search) -> bool:
     normals = np.array([one.normal for one in search.touching])
-    return bool(np.abs(normals - normals[0]).max() > _OBLIQUE)
+    return bool(np.abs(normals - normals[0]).max() > MODE_OBLIQUE)
 
 
 def _with_those_between(case: SpatialCase, found: Evidence, facets: int) -> Evidence:
@@ -175,7 +171,7 @@ def _without_twins(
 
 
 def _is_exact(mode: SpatialMode) -> bool:
-    return not mode.motion_unique or mode.misdirection <= _STRAIGHT
+    return not mode.motion_unique or mode.misdirection <= MODE_STRAIGHT
 
 
 def _refined(case: SpatialCase, search: Search, found: Evidence, facets: int) -> Evidence:
@@ -231,7 +227,9 @@ def _of_one_contact(
     kept: list[tuple[SpatialMode, Found | None]] = []
     for one in exact:
         mode = _mode(case, one.letter, one.force[None, :], forces_unique=True, motion_unique=True)
-        alike = [pair for pair in found if pair[0].misdirection <= _STRAIGHT and _are_twins(mode, pair[0])]
+        alike = [
+            pair for pair in found if pair[0].misdirection <= MODE_STRAIGHT and _are_twins(mode, pair[0])
+        ]
         kept.append(alike[0] if alike else (mode, None))
     order = [mode for mode, _ in found]
     return sorted(kept, key=lambda pair: order.index(pair[0]) if pair[1] is not None else len(order))
@@ -248,7 +246,10 @@ def _with_rest(case: SpatialCase, search: Search, found: Evidence) -> Evidence:
     """Return the modes with the one in which all contacts stick, if the round cones hold it."""
     letters = "".join(STICKS if one.friction > 0.0 else STAYS for one in search.touching)
     undecided = found.undecided
-    if not any(_all_stick(case, search, mode) for mode, _ in found.modes):
+    still = [pair for pair in found.modes if _all_stick(case, search, pair[0])]
+    if len(still) > 1:  # forces that hold a body are convex: one mode
+        found = found._replace(modes=[pair for pair in found.modes if pair not in still[1:]])
+    if not still:
         rows = sticking(search)
         held = held_by_round_cones(search, rows)
         if held.forces is not None:
@@ -294,16 +295,21 @@ def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool)
 
 def _rested(search: Search, forces: FloatArray) -> FloatArray:
     """Return forces under which a body rests that does so but for what is left of merged conditions."""
+    rows = sticking(search)
+    motion = np.append(search.motion[:, -1] + search.of_forces @ forces.ravel(), 1.0)
+    if float(np.abs(rows @ motion).max()) > STRICT:  # merged contacts: what parts them has been lost
+        held = held_by_round_cones(search, rows)
+        forces = forces if held.forces is None else held.forces
 
     def left(forces: FloatArray) -> float:
         """Return the size of the wrench that forces leave over."""
         return float(np.linalg.norm(search.mass @ (search.motion[:, -1] + search.of_forces @ forces.ravel())))
 
     before = left(forces)
-    if before <= _RESTS * left(np.zeros_like(forces)):
+    if before <= MODE_RESTS * left(np.zeros_like(forces)):
         return forces
-    better = polished(search, sticking(search), forces)
-    return better if left(better) <= _BETTER * before else forces
+    better = polished(search, rows, forces)
+    return better if left(better) <= MODE_BETTER * before else forces
 
 
 def _mode(

@@ -9,25 +9,17 @@ table is then made from nothing, in NumPy's longest floating-point numbers.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from contact_dynamics.contact_modes.spatial.dual_simplex import Ends, Program
-from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.tolerances import CAREFUL_LEAST_PIVOT, CAREFUL_UNMET, ROW_TOLERANCE
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from contact_dynamics.validation import FloatArray
-
-_UNMET: Final = 1e-9
-"""Relative to the largest acceleration: by how much equations that count as the same may ask for different
-accelerations, as where centripetal terms are rounded."""
-
-
-_LEAST_PIVOT: Final = 1e-13
-"""Entries of the table up to it may be rounding of the doubles that it is made from."""
 
 
 class CarefulProgram:
@@ -71,7 +63,7 @@ class CarefulProgram:
         if program is None:
             return False
         self._solved = program
-        holds = program.solve(_LEAST_PIVOT)
+        holds = program.solve(CAREFUL_LEAST_PIVOT)
         self.doubtful = program.doubtful
         return holds
 
@@ -133,6 +125,6 @@ def merged(rows: FloatArray, tolerance: float = ROW_TOLERANCE) -> FloatArray | N
     seen = int((sizes > tolerance * max(1.0, float(sizes.max(initial=0.0)))).sum())
     left = left[:, :seen]
     constants = left.T @ rows[:, -1]
-    if np.abs(rows[:, -1] - left @ constants).max() > _UNMET:
+    if np.abs(rows[:, -1] - left @ constants).max() > CAREFUL_UNMET:
         return None
     return np.column_stack([basis[:seen], constants / sizes[:seen]])

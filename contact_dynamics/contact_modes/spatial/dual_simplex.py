@@ -13,7 +13,13 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.tolerances import FEASIBLE, ROW_TOLERANCE, SAME_MOTION
+from contact_dynamics.tolerances import (
+    FEASIBLE,
+    ROW_TOLERANCE,
+    SAME_MOTION,
+    TABLE_ROUNDING,
+    TABLE_SMALL_PIVOT,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -34,11 +40,6 @@ _GOLDEN: Final = 0.6180339887498949
 _MOST_STEPS: Final = 500
 """Of the primal simplex; Bland's rule, which cannot cycle, holds from a fifth of it."""
 
-
-_SMALL_PIVOT: Final = 1e-3
-"""Division by a larger one counts as harmless: what rounding it adds is in `_FEASIBLE`."""
-
-_ROUNDING: Final = 1e-16
 
 _CLEAR: Final = 1e3
 """How many times its estimated rounding a condition must be missed by for a refusal to be beyond doubt."""
@@ -73,7 +74,7 @@ class Program:
         rows: list[int],
         columns: list[int],
         fixed: NDArray[np.float64],
-        noise: float = _ROUNDING,
+        noise: float = TABLE_ROUNDING,
     ) -> None:
         """Take a table whose columns are the variables that are zero, and constants; see `stated`."""
         self._noise = noise  # estimated rounding of the table's entries
@@ -216,8 +217,8 @@ class Program:
         table = self._table
         column = table[:, enters].copy()
         pivot = column[_HEAD + leaves]
-        if abs(pivot) < _SMALL_PIVOT:
-            self._noise *= _SMALL_PIVOT / abs(float(pivot))
+        if abs(pivot) < TABLE_SMALL_PIVOT:
+            self._noise *= TABLE_SMALL_PIVOT / abs(float(pivot))
         row = table[_HEAD + leaves] / -pivot
         row[enters] = 1.0 / pivot
         table[:, enters] = 0.0

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
-from contact_dynamics.tolerances import STRICT
+from contact_dynamics.tolerances import LETTERS_ON_CONE, LETTERS_REGULAR, LETTERS_SETTLED, STRICT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,15 +23,6 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 _MOST_STEPS: Final = 25
-
-_SETTLED: Final = 1e-13
-"""Relative to the largest acceleration: what the equations may miss, in its last step."""
-
-_REGULAR: Final = 1e-11
-"""Ratio of singular values below which the unknowns count as dependent: loads are shared."""
-
-_ON_CONE: Final = 1e-9
-"""Relative: how far outside of its cone a force that sticks may lie."""
 
 _MOST_SWAPPED: Final = 5
 """Contacts of which any may stick or slide instead: twice as many letters for each."""
@@ -67,13 +58,13 @@ def forces_with_letters(search: Search, letters: str, forces: FloatArray) -> Flo
         sizes = np.linalg.norm(slopes, axis=0)
         sizes[sizes == 0.0] = 1.0
         left, spread, right = np.linalg.svd(slopes / sizes)
-        if not spread[-1] > _REGULAR * spread[0]:
+        if not spread[-1] > LETTERS_REGULAR * spread[0]:
             return None
         step = (right.T @ ((left.T @ missed) / spread)) / sizes
         unknowns = unknowns - step
         if not np.all(np.isfinite(unknowns)):
             return None
-        if float(np.abs(missed).max()) <= _SETTLED:
+        if float(np.abs(missed).max()) <= LETTERS_SETTLED:
             break
     else:
         return None
@@ -151,7 +142,7 @@ class _System:
                 return False
             elif letter == STICKS:
                 across = float(np.linalg.norm(force - pressing * contact.normal))
-                if across > contact.friction * pressing * (1.0 + _ON_CONE):
+                if across > contact.friction * pressing * (1.0 + LETTERS_ON_CONE):
                     return False
             elif contact.friction > 0.0:
                 friction = force - pressing * contact.normal

@@ -15,7 +15,13 @@ import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.numerics.vectors import tangents_towards
-from contact_dynamics.tolerances import STRICT
+from contact_dynamics.tolerances import (
+    ONE_CONTACT_ON_CIRCLE,
+    ONE_CONTACT_ON_CONE,
+    ONE_CONTACT_SAME_ANGLE,
+    ONE_CONTACT_ZERO,
+    STRICT,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -24,20 +30,8 @@ if TYPE_CHECKING:
 
     from contact_dynamics.validation import FloatArray
 
-_ON_CONE: Final = 1e-9
-"""Relative: how far outside of its cone a force that sticks may lie. Sliding begins as strictly."""
-
-_ZERO: Final = 1e-13
-"""Relative to the largest acceleration, and to the largest coefficient: rounding."""
-
-_ON_CIRCLE: Final = 1e-3
-"""How far from the unit circle a root may lie before it is polished: double roots are half as exact."""
-
 _POLISHING: Final = 8
 """Newton's steps from a root of the polynomial; two are enough for single ones."""
-
-_SAME_ANGLE: Final = 1e-6
-"""rad, within which two roots are one."""
 
 
 class Lettered(NamedTuple):
@@ -62,7 +56,9 @@ def modes_of_one(G: FloatArray, b: FloatArray, normal: FloatArray, friction: flo
     held: FloatArray = np.asarray(np.linalg.solve(G, -b), dtype=float)
     pressing = float(held @ normal)
     across = float(np.linalg.norm(held - pressing * normal))
-    if across <= friction * pressing * (1.0 + _ON_CONE) + _ZERO * float(np.linalg.norm(held)):
+    if across <= friction * pressing * (1.0 + ONE_CONTACT_ON_CONE) + ONE_CONTACT_ZERO * float(
+        np.linalg.norm(held)
+    ):
         found.append(Lettered(STICKS, held))
     return found + _sliding(G, b, normal, friction, sticks=bool(found) and found[-1].letter == STICKS)
 
@@ -72,7 +68,7 @@ def _sliding(
 ) -> list[Lettered]:
     frame = np.array(tangents_towards(normal, b))
     b_n, b_t = float(normal @ b), frame @ b
-    if abs(b_n) <= _ZERO:
+    if abs(b_n) <= ONE_CONTACT_ZERO:
         b_n = 0.0
     G_n, G_tn, G_tt = float(normal @ G @ normal), frame @ G @ normal, frame @ G @ frame.T
     size = float(np.abs(G).max()) * (1.0 + friction)
@@ -90,12 +86,12 @@ def _sliding(
     for angle in _roots(across):
         d, u, g = along(angle)
         if b_n != 0.0:
-            press = -b_n / g if abs(g) > _ZERO else -1.0
-        elif abs(g) > _ON_CONE:
+            press = -b_n / g if abs(g) > ONE_CONTACT_ZERO else -1.0
+        elif abs(g) > ONE_CONTACT_ON_CONE:
             press = 0.0
         else:
             turns = float(d[0] * u[1] - d[1] * u[0])
-            press = -float(d[0] * b_t[1] - d[1] * b_t[0]) / turns if abs(turns) > _ZERO else -1.0
+            press = -float(d[0] * b_t[1] - d[1] * b_t[0]) / turns if abs(turns) > ONE_CONTACT_ZERO else -1.0
         speed = float(d @ (b_t + press * u))
         if press < 0.0 or speed <= 0.0 or (speed <= STRICT and sticks):
             continue
@@ -112,16 +108,16 @@ def _roots(function: Callable[[float], float]) -> list[float]:
     terms = np.fft.fft(samples) / 5.0
     coefficients = terms[[2, 1, 0, 4, 3]]  # of z^4 ... z^0, z = exp(i angle)
     largest = float(np.abs(coefficients).max())
-    if largest <= _ZERO**2:
+    if largest <= ONE_CONTACT_ZERO**2:
         return []
     found: list[float] = []
-    trial = np.abs(coefficients) > _ZERO * largest
+    trial = np.abs(coefficients) > ONE_CONTACT_ZERO * largest
     for root in np.roots(np.where(trial, coefficients, 0.0)):
-        if abs(abs(root) - 1.0) > _ON_CIRCLE:
+        if abs(abs(root) - 1.0) > ONE_CONTACT_ON_CIRCLE:
             continue
         angle = _polished(function, math.atan2(root.imag, root.real), coefficients)
-        if abs(function(angle)) <= 100.0 * _ZERO * largest and all(
-            abs(math.remainder(angle - other, 2.0 * math.pi)) > _SAME_ANGLE for other in found
+        if abs(function(angle)) <= 100.0 * ONE_CONTACT_ZERO * largest and all(
+            abs(math.remainder(angle - other, 2.0 * math.pi)) > ONE_CONTACT_SAME_ANGLE for other in found
         ):
             found.append(angle)
     return found
@@ -136,7 +132,7 @@ def _polished(
         if slope == 0.0:
             break
         step = function(angle) / slope
-        if not abs(step) < _ON_CIRCLE:
+        if not abs(step) < ONE_CONTACT_ON_CIRCLE:
             break
         angle -= step
     return angle

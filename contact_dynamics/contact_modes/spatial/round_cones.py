@@ -16,36 +16,26 @@ import numpy as np
 
 from contact_dynamics.contact_modes.spatial.careful_program import merged
 from contact_dynamics.numerics.linear_spaces import row_space
-from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.tolerances import (
+    ROUND_CONE_APART,
+    ROUND_CONE_HELD,
+    ROUND_CONE_INDEPENDENT,
+    ROUND_CONE_NO_HELP,
+    ROUND_CONE_ON_CONE,
+    ROUND_CONE_REACHED,
+    ROUND_CONE_ROUNDING,
+    ROW_TOLERANCE,
+)
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
-
-_HELD: Final = 1e-11
-"""Relative to the load: what forces may leave over that hold the contacts."""
-
-_NO_HELP: Final = 1e-12
-"""Cosine, of a force's effect to what is left over, below which it is rounding."""
 
 _MOST_FORCE: Final = 1e3
 """Times the load: a motion separates if only larger forces could take its power."""
 
 _MOST_EDGES: Final = 400
 """Edges of cones that are tried. Some dozen are enough but on a cone's very border."""
-
-_INDEPENDENT: Final = 1e-15
-
-_APART: Final = 1e-13
-"""Dimensionless, on rows of unit length: those that differ by more do so by more than rounding."""
-
-_ON_CONE: Final = 1e-12
-"""Relative to the largest force."""
-
-_REACHED: Final = 1e-10
-"""Relative: what all forces together do less than that in some direction is nothing."""
-
-_ROUNDING: Final = 1e-15
 
 
 class Held(NamedTuple):
@@ -85,18 +75,18 @@ def polished(search: Search, rows: FloatArray, forces: FloatArray) -> FloatArray
         rows: Likewise.
         forces: (n, 3), in the units of the motion.
     """
-    demand = _demand(search, rows, _APART)
+    demand = _demand(search, rows, ROUND_CONE_APART)
     if demand is None or demand.images.size == 0:
         return forces
     effects = np.hstack(list(demand.images))
     found = forces
     for _ in range(2):
         rest = demand.target - effects @ found.ravel()
-        found = found + np.linalg.lstsq(effects, rest, rcond=_INDEPENDENT)[0].reshape(-1, 3)
+        found = found + np.linalg.lstsq(effects, rest, rcond=ROUND_CONE_INDEPENDENT)[0].reshape(-1, 3)
     for contact, force in zip(search.touching, found, strict=True):
         pressing = float(contact.normal @ force)
         across = float(np.linalg.norm(force - pressing * contact.normal))
-        if across > contact.friction * pressing + _ON_CONE * float(np.abs(found).max()):
+        if across > contact.friction * pressing + ROUND_CONE_ON_CONE * float(np.abs(found).max()):
             return forces
     return found
 
@@ -136,9 +126,9 @@ def _demand(search: Search, rows: FloatArray, tolerance: float = ROW_TOLERANCE) 
     load = float(np.linalg.norm(target))
     # Nearly the same contacts do little in some directions, and are asked for little there.
     units, sizes, _ = np.linalg.svd(effects, full_matrices=False)
-    reached = sizes > _REACHED * sizes.max(initial=0.0)
+    reached = sizes > ROUND_CONE_REACHED * sizes.max(initial=0.0)
     units, sizes = units[:, reached], sizes[reached]
-    if float(np.linalg.norm(target - units @ (units.T @ target))) > _HELD * load:
+    if float(np.linalg.norm(target - units @ (units.T @ target))) > ROUND_CONE_HELD * load:
         return None
     images = ((units.T / sizes[:, None]) @ effects).reshape(len(sizes), n, 3).transpose(1, 0, 2)
     return _Demand(
@@ -158,7 +148,7 @@ def _nearest(demand: _Demand, search: Search) -> Held:
     rest = target
     for _ in range(_MOST_EDGES):
         left = float(np.linalg.norm(rest))
-        if left <= _ROUNDING * load or float(np.linalg.norm(sizes * rest)) <= _HELD:
+        if left <= ROUND_CONE_ROUNDING * load or float(np.linalg.norm(sizes * rest)) <= ROUND_CONE_HELD:
             forces = np.zeros_like(normals)
             for i, edge, share in zip(owners, edges, shares.tolist(), strict=True):
                 forces[i] += share * edge
@@ -174,7 +164,7 @@ def _nearest(demand: _Demand, search: Search) -> Held:
         helps = float(cosines[best]) if len(cosines) else 0.0
         if helps * _MOST_FORCE * load <= left:
             return Held(None, certain=True)
-        if helps <= _NO_HELP:
+        if helps <= ROUND_CONE_NO_HELP:
             break
         owners.append(best)
         edges.append(best_of_each[best] / effects[best])
@@ -186,7 +176,7 @@ def _nearest(demand: _Demand, search: Search) -> Held:
         owners, edges = [owners[k] for k in acting], [edges[k] for k in acting]
         spans, shares = spans[:, acting], shares[acting]
         rest = target - spans @ shares
-        rest = rest - spans @ np.linalg.lstsq(spans, rest, rcond=_INDEPENDENT)[0]
+        rest = rest - spans @ np.linalg.lstsq(spans, rest, rcond=ROUND_CONE_INDEPENDENT)[0]
     return Held(None, certain=False)
 
 
@@ -195,7 +185,7 @@ def _shares(spans: FloatArray, target: FloatArray, shares: FloatArray) -> FloatA
     acting = np.ones(len(shares), dtype=bool)
     while True:
         trial = np.zeros_like(shares)
-        trial[acting] = np.linalg.lstsq(spans[:, acting], target, rcond=_INDEPENDENT)[0]
+        trial[acting] = np.linalg.lstsq(spans[:, acting], target, rcond=ROUND_CONE_INDEPENDENT)[0]
         pulling = (acting & (trial <= 0.0)).nonzero()[0]
         if pulling.size == 0:
             return trial
