@@ -2,8 +2,8 @@
 
 The commented file `config/server.yaml` is what a user edits; a test holds the two together.
 
-This file imports no ROS. The values come from a `ParameterSource`: a node (`node_parameters`), or the log of a
-run that is over (`run_record`).
+This file imports no ROS. The values come from a `ParameterSource`: a node (`node_parameters`), or the log of
+a run that is over (`run_record`).
 """
 
 from __future__ import annotations

@@ -1,13 +1,13 @@
 """Serialised messages (CDR) to objects, with nothing but the types' texts in the log.
 
-A message begins with four bytes of encapsulation, of which the second says the byte order. Its fields follow one
-after the other. A number is aligned to its own size, counted from the fifth byte. A string is its length with the
-closing zero, as uint32, and its bytes. A sequence is its count, as uint32, and its elements.
+A message begins with four bytes of encapsulation, of which the second says the byte order. Its fields follow
+one after the other. A number is aligned to its own size, counted from the fifth byte. A string is its length
+with the closing zero, as uint32, and its bytes. A sequence is its count, as uint32, and its elements.
 
 Source: OMG, Real-time Publish-Subscribe Wire Protocol 2.2, section 10; ROS 2 calls it ``cdr``.
 
-The library `mcap` leaves messages as bytes. `mcap-ros2-support` refuses types with an underscore in their name,
-which the events of services have.
+The library `mcap` leaves messages as bytes. `mcap-ros2-support` refuses types with an underscore in their
+name, which the events of services have.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Classes of messages where ROS is not installed: made of a log's own definitions, under ROS's names.
 
-`msg_adapters` writes responses with the classes that ROS generates of interface files. A log holds the text of
-these files. Where ``geometry_msgs.msg`` and its like are missing, modules of that name stand in, with classes
-made of the texts. Where ROS is installed, its own classes are used.
+`msg_adapters` writes responses with the classes that ROS generates of interface files. A log holds the text
+of these files. Where ``geometry_msgs.msg`` and its like are missing, modules of that name stand in, with
+classes made of the texts. Where ROS is installed, its own classes are used.
 """
 
 from __future__ import annotations

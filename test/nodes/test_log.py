@@ -241,9 +241,9 @@ def test_the_run_record_has_every_parameter(session: Session) -> None:
     run = BagReader(session.folder).run()
     (node,) = yaml.safe_load((ROOT / "config" / "server.yaml").read_text(encoding="utf-8")).values()
     configured = {**node["ros__parameters"], "log_directory": str(session.folder.parent)}
-    assert {name: run.get(name) for name in configured} == {
-        name: str(value) for name, value in configured.items()
-    }
+    parameters = json.loads(run["parameters"])
+    assert {name: parameters.get(name) for name in configured} == configured
+    assert json.loads(run["state_topics"]) == {"body.brick.odometry_topic": STATES_TOPIC}
     assert run["version"]
     versions = {"python": platform.python_version(), "numpy": np.__version__, "scipy": scipy.__version__}
     assert {name: run[name] for name in versions} == versions
