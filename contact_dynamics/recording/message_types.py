@@ -12,7 +12,7 @@ import re
 from array import array
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 
@@ -57,13 +57,13 @@ class Message:
         TYPES: The types of the messages that it is built of, by "package/Name".
     """
 
-    FIELDS: tuple[Field, ...] = ()
-    TYPES: dict[str, type[Message]]
+    FIELDS: ClassVar[tuple[Field, ...]] = ()
+    TYPES: ClassVar[dict[str, type[Message]]] = {}
 
     def __init__(self, **values: Any) -> None:
         """Give each field its value, or its default."""
         for field in self.FIELDS:
-            setattr(self, field.name, values.get(field.name) if field.name in values else self.empty(field))
+            setattr(self, field.name, values[field.name] if field.name in values else self.empty(field))
 
     @classmethod
     def empty(cls, field: Field) -> Any:

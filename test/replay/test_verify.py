@@ -203,6 +203,23 @@ def test_it_needs_no_ros(asked: Asked) -> None:
     assert all(row[1] == row[2] and row[3] == "0" for row in rows)
 
 
+@pytest.mark.slow
+def test_in_an_environment_with_the_library_alone(asked: Asked, tmp_path: Path) -> None:
+    environment = tmp_path / "environment"
+    subprocess.run([sys.executable, "-m", "venv", environment], check=True)
+    pip = [environment / "bin" / "pip", "install", "--quiet", "--disable-pip-version-check", ROOT]
+    subprocess.run(pip, check=True, cwd=tmp_path)
+    outside = {
+        key: value for key, value in os.environ.items() if key not in {"PYTHONPATH", "AMENT_PREFIX_PATH"}
+    }
+    command = [environment / "bin" / "contact-dynamics", "replay", asked.log]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=outside, cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert sum(int(line.split()[2]) for line in done.stdout.splitlines() if "/predict_" in line) == sum(
+        asked.counts.values()
+    )
+
+
 def test_a_record_without_types_is_read_too(asked: Asked, tmp_path: Path) -> None:
     assert_all_equal(verify_log(copied(asked, tmp_path, run=as_text)), asked)
 
