@@ -68,6 +68,20 @@ coincide, in the enumeration of modes as in their dynamics. Contact rows carry s
 hundred times that for contacts far from the centre of mass; what is built from two planes that meet at 1e-5
 is still right within it."""
 
+SAME_ROWS: Final = 1e-11
+"""Dimensionless, in the plane: the sine below which contact planes, and wrenches, are one where modes are
+enumerated, and the part of the radius of gyration (or of the arm, if longer) and of the unit normal within
+which contacts are one. Some 1e5 roundings of the input, and far below what any sensor resolves."""
+
+CLEAR_ROWS: Final = 1e-4
+"""Dimensionless: the sine above which floats tell contact planes, and wrenches, apart, to within `SAME_ROWS`.
+Between the two, what is the case is found with more digits."""
+
+LARGEST_FRICTION: Final = 1e10
+"""Dimensionless, in the plane: a coefficient of friction above it, or above it divided by the contact's arm in
+radii of gyration, acts as that one does. They differ in forces whose normal part is less than 1e-10 of the
+wrench of the tangential one, below what wrenches are known to."""
+
 GRAZING_DEPTH: Final = 1e-9
 """m. A point that dips into a plane by less, and rises again, may be overlooked by the search for the first
 contact; deeper ones never are. Far below what sensors resolve, and enough for the search not to creep."""

@@ -10,20 +10,25 @@ about (`wrench_cone`), and the forces are some of many.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.contact_modes.planar.determined import IndependentModes
 from contact_dynamics.contact_modes.planar.enumeration import FIXED, Cell
 from contact_dynamics.contact_modes.planar.result import PlanarMode
 from contact_dynamics.contact_modes.planar.wrench_cone import ModeWrenches
 from contact_dynamics.contact_modes.result import Refusal, RefusedMode
-from contact_dynamics.numerics.vectors import Vector3
+from contact_dynamics.numerics.vectors import Vector3, dot
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from contact_dynamics.contact_modes.planar.problem import PlanarCase
     from contact_dynamics.plane.types import Vector2
+
+_EVIDENCE: Final = 3.0
+"""By how many tolerances forces may miss what the letters say."""
+
+_ROUNDING: Final = 1e-13  # relative to the forces: what sums of them leave
 
 
 def judge_all(
@@ -50,18 +55,32 @@ def judge_all(
 
 
 def _from_cone(case: PlanarCase, mode: str, cell: Cell, accuracy: float) -> PlanarMode | RefusedMode:
-    """Decide a mode whose equations are not independent by the cone of its wrenches."""
-    wrenches = ModeWrenches(case, cell)
+    """Decide a mode whose equations are not independent by the cone of its wrenches.
+
+    Forces that do not bring about what the letters say are no evidence: then the decision is taken again
+    with more digits.
+    """
+    outcome, certain = _judged(case, mode, cell, accuracy, exact=False)
+    return outcome if certain else _judged(case, mode, cell, accuracy, exact=True)[0]
+
+
+def _judged(
+    case: PlanarCase, mode: str, cell: Cell, accuracy: float, *, exact: bool
+) -> tuple[PlanarMode | RefusedMode, bool]:
+    """Return the decision on a mode, and whether it stands."""
+    wrenches = ModeWrenches(case, cell, exact=exact)
     shortfall = wrenches.shortfall(accuracy)
     if shortfall is not None:
-        return RefusedMode(mode=mode, refusal=Refusal.NO_SOLUTION, contact=-1, amount=shortfall)
+        return RefusedMode(mode=mode, refusal=Refusal.NO_SOLUTION, contact=-1, amount=shortfall), True
     shares, unique = wrenches.solution(accuracy)
     sums = dict.fromkeys(wrenches.edges.positions, (0.0, 0.0))
     for position, slope, share in zip(wrenches.edges.positions, wrenches.edges.slopes, shares, strict=True):
         f_t, f_n = sums[position]
         sums[position] = (f_t + slope * share, f_n + share)
     forces = [sums[position] for position, _ in cell.letters]
-    return _consistent(case, mode, cell, forces, unique=unique)
+    allowed = _EVIDENCE * (accuracy + _ROUNDING) * (case.load + sum(shares))
+    certain = wrenches.dual.exact or _misses(case, cell, forces) <= allowed
+    return _consistent(case, mode, cell, forces, unique=unique), certain
 
 
 def _consistent(
@@ -102,6 +121,18 @@ def _consistent(
         forces_unique=forces_unique,
         motion_unique=motion_unique,
     )
+
+
+def _misses(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> float:
+    """Return by how much, N, contacts that stay do not stay under some forces, and fixed ones slide."""
+    q = _acceleration(case, cell, forces)
+    most = 0.0
+    for position, letter in cell.letters:
+        row = case.rows[position]
+        most = max(most, case.mass * abs(dot(row.unit_n, q) + row.b_n / row.size_n))
+        if letter == FIXED:
+            most = max(most, case.mass * abs(dot(row.unit_t, q) + row.b_t / row.size_t))
+    return most
 
 
 def _acceleration(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> Vector3:

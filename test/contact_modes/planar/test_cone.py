@@ -31,7 +31,7 @@ def unit(vector: Whole) -> tuple[float, float, float]:
 
 
 def build(rows: list[Whole]) -> PolyhedralCone:
-    return PolyhedralCone([unit(row) for row in rows], tolerance=ROW_TOLERANCE)
+    return PolyhedralCone([unit(row) for row in rows])
 
 
 def rank(vectors: list) -> int:
