@@ -78,9 +78,9 @@ CLEAR_ROWS: Final = 1e-4
 Between the two, what is the case is found with more digits."""
 
 LARGEST_FRICTION: Final = 1e10
-"""Dimensionless, in the plane: a coefficient of friction above it, or above it divided by the contact's arm in
-radii of gyration, acts as that one does. They differ in forces whose normal part is less than 1e-10 of the
-wrench of the tangential one, below what wrenches are known to."""
+"""Dimensionless, in the plane: a coefficient of friction above it, or above it divided by the contact's arm
+in radii of gyration, acts as that one does. They differ in forces whose normal part is less than 1e-10 of
+the wrench of the tangential one, below what wrenches are known to."""
 
 GRAZING_DEPTH: Final = 1e-9
 """m. A point that dips into a plane by less, and rises again, may be overlooked by the search for the first

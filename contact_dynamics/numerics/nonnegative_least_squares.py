@@ -12,6 +12,7 @@ else in the answer. And it leaves out directions that are no more than rounding,
 
 from __future__ import annotations
 
+import math
 from decimal import Decimal
 from typing import TYPE_CHECKING, Final, TypeAlias
 
@@ -33,6 +34,8 @@ _NOTHING: Final = Decimal("1e-60")
 
 _ROUNDED: Final = Decimal("1e-14")
 """Relative: the target's own rounding. Columns that differ by no more would need huge shares to meet it."""
+
+_LARGEST_SHARE: Final = 1e13
 
 _MET: Final = Decimal("1e-30")
 """Relative: what may be left over where all is met."""
@@ -112,6 +115,16 @@ def exact_combination(columns: Sequence[Vector3], target: Vector3) -> tuple[list
         return [float(acting.get(i, 0)) for i in range(len(rows))], float(_inner(left, left).sqrt())
 
 
+def distance_from_cone(columns: Sequence[Vector3], target: Vector3) -> float:
+    """Return how far a target is from the positive combinations of ``columns``; infinite: not known.
+
+    Where only shares of more than `_LARGEST_SHARE` of the target reach it, rounding of the columns decides.
+    """
+    x, distance = exact_combination(columns, target)
+    size = math.sqrt(sum(part * part for part in target))
+    return distance if sum(x) <= _LARGEST_SHARE * size else math.inf
+
+
 def _least_exact_forces(rows: list[_Decimals], right: _Decimals) -> dict[int, Decimal] | None:
     """Return the forces of least sum of squares that add up to ``right``; None: not found.
 
@@ -121,7 +134,9 @@ def _least_exact_forces(rows: list[_Decimals], right: _Decimals) -> dict[int, De
     acting = list(range(len(rows)))
     for _ in range(_GUESSES):
         used = [rows[i] for i in acting]
-        y = _solution([[sum((a[i] * a[j] for a in used), Decimal(0)) for j in range(3)] for i in range(3)], right)
+        y = _solution(
+            [[sum((a[i] * a[j] for a in used), Decimal(0)) for j in range(3)] for i in range(3)], right
+        )
         sizes = [_inner(row, y) for row in rows]
         pushing = [i for i, size in enumerate(sizes) if size > 0]
         if pushing == acting:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.plane.types import PlanarContact, Vector2
 
+
 class Coincident(NamedTuple):
     """Which contacts are the same."""
 
@@ -93,7 +94,12 @@ def _same_pairs(
     far = max(rho, *(abs(x) + abs(y) for x, y in (contact.r for contact in contacts)))
     sums = sorted(
         [
-            (0.61 * contact.r[0] + 0.79 * contact.r[1] + far * (contact.normal[0] + 0.37 * contact.normal[1]), i)
+            (
+                0.61 * contact.r[0]
+                + 0.79 * contact.r[1]
+                + far * (contact.normal[0] + 0.37 * contact.normal[1]),
+                i,
+            )
             for i, contact in enumerate(contacts)
         ]
     )

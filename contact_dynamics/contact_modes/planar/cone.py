@@ -38,6 +38,11 @@ MANY: Final = 24
 """Rows, from which on arrays are faster."""
 
 
+_SAME_SHARP: Final = 1e-14
+"""The sine below which rows that are known better than to floats are one: friction that never slips leaves of
+a contact's normal no more than 1e-10 of the tangent, and short arms less."""
+
+
 class _NotClearError(Exception):
     """Floats do not tell whether something vanishes."""
 
@@ -53,7 +58,7 @@ class Sector(NamedTuple):
 class PolyhedralCone:
     """The cone {x : row . x >= 0 for every row} as lineality space plus extreme rays."""
 
-    __slots__ = ("exact", "lineality", "rays", "rows", "tight")
+    __slots__ = ("_same", "exact", "lineality", "rays", "rows", "tight")
 
     exact: bool  # whether it was built in decimals
 
@@ -77,12 +82,14 @@ class PolyhedralCone:
             sharp: What returns the rows in decimals, not unit, where they are known better than to floats.
         """
         self.exact = exact
+        self._same = SAME_ROWS
         if not exact:
             try:
                 self._build(rows)
             except _NotClearError:
                 self.exact = True
         if self.exact:
+            self._same = SAME_ROWS if sharp is None else _SAME_SHARP
             with within(DECIMALS.sums):
                 known = [decimal_vector(row) for row in rows] if sharp is None else sharp()
                 self._build([_unit(row) for row in known])
@@ -107,7 +114,7 @@ class PolyhedralCone:
         if self.exact:
             return
         for size in sizes:
-            if SAME_ROWS < size < CLEAR_ROWS or SAME_ROWS < -size < CLEAR_ROWS:
+            if self._same < size < CLEAR_ROWS or self._same < -size < CLEAR_ROWS:
                 raise _NotClearError
 
     @property
@@ -160,7 +167,7 @@ class PolyhedralCone:
         """Start from as many independent rows as there are, and return which; none: all are parallel."""
         rows = self.rows
         one = rows[0]
-        second, width, normal = 0, SAME_ROWS, one
+        second, width, normal = 0, self._same, one
         for index in range(1, len(rows)):
             across = cross(one, rows[index])
             sine = _root(dot(across, across))
@@ -172,7 +179,7 @@ class PolyhedralCone:
             return ()
         self._check_clear(width)
         two = rows[second]
-        third, height = -1, width * type(width)(SAME_ROWS)
+        third, height = -1, width * type(width)(self._same)
         for index, row in enumerate(rows):
             above = dot(normal, row)
             if abs(above) > abs(height):
@@ -207,7 +214,7 @@ class PolyhedralCone:
             lowest = heights.min(axis=1)
             self._touch(waiting, heights, lowest)
             order = np.argsort(lowest)
-            order = order[: np.searchsorted(lowest[order], -SAME_ROWS)]
+            order = order[: np.searchsorted(lowest[order], -self._same)]
             cutting = waiting[order]
             for index in cutting[:at_once].tolist():
                 self._cut(self.rows[index], index)
@@ -217,13 +224,13 @@ class PolyhedralCone:
     def _touch(self, indices: NDArray[np.int64], heights: FloatArray, lowest: FloatArray) -> None:
         """Remember the rows that touch the cone and do not cut it."""
         near = heights[lowest < CLEAR_ROWS]
-        if ((abs(near) > SAME_ROWS) & (abs(near) < CLEAR_ROWS)).any():
+        if ((abs(near) > self._same) & (abs(near) < CLEAR_ROWS)).any():
             raise _NotClearError
-        touching = np.flatnonzero(abs(lowest) <= SAME_ROWS)
+        touching = np.flatnonzero(abs(lowest) <= self._same)
         if len(touching) == 0:
             return
         flags = np.zeros((len(self.rays), len(self.rows)), dtype=bool)
-        flags[:, indices[touching]] = (heights[touching] <= SAME_ROWS).T
+        flags[:, indices[touching]] = (heights[touching] <= self._same).T
         for ray, packed in enumerate(np.packbits(flags, axis=1, bitorder="little")):
             self.tight[ray] |= int.from_bytes(packed.tobytes(), "little")
 
@@ -238,7 +245,7 @@ class PolyhedralCone:
         if lowest >= CLEAR_ROWS:
             return
         self._check_clear(*heights)
-        tolerance = SAME_ROWS
+        tolerance = self._same
         if lowest > tolerance:
             return
         bit = 1 << index
@@ -253,7 +260,7 @@ class PolyhedralCone:
         """Cut a row that does not vanish on the lineality space: one line becomes a ray."""
         parts = [dot(row, line) for line in self.lineality]
         length = _root(sum(part * part for part in parts))
-        if length <= SAME_ROWS:
+        if length <= self._same:
             return False
         self._check_clear(length)
         ray = _unit(_combination(parts, self.lineality))
@@ -272,7 +279,7 @@ class PolyhedralCone:
 
     def _cut_rays(self, heights: list[float], index: int) -> None:
         """Drop the run of rays below the row, and put new ones where its edges cross the row."""
-        tolerance = SAME_ROWS
+        tolerance = self._same
         bit = 1 << index
         top = heights.index(max(heights))
         heights = heights[top:] + heights[:top]

@@ -219,6 +219,11 @@ def effective_friction(contact: PlanarContact, length: float) -> float:
     return max(1.0, min(contact.friction, LARGEST_FRICTION / arms))
 
 
+def beyond_grip(contact: PlanarContact, length: float) -> bool:
+    """Return whether the contact acts with less friction than it has."""
+    return effective_friction(contact, length) < contact.friction
+
+
 def _unhindered(twist: Vector3, resting: list[Vector3]) -> Vector3:
     """Return the part of ``twist`` orthogonal to all ``resting`` rows."""
     if not resting:

@@ -20,7 +20,7 @@ from contact_dynamics.contact_modes.planar.cone import PolyhedralCone
 from contact_dynamics.contact_modes.planar.friction_edges import sharp_reaction
 from contact_dynamics.contact_modes.planar.problem import AT_REST, contact_rows, effective_friction
 from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict
-from contact_dynamics.numerics.nonnegative_least_squares import exact_combination
+from contact_dynamics.numerics.nonnegative_least_squares import distance_from_cone
 from contact_dynamics.numerics.vectors import Vector3, dot, normalised
 from contact_dynamics.plane.force_dual import friction_cone
 from contact_dynamics.validation import check_positive
@@ -90,11 +90,12 @@ def _room(balance: PolyhedralCone, target: Vector3, accuracy: float) -> float:
     """Return how far inside the cone that is dual to ``balance`` the wrench lies, N; < 0: outside."""
     tolerance = accuracy * math.sqrt(dot(target, target))
     heights = [dot(facet, target) for facet in balance.rays]
-    if any(abs(dot(line, target)) > tolerance for line in balance.lineality):
-        return -1.0
-    if heights and min(heights) < -tolerance:
-        return -1.0
-    if balance.exact and exact_combination(balance.rows, target)[1] > tolerance:
+    if balance.exact:
+        if distance_from_cone(balance.rows, target) > tolerance:
+            return -1.0
+    elif any(abs(dot(line, target)) > tolerance for line in balance.lineality) or (
+        heights and min(heights) < -tolerance
+    ):
         return -1.0
     if balance.lineality:
         return 0.0

@@ -19,7 +19,11 @@ from contact_dynamics.contact_modes.planar.enumeration import Cell
 from contact_dynamics.contact_modes.planar.friction_edges import friction_edges, reactions, sharp_reactions
 from contact_dynamics.contact_modes.planar.problem import PlanarCase, lifted
 from contact_dynamics.numerics.linear_spaces import orthonormal
-from contact_dynamics.numerics.nonnegative_least_squares import exact_combination, least_force
+from contact_dynamics.numerics.nonnegative_least_squares import (
+    distance_from_cone,
+    exact_combination,
+    least_force,
+)
 from contact_dynamics.numerics.vectors import Vector3, dot, norm, normalised, opposite
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
@@ -98,10 +102,16 @@ class ModeWrenches:
         where the mode's strict inequalities fail; infinite: no wrench brings the mode about.
         """
         tolerance = accuracy * norm(self._target)
-        for line in self.dual.lineality:
-            height = dot(line, self._target)
-            if abs(height) > tolerance:
-                return self._distance(line, height)
+        if self.dual.exact:
+            # Beyond the edge of a narrow cone a wrench is near to its facets and still far from the cone.
+            distance = distance_from_cone(self.dual.rows, self._target)
+            if distance > tolerance:
+                return distance
+        else:
+            for line in self.dual.lineality:
+                height = dot(line, self._target)
+                if abs(height) > tolerance:
+                    return self._distance(line, height)
         lowest, facet = 0.0, None
         strict = True
         rays = (1 << len(self._rays)) - 1
@@ -113,14 +123,9 @@ class ModeWrenches:
             if height <= tolerance:
                 common &= tight
                 strict = strict and tight & rays == rays
-        if facet is not None and lowest < -tolerance:
+        if facet is not None and lowest < -tolerance and not self.dual.exact:
             return self._distance(facet, lowest)
         self._common = common
-        if self.dual.exact:
-            # Beyond the edge of a narrow cone a wrench is near to its facets and still far from the cone.
-            _, distance = exact_combination(self.dual.rows, self._target)
-            if distance > tolerance:
-                return distance
         return None if strict else 0.0
 
     def solution(self, accuracy: float) -> tuple[list[float], tuple[bool, bool]]:
