@@ -77,7 +77,7 @@ CLEAR_ROWS: Final = 1e-4
 """Dimensionless: the sine above which floats tell contact planes, and wrenches, apart, to within `SAME_ROWS`.
 Between the two, what is the case is found with more digits."""
 
-LARGEST_FRICTION: Final = 1e10
+LARGEST_GRIP: Final = 1e10
 """Dimensionless, in the plane: a coefficient of friction above it, or above it divided by the contact's arm
 in radii of gyration, acts as that one does. They differ in forces whose normal part is less than 1e-10 of
 the wrench of the tangential one, below what wrenches are known to."""

@@ -25,7 +25,7 @@ from contact_dynamics.contact_modes.planar.problem import beyond_grip, planar_ca
 from contact_dynamics.contact_modes.planar.result import PlanarMode, PlanarModeAnswer
 from contact_dynamics.contact_modes.result import ModeVerdict, RefusedMode, verdict_on
 from contact_dynamics.errors import UndecidedError
-from contact_dynamics.tolerances import LARGEST_FRICTION
+from contact_dynamics.tolerances import LARGEST_GRIP
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.planar.problem import PlanarContactProblem
@@ -37,7 +37,7 @@ def planar_contact_modes(problem: PlanarContactProblem) -> PlanarModeAnswer:
     Without contacts the one mode is the empty string, free motion.
 
     Raises:
-        UndecidedError: no mode is consistent with friction up to `LARGEST_FRICTION`, and there is more.
+        UndecidedError: no mode is consistent with friction up to `LARGEST_GRIP`, and there is more.
 
     Source: lecture 26, table and "Basic approach".
     """
@@ -76,7 +76,7 @@ def planar_contact_modes(problem: PlanarContactProblem) -> PlanarModeAnswer:
             if not modes and any(beyond_grip(contact, case.rho) for contact in contacts):
                 raise UndecidedError(
                     "no mode is consistent with friction of at most "
-                    f"{LARGEST_FRICTION:g} over the arm in radii of gyration, and a contact has more"
+                    f"{LARGEST_GRIP:g} over the arm in radii of gyration, and a contact has more"
                 )
     found = tuple(modes)
     return PlanarModeAnswer(

@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.contact_modes.planar.determined import IndependentModes
-from contact_dynamics.contact_modes.planar.enumeration import FIXED, Cell
+from contact_dynamics.contact_modes.planar.enumeration import FIXED, RIGHT, Cell
 from contact_dynamics.contact_modes.planar.result import PlanarMode
 from contact_dynamics.contact_modes.planar.wrench_cone import ModeWrenches
 from contact_dynamics.contact_modes.result import Refusal, RefusedMode
@@ -79,6 +79,12 @@ def _judged(
         sums[position] = (f_t + slope * share, f_n + share)
     forces = [sums[position] for position, _ in cell.letters]
     allowed = _EVIDENCE * (accuracy + _ROUNDING) * (case.load + sum(shares))
+    if wrenches.dual.exact:
+        # So close to the boundary that the strict inequalities are lost in what forces round to.
+        lost = _contradiction(case, cell, forces)
+        if lost is not None:
+            contact, amount = lost
+            return RefusedMode(mode=mode, refusal=Refusal.WRONG_MOTION, contact=contact, amount=amount), True
     certain = wrenches.dual.exact or _misses(case, cell, forces) <= allowed
     return _consistent(case, mode, cell, forces, unique=unique), certain
 
@@ -133,6 +139,23 @@ def _misses(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> float:
         if letter == FIXED:
             most = max(most, case.mass * abs(dot(row.unit_t, q) + row.b_t / row.size_t))
     return most
+
+
+def _contradiction(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> tuple[int, float] | None:
+    """Return the first contact that should separate or start to slide and does not, and its acceleration."""
+    q = _acceleration(case, cell, forces)
+    staying = dict(cell.letters)
+    for position, row in enumerate(case.rows):
+        letter = staying.get(position)
+        if letter is None:
+            value = dot(row.N, q) + row.b_n
+        elif letter != FIXED and row.slides == 0.0:
+            value = (dot(row.T, q) + row.b_t) * (1.0 if letter == RIGHT else -1.0)
+        else:
+            continue
+        if value <= 0.0:
+            return row.contact, value
+    return None
 
 
 def _acceleration(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> Vector3:

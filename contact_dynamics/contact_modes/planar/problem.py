@@ -28,7 +28,7 @@ from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normali
 from contact_dynamics.plane.types import PlanarVelocity
 from contact_dynamics.tolerances import (
     ACCELERATION_TOLERANCE,
-    LARGEST_FRICTION,
+    LARGEST_GRIP,
     ROW_TOLERANCE,
     VELOCITY_TOLERANCE,
 )
@@ -212,11 +212,11 @@ def contact_rows(contact: PlanarContact, length: float) -> tuple[Vector3, Vector
 
 
 def effective_friction(contact: PlanarContact, length: float) -> float:
-    """Return the coefficient of friction, or the largest that makes a difference, see `LARGEST_FRICTION`."""
+    """Return the coefficient of friction, or the largest that makes a difference, see `LARGEST_GRIP`."""
     if contact.friction <= 1.0:
         return contact.friction
     arms = max(1.0, abs(contact.r[0]) / length, abs(contact.r[1]) / length)
-    return max(1.0, min(contact.friction, LARGEST_FRICTION / arms))
+    return max(1.0, min(contact.friction, LARGEST_GRIP / arms))
 
 
 def beyond_grip(contact: PlanarContact, length: float) -> bool:
