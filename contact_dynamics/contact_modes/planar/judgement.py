@@ -17,7 +17,7 @@ from contact_dynamics.contact_modes.planar.enumeration import FIXED, RIGHT, Cell
 from contact_dynamics.contact_modes.planar.result import PlanarMode
 from contact_dynamics.contact_modes.planar.wrench_cone import ModeWrenches
 from contact_dynamics.contact_modes.result import Refusal, RefusedMode
-from contact_dynamics.numerics.vectors import Vector3, dot
+from contact_dynamics.numerics.vectors import Vector3, dot, norm
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -144,16 +144,18 @@ def _misses(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> float:
 def _contradiction(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> tuple[int, float] | None:
     """Return the first contact that should separate or start to slide and does not, and its acceleration."""
     q = _acceleration(case, cell, forces)
+    size = norm(q)
     staying = dict(cell.letters)
     for position, row in enumerate(case.rows):
         letter = staying.get(position)
         if letter is None:
-            value = dot(row.N, q) + row.b_n
+            value, length = dot(row.N, q) + row.b_n, row.size_n
         elif letter != FIXED and row.slides == 0.0:
-            value = (dot(row.T, q) + row.b_t) * (1.0 if letter == RIGHT else -1.0)
+            value, length = dot(row.T, q) + row.b_t, row.size_t
+            value = value if letter == RIGHT else -value
         else:
             continue
-        if value <= 0.0:
+        if value <= _ROUNDING * length * size:
             return row.contact, value
     return None
 
