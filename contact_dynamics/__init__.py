@@ -1,68 +1,56 @@
 """Contact modes, impacts and free tumbling of rigid bodies (Mason's lectures 24 to 27).
 
-The table of contents, chapters in reading order; everything here needs NumPy and SciPy, and knows no ROS.
+What a first page needs is here: bodies and their states, contacts, problems, and one call for each question.
+Everything else stands in the chapters, in reading order; each one's own page says what is in it. All of it
+needs NumPy and SciPy, and knows no ROS.
 
-- Lecture 24, 25, rigid bodies: `MassProperties`, `BodyState`, momenta and energies (`rigid_body`).
-- Lecture 24, 25, mass properties from particles, shapes and meshes: `MassDistribution` (`inertia`).
-- Lecture 25, tumbling: `free_motion` and its `FreeMotion` (`tumbling`); Poinsot's picture of it is in
-  `contact_dynamics.tumbling.poinsot_construction`.
-- Motion under wrenches and drag: `motion_of`. A state from several: `fit_free_motion`, and under
-  forces `fit_motion`. Its covariance along the way: `propagate_covariance`.
-- Where a flight ends: `first_contact`, `next_landing`, in a `World` of `Body`, `Surface` and `Obstacle`.
-  Shapes of bodies, from spheres to polyhedra: `contact_dynamics.shapes.convex`.
-- Contacts: `ContactSet` in space (`contact`), of all kinds (`contact.curvature`), from geometry
-  (`find_contacts`); `PlanarContact` and its kin in the plane (`planar`), reached from space by a
-  `PlaneOfMotion`.
-- Lecture 26, contact modes: `PlanarContactProblem`, `SpatialContactProblem` (`contact_modes`).
-- Lecture 27, impact: `planar_impact`, `spatial_impact`, several contacts at once `several_impact`, strikes in
-  time `impact_sequence` (`impact`).
-- What is refused, and how: `errors`. What counts as zero: `tolerances`.
+- `rigid_body`: mass properties, states, momenta and energies (lectures 24 and 25), and in it `inertia`: mass
+  properties from particles, shapes and meshes.
+- `tumbling`: where a free body will be, in closed form (`free_motion`); flips, Poinsot's picture (lecture
+  25).
+- `motion`: motion under wrenches and drag (`motion_of`), fits to published states, covariances.
+- `shapes`: spheres, cylinders, polyhedra; an `Obstacle`. A `World` has bodies, surfaces and gravity.
+- `contact`: a `Contact` and sets of them, given or found from geometry (`find_contacts`).
+- `plane`: a `PlanarBody` and its kin, and the way from space to a plane of motion and back.
+- `landing`: where a flight ends (`next_landing`).
+- `contact_modes`: does each contact separate, slide or stay (lecture 26)? State a `PlanarContactProblem` or
+  a `SpatialContactProblem`, and ask it: ``contact_modes.contact_modes(problem)``.
+- `impact`: velocities after an impact (lecture 27): `planar_impact`, `spatial_impact`, several contacts at
+  once (`several_impact`) or one after the other in time (`impact_sequence`).
+- `questions`: what the services answer, asked in Python: one question with all its options, one answer.
+
+`errors` says what is refused, and how; `tolerances` what counts as zero.
 """
 
-from contact_dynamics.contact.contact import Contact, ContactSet
-from contact_dynamics.contact.curvature import Curvatures
-from contact_dynamics.contact.found import find_contacts
-from contact_dynamics.contact_modes import (
-    ModeVerdict,
-    PlanarContactProblem,
-    PlanarMode,
-    PlanarModeAnswer,
-    Refusal,
-    RefusedMode,
-    SpatialContactProblem,
+from contact_dynamics import (
+    contact,
+    contact_modes,
+    impact,
+    landing,
+    motion,
+    plane,
+    questions,
+    rigid_body,
+    shapes,
+    tumbling,
 )
+from contact_dynamics.contact import Contact, ContactSet, find_contacts
+from contact_dynamics.contact_modes import ModeVerdict, PlanarContactProblem, SpatialContactProblem
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.impact import (
-    ImpactOutcome,
-    PlanarImpact,
     RestitutionLaw,
-    SpatialImpact,
     impact_sequence,
     planar_impact,
     several_impact,
     spatial_impact,
 )
-from contact_dynamics.landing.earliest import Landing, next_landing
-from contact_dynamics.landing.plane_arrival import FirstContact, first_contact
-from contact_dynamics.motion.covariance import propagate_covariance
-from contact_dynamics.motion.free_fit import fit_free_motion
-from contact_dynamics.motion.integrated import motion_of
-from contact_dynamics.motion.integrated_fit import fit_motion
-from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, best_plane, project_onto_plane
-from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
-from contact_dynamics.rigid_body import inertia
-from contact_dynamics.rigid_body.body import (
-    BodyState,
-    MassProperties,
-    angular_momentum,
-    kinetic_energy,
-    momentum,
-)
-from contact_dynamics.rigid_body.inertia import MassDistribution
-from contact_dynamics.shapes.convex import ConvexShape
-from contact_dynamics.shapes.obstacle import Obstacle
-from contact_dynamics.tumbling import FreeMotion, Regime, Trajectory, free_motion, states_of_many
-from contact_dynamics.world import Body, Surface, World, box_vertices
+from contact_dynamics.landing import next_landing
+from contact_dynamics.motion import motion_of
+from contact_dynamics.plane import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.rigid_body import BodyState, MassProperties, inertia
+from contact_dynamics.shapes import Obstacle
+from contact_dynamics.tumbling import free_motion
+from contact_dynamics.world import Body, Surface, World
 
 
 def __getattr__(name: str) -> str:
@@ -80,53 +68,39 @@ __all__ = [
     "Contact",
     "ContactDynamicsError",
     "ContactSet",
-    "ConvexShape",
-    "Curvatures",
-    "FirstContact",
-    "FreeMotion",
-    "ImpactOutcome",
-    "Landing",
-    "MassDistribution",
     "MassProperties",
     "ModeVerdict",
     "Obstacle",
     "PlanarBody",
     "PlanarContact",
     "PlanarContactProblem",
-    "PlanarImpact",
-    "PlanarMode",
-    "PlanarModeAnswer",
-    "PlanarProblem",
     "PlanarVelocity",
     "PlanarWrench",
-    "PlaneOfMotion",
-    "Refusal",
-    "RefusedMode",
-    "Regime",
     "RestitutionLaw",
     "SpatialContactProblem",
-    "SpatialImpact",
     "Surface",
-    "Trajectory",
     "World",
-    "angular_momentum",
-    "best_plane",
-    "box_vertices",
+    "contact",
+    "contact_modes",
     "find_contacts",
-    "first_contact",
-    "fit_free_motion",
-    "fit_motion",
     "free_motion",
+    "impact",
     "impact_sequence",
     "inertia",
-    "kinetic_energy",
-    "momentum",
+    "landing",
+    "motion",
     "motion_of",
     "next_landing",
     "planar_impact",
-    "project_onto_plane",
-    "propagate_covariance",
+    "plane",
+    "questions",
+    "rigid_body",
     "several_impact",
+    "shapes",
     "spatial_impact",
-    "states_of_many",
+    "tumbling",
 ]
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]

@@ -5,22 +5,27 @@ from __future__ import annotations
 import argparse
 import sys
 from importlib import import_module
-from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.nodes.arguments import check_arguments
+from contact_dynamics.version import version_of_this_package
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
 class Verb(NamedTuple):
-    """One verb: where its `main(arguments) -> exit code` is, where its parser, and what it does."""
+    """One verb: where its `main(arguments) -> exit code` is, where its parser, and what it does.
+
+    Attributes:
+        parser: Module:function; neither needs ROS, so that `--help` works everywhere.
+        needs: Modules that `pip install .` does not bring.
+    """
 
     module: str
-    parser: str  # module:function; neither needs ROS, so that `--help` works everywhere
-    needs: tuple[str, ...]  # modules that `pip install .` does not bring
+    parser: str
+    needs: tuple[str, ...]
     help: str
 
 
@@ -109,12 +114,5 @@ def _parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("verb", help="what to do, see below", choices=sorted(VERBS), metavar="verb")
-    parser.add_argument("--version", action="version", version=_version())
+    parser.add_argument("--version", action="version", version=version_of_this_package())
     return parser
-
-
-def _version() -> str:
-    try:
-        return version("contact_dynamics")
-    except PackageNotFoundError:
-        return "not installed"

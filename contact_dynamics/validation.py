@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias, TypeVar
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.tolerances import LARGEST_NUMBER, UNIT_LENGTH_TOLERANCE
+from contact_dynamics.tolerances import LARGEST_NUMBER, LENGTH_ROUNDING, UNIT_LENGTH_TOLERANCE
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -22,10 +22,6 @@ FloatArray: TypeAlias = "NDArray[np.float64]"
 Choice = TypeVar("Choice", bound=Enum)
 
 _FEW: Final = 20
-
-LENGTH_ROUNDING: Final = 1e-15
-"""Dimensionless. A vector that was scaled to length 1 has it within this, and stays as it is: scaling twice
-changes nothing."""
 
 
 def check_finite(field: str, value: Any) -> float:

@@ -12,11 +12,12 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.tolerances import (
+    LENGTH_ROUNDING,
     NEGATIVE_VARIANCE_TOLERANCE,
     SYMMETRY_TOLERANCE,
     UNIT_LENGTH_TOLERANCE,
 )
-from contact_dynamics.validation import LENGTH_ROUNDING, FloatArray, check_array
+from contact_dynamics.validation import FloatArray, check_array
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

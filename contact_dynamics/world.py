@@ -12,6 +12,7 @@ import numpy as np
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import InvalidFieldError, UnknownBodyError
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.shapes.convex import MOST_VERTICES, NO_SHAPE, ConvexShape, box_vertices, polyhedron
 from contact_dynamics.shapes.obstacle import Obstacle
@@ -25,9 +26,17 @@ if TYPE_CHECKING:
 __all__ = ["MOST_VERTICES", "Body", "Surface", "World", "box_vertices"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Body:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Body(Record):
     """A rigid body that questions name.
+
+    Attributes:
+        name: What questions call it.
+        mass_properties: Mass and angular inertia about the centre of mass.
+        p_FB_F: (3,), m, centre of mass in the published frame F.
+        vertices_B: (k, 3), m, corners of the shape, body axes; given, they are short for the polyhedron of
+            these corners.
+        shape: What can touch, body axes.
 
     Raises:
         InvalidFieldError: a number is not finite, an array has another shape, or both vertices and a shape
@@ -37,13 +46,9 @@ class Body:
 
     name: str
     mass_properties: MassProperties
-    p_FB_F: FloatArray = field(
-        default_factory=lambda: np.zeros(3)
-    )  # (3,), m, centre of mass in the published frame F
-    vertices_B: FloatArray = field(
-        default_factory=lambda: np.zeros((0, 3))
-    )  # (k, 3), m, corners of the shape, body axes; given, they are short for the polyhedron of these corners
-    shape: ConvexShape = NO_SHAPE  # what can touch, body axes
+    p_FB_F: FloatArray = field(default_factory=lambda: np.zeros(3))
+    vertices_B: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
+    shape: ConvexShape = NO_SHAPE
 
     if TYPE_CHECKING:
 
@@ -101,19 +106,26 @@ class Body:
         )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Surface:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Surface(Record):
     """A flat of the world: the free side is where its normal points.
+
+    Attributes:
+        name: What contacts call it.
+        p_WS_W: (3,), m, a point of the surface, world.
+        normal_W: (3,), unit, into the free side, world axes.
+        friction: Coulomb's mu, >= 0, between this surface and any body.
+        restitution: e, in [0, 1], likewise.
 
     Raises:
         InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, or e outside [0, 1].
     """
 
     name: str
-    p_WS_W: FloatArray  # (3,), m, a point of the surface, world
-    normal_W: FloatArray  # (3,), unit, into the free side, world axes
-    friction: float  # Coulomb's mu, >= 0, between this surface and any body
-    restitution: float  # e, in [0, 1], likewise
+    p_WS_W: FloatArray
+    normal_W: FloatArray
+    friction: float
+    restitution: float
 
     if TYPE_CHECKING:
 
@@ -135,9 +147,14 @@ class Surface:
         return heights
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class World:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class World(Record):
     """Bodies by name, surfaces, and gravity.
+
+    Attributes:
+        bodies: The bodies, by names that differ.
+        surfaces: Flats without end, and obstacles.
+        gravity_W: (3,), m/s^2, world axes.
 
     Raises:
         InvalidFieldError: two bodies of one name, or gravity not three finite numbers.
@@ -145,9 +162,7 @@ class World:
 
     bodies: tuple[Body, ...] = ()
     surfaces: tuple[Surface | Obstacle, ...] = ()
-    gravity_W: FloatArray = field(
-        default_factory=lambda: np.array(STANDARD_GRAVITY_W)
-    )  # (3,), m/s^2, world axes
+    gravity_W: FloatArray = field(default_factory=lambda: np.array(STANDARD_GRAVITY_W))
 
     if TYPE_CHECKING:
 

@@ -8,13 +8,13 @@ from contact_dynamics import (
     MassProperties,
     Surface,
     World,
-    box_vertices,
     find_contacts,
     impact_sequence,
     next_landing,
     several_impact,
 )
 from contact_dynamics.impact import SeveralContactsLaw, outcomes_over_orders
+from contact_dynamics.shapes import box_vertices
 
 brick = Body(
     name="brick",

@@ -2,16 +2,8 @@
 
 import numpy as np
 
-from contact_dynamics import (
-    Body,
-    BodyState,
-    MassProperties,
-    Surface,
-    World,
-    box_vertices,
-    next_landing,
-    spatial_impact,
-)
+from contact_dynamics import Body, BodyState, MassProperties, Surface, World, next_landing, spatial_impact
+from contact_dynamics.shapes import box_vertices
 
 box = Body(
     name="box",

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from contact_dynamics import BodyState, MassProperties, free_motion
-from contact_dynamics.tumbling.poinsot_construction import poinsot
+from contact_dynamics.tumbling import poinsot
 
 body = MassProperties(mass=0.2, I_B=np.diag([1.0e-4, 2.0e-4, 2.8e-4]))
 spin = BodyState(

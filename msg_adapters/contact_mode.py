@@ -1,162 +1,164 @@
-"""Answers about contact modes, in the plane and in space, to the service's response, in world axes."""
+"""Answers about contact modes to the service's response and back, in world axes."""
 
 from __future__ import annotations
 
+import math
+from itertools import repeat
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.plane.lifting import equal_shares
+from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict, Refusal, RefusedMode
+from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
+from contact_dynamics.contact_modes.spatial.result import SpatialMode
+from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
+from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions.contact_modes import ContactModeAnswer
+from contact_dynamics.questions.problem import Problem
+from contact_dynamics.questions.settled_impact import SettledImpact
 from contact_dynamics_interfaces.msg import ContactMode, ModeWrenches
-from msg_adapters.contacts import flat
+from contact_dynamics_interfaces.srv import PredictContactMode
+from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
+from msg_adapters.contacts import contacts_from_msg, contacts_to_msg, flat, rows
+from msg_adapters.geometry import vector_from_msg, vector_to_msg
+from msg_adapters.impact import resolved_impact_from_msg, resolved_impact_to_msg
 
 if TYPE_CHECKING:
-    from array import array
-    from collections.abc import Sequence
-
-    from contact_dynamics.contact_modes import (
-        BodyStatics,
-        PlanarMode,
-        PlanarModeAnswer,
-        PlanarModeMargin,
-        PlanarWrenchSet,
-        RefusedMode,
-        SpatialMode,
-        SpatialModeAnswer,
-        SpatialModeMargin,
-        SpatialWrenchSet,
-    )
-    from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion
-    from contact_dynamics.plane.types import PlanarWrench, Vector2
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics_interfaces.srv import PredictContactMode
+    from contact_dynamics.world import World
 
 
-def write_planar_answer(
-    response: PredictContactMode.Response,
-    answer: PlanarModeAnswer,
-    problem: PlanarProblem,
-    partners: tuple[int, ...],
-) -> None:
-    """Write an answer in the plane into a `PredictContactMode` response, in world axes.
+def contact_mode_answer_to_msg(
+    answer: ContactModeAnswer, *, world_frame: str, into: PredictContactMode.Response | None = None
+) -> PredictContactMode.Response:
+    """Return an answer as a response: a new one, or the empty one to fill."""
+    msg = PredictContactMode.Response() if into is None else into
+    margins = repeat(None) if answer.margins is None else answer.margins
+    msg.verdict = int(answer.verdict)
+    msg.modes = [mode_to_msg(mode, margin) for mode, margin in zip(answer.modes, margins, strict=False)]
+    msg.approaching_contacts = list(answer.approaching)
+    msg.contact_velocities = flat(answer.contact_velocities_W)
+    msg.kinematic_modes = list(answer.kinematic_modes)
+    _write_refused(msg, answer.refused)
+    if answer.wrench_sets is not None:
+        msg.wrench_sets = [wrench_set_to_msg(wrenches) for wrenches in answer.wrench_sets]
+    _write_statics(msg, answer.statics)
+    if answer.settled is not None:
+        _write_settled(msg, answer, answer.settled, world_frame)
+    msg.problem = int(answer.problem)
+    body_state_to_msg(
+        answer.state,
+        body_name=answer.body_name,
+        world_frame=world_frame,
+        p_FB_F=answer.p_FB_F,
+        into=msg.state,
+    )
+    contacts_to_msg(answer.contacts, into=msg.contacts)
+    if answer.plane is not None:
+        msg.plane_normal = vector_to_msg(answer.plane.normal_W)
+    msg.out_of_plane = answer.out_of_plane
+    msg.out_of_plane_reason = answer.out_of_plane_reason
+    msg.velocity_tolerance = answer.velocity_tolerance
+    msg.acceleration_tolerance = answer.acceleration_tolerance
+    msg.distance_tolerance = answer.distance_tolerance
+    msg.friction_facets = answer.friction_facets
+    msg.wrench_facets = answer.wrench_facets
+    return msg
 
-    ``partners`` are the mirror images of the contacts in the plane, with which they share their forces.
+
+def contact_mode_answer_from_msg(msg: PredictContactMode.Response, *, world: World) -> ContactModeAnswer:
+    """Return the answer that a response carries; ``world`` knows the body's centre of mass.
+
+    Where there is no mode, the response does not tell margins that were not asked for from none.
+
+    Raises:
+        InvalidFieldError: arrays of unequal length, or a number that is not allowed.
     """
-    response.verdict = int(answer.verdict)
-    response.modes = planar_modes_to_msgs(answer.modes, problem, partners)
-    response.approaching_contacts = list(answer.approaching)
-    response.contact_velocities = flat(_lift(answer.contact_velocities, problem))
-    write_refused(response, answer.refused)
-    response.kinematic_modes = list(answer.kinematic_modes)
-    response.stable_disturbance = float("nan")
-    response.velocity_tolerance = answer.velocity_tolerance
-    response.acceleration_tolerance = answer.acceleration_tolerance
+    p_FB_F = center_of_mass(msg.state.body_name, world)
+    margins = tuple(filter(None, map(margin_from_msg, msg.modes)))
+    wrench_sets = tuple(wrench_set_from_msg(wrenches) for wrenches in msg.wrench_sets)
+    is_planar = msg.problem == PredictContactMode.Request.PLANAR
+    return ContactModeAnswer(
+        body_name=msg.state.body_name,
+        p_FB_F=p_FB_F,
+        state=body_state_from_msg(msg.state, world_frame=msg.state.header.frame_id, p_FB_F=p_FB_F),
+        contacts=contacts_from_msg(msg.contacts),
+        verdict=ModeVerdict(msg.verdict),
+        modes=tuple(mode_from_msg(mode) for mode in msg.modes),
+        margins=margins or None,
+        approaching=tuple(msg.approaching_contacts),
+        contact_velocities_W=rows(msg.contact_velocities),
+        refused=_read_refused(msg),
+        kinematic_modes=tuple(msg.kinematic_modes),
+        wrench_sets=wrench_sets or None,
+        statics=_read_statics(msg),
+        settled=_read_settled(msg, p_FB_F) if msg.impact else None,
+        problem=Problem(msg.problem),
+        plane=PlaneOfMotion(normal_W=vector_from_msg(msg.plane_normal)) if is_planar else None,
+        out_of_plane=msg.out_of_plane,
+        out_of_plane_reason=msg.out_of_plane_reason,
+        velocity_tolerance=msg.velocity_tolerance,
+        acceleration_tolerance=msg.acceleration_tolerance,
+        distance_tolerance=msg.distance_tolerance,
+        friction_facets=msg.friction_facets,
+        wrench_facets=msg.wrench_facets,
+    )
 
 
-def write_spatial_answer(
-    response: PredictContactMode.Response,
-    answer: SpatialModeAnswer,
-    *,
-    kinematic_modes: Sequence[str],
-    contact_velocities_W: FloatArray,
-) -> None:
-    """Write an answer in space into a `PredictContactMode` response."""
-    response.verdict = int(answer.verdict)
-    response.modes = spatial_modes_to_msgs(answer.modes)
-    response.approaching_contacts = list(answer.approaching)
-    response.contact_velocities = flat(contact_velocities_W)
-    response.kinematic_modes = list(kinematic_modes)
-    response.stable_disturbance = float("nan")
-    response.velocity_tolerance = answer.velocity_tolerance
-    response.acceleration_tolerance = float("nan")
-    response.friction_facets = answer.friction_facets
-
-
-def write_refused(response: PredictContactMode.Response, modes: Sequence[RefusedMode]) -> None:
-    """Write into a response which modes mechanics refuses, and why."""
-    response.refused_modes = [refused.mode for refused in modes]
-    response.refusals = [int(refused.refusal) for refused in modes]
-    response.refused_contacts = [refused.contact for refused in modes]
-    response.refusal_amounts = flat(np.array([refused.amount for refused in modes]))
-
-
-def spatial_modes_to_msgs(modes: Sequence[SpatialMode]) -> list[ContactMode]:
-    """Return modes in space as messages."""
-    return [
-        ContactMode(
-            mode=mode.mode,
-            linear_acceleration=mode.acceleration_W,
-            angular_acceleration=mode.angular_acceleration_W,
-            contact_forces=flat(mode.contact_forces_W),
-            forces_unique=mode.forces_unique,
-            motion_unique=mode.motion_unique,
-            contact_accelerations=flat(mode.contact_accelerations_W),
-            tangential_directions=flat(mode.tangential_directions_W),
-            misdirection=mode.misdirection,
-            margin=float("nan"),
-        )
-        for mode in modes
-    ]
-
-
-def planar_modes_to_msgs(
-    modes: Sequence[PlanarMode], problem: PlanarProblem, partners: tuple[int, ...]
-) -> list[ContactMode]:
-    """Return modes in the plane as messages; contacts share their forces with their mirror images."""
-    return [_mode_to_msg(mode, problem, partners) for mode in modes]
-
-
-def write_planar_margins(
-    response: PredictContactMode.Response, margins: Sequence[PlanarModeMargin], plane: PlaneOfMotion
-) -> None:
-    """Write the margins of the consistent modes into a response that holds those modes, in the same order."""
-    for msg, margin in zip(response.modes, margins, strict=True):
-        msg.margin = margin.margin
-        msg.margin_length = margin.length
-        msg.margin_wrench = _wrench_row(margin.change, plane)
-        msg.margin_verdict = int(margin.verdict_beyond)
-        msg.margin_modes = list(margin.modes_beyond)
-
-
-def write_statics(response: PredictContactMode.Response, statics: BodyStatics) -> None:
-    """Write the answers to the static questions into a response."""
-    response.equilibrium = int(statics.equilibrium)
-    response.jammed = int(statics.jammed)
-    response.wedged = response.POSSIBLE if statics.wedged else response.NO
-    response.stable_disturbance = statics.stable_disturbance
-
-
-def write_spatial_margins(
-    response: PredictContactMode.Response, margins: Sequence[SpatialModeMargin]
-) -> None:
-    """Write the margins of the consistent modes into a response that holds those modes, in the same order."""
-    for msg, margin in zip(response.modes, margins, strict=True):
+def mode_to_msg(mode: SpatialMode, margin: SpatialModeMargin | None = None) -> ContactMode:
+    """Return a mode, with its margin where that was asked for."""
+    msg = ContactMode(
+        mode=mode.mode,
+        linear_acceleration=mode.acceleration_W,
+        angular_acceleration=mode.angular_acceleration_W,
+        contact_forces=flat(mode.contact_forces_W),
+        forces_unique=mode.forces_unique,
+        motion_unique=mode.motion_unique,
+        contact_accelerations=flat(mode.contact_accelerations_W),
+        tangential_directions=flat(mode.tangential_directions_W),
+        misdirection=mode.misdirection,
+        margin=math.nan,
+    )
+    if margin is not None:
         msg.margin = margin.margin
         msg.margin_length = margin.length
         msg.margin_wrench = margin.change_W
         msg.margin_verdict = int(margin.verdict_beyond)
         msg.margin_modes = list(margin.modes_beyond)
+    return msg
 
 
-def wrench_set_to_msg(wrenches: PlanarWrenchSet, plane: PlaneOfMotion) -> ModeWrenches:
-    """Return the applied wrenches of one mode."""
-    return ModeWrenches(
-        mode=wrenches.mode,
-        vertices=_wrench_rows(wrenches.vertices, plane),
-        generators=_wrench_rows(wrenches.generators, plane),
-        half_spaces=flat(
-            np.array(
-                [
-                    [*plane.lift((side.a[0], side.a[1])), *(side.a[2] * plane.normal_W), side.b]
-                    for side in wrenches.half_spaces
-                ]
-            )
-        ),
+def mode_from_msg(msg: ContactMode) -> SpatialMode:
+    """Return a mode, without its margin."""
+    return SpatialMode(
+        mode=msg.mode,
+        acceleration_W=np.array(msg.linear_acceleration),
+        angular_acceleration_W=np.array(msg.angular_acceleration),
+        contact_forces_W=rows(msg.contact_forces),
+        contact_accelerations_W=rows(msg.contact_accelerations),
+        tangential_directions_W=rows(msg.tangential_directions),
+        misdirection=msg.misdirection,
+        forces_unique=msg.forces_unique,
+        motion_unique=msg.motion_unique,
     )
 
 
-def spatial_wrench_set_to_msg(wrenches: SpatialWrenchSet) -> ModeWrenches:
-    """Return the applied wrenches of one mode in space, with one way of sliding."""
+def margin_from_msg(msg: ContactMode) -> SpatialModeMargin | None:
+    """Return the margin of a mode; None: it was not asked for."""
+    if msg.margin_length == 0.0:
+        return None
+    return SpatialModeMargin(
+        mode=msg.mode,
+        margin=msg.margin,
+        length=msg.margin_length,
+        change_W=np.array(msg.margin_wrench),
+        verdict_beyond=ModeVerdict(msg.margin_verdict),
+        modes_beyond=tuple(msg.margin_modes),
+    )
+
+
+def wrench_set_to_msg(wrenches: SpatialWrenchSet) -> ModeWrenches:
+    """Return the applied wrenches of one mode, in space with one way of sliding."""
     return ModeWrenches(
         mode=wrenches.mode,
         vertices=flat(wrenches.vertices),
@@ -167,33 +169,78 @@ def spatial_wrench_set_to_msg(wrenches: SpatialWrenchSet) -> ModeWrenches:
     )
 
 
-def _wrench_rows(wrenches: Sequence[PlanarWrench], plane: PlaneOfMotion) -> array[float]:
-    return flat(np.array([_wrench_row(wrench, plane) for wrench in wrenches]))
-
-
-def _wrench_row(wrench: PlanarWrench, plane: PlaneOfMotion) -> FloatArray:
-    return np.concatenate([plane.lift(wrench.f), wrench.moment * plane.normal_W])
-
-
-def _mode_to_msg(mode: PlanarMode, problem: PlanarProblem, partners: tuple[int, ...]) -> ContactMode:
-    plane = problem.plane
-    return ContactMode(
-        mode=mode.mode,
-        linear_acceleration=plane.lift(mode.acceleration),
-        angular_acceleration=mode.angular_acceleration * plane.normal_W,
-        contact_forces=flat(equal_shares(_lift(mode.contact_forces, problem), partners)),
-        forces_unique=mode.forces_unique,
-        motion_unique=mode.motion_unique,
-        contact_accelerations=flat(_lift(mode.contact_accelerations, problem)),
-        margin=float("nan"),
+def wrench_set_from_msg(msg: ModeWrenches) -> SpatialWrenchSet:
+    """Return the applied wrenches of one mode, in space with one way of sliding."""
+    return SpatialWrenchSet(
+        mode=msg.mode,
+        sliding_from_W=rows(msg.sliding_from),
+        sliding_to_W=rows(msg.sliding_to),
+        vertices=rows(msg.vertices, 6),
+        generators=rows(msg.generators, 6),
+        half_spaces=rows(msg.half_spaces, 7),
     )
 
 
-def _lift(vectors_C: Sequence[Vector2], problem: PlanarProblem) -> FloatArray:
-    """Return vectors in contact axes (t, n), one for each contact, in world axes, (n, 3)."""
-    axes_W = problem.plane.axes_W
-    if not vectors_C:
-        return np.zeros((0, 3))
-    bases = np.array([(contact.tangent, contact.normal) for contact in problem.contacts])
-    lifted: FloatArray = np.einsum("ni,nij->nj", np.array(vectors_C), bases) @ axes_W
-    return lifted
+def _write_refused(msg: PredictContactMode.Response, modes: tuple[RefusedMode, ...]) -> None:
+    """Write which modes mechanics refuses, and why."""
+    msg.refused_modes = [refused.mode for refused in modes]
+    msg.refusals = [int(refused.refusal) for refused in modes]
+    msg.refused_contacts = [refused.contact for refused in modes]
+    msg.refusal_amounts = flat(np.array([refused.amount for refused in modes]))
+
+
+def _read_refused(msg: PredictContactMode.Response) -> tuple[RefusedMode, ...]:
+    """Return which modes mechanics refuses, and why."""
+    columns = zip(msg.refused_modes, msg.refusals, msg.refused_contacts, msg.refusal_amounts, strict=True)
+    return tuple(
+        RefusedMode(mode=mode, refusal=Refusal(refusal), contact=contact, amount=amount)
+        for mode, refusal, contact, amount in columns
+    )
+
+
+def _write_statics(msg: PredictContactMode.Response, statics: BodyStatics | None) -> None:
+    """Write the answers to the static questions."""
+    msg.stable_disturbance = math.nan
+    if statics is not None:
+        msg.equilibrium = int(statics.equilibrium)
+        msg.jammed = int(statics.jammed)
+        msg.wedged = msg.POSSIBLE if statics.wedged else msg.NO
+        msg.stable_disturbance = statics.stable_disturbance
+
+
+def _read_statics(msg: PredictContactMode.Response) -> BodyStatics | None:
+    """Return the answers to the static questions, without the length of their metric, which is not told."""
+    if msg.equilibrium == msg.NOT_ASKED:
+        return None
+    return BodyStatics(
+        equilibrium=Certainty(msg.equilibrium),
+        jammed=Certainty(msg.jammed),
+        wedged=msg.wedged == msg.POSSIBLE,
+        stable_disturbance=msg.stable_disturbance,
+        margin_length=math.nan,
+    )
+
+
+def _write_settled(
+    msg: PredictContactMode.Response, answer: ContactModeAnswer, settled: SettledImpact, world_frame: str
+) -> None:
+    """Write the impact that settles a case, and the modes after it."""
+    msg.impact = [
+        resolved_impact_to_msg(
+            settled.impact,
+            body_name=answer.body_name,
+            p_FB_F=answer.p_FB_F,
+            world_frame=world_frame,
+        )
+    ]
+    msg.verdict_after_impact = int(settled.verdict)
+    msg.modes_after_impact = [mode_to_msg(mode) for mode in settled.modes]
+
+
+def _read_settled(msg: PredictContactMode.Response, p_FB_F: FloatArray) -> SettledImpact:
+    """Return the impact that settles a case, and the modes after it."""
+    return SettledImpact(
+        impact=resolved_impact_from_msg(msg.impact[0], p_FB_F=p_FB_F),
+        verdict=ModeVerdict(msg.verdict_after_impact),
+        modes=tuple(mode_from_msg(mode) for mode in msg.modes_after_impact),
+    )

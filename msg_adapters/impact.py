@@ -1,252 +1,258 @@
-"""Impacts, in space and in a plane of motion, at one contact and at several, to messages.
+"""Answers about impacts to the service's response and back, and impacts to messages and back.
 
-To new messages, or, for ``into``, to the empty ones that a response has already: they cost more to build than
+Messages are new, or, for ``into``, the empty ones that a response has already: they cost more to build than
 to fill.
 """
 
 from __future__ import annotations
 
-from array import array
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.impact import SequenceEnd, SeveralVerdict
-from contact_dynamics.impact.energy import created
-from contact_dynamics.rigid_body.body import kinetic_energy
+from contact_dynamics.constants import ns_after
+from contact_dynamics.impact.in_time.result import SequenceEnd
+from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
+from contact_dynamics.impact.several.result import SeveralContactsLaw
+from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions.impact import ImpactAnswer, StruckBody
+from contact_dynamics.questions.problem import Problem
+from contact_dynamics.questions.resolved_impact import ResolvedImpact, SequenceStrike
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rigid_body.published_frame import centers_of_mass, origin_of_published_frame
 from contact_dynamics_interfaces.msg import Impact as ImpactMsg
 from contact_dynamics_interfaces.srv import PredictImpact
-from msg_adapters.contacts import flat
+from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
+from msg_adapters.contacts import contacts_from_msg, contacts_to_msg, flat, rows
+from msg_adapters.geometry import vector_from_msg, vector_to_msg
+from msg_adapters.stamps import stamp_ns_from_msg
+from msg_adapters.tumbling import read_fit, write_fit
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
-    from geometry_msgs.msg import Point, Quaternion
-
-    from contact_dynamics.impact import (
-        BodiesImpact,
-        ImpactDistribution,
-        ImpactSequence,
-        OrderedOutcomes,
-        PlanarImpact,
-        SeveralImpact,
-        SpatialImpact,
-    )
-    from contact_dynamics.plane.projection import PlanarProblem
-    from contact_dynamics.plane.types import Vector2
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import World
     from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 
 
-class StateToMsg(Protocol):
-    """Makes a message of a state of a body whose names and frames it knows."""
+def impact_answer_to_msg(
+    answer: ImpactAnswer, *, world_frame: str, into: PredictImpact.Response | None = None
+) -> PredictImpact.Response:
+    """Return an answer as a response: a new one, or the empty one to fill."""
+    msg = PredictImpact.Response() if into is None else into
+    name, p_FB_F, other = answer.body_name, answer.p_FB_F, answer.other
+    resolved_impact_to_msg(
+        answer.impact, body_name=name, p_FB_F=p_FB_F, world_frame=world_frame, other=other, into=msg.impact
+    )
+    write_fit(msg, answer.fit)
+    msg.time_to_contact = answer.seconds_to_contact
+    msg.problem = int(answer.problem)
+    body_state_to_msg(
+        answer.state, body_name=name, world_frame=world_frame, p_FB_F=p_FB_F, into=msg.state_before
+    )
+    if other is not None:
+        msg.other_state_before = [struck_body_to_msg(other, world_frame=world_frame)]
+    contacts_to_msg(answer.contacts, into=msg.contacts)
+    if answer.plane is not None:
+        msg.plane_normal = vector_to_msg(answer.plane.normal_W)
+    msg.out_of_plane = answer.out_of_plane
+    msg.velocity_tolerance = answer.velocity_tolerance
+    msg.distance_tolerance = answer.distance_tolerance
+    return msg
 
-    def __call__(self, state: BodyState, *, into: BodyStateMsg | None = None) -> BodyStateMsg:
-        """Return the state as a message: a new one, or the one to fill."""
+
+def impact_answer_from_msg(msg: PredictImpact.Response, *, world: World) -> ImpactAnswer:
+    """Return the answer that a response carries; ``world`` knows the bodies' centres of mass.
+
+    Raises:
+        InvalidFieldError: arrays of unequal length, or a number that is not allowed.
+    """
+    p_FB_F = center_of_mass(msg.state_before.body_name, world)
+    other = struck_body_from_msg(msg.other_state_before[0], world=world) if msg.other_state_before else None
+    is_planar = msg.problem == PredictImpact.Request.PLANAR
+    return ImpactAnswer(
+        body_name=msg.state_before.body_name,
+        p_FB_F=p_FB_F,
+        state=body_state_from_msg(
+            msg.state_before, world_frame=msg.state_before.header.frame_id, p_FB_F=p_FB_F
+        ),
+        fit=read_fit(msg),
+        other=other,
+        seconds_to_contact=msg.time_to_contact,
+        contacts=contacts_from_msg(msg.contacts),
+        impact=resolved_impact_from_msg(
+            msg.impact, p_FB_F=p_FB_F, other_p_FB_F=None if other is None else other.p_FB_F
+        ),
+        problem=Problem(msg.problem),
+        plane=PlaneOfMotion(normal_W=vector_from_msg(msg.plane_normal)) if is_planar else None,
+        out_of_plane=msg.out_of_plane,
+        velocity_tolerance=msg.velocity_tolerance,
+        distance_tolerance=msg.distance_tolerance,
+    )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Before:
-    """A body just before an impact."""
-
-    body: MassProperties
-    state: BodyState
-    state_to_msg: StateToMsg  # any state of this body as a message
+def struck_body_to_msg(other: StruckBody, *, world_frame: str) -> BodyStateMsg:
+    """Return the second body just before."""
+    return body_state_to_msg(other.state, body_name=other.name, world_frame=world_frame, p_FB_F=other.p_FB_F)
 
 
-def spatial_impact_to_msg(
-    impact: SpatialImpact, before: Before, other: Before | None = None, *, into: ImpactMsg | None = None
+def struck_body_from_msg(msg: BodyStateMsg, *, world: World) -> StruckBody:
+    """Return the second body just before; ``world`` knows its centre of mass."""
+    p_FB_F = center_of_mass(msg.body_name, world)
+    state = body_state_from_msg(msg, world_frame=msg.header.frame_id, p_FB_F=p_FB_F)
+    return StruckBody(name=msg.body_name, p_FB_F=p_FB_F, state=state)
+
+
+def resolved_impact_to_msg(
+    impact: ResolvedImpact,
+    *,
+    body_name: str,
+    p_FB_F: FloatArray,
+    world_frame: str,
+    other: StruckBody | None = None,
+    into: ImpactMsg | None = None,
 ) -> ImpactMsg:
-    """Return an impact at one contact in space, of a body with the world or with another body."""
+    """Return an impact of a body whose centre of mass is at ``p_FB_F``, (3,), m, in its published frame."""
     msg = ImpactMsg() if into is None else into
     msg.restitution_law = int(impact.restitution_law)
-    msg.outcome = int(impact.outcome)
+    msg.several_contacts_law = (
+        PredictImpact.Request.SEQUENTIAL_IN_TIME if impact.strikes else int(impact.several_contacts_law)
+    )
+    msg.outcome = ImpactMsg.NOT_TOLD if impact.outcome is None else int(impact.outcome)
     msg.jams = impact.jams
-    msg.converged = True
-    before.state_to_msg(impact.state, into=msg.state_after)
-    msg.impulses = flat(impact.impulse_W)
-    msg.compression_impulses = flat(impact.compression_W)
-    msg.contact_velocities_before = flat(impact.velocity_before_W)
-    msg.contact_velocities_after = flat(impact.velocity_after_W)
-    msg.path = flat(impact.path_W)
-    msg.path_events = [int(event) for event in impact.path_events]
-    msg.path_contacts = [0] * len(impact.path_events)
-    msg.kinetic_energy_before = kinetic_energy(before.body, before.state)
-    msg.kinetic_energy_after = kinetic_energy(before.body, impact.state)
-    msg.creates_energy = impact.creates_energy
+    msg.converged = impact.converged
+    body_state_to_msg(
+        impact.state, body_name=body_name, world_frame=world_frame, p_FB_F=p_FB_F, into=msg.state_after
+    )
     if other is not None and impact.other_state is not None:
-        msg.other_state_after = [other.state_to_msg(impact.other_state)]
-        msg.kinetic_energy_before += kinetic_energy(other.body, other.state)
-        msg.kinetic_energy_after += kinetic_energy(other.body, impact.other_state)
-    return msg
-
-
-def several_impact_to_msg(
-    impact: SeveralImpact, before: Before, *, into: ImpactMsg | None = None
-) -> ImpactMsg:
-    """Return an impact at several contacts in space, of a body with the world."""
-    return _several_to_msg(impact, [before], [impact.state], into)
-
-
-def pair_impact_to_msg(
-    impact: BodiesImpact, before: Before, other: Before, *, into: ImpactMsg | None = None
-) -> ImpactMsg:
-    """Return an impact of two bodies at several contacts in space."""
-    state, other_state = impact.states
-    msg = _several_to_msg(impact, [before, other], [state, other_state], into)
-    msg.other_state_after = [other.state_to_msg(other_state)]
-    return msg
-
-
-def _several_to_msg(
-    impact: SeveralImpact | BodiesImpact,
-    before: Sequence[Before],
-    after: Sequence[BodyState],
-    into: ImpactMsg | None,
-) -> ImpactMsg:
-    energy_before = sum(kinetic_energy(one.body, one.state) for one in before)
-    energy_after = sum(kinetic_energy(one.body, state) for one, state in zip(before, after, strict=True))
-    msg = ImpactMsg() if into is None else into
-    msg.restitution_law = int(impact.restitution_law)
-    msg.several_contacts_law = int(impact.several_contacts_law)
-    msg.outcome = ImpactMsg.NOT_TOLD
-    msg.converged = impact.verdict == SeveralVerdict.RESOLVED
-    before[0].state_to_msg(after[0], into=msg.state_after)
+        msg.other_state_after = [
+            body_state_to_msg(
+                impact.other_state, body_name=other.name, world_frame=world_frame, p_FB_F=other.p_FB_F
+            )
+        ]
     msg.impulses = flat(impact.impulses_W)
+    msg.compression_impulses = flat(impact.compression_impulses_W)
     msg.contact_velocities_before = flat(impact.velocities_before_W)
     msg.contact_velocities_after = flat(impact.velocities_after_W)
-    msg.kinetic_energy_before = energy_before
-    msg.kinetic_energy_after = energy_after
-    msg.creates_energy = created(energy_after - energy_before, energy_before)
-    if impact.strikes:
-        _add_strikes(msg, impact.strikes, len(impact.impulses_W))
-    return msg
-
-
-def sequence_to_msg(impact: ImpactSequence, before: Before, *, into: ImpactMsg | None = None) -> ImpactMsg:
-    """Return strikes in time; there is at least one, and ``before`` is the body just before the first."""
-    first = impact.strikes[0].seconds
-    impulses = np.zeros((len(impact.contacts), 3))
-    velocities_before, velocities_after = np.zeros_like(impulses), np.zeros_like(impulses)
-    for strike in reversed(impact.strikes):
-        velocities_before[strike.contact] = strike.impact.velocity_before_W
-    for strike in impact.strikes:
-        impulses[strike.contact] += strike.impact.impulse_W
-        velocities_after[strike.contact] = strike.impact.velocity_after_W
-    poses = [before.state_to_msg(strike.state_before).pose for strike in impact.strikes]
-    msg = ImpactMsg() if into is None else into
-    msg.restitution_law = int(impact.restitution_law)
-    msg.several_contacts_law = PredictImpact.Request.SEQUENTIAL_IN_TIME
-    msg.converged = impact.end != SequenceEnd.MOST_STRIKES
-    before.state_to_msg(impact.state, into=msg.state_after)
-    msg.impulses = flat(impulses)
-    msg.contact_velocities_before = flat(velocities_before)
-    msg.contact_velocities_after = flat(velocities_after)
-    msg.kinetic_energy_before = kinetic_energy(before.body, before.state)
-    msg.kinetic_energy_after = kinetic_energy(before.body, impact.state)
+    msg.path = flat(impact.path_W)
+    msg.path_events = [int(event) for event in impact.path_events]
+    msg.path_contacts = list(impact.path_contacts)
+    msg.kinetic_energy_before = impact.kinetic_energy_before
+    msg.kinetic_energy_after = impact.kinetic_energy_after
     msg.creates_energy = impact.creates_energy
-    msg.strike_times = [strike.seconds - first for strike in impact.strikes]
-    msg.strike_contacts = list(impact.order)
-    msg.strike_outcomes = [int(strike.impact.outcome) for strike in impact.strikes]
-    msg.strike_positions = flat(np.array([strike.p_WC_W for strike in impact.strikes]))
-    msg.strike_impulses = flat(np.array([strike.impact.impulse_W for strike in impact.strikes]))
-    msg.strike_body_positions = [x for pose in poses for x in _xyz(pose.position)]
-    msg.strike_body_orientations = [
-        x for pose in poses for x in (*_xyz(pose.orientation), pose.orientation.w)
-    ]
-    msg.strike_velocities_before = flat(_twists([strike.state_before for strike in impact.strikes]))
-    msg.strike_velocities_after = flat(_twists([strike.impact.state for strike in impact.strikes]))
-    msg.sequence_end = int(impact.end)
-    msg.staying_contacts = list(impact.staying)
-    msg.limit_time = 0.0 if impact.limit_seconds is None else impact.limit_seconds - first
-    strikes = tuple((strike.contact, strike.impact) for strike in impact.strikes)
-    _add_strikes(msg, strikes, len(impact.contacts))
+    if impact.orders:
+        msg.orders = [",".join(map(str, order)) for order in impact.orders]
+        msg.order_velocities = flat(impact.order_velocities_W)
+    if impact.covariance is not None:
+        msg.state_after.covariance = flat(impact.covariance)
+    if impact.outcome_probabilities is not None:
+        msg.outcome_probabilities = flat(impact.outcome_probabilities)
+        msg.miss_probability = impact.miss_probability
+    if impact.strikes:
+        _write_strikes(msg, impact, p_FB_F)
     return msg
 
 
-def _xyz(point: Point | Quaternion) -> tuple[float, float, float]:
-    return point.x, point.y, point.z
+def resolved_impact_from_msg(
+    msg: ImpactMsg, *, p_FB_F: FloatArray, other_p_FB_F: FloatArray | None = None
+) -> ResolvedImpact:
+    """Return an impact of a body whose centre of mass is at ``p_FB_F``, (3,), m, in its published frame.
+
+    ``other_p_FB_F`` is the same of the second body, if there is one.
+    """
+    in_time = len(msg.strike_times) > 0
+    law = SeveralContactsLaw.SEQUENTIAL if in_time else SeveralContactsLaw(msg.several_contacts_law)
+    other_state = None
+    if other_p_FB_F is not None:
+        after = msg.other_state_after[0]
+        other_state = body_state_from_msg(after, world_frame=after.header.frame_id, p_FB_F=other_p_FB_F)
+    covariance, probabilities = msg.state_after.covariance, msg.outcome_probabilities
+    return ResolvedImpact(
+        restitution_law=RestitutionLaw(msg.restitution_law),
+        several_contacts_law=law,
+        outcome=None if msg.outcome == msg.NOT_TOLD else ImpactOutcome(msg.outcome),
+        jams=msg.jams,
+        converged=msg.converged,
+        state=body_state_from_msg(
+            msg.state_after, world_frame=msg.state_after.header.frame_id, p_FB_F=p_FB_F
+        ),
+        other_state=other_state,
+        impulses_W=rows(msg.impulses),
+        compression_impulses_W=rows(msg.compression_impulses),
+        velocities_before_W=rows(msg.contact_velocities_before),
+        velocities_after_W=rows(msg.contact_velocities_after),
+        path_W=rows(msg.path),
+        path_events=tuple(PathEvent(event) for event in msg.path_events),
+        path_contacts=tuple(msg.path_contacts),
+        kinetic_energy_before=msg.kinetic_energy_before,
+        kinetic_energy_after=msg.kinetic_energy_after,
+        creates_energy=msg.creates_energy,
+        orders=tuple(tuple(map(int, order.split(","))) for order in msg.orders),
+        order_velocities_W=rows(msg.order_velocities, 6),
+        covariance=rows(covariance, 12) if len(covariance) > 0 else None,
+        outcome_probabilities=np.array(probabilities) if len(probabilities) > 0 else None,
+        miss_probability=msg.miss_probability,
+        strikes=_read_strikes(msg, p_FB_F),
+        end=SequenceEnd(msg.sequence_end) if in_time else None,
+        staying=tuple(msg.staying_contacts),
+        limit_seconds=msg.limit_time if len(msg.staying_contacts) > 0 else None,
+    )
+
+
+def _write_strikes(msg: ImpactMsg, impact: ResolvedImpact, p_FB_F: FloatArray) -> None:
+    """Write strikes in time, and why there is no further one."""
+    strikes = impact.strikes
+    msg.strike_times = [strike.seconds for strike in strikes]
+    msg.strike_contacts = [strike.contact for strike in strikes]
+    msg.strike_outcomes = [int(strike.outcome) for strike in strikes]
+    msg.strike_positions = flat(np.array([strike.p_WC_W for strike in strikes]))
+    msg.strike_impulses = flat(np.array([strike.impulse_W for strike in strikes]))
+    msg.strike_body_positions = flat(
+        np.array([origin_of_published_frame(strike.state_before, p_FB_F) for strike in strikes])
+    )
+    msg.strike_body_orientations = flat(np.array([strike.state_before.q_WB for strike in strikes]))
+    msg.strike_velocities_before = flat(_twists([strike.state_before for strike in strikes]))
+    msg.strike_velocities_after = flat(_twists([strike.state_after for strike in strikes]))
+    if impact.end is not None:
+        msg.sequence_end = int(impact.end)
+    msg.staying_contacts = list(impact.staying)
+    msg.limit_time = 0.0 if impact.limit_seconds is None else impact.limit_seconds
+
+
+def _read_strikes(msg: ImpactMsg, p_FB_F: FloatArray) -> tuple[SequenceStrike, ...]:
+    """Return strikes in time, if there are any; the last of them leads to the state after the impact."""
+    orientations = rows(msg.strike_body_orientations, 4)
+    places = centers_of_mass(rows(msg.strike_body_positions), orientations, p_FB_F)
+    last_ns = stamp_ns_from_msg(msg.state_after.header.stamp)
+    strikes = []
+    for i, (seconds, contact) in enumerate(zip(msg.strike_times, msg.strike_contacts, strict=True)):
+        before, after = (
+            BodyState(
+                p_WB_W=places[i],
+                q_WB=orientations[i],
+                v_WB_W=twist[:3],
+                w_WB_W=twist[3:],
+                stamp_ns=ns_after(last_ns, seconds - msg.strike_times[-1]),
+            )
+            for twist in (
+                rows(msg.strike_velocities_before, 6)[i],
+                rows(msg.strike_velocities_after, 6)[i],
+            )
+        )
+        strikes.append(
+            SequenceStrike(
+                seconds=seconds,
+                contact=contact,
+                outcome=ImpactOutcome(msg.strike_outcomes[i]),
+                p_WC_W=rows(msg.strike_positions)[i],
+                impulse_W=rows(msg.strike_impulses)[i],
+                state_before=before,
+                state_after=after,
+            )
+        )
+    return tuple(strikes)
 
 
 def _twists(states: Sequence[BodyState]) -> FloatArray:
     return np.array([np.concatenate([state.v_WB_W, state.w_WB_W]) for state in states])
-
-
-def write_orders(msg: ImpactMsg, outcomes: OrderedOutcomes) -> None:
-    """Write the outcomes over the admissible orders into an impact."""
-    msg.orders = [",".join(map(str, order)) for order in outcomes.orders]
-    msg.order_velocities = flat(outcomes.velocities_W)
-
-
-def write_distribution(msg: ImpactMsg, distribution: ImpactDistribution) -> None:
-    """Write the covariance of the state after an impact, and the probability of each outcome, into it."""
-    msg.state_after.covariance = flat(distribution.covariance)
-    msg.outcome_probabilities = flat(distribution.probabilities)
-    msg.miss_probability = distribution.missed
-
-
-def _add_strikes(msg: ImpactMsg, strikes: Sequence[tuple[int, SpatialImpact]], contact_count: int) -> None:
-    """Write what only a sequence tells: the outcome, the split of each contact's impulse, and the paths."""
-    hardest = max(strikes, key=lambda strike: float(strike[1].impulse_W @ strike[1].impulse_W))[1]
-    msg.outcome = int(hardest.outcome)
-    msg.jams = hardest.jams
-    so_far = np.zeros((contact_count, 3))
-    compression = np.zeros((contact_count, 3))
-    path, events, contacts = [], [], []
-    for contact, strike in strikes:
-        path.append(so_far[contact] + strike.path_W)
-        events += [int(event) for event in strike.path_events]
-        contacts += [contact] * len(strike.path_events)
-        so_far[contact] += strike.impulse_W
-        compression[contact] += strike.compression_W
-    msg.compression_impulses = flat(compression)
-    msg.path = flat(np.concatenate(path))
-    msg.path_events = events
-    msg.path_contacts = contacts
-
-
-def planar_impact_to_msg(
-    impact: PlanarImpact, problem: PlanarProblem, before: Before, *, into: ImpactMsg | None = None
-) -> ImpactMsg:
-    """Return an impact at the one contact of a plane of motion, in world axes.
-
-    What is out of the plane stays as it was.
-    """
-    plane = problem.plane
-    (t_x, t_y), (n_x, n_y) = problem.contacts[0].tangent, problem.contacts[0].normal
-    (x_1, x_2, x_3), (y_1, y_2, y_3) = plane.axes_W.tolist()
-
-    def lift(vectors_C: Iterable[Vector2]) -> array[float]:
-        """Return vectors in contact axes as the world's."""
-        lifted = array("d")
-        for t, n in vectors_C:
-            x, y = t * t_x + n * n_x, t * t_y + n * n_y
-            lifted.extend((x * x_1 + y * y_1, x * x_2 + y * y_2, x * x_3 + y * y_3))
-        return lifted
-
-    (v_x, v_y), (before_x, before_y) = impact.velocity.v, problem.velocity.v
-    after = replace(
-        before.state,
-        v_WB_W=before.state.v_WB_W + plane.lift((v_x - before_x, v_y - before_y)),
-        w_WB_W=before.state.w_WB_W + (impact.velocity.w - problem.velocity.w) * plane.normal_W,
-    )
-    msg = ImpactMsg() if into is None else into
-    msg.restitution_law = int(impact.restitution_law)
-    msg.outcome = int(impact.outcome)
-    msg.jams = impact.jams
-    msg.converged = True
-    before.state_to_msg(after, into=msg.state_after)
-    msg.impulses = lift([impact.impulse_C])
-    msg.compression_impulses = lift([impact.compression_C])
-    msg.contact_velocities_before = lift([impact.velocity_before_C])
-    msg.contact_velocities_after = lift([impact.velocity_after_C])
-    path = impact.path
-    msg.path = lift(vertex for _, vertex in path)
-    msg.path_events = [int(event) for event, _ in path]
-    msg.path_contacts = [0] * len(path)
-    msg.kinetic_energy_before = kinetic_energy(before.body, before.state)
-    msg.kinetic_energy_after = kinetic_energy(before.body, after)
-    msg.creates_energy = impact.creates_energy
-    return msg

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 from geometry_msgs.msg import PoseStamped, TwistStamped
 
 from contact_dynamics.errors import FrameMismatchError, InvalidFieldError
-from contact_dynamics.rotations.one import rotation_matrix
-from contact_dynamics.validation import check_unit
-from msg_adapters.frames import (
-    check_frame,
+from contact_dynamics.rigid_body.published_frame import (
     origin_of_published_frame,
     state_of_center_of_mass,
     velocity_of_published_frame,
 )
+from contact_dynamics.rotations.one import rotation_matrix
+from contact_dynamics.validation import check_unit
+from msg_adapters.frames import check_frame
 from msg_adapters.geometry import pose_to_msg, quaternion_from_msg, vector_from_msg, vector_to_msg
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 

@@ -24,8 +24,10 @@ _CODE_NAMES: Final[tuple[tuple[type[errors.ContactDynamicsError], str], ...]] = 
 class Response(Protocol):
     """What every response has."""
 
+    OK: int
     status: int
     message: str
+    computation_time: float
 
 
 def report_error(response: Response, error: Exception) -> None:

@@ -1,1 +1,26 @@
-"""Contacts: given, or found from shapes; their curvatures, frames and friction."""
+"""Contacts: given, or found from shapes; their curvatures, velocities and friction.
+
+`contact` has one contact and sets of them, and `curvature` the shapes of both sides where they touch.
+`found` finds contacts from geometry: `on_flats` where a body meets a plane, `on_obstacles` and `overlap`
+where it meets a solid. `velocities` says which contacts count as at rest, `kinds` what velocities add to
+their accelerations, and `friction` makes pyramids of friction cones.
+"""
+
+from contact_dynamics.contact.contact import Contact, ContactSet
+from contact_dynamics.contact.curvature import Curvatures
+from contact_dynamics.contact.found import find_contacts
+from contact_dynamics.contact.friction import linearised_cone
+from contact_dynamics.contact.velocities import spatial_contact_velocities
+
+__all__ = [
+    "Contact",
+    "ContactSet",
+    "Curvatures",
+    "find_contacts",
+    "linearised_cone",
+    "spatial_contact_velocities",
+]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -16,6 +16,7 @@ import numpy as np
 
 from contact_dynamics.contact.curvature import Curvatures, alike, check_pairs, checked_curvatures
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.records import Record
 from contact_dynamics.tolerances import UNIT_LENGTH_TOLERANCE
 from contact_dynamics.validation import (
     FloatArray,
@@ -35,22 +36,31 @@ MOST_CONTACTS: Final = 10_000
 """Longest list of contacts accepted: far above any real contact set, far below what would stall a service."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Contact:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Contact(Record):
     """One contact of a body in space. Lists are taken for vectors.
+
+    Attributes:
+        p_WC_W: (3,), m, the contact point, world.
+        normal_W: (3,), unit, into the body, world axes.
+        friction: Coulomb's mu, >= 0.
+        restitution: e, in [0, 1]; contact modes do not use it.
+        surface: The surface that it touches; empty: not known.
+        body_curvatures: Of the body there, one row; None: its point touches.
+        surface_curvatures: Of the world there, one row; None: its flat is touched.
 
     Raises:
         InvalidFieldError: a number that is not finite, a normal that is not unit, mu < 0, e outside [0, 1],
             or curvatures of more than one contact, or with which the sides do not touch in one point.
     """
 
-    p_WC_W: FloatArray  # (3,), m, the contact point, world
-    normal_W: FloatArray  # (3,), unit, into the body, world axes
-    friction: float  # Coulomb's mu, >= 0
-    restitution: float = 0.0  # e, in [0, 1]; contact modes do not use it
-    surface: str = ""  # the surface that it touches; empty: not known
-    body_curvatures: Curvatures | None = None  # of the body there, one row; None: its point touches
-    surface_curvatures: Curvatures | None = None  # of the world there, one row; None: its flat is touched
+    p_WC_W: FloatArray
+    normal_W: FloatArray
+    friction: float
+    restitution: float = 0.0
+    surface: str = ""
+    body_curvatures: Curvatures | None = None
+    surface_curvatures: Curvatures | None = None
 
     if TYPE_CHECKING:  # what the constructor takes, beside what the fields then hold
 
@@ -75,11 +85,20 @@ class Contact:
         _check_curvatures(self, self.normal_W[None], "")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ContactSet:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ContactSet(Record):
     """Contacts of one body in space; contact i is row i of each array, and `contacts[i]` is a `Contact`.
 
     Lists are taken for arrays, one normal for all contacts, and one number for all frictions or restitutions.
+
+    Attributes:
+        p_WC_W: (n, 3), m, contact points, world.
+        normals_W: (n, 3), unit, into the body, world axes.
+        frictions: (n,), Coulomb's mu, >= 0.
+        restitutions: (n,), e, in [0, 1]; contact modes do not use them.
+        surfaces: The surface that each contact touches; empty: not known.
+        body_curvatures: Of the body at each contact; None: its points touch.
+        surface_curvatures: Of the world at each contact; None: its flats are touched.
 
     Raises:
         InvalidFieldError: arrays of unequal length, a number that is not finite, a normal that is not unit,
@@ -87,15 +106,13 @@ class ContactSet:
         TooLargeError: more than `MOST_CONTACTS` contacts.
     """
 
-    p_WC_W: FloatArray  # (n, 3), m, contact points, world
-    normals_W: FloatArray  # (n, 3), unit, into the body, world axes
-    frictions: FloatArray  # (n,), Coulomb's mu, >= 0
-    restitutions: FloatArray = field(
-        default_factory=lambda: np.zeros(())
-    )  # (n,), e, in [0, 1]; contact modes do not use them
-    surfaces: tuple[str, ...] = ()  # the surface that each contact touches; empty: not known
-    body_curvatures: Curvatures | None = None  # of the body at each contact; None: its points touch
-    surface_curvatures: Curvatures | None = None  # of the world at each contact; None: its flats are touched
+    p_WC_W: FloatArray
+    normals_W: FloatArray
+    frictions: FloatArray
+    restitutions: FloatArray = field(default_factory=lambda: np.zeros(()))
+    surfaces: tuple[str, ...] = ()
+    body_curvatures: Curvatures | None = None
+    surface_curvatures: Curvatures | None = None
 
     if TYPE_CHECKING:  # what the constructor takes, beside what the fields then hold
 

@@ -42,6 +42,7 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.vectors import tangent_rows
+from contact_dynamics.records import Record
 from contact_dynamics.tolerances import ROW_TOLERANCE, UNIT_LENGTH_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array
 
@@ -51,17 +52,22 @@ if TYPE_CHECKING:
 Pair: TypeAlias = "tuple[float, float]"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Curvatures:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Curvatures(Record):
     """Principal curvatures of one side, body or surface, of n contacts; convex is positive.
+
+    Attributes:
+        along: (n,), 1/m, along the direction; inf: a corner or the edge of a blade.
+        across: (n,), 1/m, along the tangent at right angles to it.
+        directions_W: (n, 3), unit, tangent, world axes; zero where both curvatures are equal.
 
     Raises:
         InvalidFieldError: arrays of unequal length, NaN, minus infinity.
     """
 
-    along: FloatArray  # (n,), 1/m, along the direction; inf: a corner or the edge of a blade
-    across: FloatArray  # (n,), 1/m, along the tangent at right angles to it
-    directions_W: FloatArray  # (n, 3), unit, tangent, world axes; zero where both curvatures are equal
+    along: FloatArray
+    across: FloatArray
+    directions_W: FloatArray
 
     if TYPE_CHECKING:
 
@@ -172,10 +178,15 @@ def planar_gap_acceleration(
 
 
 class Rolling(NamedTuple):
-    """How the point of contact moves over the body, and what its motion adds to the gap."""
+    """How the point of contact moves over the body, and what its motion adds to the gap.
 
-    eta: Pair  # m/s, of the point of contact over the body
-    gap: float  # m/s^2, what the gap's second derivative has besides a_n
+    Attributes:
+        eta: m/s, of the point of contact over the body.
+        gap: m/s^2, what the gap's second derivative has besides a_n.
+    """
+
+    eta: Pair
+    gap: float
 
 
 Side: TypeAlias = "list[tuple[float, Pair]]"

@@ -27,11 +27,17 @@ RIM_POINTS: Final = 8
 
 
 class Touch(NamedTuple):
-    """One extreme point of where a body touches, with curvatures of both sides (`contact.curvature`)."""
+    """One extreme point of where a body touches, with curvatures of both sides (`contact.curvature`).
 
-    p_WC_W: FloatArray  # (3,), m
-    normal_W: FloatArray  # (3,), unit, into the body
-    body: Side  # 1/m along a tangent and across it, and the tangent, (3,), unit
+    Attributes:
+        p_WC_W: (3,), m.
+        normal_W: (3,), unit, into the body.
+        body: 1/m along a tangent and across it, and the tangent, (3,), unit.
+    """
+
+    p_WC_W: FloatArray
+    normal_W: FloatArray
+    body: Side
     surface: Side
 
 

@@ -21,7 +21,7 @@ Not covered: rims at an edge or a corner of the obstacle (`NotSupportedError`).
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -31,6 +31,7 @@ from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.numerics.vectors import tangent_rows
 from contact_dynamics.shapes.hull_features import features_of
 from contact_dynamics.shapes.obstacle import closest_points
+from contact_dynamics.tolerances import PARALLEL_EDGES, SAME_POINT
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.on_flats import Touch
@@ -39,19 +40,19 @@ if TYPE_CHECKING:
     from contact_dynamics.shapes.obstacle import Obstacle
     from contact_dynamics.validation import FloatArray
 
-_AS_GOOD: Final = 1e-9
-"""m. Directions whose separation is less by no more are as good, and points this close are one: rounding."""
-
-_PARALLEL: Final = 1e-6
-"""Sine of the angle within which edges do not cross; their ends are what touches."""
-
 
 class Site(NamedTuple):
-    """Where a body is nearest to an obstacle, or deepest in it."""
+    """Where a body is nearest to an obstacle, or deepest in it.
 
-    gap: float  # m, along the normal; negative: penetration
-    normal_W: FloatArray  # (3,), unit, out of the obstacle, into the body
-    level: float  # m, the obstacle's furthest extent along the normal: its points have n . p <= level
+    Attributes:
+        gap: m, along the normal; negative: penetration.
+        normal_W: (3,), unit, out of the obstacle, into the body.
+        level: m, the obstacle's furthest extent along the normal: its points have n . p <= level.
+    """
+
+    gap: float
+    normal_W: FloatArray
+    level: float
 
 
 def site_of(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, obstacle: Obstacle) -> Site:
@@ -69,7 +70,7 @@ def site_of(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, obstacle: 
         levels = (group @ theirs.corners.T).max(axis=1)
         gaps = _lowest(shape, p_WB_W, R_WB, group) - levels
         i = int(gaps.argmax())
-        if gaps[i] > best.gap + _AS_GOOD:
+        if gaps[i] > best.gap + SAME_POINT:
             best = Site(float(gaps[i]), group[i], float(levels[i]))
     return best
 
@@ -81,7 +82,7 @@ def _axes(
     mine = features_of(shape)
     crosses = np.cross((mine.edges @ R_WB.T)[:, None], theirs.edges).reshape(-1, 3)
     sizes = np.linalg.norm(crosses, axis=1)
-    crosses = crosses[sizes > _PARALLEL] / sizes[sizes > _PARALLEL, None]
+    crosses = crosses[sizes > PARALLEL_EDGES] / sizes[sizes > PARALLEL_EDGES, None]
     polyhedral = theirs.normals, -(mine.normals @ R_WB.T), np.concatenate([crosses, -crosses])
     if shape.rounding == 0.0:
         return polyhedral
@@ -91,7 +92,7 @@ def _axes(
     arms = (closest_points(mine, inwards) - inwards) @ R_WB.T
     away = np.concatenate([corners - closest_points(theirs, corners), arms])
     sizes = np.linalg.norm(away, axis=1)
-    return (*polyhedral, away[sizes > _AS_GOOD] / sizes[sizes > _AS_GOOD, None])
+    return (*polyhedral, away[sizes > SAME_POINT] / sizes[sizes > SAME_POINT, None])
 
 
 def _lowest(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, axes: FloatArray) -> FloatArray:
@@ -117,7 +118,7 @@ def touches_of(
     if site.gap > tolerance:
         return []
     theirs, n_W = obstacle.features, site.normal_W
-    if shape.rims and float((theirs.normals @ n_W).max()) < 1.0 - _AS_GOOD:
+    if shape.rims and float((theirs.normals @ n_W).max()) < 1.0 - SAME_POINT:
         message = f"shape: found a rim at an edge of obstacle {obstacle.name!r}, allowed is one at a face"
         raise NotSupportedError(message)
     frame = tangent_rows(n_W)

@@ -7,30 +7,31 @@ points are corners of either within the other, and crossings of their sides.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from contact_dynamics.contact.on_flats import Touch
 from contact_dynamics.numerics.convex_hull import hull_of
+from contact_dynamics.tolerances import PARALLEL_EDGES, SAME_POINT
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.on_flats import Side
     from contact_dynamics.validation import FloatArray
 
-_AS_GOOD: Final = 1e-9
-"""m. Points this close are one: rounding."""
-
-_PARALLEL: Final = 1e-6
-"""Sine of the angle within which sides do not cross; their ends are what touches."""
-
 
 class Outline(NamedTuple):
-    """A convex polygon, a line or a point in the touching plane."""
+    """A convex polygon, a line or a point in the touching plane.
 
-    points: FloatArray  # (k, 3), m, world, in order
-    flat: FloatArray  # (k, 2), m, in the plane, counterclockwise
-    order: list[int]  # (k,), which of the points that were given
+    Attributes:
+        points: (k, 3), m, world, in order.
+        flat: (k, 2), m, in the plane, counterclockwise.
+        order: (k,), which of the points that were given.
+    """
+
+    points: FloatArray
+    flat: FloatArray
+    order: list[int]
 
     def side_at(self, place: FloatArray, frame: FloatArray, *, sharp: float, slack: float) -> Side | None:
         """Return the curvatures of what is at a place, (2,), m: a face, an edge or a corner; None: nothing.
@@ -48,7 +49,7 @@ class Outline(NamedTuple):
         lengths = np.linalg.norm(sides, axis=1)
         arms = place - self.flat
         heights = (sides[:, 0] * arms[:, 1] - sides[:, 1] * arms[:, 0]) / lengths
-        return (0.0, 0.0, frame[0]) if (heights >= -_AS_GOOD).all() else None
+        return (0.0, 0.0, frame[0]) if (heights >= -SAME_POINT).all() else None
 
     def sides(self) -> list[tuple[int, int]]:
         """Return which points each side goes between."""
@@ -65,7 +66,7 @@ def outline(points: FloatArray, frame: FloatArray) -> Outline:
         return Outline(points, flat, list(range(len(flat))))
     spread = flat - flat.mean(axis=0)
     _, sizes, axes = np.linalg.svd(spread, full_matrices=False)
-    if sizes[1] <= _AS_GOOD:
+    if sizes[1] <= SAME_POINT:
         along = spread @ axes[0]
         ends = [int(along.argmin()), int(along.argmax())]
         return Outline(points[ends], flat[ends], ends)
@@ -74,10 +75,15 @@ def outline(points: FloatArray, frame: FloatArray) -> Outline:
 
 
 class Rounded(NamedTuple):
-    """That the body's outline is that of a hull over which a ball rolls."""
+    """That the body's outline is that of a hull over which a ball rolls.
 
-    curvature: float  # 1/m, the ball's
-    slack: float  # m, within which its corners and lines are on edges and corners
+    Attributes:
+        curvature: 1/m, the ball's.
+        slack: m, within which its corners and lines are on edges and corners.
+    """
+
+    curvature: float
+    slack: float
 
 
 def overlap(
@@ -138,10 +144,12 @@ def _crossing(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray) -> flo
     p, q = _two(c - a)
     apart = x * v - y * u
     one, two = math.hypot(x, y), math.hypot(u, v)
-    if abs(apart) <= _PARALLEL * one * two:
+    if abs(apart) <= PARALLEL_EDGES * one * two:
         return None
     share, other = (p * v - q * u) / apart, (p * y - q * x) / apart
-    if not (-_AS_GOOD <= share * one <= one + _AS_GOOD and -_AS_GOOD <= other * two <= two + _AS_GOOD):
+    if not (
+        -SAME_POINT <= share * one <= one + SAME_POINT and -SAME_POINT <= other * two <= two + SAME_POINT
+    ):
         return None
     return min(max(share, 0.0), 1.0)
 
@@ -151,7 +159,7 @@ def _two(vector: FloatArray) -> tuple[float, float]:
 
 
 def _is_new(place: FloatArray, taken: list[FloatArray], slack: float) -> bool:
-    return all(math.dist(place, other) > max(_AS_GOOD, slack) for other in taken)
+    return all(math.dist(place, other) > max(SAME_POINT, slack) for other in taken)
 
 
 def _along(side: FloatArray, frame: FloatArray) -> FloatArray:

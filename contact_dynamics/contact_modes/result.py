@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
 from typing import TYPE_CHECKING
+
+from contact_dynamics.records import NamedInt, Record
 
 if TYPE_CHECKING:
     from collections.abc import Sized
 
 
-class ModeVerdict(IntEnum):
+class ModeVerdict(NamedInt):
     """What rigid-body mechanics says about a contact set as a whole."""
 
     UNIQUE = 0
@@ -23,7 +24,7 @@ class ModeVerdict(IntEnum):
     """A contact approaches. Modes apply only after that impact."""
 
 
-class Refusal(IntEnum):
+class Refusal(NamedInt):
     """Why mechanics refuses a mode that is possible kinematically."""
 
     PENETRATES = 0
@@ -41,14 +42,21 @@ class Refusal(IntEnum):
     divided by the radius of gyration. No contact forces give the mode's accelerations."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RefusedMode:
-    """A mode that is possible kinematically and refused by mechanics."""
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class RefusedMode(Record):
+    """A mode that is possible kinematically and refused by mechanics.
 
-    mode: str  # one letter a contact
-    refusal: Refusal  # the first reason found
-    contact: int  # the contact whose letter fails; -1: the mode as a whole
-    amount: float  # by how much, in the unit that the refusal states
+    Attributes:
+        mode: One letter a contact.
+        refusal: The first reason found.
+        contact: The contact whose letter fails; -1: the mode as a whole.
+        amount: By how much, in the unit that the refusal states.
+    """
+
+    mode: str
+    refusal: Refusal
+    contact: int
+    amount: float
 
 
 def verdict_on(modes: Sized) -> ModeVerdict:
@@ -58,7 +66,7 @@ def verdict_on(modes: Sized) -> ModeVerdict:
     return ModeVerdict.INDETERMINATE if len(modes) > 0 else ModeVerdict.INCONSISTENT
 
 
-class Certainty(IntEnum):
+class Certainty(NamedInt):
     """How far rigid-body mechanics answers yes."""
 
     NO = 1
@@ -67,16 +75,24 @@ class Certainty(IntEnum):
     CERTAIN = 3
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BodyStatics:
-    """What holds a body at rest, and how well."""
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class BodyStatics(Record):
+    """What holds a body at rest, and how well.
 
-    equilibrium: Certainty  # whether it stays at rest
-    jammed: Certainty  # whether friction alone keeps it at rest
-    wedged: bool  # whether the contacts can press against each other without an applied wrench
-    stable_disturbance: float  # N: equilibrium is possible under every change of the wrench up to this size;
+    Attributes:
+        equilibrium: Whether it stays at rest.
+        jammed: Whether friction alone keeps it at rest.
+        wedged: Whether the contacts can press against each other without an applied wrench.
+        stable_disturbance: N: equilibrium is possible under every change of the wrench up to this size;.
+        margin_length: m, of the metric |f|^2 + (moment / length)^2 of that size.
+    """
+
+    equilibrium: Certainty
+    jammed: Certainty
+    wedged: bool
+    stable_disturbance: float
     # infinite: under every change at all (force closure); NaN: no equilibrium
-    margin_length: float  # m, of the metric |f|^2 + (moment / length)^2 of that size
+    margin_length: float
 
     def is_stable_against(self, disturbance: float) -> bool:
         """Return whether equilibrium stays possible under every change of the wrench up to this size, N."""

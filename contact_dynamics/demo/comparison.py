@@ -50,9 +50,13 @@ class Row:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Section:
-    """A question, and the rows of its answer."""
+    """A question, and the rows of its answer.
 
-    time: float  # s, on the recording's clock, when it was asked
+    Attributes:
+        time: s, on the recording's clock, when it was asked.
+    """
+
+    time: float
     title: str
     rows: list[Row]
 

@@ -54,11 +54,17 @@ _NOW: Final = Time()  # zero asks about the newest state
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Asked:
-    """One question with its answer."""
+    """One question with its answer.
 
-    time: float  # s, on the recording's clock, of the newest state when it was asked
-    response: Any  # the service's response
-    round_trip: float  # s
+    Attributes:
+        time: s, on the recording's clock, of the newest state when it was asked.
+        response: The service's response.
+        round_trip: s.
+    """
+
+    time: float
+    response: Any
+    round_trip: float
 
 
 class Questioner(Node):

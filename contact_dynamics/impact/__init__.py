@@ -1,12 +1,17 @@
 """Impact (Mason, lecture 27): what a body's velocity is after it strikes.
 
-In reading order: the laws and outcomes (`law`); the plane, with Routh's construction (`routh`, `planar`,
-`result`), two bodies in it (`pair`) and many cases at once (`batch`); space, where a contact responds in all
-directions (`response`) and sliding swerves (`sliding`, `series`, `stopping`, `progress`, `swerve`, `spatial`,
-`spatial_result`), and many cases at once (`spatial_batch`, in `lockstep`, `many_progress`; what both batches
-check is in `table`, the arithmetic that one case and many share in `elementwise`); several contacts at once
-(`several`, `several_planar`, `bodies`, `simultaneous`, `several_result`); strikes in time with flight between
-(`sequence`, `meetings`, `sequence_result`); uncertain states (`uncertain`).
+`law` has the laws of restitution and the outcomes, `energy` judges what they do to energy. `planar` and
+`spatial` have one contact (`one_contact`), many cases at once (`batch`), and what they return (`result`).
+`several` has several contacts at once and `in_time` strikes one after the other, with flight between.
+`distribution` is for uncertain states.
+
+- In the plane, the impulse path is Routh's construction (`routh`); `two_bodies` may both move.
+- In space, a contact responds in all directions (`response`) and slides by its `sliding_law`, so that the
+  `path` bends: it is summed as a `taylor` series, up to where sliding comes to a `stop`, and ends by its
+  `restitution`. Batches do the same in step (`batch_paths`, `batch_restitution`).
+- Several contacts strike in turn (`sequential`, in all `orders`) or at once (`simultaneous`), also in the
+  plane (`planar`). Contacts that do not approach can jam (`jamming`) until that is over (`settling`).
+- In time, `meetings` finds which contact strikes next, and `sequence` goes on from strike to strike.
 """
 
 from contact_dynamics.impact.distribution import (
@@ -76,3 +81,7 @@ __all__ = [
     "spatial_impacts",
     "spatial_pair_impact",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

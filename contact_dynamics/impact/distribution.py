@@ -20,6 +20,7 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.impact.planar.batch import planar_impacts
 from contact_dynamics.impact.spatial.batch import StrikingBodies, spatial_impacts
+from contact_dynamics.records import Record
 from contact_dynamics.rotations.many import products, quaternions_of, rotated
 from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array, check_choice
@@ -34,15 +35,23 @@ if TYPE_CHECKING:
 MOST_SAMPLES: Final = 1_000_000
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ImpactDistribution:
-    """Where the velocities after an impact lie, for a state with a covariance."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ImpactDistribution(Record):
+    """Where the velocities after an impact lie, for a state with a covariance.
 
-    mean: FloatArray  # (3,) plane: v_x, v_y, w; (6,) space: linear, angular, world axes; m/s and rad/s
-    covariance: FloatArray  # (3, 3) plane, of the same; (12, 12) space: position, rotation vector, velocities
-    probabilities: FloatArray  # (7,), of each ImpactOutcome, by its value; with `missed` they sum to 1
-    missed: float  # probability that the contact separates, so that nothing strikes
-    samples: int  # how many states were drawn
+    Attributes:
+        mean: (3,) plane: v_x, v_y, w; (6,) space: linear, angular, world axes; m/s and rad/s.
+        covariance: (3, 3) plane, of the same; (12, 12) space: position, rotation vector, velocities.
+        probabilities: (7,), of each ImpactOutcome, by its value; with `missed` they sum to 1.
+        missed: Probability that the contact separates, so that nothing strikes.
+        samples: How many states were drawn.
+    """
+
+    mean: FloatArray
+    covariance: FloatArray
+    probabilities: FloatArray
+    missed: float
+    samples: int
 
 
 def planar_impact_distribution(

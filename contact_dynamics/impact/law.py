@@ -1,22 +1,33 @@
-"""Names of the restitution laws and of what can happen during an impact (Mason, lecture 27)."""
+"""The restitution laws, what sets them apart, and what can happen during an impact (Mason, lecture 27).
+
+Compression collects an amount of something, and restitution gives a share of it back. `RestitutionRule` says
+of each law what that is and where restitution ends, for paths in space, which are not known in advance. In
+the plane the path is known: there the three ends are closed forms in the middle of one computation
+(`planar.routh`, and `planar.batch` for many), of which a call would cost a tenth.
+"""
 
 from __future__ import annotations
 
-from enum import IntEnum
-from typing import TYPE_CHECKING, Any
+import math
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
+from contact_dynamics.records import NamedInt
 from contact_dynamics.validation import check_choice
 from contact_dynamics.validation_batches import check_rows
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from contact_dynamics.numerics.elementwise import Real
     from contact_dynamics.validation import FloatArray
 
+Series = TypeVar("Series")
+"""What is known of a quantity along a path."""
 
-class RestitutionLaw(IntEnum):
+
+class RestitutionLaw(NamedInt):
     """How the coefficient e decides where restitution ends."""
 
     POISSON = 0
@@ -28,7 +39,124 @@ class RestitutionLaw(IntEnum):
     """e squared is the work that the normal impulse returns over the work that it took (Stronge 1990)."""
 
 
-class ImpactOutcome(IntEnum):
+class RestitutionRule:
+    """Poisson's law: what compression collects, what of it restitution owes, and where it is done.
+
+    Numbers are floats, or arrays with an impact an element, to the same bits.  ``due`` is what restitution
+    still owes, in the unit of the amount, and ``final`` Newton's velocity at the end, m/s.
+    """
+
+    law = RestitutionLaw.POISSON
+    needs_work = False
+    """Whether the work of the normal impulse must be known on the way."""
+
+    def share(self, restitution: Real) -> Real:
+        """Return the part of the amount that restitution gives back, for a coefficient e."""
+        return restitution
+
+    def amount(self, p: Real, work: Real) -> Real:
+        """Return what a normal impulse, N s, that did some work, J, collects or gives back."""
+        del work
+        return p
+
+    def is_done(self, *, p: Real, v_n: Real, work: Real, due: Real, final: Real) -> Any:
+        """Return whether restitution is over by the time that an impulse and its work have led to v_n."""
+        del v_n, final
+        return self.amount(p, work) >= due
+
+    def distance(self, v_n: float, lifting: float, due: float, final: float) -> float:
+        """Return the normal impulse, N s, until restitution is over; v_n grows by ``lifting`` per N s."""
+        del v_n, lifting, final
+        return due
+
+    def distances(
+        self, v_n: FloatArray, lifting: FloatArray, due: FloatArray, final: FloatArray
+    ) -> FloatArray:
+        """Return `distance` for many: with selections where one impact branches, so that it stands twice."""
+        del v_n, lifting, final
+        return due
+
+    def meter(self, velocity: Series, impulse: Series, work: Series) -> Series:
+        """Return which series along a path tells when restitution is over."""
+        del velocity, work
+        return impulse
+
+    def level(self, first: Real, due: Real, final: Real) -> Real:
+        """Return at which value of the meter it is, from the meter's value where one looks from."""
+        del final
+        return first + due
+
+
+class _Newton(RestitutionRule):
+    """Newton's law looks at the normal velocity alone."""
+
+    law = RestitutionLaw.NEWTON
+
+    def is_done(self, *, p: Real, v_n: Real, work: Real, due: Real, final: Real) -> Any:
+        del p, work, due
+        return v_n >= final
+
+    def distance(self, v_n: float, lifting: float, due: float, final: float) -> float:
+        del due
+        missing = final - v_n
+        if missing <= 0.0:
+            return 0.0
+        return missing / lifting if lifting > 0.0 else math.inf
+
+    def distances(
+        self, v_n: FloatArray, lifting: FloatArray, due: FloatArray, final: FloatArray
+    ) -> FloatArray:
+        del due
+        missing = final - v_n
+        return np.where(missing <= 0.0, 0.0, np.where(lifting > 0.0, missing / lifting, math.inf))
+
+    def meter(self, velocity: Series, impulse: Series, work: Series) -> Series:
+        del impulse, work
+        return velocity
+
+    def level(self, first: Real, due: Real, final: Real) -> Real:
+        del first, due
+        return final
+
+
+class _Energetic(RestitutionRule):
+    """The energetic law collects work, of which e squared is given back."""
+
+    law = RestitutionLaw.ENERGETIC
+    needs_work = True
+
+    def share(self, restitution: Real) -> Real:
+        return restitution * restitution
+
+    def amount(self, p: Real, work: Real) -> Real:
+        del p
+        return work
+
+    def distance(self, v_n: float, lifting: float, due: float, final: float) -> float:
+        del final
+        if due <= 0.0:
+            return 0.0
+        square = v_n * v_n + 2.0 * lifting * due
+        return 2.0 * due / (v_n + math.sqrt(square)) if square > 0.0 else math.inf
+
+    def distances(
+        self, v_n: FloatArray, lifting: FloatArray, due: FloatArray, final: FloatArray
+    ) -> FloatArray:
+        del final
+        square = v_n * v_n + 2.0 * lifting * due
+        distance = np.where(square > 0.0, 2.0 * due / (v_n + np.sqrt(square)), math.inf)
+        return np.where(due <= 0.0, 0.0, distance)
+
+    def meter(self, velocity: Series, impulse: Series, work: Series) -> Series:
+        del velocity, impulse
+        return work
+
+
+RULES: Final = {rule.law: rule for rule in (RestitutionRule(), _Newton(), _Energetic())}
+"""The rule of each law."""
+
+
+class ImpactOutcome(NamedInt):
     """What the contact did while the impulse grew.
 
     Stopping counts as during compression where it coincides with the end of compression, and as never where
@@ -59,7 +187,7 @@ class ImpactOutcome(IntEnum):
         return self in _STICKING
 
 
-class PathEvent(IntEnum):
+class PathEvent(NamedInt):
     """What a vertex of the impulse path stands for."""
 
     START = 0

@@ -42,11 +42,17 @@ _FEW: Final = 24
 
 
 class Bound(NamedTuple):
-    """What holds from the time asked for until another."""
+    """What holds from the time asked for until another.
 
-    until: float  # s, later than the time asked for
-    fall: float  # m/s^2, the most that the centre of mass is pulled against the normal; may be negative
-    turning: float  # 1/s^2, the most that a point is pulled relative to it, for each metre of distance
+    Attributes:
+        until: s, later than the time asked for.
+        fall: m/s^2, the most that the centre of mass is pulled against the normal; may be negative.
+        turning: 1/s^2, the most that a point is pulled relative to it, for each metre of distance.
+    """
+
+    until: float
+    fall: float
+    turning: float
 
 
 def bounds_of(motion: Motion, normal_W: FloatArray) -> Callable[[float], Bound]:

@@ -10,6 +10,7 @@ import numpy as np
 from contact_dynamics.contact.found import check_has_shape, find_contacts
 from contact_dynamics.landing.obstacle_arrival import first_touch
 from contact_dynamics.landing.plane_arrival import first_contact
+from contact_dynamics.records import Record
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.tumbling import free_motion
@@ -23,15 +24,23 @@ if TYPE_CHECKING:
     from contact_dynamics.world import Body, Surface, World
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Landing:
-    """The end of a flight: the body touches."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Landing(Record):
+    """The end of a flight: the body touches.
 
-    seconds: float  # s after the state's stamp; 0 where it touches already
-    state: BodyState  # just then
-    contacts: ContactSet  # that touch and do not leave; more than one where an edge or a face lands
-    velocities_W: FloatArray  # (n, 3), m/s, of the body's points at the contacts, world axes
-    strikes: bool  # whether one of them approaches faster than the velocity tolerance: an impact
+    Attributes:
+        seconds: s after the state's stamp; 0 where it touches already.
+        state: Just then.
+        contacts: That touch and do not leave; more than one where an edge or a face lands.
+        velocities_W: (n, 3), m/s, of the body's points at the contacts, world axes.
+        strikes: Whether one of them approaches faster than the velocity tolerance: an impact.
+    """
+
+    seconds: float
+    state: BodyState
+    contacts: ContactSet
+    velocities_W: FloatArray
+    strikes: bool
 
 
 def next_landing(

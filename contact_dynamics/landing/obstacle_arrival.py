@@ -21,7 +21,7 @@ from contact_dynamics.contact.on_obstacles import site_of, touches_of
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.landing.plane_arrival import Descent
 from contact_dynamics.rotations.one import rotation_matrix
-from contact_dynamics.tolerances import DISTANCE_TOLERANCE, GRAZING_DEPTH
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE, GRAZING_DEPTH, LEAVING_STEP
 from contact_dynamics.validation import check_not_negative
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def first_touch(motion: Motion, shape_B: ConvexShape, obstacle: Obstacle, *, hor
             if not (velocities @ site.normal_W > 0.0).all():
                 return now
             pull = bound.fall + descent.reach * bound.turning
-            step = math.sqrt(2.0 * GRAZING_DEPTH / pull) if pull > 0.0 else _LEAVING
+            step = math.sqrt(2.0 * GRAZING_DEPTH / pull) if pull > 0.0 else LEAVING_STEP
         else:
             step = descent.free_for(descent.at(now), bound)
         if now >= until:
@@ -71,7 +71,3 @@ def first_touch(motion: Motion, shape_B: ConvexShape, obstacle: Obstacle, *, hor
         f"obstacle {obstacle.name!r}: found a body close to it until {now:g} s, allowed is one that passes"
     )
     raise NotSupportedError(message)
-
-
-_LEAVING: Final = 1e-5
-"""s, the step away from an obstacle where nothing pulls towards it."""

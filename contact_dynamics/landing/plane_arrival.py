@@ -22,6 +22,7 @@ import numpy as np
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.landing.acceleration_bounds import Bound, all_free_for, bounds_of, free_for
 from contact_dynamics.landing.rim_descent import RimAbove
+from contact_dynamics.records import Record
 from contact_dynamics.rotations.one import conjugate, rotated
 from contact_dynamics.shapes.convex import ConvexShape
 from contact_dynamics.shapes.rim import radii_of
@@ -39,16 +40,22 @@ _MOST_ROOT_STEPS: Final = 100
 """Bisection alone needs 60 for the last bit; Newton's steps need four."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class FirstContact:
-    """A body's arrival at a plane."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class FirstContact(Record):
+    """A body's arrival at a plane.
 
-    seconds: float  # s after the state's stamp, >= 0
-    vertices: tuple[
-        int, ...
-    ]  # the part (corner; after the corners, rim) that arrives, then those within `GRAZING_DEPTH` as well
-    p_WC_W: FloatArray  # (3,), m, the point that arrives, world
-    v_WC_W: FloatArray  # (3,), m/s, its velocity, world axes
+    Attributes:
+        seconds: s after the state's stamp, >= 0.
+        vertices: The part (corner; after the corners, rim) that arrives, then those within `GRAZING_DEPTH` as
+            well.
+        p_WC_W: (3,), m, the point that arrives, world.
+        v_WC_W: (3,), m/s, its velocity, world axes.
+    """
+
+    seconds: float
+    vertices: tuple[int, ...]
+    p_WC_W: FloatArray
+    v_WC_W: FloatArray
 
 
 def first_contact(
@@ -89,14 +96,22 @@ def first_contact(
 
 
 class Above(NamedTuple):
-    """A shape above a plane at one time."""
+    """A shape above a plane at one time.
 
-    heights: FloatArray  # (k + m,), m, of corners, then of the lowest points of rims
-    rates: FloatArray  # (k + m,), m/s
+    Attributes:
+        heights: (k + m,), m, of corners, then of the lowest points of rims.
+        rates: (k + m,), m/s.
+        centre: m, of the centre of mass.
+        centre_rate: m/s.
+        sample: The motion then.
+    """
+
+    heights: FloatArray
+    rates: FloatArray
     rims: list[RimAbove]
-    centre: float  # m, of the centre of mass
-    centre_rate: float  # m/s
-    sample: Sample  # the motion then
+    centre: float
+    centre_rate: float
+    sample: Sample
 
 
 class Descent:

@@ -15,19 +15,26 @@ from __future__ import annotations
 import math
 from typing import Final, NamedTuple
 
-from contact_dynamics.tolerances import GRAZING_DEPTH
+from contact_dynamics.tolerances import GRAZING_DEPTH, RIM_ACCURACY
 
 _MOST_STEPS: Final = 60
 """Newton's steps down to a root. Four are usual; where it is all but double, each halves the distance."""
 
 
 class RimAbove(NamedTuple):
-    """A rim above a plane at one time."""
+    """A rim above a plane at one time.
 
-    height: float  # m, of its centre
-    rate: float  # m/s
-    a: tuple[float, float]  # m, of its radii, above the centre
-    b: tuple[float, float]  # m/s, their rates
+    Attributes:
+        height: m, of its centre.
+        rate: m/s.
+        a: m, of its radii, above the centre.
+        b: m/s, their rates.
+    """
+
+    height: float
+    rate: float
+    a: tuple[float, float]
+    b: tuple[float, float]
 
     def lowest(self) -> tuple[float, float, tuple[float, float]]:
         """Return the lowest point's height, m, its rate, m/s, and its direction (cos, sin).
@@ -66,14 +73,9 @@ class RimAbove(NamedTuple):
             if value >= 0.0 or slope >= 0.0:
                 break
             before, t = t, max(t - value / slope, 0.0)
-            if before - t <= _ACCURACY * before:
+            if before - t <= RIM_ACCURACY * before:
                 break
         return t
-
-
-_ACCURACY: Final = 1e-9
-"""Relative, of the last of Newton's steps, after which the square of it is left; at an all but double root as
-much again, where the depth is its square."""
 
 
 def _arrival(height: float, rate: float, pull: float) -> float:

@@ -24,6 +24,7 @@ import numpy as np
 from contact_dynamics.constants import to_ns
 from contact_dynamics.measured.flight_fit import FEWEST_FRAMES, FlightFit, MeasuredState, fit_flight
 from contact_dynamics.measured.flights import DEVIATIONS, ORIENTATION_SLACK, POSITION_SLACK, find_flights
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.many import rotation_vectors, turned
 
@@ -49,14 +50,21 @@ REST_SPIN: Final = 0.2
 """rad/s. Likewise of the angular velocity, for a body of a decimetre."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class MeasuredStrike:
-    """One strike between two flights."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class MeasuredStrike(Record):
+    """One strike between two flights.
 
-    time: float  # s, on the recording's clock
-    time_std: float  # s
-    before: MeasuredState  # at that time, from the flight that ends
-    after: MeasuredState  # at that time, from the flight that begins
+    Attributes:
+        time: s, on the recording's clock.
+        time_std: s.
+        before: At that time, from the flight that ends.
+        after: At that time, from the flight that begins.
+    """
+
+    time: float
+    time_std: float
+    before: MeasuredState
+    after: MeasuredState
     heights: (
         FloatArray  # (k,), m, of the body's corners above the surface at that time, from both flights' mean
     )
@@ -73,24 +81,38 @@ class MeasuredStrike:
         return float(second - lowest)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class MeasuredRest:
-    """The body at rest at the end of the recording."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class MeasuredRest(Record):
+    """The body at rest at the end of the recording.
 
-    time: float  # s, of the first frame from which on the pose stayed
-    state: BodyState  # the mean pose from then on, at velocity 0
-    position_std: float  # m, of each coordinate of the mean
-    orientation_std: float  # rad, of each component of the mean
-    heights: FloatArray  # (k,), m, of the body's corners above the surface
+    Attributes:
+        time: s, of the first frame from which on the pose stayed.
+        state: The mean pose from then on, at velocity 0.
+        position_std: m, of each coordinate of the mean.
+        orientation_std: rad, of each component of the mean.
+        heights: (k,), m, of the body's corners above the surface.
+    """
+
+    time: float
+    state: BodyState
+    position_std: float
+    orientation_std: float
+    heights: FloatArray
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class MeasuredEvents:
-    """All that was found in one toss."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class MeasuredEvents(Record):
+    """All that was found in one toss.
 
-    flights: tuple[slice, ...]  # frames of each free flight
-    strikes: tuple[MeasuredStrike, ...]  # in the order of time
-    rest: MeasuredRest | None  # None: still moving at the end
+    Attributes:
+        flights: Frames of each free flight.
+        strikes: In the order of time.
+        rest: None: still moving at the end.
+    """
+
+    flights: tuple[slice, ...]
+    strikes: tuple[MeasuredStrike, ...]
+    rest: MeasuredRest | None
 
 
 def measure_events(toss: Toss) -> MeasuredEvents:

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.constants import to_ns
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.many import matrices_of, rotation_vectors, turned
 
@@ -32,32 +33,54 @@ FEWEST_FRAMES: Final = 4
 """Frames. Positions and orientations have two unknown vectors each; two frames more give residuals."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class MeasuredState:
-    """A state found by a fit, with the standard deviation of each of its parts."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class MeasuredState(Record):
+    """A state found by a fit, with the standard deviation of each of its parts.
 
-    time: float  # s, on the recording's clock
-    state: BodyState  # of the centre of mass, world axes
-    position_std: float  # m, of each coordinate
-    orientation_std: FloatArray  # (3,), rad, of a rotation vector's components, world axes
-    velocity_std: float  # m/s, of each component
-    angular_velocity_std: FloatArray  # (3,), rad/s, of each component, world axes
+    Attributes:
+        time: s, on the recording's clock.
+        state: Of the centre of mass, world axes.
+        position_std: m, of each coordinate.
+        orientation_std: (3,), rad, of a rotation vector's components, world axes.
+        velocity_std: m/s, of each component.
+        angular_velocity_std: (3,), rad/s, of each component, world axes.
+    """
+
+    time: float
+    state: BodyState
+    position_std: float
+    orientation_std: FloatArray
+    velocity_std: float
+    angular_velocity_std: FloatArray
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class FlightFit:
-    """A fitted free flight: position and rotation vector with their rates' constants at a reference time."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class FlightFit(Record):
+    """A fitted free flight: position and rotation vector with their rates' constants at a reference time.
 
-    reference: float  # s
-    q_reference: FloatArray  # (4,), x, y, z, w: the measured orientation that rotation vectors start from
-    p_W: FloatArray  # (3,), m, at the reference
-    v_W: FloatArray  # (3,), m/s, at the reference
-    theta_W: FloatArray  # (3,), rad, at the reference, world axes
-    L_W: FloatArray  # (3,), kg m^2/s, angular momentum about the centre of mass
-    gravity_W: FloatArray  # (3,), m/s^2
-    I_B: FloatArray  # (3, 3), kg m^2, body axes
-    cov_p: FloatArray  # (2, 2), of a coordinate and its rate: m^2, m^2/s, m^2/s^2
-    cov_rotation: FloatArray  # (6, 6), of theta and L
+    Attributes:
+        reference: s.
+        q_reference: (4,), x, y, z, w: the measured orientation that rotation vectors start from.
+        p_W: (3,), m, at the reference.
+        v_W: (3,), m/s, at the reference.
+        theta_W: (3,), rad, at the reference, world axes.
+        L_W: (3,), kg m^2/s, angular momentum about the centre of mass.
+        gravity_W: (3,), m/s^2.
+        I_B: (3, 3), kg m^2, body axes.
+        cov_p: (2, 2), of a coordinate and its rate: m^2, m^2/s, m^2/s^2.
+        cov_rotation: (6, 6), of theta and L.
+    """
+
+    reference: float
+    q_reference: FloatArray
+    p_W: FloatArray
+    v_W: FloatArray
+    theta_W: FloatArray
+    L_W: FloatArray
+    gravity_W: FloatArray
+    I_B: FloatArray
+    cov_p: FloatArray
+    cov_rotation: FloatArray
 
     def at(self, time: float) -> MeasuredState:
         """Return the flight's state at ``time``, s.

@@ -18,6 +18,7 @@ import numpy as np
 from contact_dynamics.constants import ns_after
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.measured.velocity_estimate import frames_in_window, slope_noise
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tolerances import UNIT_LENGTH_TOLERANCE
 from contact_dynamics.validation import check_array, check_positive
@@ -27,30 +28,44 @@ if TYPE_CHECKING:
     from contact_dynamics.world import Body, Surface
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Toss:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Toss(Record):
     """A recorded toss of one box-shaped body onto one surface; sample k is row k of each array.
+
+    Attributes:
+        source: Where the numbers come from, for people.
+        body: Mass properties and corners; its published frame is B itself.
+        box_size: (3,), m, full side lengths along the body's axes.
+        surface: What it falls on, with friction and restitution.
+        gravity_W: (3,), m/s^2, world axes.
+        rate: Hz, of the samples.
+        position_noise: m, standard deviation of each coordinate of a measured position.
+        times: (n,), s, increasing.
+        p_WB_W: (n, 3), m, centre of mass in the world.
+        q_WB: (n, 4), unit quaternions x, y, z, w: body coordinates into world coordinates.
+        v_WB_W: (n, 3), m/s, of the centre of mass, world axes, estimated causally.
+        w_WB_W: (n, 3), rad/s, world axes, estimated causally.
 
     Raises:
         InvalidFieldError: arrays of unequal length, a number that is not finite, times that do not increase,
             a quaternion that is not unit, or a rate or noise that is not > 0.
     """
 
-    source: str  # where the numbers come from, for people
-    body: Body  # mass properties and corners; its published frame is B itself
-    box_size: FloatArray  # (3,), m, full side lengths along the body's axes
-    surface: Surface  # what it falls on, with friction and restitution
-    gravity_W: FloatArray  # (3,), m/s^2, world axes
-    rate: float  # Hz, of the samples
-    position_noise: float  # m, standard deviation of each coordinate of a measured position
+    source: str
+    body: Body
+    box_size: FloatArray
+    surface: Surface
+    gravity_W: FloatArray
+    rate: float
+    position_noise: float
     orientation_noise: (
         float  # rad, standard deviation of each component of a measured orientation's rotation error
     )
-    times: FloatArray  # (n,), s, increasing
-    p_WB_W: FloatArray  # (n, 3), m, centre of mass in the world
-    q_WB: FloatArray  # (n, 4), unit quaternions x, y, z, w: body coordinates into world coordinates
-    v_WB_W: FloatArray  # (n, 3), m/s, of the centre of mass, world axes, estimated causally
-    w_WB_W: FloatArray  # (n, 3), rad/s, world axes, estimated causally
+    times: FloatArray
+    p_WB_W: FloatArray
+    q_WB: FloatArray
+    v_WB_W: FloatArray
+    w_WB_W: FloatArray
 
     def __post_init__(self) -> None:
         """Check every field; the quaternions are normalised to rounding."""

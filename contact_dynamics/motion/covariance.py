@@ -31,6 +31,7 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion.free_derivative import state_derivatives
 from contact_dynamics.motion.integrated import ForcedMotion
 from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import rotation_vectors, turned
 from contact_dynamics.tolerances import NEGATIVE_VARIANCE_TOLERANCE
@@ -60,14 +61,22 @@ class PropagationMethod(enum.Enum):
     SAMPLED = "sampled"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class CarriedCovariance:
-    """The covariance of a body's state at n times."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class CarriedCovariance(Record):
+    """The covariance of a body's state at n times.
 
-    seconds: FloatArray  # (n,), s after the stamp of the state that the motion began with
-    covariances: FloatArray  # (n, 12, 12), in the module's order; NaN where no double holds it
-    orientation_deviations: FloatArray  # (n,), rad, largest standard deviation of orientation about any axis
-    trusted: NDArray[np.bool_]  # (n,), whether it has been below TRUSTED_DEVIATION all the way from time 0
+    Attributes:
+        seconds: (n,), s after the stamp of the state that the motion began with.
+        covariances: (n, 12, 12), in the module's order; NaN where no double holds it.
+        orientation_deviations: (n,), rad, largest standard deviation of orientation about any axis.
+        trusted: (n,), whether it has been below TRUSTED_DEVIATION all the way from time 0.
+        method: How the covariance was carried along.
+    """
+
+    seconds: FloatArray
+    covariances: FloatArray
+    orientation_deviations: FloatArray
+    trusted: NDArray[np.bool_]
     method: PropagationMethod
 
 
@@ -113,13 +122,16 @@ def covariance_along(
     probes = _probes(motion, seconds)
     if method is PropagationMethod.LINEARISED:
         everywhere = _linearised(motion, start, np.concatenate([seconds, probes]))
-        covariances, on_the_way = everywhere[: len(seconds)], _deviations(everywhere[len(seconds) :])
+        covariances, on_the_way = (
+            everywhere[: len(seconds)],
+            orientation_deviations(everywhere[len(seconds) :]),
+        )
     else:
         if samples < FEWEST_SAMPLES:
             raise InvalidFieldError("samples", samples, f"at least {FEWEST_SAMPLES}")
         covariances = _sampled(motion, start, seconds, draws=_draws(start, samples, seed))
-        on_the_way = _deviations(_linearised(motion, start, probes))
-    deviations = _deviations(covariances)
+        on_the_way = orientation_deviations(_linearised(motion, start, probes))
+    deviations = orientation_deviations(covariances)
     return CarriedCovariance(
         seconds=seconds,
         covariances=covariances,
@@ -200,8 +212,11 @@ def _probes(motion: FreeMotion | ForcedMotion, seconds: FloatArray) -> FloatArra
     return np.concatenate([np.linspace(0.0, end, PROBES) for end in ends])
 
 
-def _deviations(covariances: FloatArray) -> FloatArray:
-    """Return the largest standard deviations of orientation, (n,), rad; inf where no double holds them."""
+def orientation_deviations(covariances: FloatArray) -> FloatArray:
+    """Return the largest standard deviations of orientation, (n,), rad, of covariances, (n, 12, 12).
+
+    Infinite where no double holds them.
+    """
     finite = np.isfinite(covariances).all(axis=(1, 2))
     deviations = np.full(len(covariances), math.inf)
     variances = np.linalg.eigvalsh(covariances[finite, 3:6, 3:6])[:, 2]

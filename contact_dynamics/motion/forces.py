@@ -7,35 +7,40 @@ alike in all directions. Not covered: wind, lift, added mass, a centre of pressu
 
 from __future__ import annotations
 
-import enum
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.validation import FloatArray, check_array, check_choice, check_not_negative
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-class WrenchAxes(enum.IntEnum):
+class WrenchAxes(NamedInt):
     """In whose axes a wrench is constant."""
 
     WORLD = 0
     BODY = 1  # it turns with the body
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ConstantWrench:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ConstantWrench(Record):
     """A force through the centre of mass and a torque about it that stay as they are.
+
+    Attributes:
+        force: (3,), N, in `axes`.
+        torque: (3,), N m, in `axes`.
+        axes: Whether force and torque are given in world or in body axes.
 
     Raises:
         InvalidFieldError: not three finite numbers each, or axes that are none of `WrenchAxes`.
     """
 
-    force: FloatArray = field(default_factory=lambda: np.zeros(3))  # (3,), N, in `axes`
-    torque: FloatArray = field(default_factory=lambda: np.zeros(3))  # (3,), N m, in `axes`
+    force: FloatArray = field(default_factory=lambda: np.zeros(3))
+    torque: FloatArray = field(default_factory=lambda: np.zeros(3))
     axes: WrenchAxes = WrenchAxes.WORLD
 
     if TYPE_CHECKING:
@@ -52,18 +57,24 @@ class ConstantWrench:
         check_choice("axes", self.axes, WrenchAxes)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Drag:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Drag(Record):
     """Drag in still air, at the centre of mass: force -(linear + quadratic |v|) v, torque the same of w.
+
+    Attributes:
+        linear: N s/m, >= 0.
+        quadratic: N s^2/m^2, >= 0.
+        linear_angular: N m s, >= 0.
+        quadratic_angular: N m s^2, >= 0.
 
     Raises:
         InvalidFieldError: a coefficient is negative or not finite.
     """
 
-    linear: float = 0.0  # N s/m, >= 0
-    quadratic: float = 0.0  # N s^2/m^2, >= 0
-    linear_angular: float = 0.0  # N m s, >= 0
-    quadratic_angular: float = 0.0  # N m s^2, >= 0
+    linear: float = 0.0
+    quadratic: float = 0.0
+    linear_angular: float = 0.0
+    quadratic_angular: float = 0.0
 
     def __post_init__(self) -> None:
         """Check all four."""

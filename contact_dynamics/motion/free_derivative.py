@@ -15,8 +15,8 @@ Seen from the body A is B = R^T A R_0 with dB/dt = (I^-1 [L_B] - [w_B]) B, whose
 functions of time with the period T of the polhode. B is found on one period by Gauss collocation, in pieces
 so short that its error is rounding. B(T) leaves L and w as they are and keeps volumes, so that B(T) - 1 is
 nilpotent and B(n T) = 1 + n (B(T) - 1): the cost does not grow with time. A steady spin has a constant
-coefficient with K^3 = -nu^2 K, and is in closed form. Motion that turns by less than `SLOW` is solved for
-with dL as well, because e would grow without bounds.
+coefficient with K^3 = -nu^2 K, and is in closed form. Motion that turns by less than `SMALL_TURN` is solved
+for with dL as well, because e would grow without bounds.
 
 Accuracy, relative to the largest entry: 1e-13 for compact bodies; thin rods amplify rounding, to 1e-9 where
 moments are as 1 to 1000 and to some percent at 1 to 50 000. Near the middle axis neighbours part by a factor
@@ -37,6 +37,7 @@ from contact_dynamics.numerics.gauss_collocation import Collocation
 from contact_dynamics.rigid_body.body import angular_momentum
 from contact_dynamics.rotations.many import cross_matrices, matrices_of
 from contact_dynamics.rotations.one import cross_matrix
+from contact_dynamics.tolerances import GROWTH_ROUNDING, LARGEST_DERIVATIVE_ERROR, SMALL_TURN
 from contact_dynamics.tumbling.poinsot_construction import polhode_period
 from contact_dynamics.tumbling.polhode import Spin, largest_rate
 from contact_dynamics.validation import FloatArray, check_array
@@ -52,17 +53,8 @@ PIECE: Final = 0.5
 """Length of a piece in u, the argument of the elliptic functions. Their nearest poles are pi/2 away, so the
 polynomial through 12 points in 0.5 errs by some (0.25 / pi)^12, 1e-13."""
 
-SLOW: Final = 1e-2
-"""rad. Turns by less are one piece; for larger ones e loses two digits at the most."""
-
 FARTHEST: Final = 300.0
 """Exponent up to which neighbours may part: their squares are then still doubles."""
-
-ROUNDING: Final = 1e-15
-"""What grew by a factor and shrank by it again carries this, times the factor squared."""
-
-LARGEST_ERROR: Final = 1e-3
-"""Relative. Where neighbours parted and met again by so much that less is known, the answer is NaN."""
 
 
 def state_derivatives(motion: FreeMotion, seconds: ArrayLike) -> FloatArray:
@@ -95,7 +87,7 @@ def rotation_derivatives(motion: FreeMotion, times: FloatArray) -> FloatArray:
     by_theta = by_w @ cross_matrix(state.w_WB_W) - L_cross  # dL = I dw + theta x L - I (theta x w)
     then = motion.at(times)
     R = matrices_of(then.q_WB)
-    if largest_rate(motion.rotation) * float(np.abs(times).max()) < SLOW:
+    if largest_rate(motion.rotation) * float(np.abs(times).max()) < SMALL_TURN:
         homogeneous, by_L = _slowly(motion, times)
     else:
         homogeneous = R @ _seen_from_the_body(motion, times) @ state.R_WB.T
@@ -140,7 +132,7 @@ def _seen_from_the_body(motion: FreeMotion, times: FloatArray) -> FloatArray:
         late = np.eye(3) + turns[:, None, None] * np.outer(drift, across)
         errors = errors * _largest(late) + _largest(answers) * np.abs(turns) * error
         answers = answers @ late
-    lost = errors > LARGEST_ERROR * _largest(answers)
+    lost = errors > LARGEST_DERIVATIVE_ERROR * _largest(answers)
     answers[lost] = np.nan
     return answers
 
@@ -177,7 +169,7 @@ def _in_pieces(motion: FreeMotion, times: FloatArray, rate: float) -> tuple[Floa
         K = _coefficients(motion, GAUSS.nodes_of(edges).ravel()).reshape(-1, GAUSS.count, 3, 3)
         begin, answers[here] = GAUSS.solutions(K, edges, times[here])
         which = np.minimum(np.searchsorted(np.abs(edges), ahead, side="right") - 1, len(edges) - 2)
-        errors[here] = ROUNDING * np.square(np.maximum.accumulate(_largest(begin))[which])
+        errors[here] = GROWTH_ROUNDING * np.square(np.maximum.accumulate(_largest(begin))[which])
     return answers, errors
 
 

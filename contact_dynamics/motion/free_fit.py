@@ -25,8 +25,10 @@ from contact_dynamics.constants import STANDARD_GRAVITY_W, seconds_since
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.motion.free_derivative import rotation_derivatives
 from contact_dynamics.numerics.gauss_newton import gauss_newton
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import matrices_of, rotation_vectors, turned
+from contact_dynamics.tolerances import SMALL_STEP
 from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
 from contact_dynamics.validation import FloatArray, check_array, check_positive
 
@@ -41,22 +43,25 @@ FEWEST_STATES: Final = 3
 MOST_STATES: Final = 2000
 """A window of seconds; longer ones are no short windows, and cost."""
 
-SMALL_STEP: Final = 1e-9
-"""rad of attitude, m of position, anywhere in the window: a round that changes less is the last."""
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StateNoise:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class StateNoise(Record):
     """Standard deviations of published states, of each component, white.
+
+    Attributes:
+        position: m, > 0.
+        orientation: rad, > 0, of a rotation vector's components.
+        linear_velocity: m/s, > 0; None: published velocities are not used.
+        angular_velocity: rad/s, > 0; None: likewise.
 
     Raises:
         InvalidFieldError: one is not > 0.
     """
 
-    position: float  # m, > 0
-    orientation: float  # rad, > 0, of a rotation vector's components
-    linear_velocity: float | None = None  # m/s, > 0; None: published velocities are not used
-    angular_velocity: float | None = None  # rad/s, > 0; None: likewise
+    position: float
+    orientation: float
+    linear_velocity: float | None = None
+    angular_velocity: float | None = None
 
     def __post_init__(self) -> None:
         """Check those that are there."""
@@ -66,17 +71,27 @@ class StateNoise:
                 object.__setattr__(self, name, check_positive(f"{name}_noise", value))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class FitResult:
-    """The best-fit state at the newest stamp, and how well it fits."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class FitResult(Record):
+    """The best-fit state at the newest stamp, and how well it fits.
+
+    Attributes:
+        state: The fitted state at the newest stamp.
+        covariance: (12, 12): position, rotation vector (world, after the attitude), both velocities.
+        position_residual: m, root mean square distance of the positions.
+        orientation_residual: rad, root mean square angle between the orientations.
+        count: Of states.
+        rounds: Of Gauss and Newton.
+        converged: Whether the last round changed next to nothing.
+    """
 
     state: BodyState
-    covariance: FloatArray  # (12, 12): position, rotation vector (world, after the attitude), both velocities
-    position_residual: float  # m, root mean square distance of the positions
-    orientation_residual: float  # rad, root mean square angle between the orientations
-    count: int  # of states
-    rounds: int  # of Gauss and Newton
-    converged: bool  # whether the last round changed next to nothing
+    covariance: FloatArray
+    position_residual: float
+    orientation_residual: float
+    count: int
+    rounds: int
+    converged: bool
 
 
 def fit_free_motion(

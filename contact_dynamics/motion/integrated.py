@@ -21,10 +21,9 @@ Not covered: forces that jump (each jump costs small steps), impacts, wind, lift
 
 from __future__ import annotations
 
-import enum
 import math
 from bisect import bisect_left, bisect_right
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
@@ -32,10 +31,11 @@ import numpy as np
 from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, angular_momentum
 from contact_dynamics.rotations.many import make_continuous
 from contact_dynamics.rotations.one import Quaternion, conjugate, normalised, product, rotated
-from contact_dynamics.tolerances import LARGEST_NUMBER
+from contact_dynamics.tolerances import INTEGRATION_ABSOLUTE, INTEGRATION_RELATIVE, LARGEST_NUMBER
 from contact_dynamics.tumbling import FreeMotion, Sample, Trajectory, free_motion
 from contact_dynamics.tumbling.motion import check_extent
 from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_within
@@ -47,36 +47,42 @@ if TYPE_CHECKING:
 
     WrenchFunction: TypeAlias = Callable[[float, Sample], tuple[Sequence[float], Sequence[float]]]
 
-RELATIVE_TOLERANCE: Final = 3e-14
-"""Of each step. SciPy allows 2e-14 at the least, where rounding begins to make steps pointlessly short."""
-
-ABSOLUTE_TOLERANCE: Final = 1e-15
-"""m, m/s, rad and rad/s of each step: far below what any sensor resolves."""
-
 MOST_STEPS: Final = 20_000
 """In one direction of time. Some 10 s of computing, and some 500 revolutions of a body."""
 
 
-class Method(enum.IntEnum):
+class Method(NamedInt):
     """How a motion is computed; the numbers are those of PredictTumbling.srv."""
 
     CLOSED_FORM = 0  # exact to rounding, the error does not grow with time
     INTEGRATED = 1  # stepped by an integrator
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ForcedMotion:
-    """Where a body under forces is at any time; made by `forced_motion`. Not to be shared between threads."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ForcedMotion(Record):
+    """Where a body under forces is at any time; made by `forced_motion`. Not to be shared between threads.
+
+    Attributes:
+        body: Mass and angular inertia.
+        state: At time 0.
+        gravity_W: (3,), m/s^2, world axes.
+        wrench: The constant wrench that acts besides gravity.
+        drag: Drag in still air.
+        wrench_of: A user's, of time and state.
+        law: What a caller adds to the wrench, as a function; None: nothing.
+        ahead: What has been stepped into the future.
+        back: And into the past.
+    """
 
     body: MassProperties
-    state: BodyState  # at time 0
-    gravity_W: FloatArray  # (3,), m/s^2, world axes
+    state: BodyState
+    gravity_W: FloatArray
     wrench: ConstantWrench
     drag: Drag
-    wrench_of: WrenchFunction | None  # a user's, of time and state
-    law: _Law
-    ahead: _Steps  # what has been stepped into the future
-    back: _Steps  # and into the past
+    wrench_of: WrenchFunction | None
+    law: _Law = field(repr=False)
+    ahead: _Steps = field(repr=False)
+    back: _Steps = field(repr=False)
 
     @property
     def rotates_freely(self) -> bool:
@@ -154,12 +160,19 @@ class ForcedMotion:
 
 
 class IntegratedStep(NamedTuple):
-    """One step of the integrator: all variables are polynomials of degree 7 in time."""
+    """One step of the integrator: all variables are polynomials of degree 7 in time.
 
-    start: float  # s
-    end: float  # s, > start
-    variables: Callable[[FloatArray], FloatArray]  # (n,), s, to (13, n), as `_SIZE` says; L is scaled so:
-    scale: float  # kg m^2, L = scale times the last three variables
+    Attributes:
+        start: s.
+        end: s, > start.
+        variables: (n,), s, to (13, n), as `_SIZE` says; L is scaled so:
+        scale: kg m^2, L = scale times the last three variables.
+    """
+
+    start: float
+    end: float
+    variables: Callable[[FloatArray], FloatArray]
+    scale: float
 
 
 class ChosenMotion(NamedTuple):
@@ -376,8 +389,8 @@ class _Steps:
                     0.0,
                     self.law.start,
                     self.end,
-                    rtol=RELATIVE_TOLERANCE,
-                    atol=ABSOLUTE_TOLERANCE,
+                    rtol=INTEGRATION_RELATIVE,
+                    atol=INTEGRATION_ABSOLUTE,
                 )
         while self.ends[-1] < distance:
             if len(self.dense) >= self.most:

@@ -11,8 +11,8 @@ Gauss collocation (`numerics.gauss_collocation`) over the integrator's own steps
 faster than the motion does.
 
 Accuracy: that of the motion, 1e-11 relative to the largest entry over ten revolutions of a compact body; with
-a user's function, of the differences: `DIFFERENCE`. Not covered: forces that jump, and quadratic drag where
-the speed passes through zero, beyond what its one-sided slopes say.
+a user's function, of the differences: `DIFFERENCE_STEP`. Not covered: forces that jump, and quadratic drag
+where the speed passes through zero, beyond what its one-sided slopes say.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion.forces import WrenchAxes
 from contact_dynamics.numerics.gauss_collocation import Collocation
 from contact_dynamics.rotations.many import cross_matrices, matrices_of, turned
+from contact_dynamics.tolerances import DIFFERENCE_STEP
 from contact_dynamics.tumbling import Sample
 from contact_dynamics.validation import FloatArray, check_array
 
@@ -41,10 +42,6 @@ GAUSS: Final = Collocation(8)
 PIECE: Final = 0.5
 """Length of a piece times the fastest rate at which neighbours turn, part or meet, rad: 8 points then err by
 some (PIECE / 4)^8 / 8!, 1e-12, in the middle of a piece, and by far less at its end."""
-
-DIFFERENCE: Final = 1e-5
-"""m, rad, m/s and rad/s, by which a user's function is differenced, or that part of a larger number. Central:
-it errs by 1e-10 of the third derivative, and by 1e-11 of the force for rounding."""
 
 P, THETA, V, W = (slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12))
 """Rows and columns of the parts of a state; in the equations the last is dL / I_max, rad/s."""
@@ -147,7 +144,7 @@ def _differences(wrench_of: WrenchFunction, then: Trajectory, i: int) -> FloatAr
     numbers = [*then.p_WB_W[i].tolist(), 0.0, 0.0, 0.0, *then.v_WB_W[i].tolist(), *then.w_WB_W[i].tolist()]
     found = np.empty((6, 12))
     for column, number in enumerate(numbers):
-        size = DIFFERENCE * max(1.0, abs(number))
+        size = DIFFERENCE_STEP * max(1.0, abs(number))
         pair = []
         for step in (size, -size):
             moved = numbers.copy()

@@ -17,12 +17,13 @@ import numpy as np
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W, seconds_since
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag
-from contact_dynamics.motion.free_fit import SMALL_STEP, FitResult, StateNoise, fit_free_motion
+from contact_dynamics.motion.free_fit import FitResult, StateNoise, fit_free_motion
 from contact_dynamics.motion.integrated import MOST_STEPS, ForcedMotion, forced_motion, turns_or_drags
 from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
 from contact_dynamics.numerics.gauss_newton import Fit, gauss_newton
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import rotation_vectors, turned
+from contact_dynamics.tolerances import LEAST_NOISE, SMALL_STEP
 from contact_dynamics.validation import FloatArray, check_array
 
 if TYPE_CHECKING:
@@ -31,10 +32,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from contact_dynamics.motion.integrated import WrenchFunction
-
-LEAST_NOISE: Final = 1e-12
-"""m and rad. Residuals of exact states are rounding, which is no measure of how positions weigh beside
-orientations."""
 
 PASSES: Final = 3
 """With weights from residuals, where noise is not known: those of the free motion are too large where it fits

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
-
-import numpy as np
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body import inertia
@@ -19,8 +17,8 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.inertia import MassDistribution
     from contact_dynamics.validation import FloatArray
 
-    ShapeMaker: TypeAlias = Callable[[Any], ConvexShape]
-    MassMaker: TypeAlias = Callable[[Any, float], MassDistribution]
+    ShapeMaker: TypeAlias = Callable[[FloatArray], ConvexShape]
+    MassMaker: TypeAlias = Callable[[FloatArray, float], MassDistribution]
 
 DESCRIPTIONS: Final = {
     "box": "Full side lengths of a box, m: x, y, z.",
@@ -37,13 +35,21 @@ _COUNTS: Final = {"box": 3, "sphere": 1, "capsule": 2, "cylinder": 2, "cone": 2}
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ShapeParameters:
-    """A shape as it is configured, of a body or of an obstacle; lengths in m."""
+    """A shape as it is configured, of a body or of an obstacle; lengths in m.
 
-    numbers: dict[str, list[float]]  # of each of `DESCRIPTIONS`
-    rounding: float  # radius of the ball that rolls over it
-    position: list[float]  # of the shape in the body's frame, or in the world
-    orientation: list[float]  # x, y, z, w
-    pose_names: tuple[str, str] = ("shape_position", "shape_orientation")  # parameters of the two above
+    Attributes:
+        numbers: Of each of `DESCRIPTIONS`.
+        rounding: radius of the ball that rolls over it.
+        position: Of the shape in the body's frame, or in the world.
+        orientation: X, y, z, w.
+        pose_names: Parameters of the two above.
+    """
+
+    numbers: dict[str, list[float]]
+    rounding: float
+    position: list[float]
+    orientation: list[float]
+    pose_names: tuple[str, str] = ("shape_position", "shape_orientation")
 
     def shape_F(self) -> ConvexShape:
         """Return the shape in its frame; an empty one where none is configured.
@@ -85,13 +91,13 @@ class ShapeParameters:
         if name == "vertices":
             if len(values) % 3 > 0:
                 raise InvalidFieldError(name, f"{len(values)} numbers", "3 for each (or [0.0]: none)")
-            return check_array(name, np.array(values).reshape(-1, 3), (None, 3))
+            return check_array(name, values, (None,)).reshape(-1, 3)
         if len(values) != _COUNTS[name]:
             allowed = f"{_COUNTS[name]} (or [0.0]: none)"
             raise InvalidFieldError(name, f"{len(values)} numbers", allowed)
         may_be_zero = name in {"capsule", "cylinder"}
         checks = [check_positive, check_not_negative if may_be_zero else check_positive, check_positive]
-        return np.array([checks[i](f"{name}[{i}]", value) for i, value in enumerate(values)])
+        return check_array(name, [checks[i](f"{name}[{i}]", x) for i, x in enumerate(values)], (None,))
 
 
 def _of_cylinder(radius: float, length: float, mass: float) -> MassDistribution:

@@ -10,16 +10,15 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
-import numpy as np
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from rclpy.parameter import Parameter
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.nodes.body_shapes import DESCRIPTIONS, ShapeParameters
+from contact_dynamics.questions.knowledge import Defaults
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.shapes.obstacle import Obstacle
-from contact_dynamics.tolerances import DISTANCE_TOLERANCE, OUT_OF_PLANE_SPEED, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_positive
 from contact_dynamics.world import Body, Surface, World
 
@@ -39,29 +38,38 @@ class ConfigurationError(ContactDynamicsError):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StateTopics:
-    """Where a body's states are published: one Odometry topic, or a pose and a twist topic."""
+    """Where a body's states are published: one Odometry topic, or a pose and a twist topic.
+
+    Attributes:
+        odometry: Topic of nav_msgs/Odometry; empty: the other two.
+        pose: Topic of geometry_msgs/PoseStamped.
+        twist: Topic of geometry_msgs/TwistStamped.
+        frame: The body's frame.
+    """
 
     body_name: str
-    odometry: str  # topic of nav_msgs/Odometry; empty: the other two
-    pose: str  # topic of geometry_msgs/PoseStamped
-    twist: str  # topic of geometry_msgs/TwistStamped
-    frame: str  # the body's frame
+    odometry: str
+    pose: str
+    twist: str
+    frame: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServerParameters:
-    """All that configures the server."""
+    """All that configures the server.
+
+    Attributes:
+        state_timeout: s.
+        state_history: s.
+        defaults: What holds where a question says nothing.
+    """
 
     world: World
     topics: tuple[StateTopics, ...]
     world_frame: str
-    state_timeout: float  # s
-    state_history: float  # s
-    velocity_tolerance: float  # m/s
-    distance_tolerance: float  # m
-    out_of_plane_tolerance: float  # m/s
-    horizon: float  # s
-    rate: float  # Hz
+    state_timeout: float
+    state_history: float
+    defaults: Defaults
     log: bool
     log_directory: str
 
@@ -86,7 +94,7 @@ def read_server_parameters(node: Node) -> ServerParameters:
             lambda: World(
                 bodies=tuple(body for body, _ in bodies),
                 surfaces=tuple(_read_surface(reader, name) for name in surface_names),
-                gravity_W=np.array(gravity),
+                gravity_W=gravity,
             ),
         ),
         topics=tuple(topics for _, topics in bodies),
@@ -102,30 +110,39 @@ def read_server_parameters(node: Node) -> ServerParameters:
         state_history=reader.read(
             "state_history", 5.0, "How long states are kept for questions about the past, s.", (0.0, 1e4)
         ),
+        defaults=_read_defaults(reader),
+        log=reader.read("log", default=True, description="Log every state, request and response to MCAP."),
+        log_directory=reader.read(
+            "log_directory", "", "Folder to put the log's folder into. Empty: where the server starts."
+        ),
+    )
+
+
+def _read_defaults(reader: _Reader) -> Defaults:
+    default = Defaults()
+    return Defaults(
         velocity_tolerance=reader.read(
             "velocity_tolerance",
-            VELOCITY_TOLERANCE,
+            default.velocity_tolerance,
             "Speed below which a contact counts as at rest, m/s.",
             (0.0, 1e3),
         ),
         distance_tolerance=reader.read(
             "distance_tolerance",
-            DISTANCE_TOLERANCE,
+            default.distance_tolerance,
             "Gap below which a body counts as touching, m.",
             (0.0, 1e3),
         ),
         out_of_plane_tolerance=reader.read(
             "out_of_plane_tolerance",
-            OUT_OF_PLANE_SPEED,
+            default.out_of_plane_tolerance,
             "Motion out of the plane that still counts as planar, m/s.",
             (0.0, 1e3),
         ),
-        horizon=reader.read("horizon", 2.0, "How far ahead a first contact is looked for, s.", (0.0, 1e4)),
-        rate=reader.read("rate", 100.0, "Samples a second of trajectories, Hz.", (1e-6, 1e6)),
-        log=reader.read("log", default=True, description="Log every state, request and response to MCAP."),
-        log_directory=reader.read(
-            "log_directory", "", "Folder to put the log's folder into. Empty: where the server starts."
+        horizon=reader.read(
+            "horizon", default.horizon, "How far ahead a first contact is looked for, s.", (0.0, 1e4)
         ),
+        rate=reader.read("rate", default.rate, "Samples a second of trajectories, Hz.", (1e-6, 1e6)),
     )
 
 
@@ -202,9 +219,7 @@ def _body(name: str, mass: float, inertia: list[float], offset: list[float], sha
         center_of_mass, mass_properties = uniform.p_FB_F, uniform.mass_properties
     elif len(inertia) == 6:
         ixx, iyy, izz, ixy, ixz, iyz = inertia
-        mass_properties = MassProperties(
-            mass=mass, I_B=np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
-        )
+        mass_properties = MassProperties(mass=mass, I_B=[[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
     else:
         allowed = "6 (ixx, iyy, izz, ixy, ixz, iyz), or [0.0]: of the shape"
         raise InvalidFieldError("inertia", f"{len(inertia)} numbers", allowed)
@@ -270,8 +285,8 @@ def _read_surface(reader: _Reader, name: str) -> Surface | Obstacle:
             return Obstacle(name=name, vertices_W=solid.vertices, friction=friction, restitution=restitution)
         return Surface(
             name=name,
-            p_WS_W=np.array(point),
-            normal_W=np.array(normal),
+            p_WS_W=point,
+            normal_W=normal,
             friction=friction,
             restitution=restitution,
         )

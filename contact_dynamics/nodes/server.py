@@ -10,10 +10,9 @@ from __future__ import annotations
 import platform
 import time
 import traceback
+from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import scipy
 from nav_msgs.msg import Path
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
@@ -27,19 +26,18 @@ from contact_dynamics.nodes.arguments import VISUALIZER_PARAMETERS, server_parse
 from contact_dynamics.nodes.call_times import CallTimes
 from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.parameters import read_server_parameters, refuse_unknown_parameters
-from contact_dynamics.nodes.predict_contact_mode import predict_contact_mode
-from contact_dynamics.nodes.predict_impact import predict_impact
-from contact_dynamics.nodes.predict_tumbling import predict_tumbling
 from contact_dynamics.nodes.running import run_node
+from contact_dynamics.nodes.services import SERVICES
 from contact_dynamics.nodes.state_subscriptions import STATE_QOS, subscribe_to_states
-from contact_dynamics.nodes.subject import Knowledge
+from contact_dynamics.questions.knowledge import Knowledge
 from contact_dynamics.questions.state_store import StateStore
-from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters.path import path_from_trajectory
 from msg_adapters.status import report_error
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from contact_dynamics.nodes.services import Request, Service
+    from msg_adapters.status import Response
 
 NODE_NAME = "contact_dynamics"
 SERVICE_QOS = QoSProfile(depth=1000)
@@ -54,12 +52,6 @@ CLOCK_QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 PATH_QOS = QoSProfile(depth=1)
 """Of the newest predicted trajectory as a path: a picture, of which the last one matters."""
-
-_SERVICES = (
-    (PredictContactMode, "PredictContactMode", "predict_contact_mode", predict_contact_mode),
-    (PredictImpact, "PredictImpact", "predict_impact", predict_impact),
-    (PredictTumbling, "PredictTumbling", "predict_tumbling", predict_tumbling),
-)
 
 
 class Server(Node):
@@ -80,8 +72,12 @@ class Server(Node):
         set_back = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
         self._jumps = self.get_clock().create_jump_callback(set_back, post_callback=lambda _: states.clear())
         self._knowledge = Knowledge(
-            parameters=parameters, states=states, now_ns=lambda: self.get_clock().now().nanoseconds
+            world=parameters.world,
+            states=states,
+            defaults=parameters.defaults,
+            now_ns=lambda: self.get_clock().now().nanoseconds,
         )
+        self._world_frame = parameters.world_frame
         self._log = Log(
             parameters.log_directory if parameters.log else None,
             run=self._run_description(),
@@ -100,8 +96,8 @@ class Server(Node):
                 self._log.add_topic(topic, type_name, STATE_QOS)
         self._log_clock()
         self._path = self.create_publisher(Path, "~/predicted_path", PATH_QOS)
-        for service in _SERVICES:
-            self._serve(*service)
+        for service in SERVICES:
+            self._serve(service)
         self._log.start()
         bodies = ", ".join(body.name for body in parameters.world.bodies) or "none"
         self.get_logger().info(f"ready: bodies {bodies}; log {self._log.folder or 'off'}")
@@ -111,34 +107,35 @@ class Server(Node):
         self.get_logger().info(self._log.close())
         return True
 
-    def _serve(self, service_type: type[Any], type_name: str, name: str, answer: Callable[..., None]) -> None:
+    def _serve(self, served: Service) -> None:
+        service_type = served.service_type
         times = CallTimes(lambda: self.get_clock().now().nanoseconds)
 
-        def handle(request: Any, response: Any) -> Any:
+        def handle(request: Request, response: Response) -> Response:
             times.begin()
             start = time.perf_counter()
             try:
-                answer(request, response, self._knowledge)
+                served.serve(request, response, self._knowledge, world_frame=self._world_frame)
             except ContactDynamicsError as error:
                 response = service_type.Response()
                 report_error(response, error)
             except Exception as error:  # noqa: BLE001  a fault in one answer must not end the service
-                self.get_logger().error(f"{name} failed:\n{traceback.format_exc()}")
+                self.get_logger().error(f"{served.name} failed:\n{traceback.format_exc()}")
                 response = service_type.Response()
                 report_error(response, error)
             response.computation_time = time.perf_counter() - start
             if service_type is PredictTumbling and response.status == response.OK:
-                self._publish_path(response.trajectory)
+                self._publish_path(response)
             times.end()
             return response
 
         def record(data: bytes) -> None:
             self._log.record(events, data, log_time_ns=times.log_time_ns(data))
 
-        service = self.create_service(service_type, f"~/{name}", handle, qos_profile=SERVICE_QOS)
+        service = self.create_service(service_type, f"~/{served.name}", handle, qos_profile=SERVICE_QOS)
         service.configure_introspection(self.get_clock(), EVENT_QOS, ServiceIntrospectionState.CONTENTS)
         events = f"{service.service_name}/_service_event"
-        self._log.add_topic(events, f"contact_dynamics_interfaces/srv/{type_name}_Event", EVENT_QOS)
+        self._log.add_topic(events, f"contact_dynamics_interfaces/srv/{served.type_name}_Event", EVENT_QOS)
         self.create_subscription(service_type.Event, events, record, EVENT_QOS, raw=True)
 
     def _log_clock(self) -> None:
@@ -152,17 +149,17 @@ class Server(Node):
         topic: str = self.create_subscription(Clock, "/clock", record, CLOCK_QOS, raw=True).topic_name
         self._log.add_topic(topic, "rosgraph_msgs/msg/Clock", CLOCK_QOS)
 
-    def _publish_path(self, trajectory: Any) -> None:
+    def _publish_path(self, response: PredictTumbling.Response) -> None:
         """Publish the newest trajectory for RViz, if somebody listens."""
         if self._path.get_subscription_count() > 0:
-            self._path.publish(path_from_trajectory(trajectory))
+            self._path.publish(path_from_trajectory(response.trajectory))
 
     def _run_description(self) -> dict[str, str]:
         """Return every parameter, and the versions that the last bits of an answer depend on."""
         versions = {
             "python": platform.python_version(),
-            "numpy": np.__version__,
-            "scipy": scipy.__version__,
+            "numpy": version("numpy"),
+            "scipy": version("scipy"),
         }
         names = sorted(self._parameters)
         return {**versions, **{name: str(self._parameters[name].value) for name in names}}

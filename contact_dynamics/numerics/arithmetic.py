@@ -49,18 +49,28 @@ class Precision(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class Arithmetic(Generic[Number]):
-    """What the formulas need to know of a kind of number."""
+    """What the formulas need to know of a kind of number.
 
-    number: Callable[[float], Number]  # exact
-    any: Callable[[Any], bool]  # whether a comparison is true, or true anywhere
+    Attributes:
+        number: Exact.
+        any: Whether a comparison is true, or true anywhere.
+        sums: For sums that cancel.
+        rates: For what grows with time.
+        cancelled: Relative to a sum's terms, what rounding leaves of zero.
+        half_precise: Relative difference whose square is below the last digit.
+        eighth_precise: The same of the eighth power, for what does not grow with time.
+    """
+
+    number: Callable[[float], Number]
+    any: Callable[[Any], bool]
     largest: Callable[[Number, Number, Number], Number]
     sqrt: Callable[[Number], Number]
     pi: Number
-    sums: Context | None  # for sums that cancel
-    rates: Context | None  # for what grows with time
-    cancelled: Number  # relative to a sum's terms, what rounding leaves of zero
-    half_precise: Number  # relative difference whose square is below the last digit
-    eighth_precise: Number  # the same of the eighth power, for what does not grow with time
+    sums: Context | None
+    rates: Context | None
+    cancelled: Number
+    half_precise: Number
+    eighth_precise: Number
 
 
 DOUBLES: Final = Arithmetic(

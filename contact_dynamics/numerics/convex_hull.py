@@ -18,12 +18,19 @@ _TRIALS: Final = 40
 
 
 class Hull(NamedTuple):
-    """The convex hull of points in a space of d dimensions; indices are those of the points."""
+    """The convex hull of points in a space of d dimensions; indices are those of the points.
 
-    vertices: NDArray[np.int64]  # (k,), the extreme points; counterclockwise in the plane
-    simplices: NDArray[np.int64]  # (s, d), that make up the surface, in any orientation
-    neighbors: NDArray[np.int64]  # (s, d), of a simplex: across from each of its points
-    equations: FloatArray  # (s, d + 1), outward unit normals, then offsets: normal . x + offset <= 0 within
+    Attributes:
+        vertices: (k,), the extreme points; counterclockwise in the plane.
+        simplices: (s, d), that make up the surface, in any orientation.
+        neighbors: (s, d), of a simplex: across from each of its points.
+        equations: (s, d + 1), outward unit normals, then offsets: normal . x + offset <= 0 within.
+    """
+
+    vertices: NDArray[np.int64]
+    simplices: NDArray[np.int64]
+    neighbors: NDArray[np.int64]
+    equations: FloatArray
 
 
 def hull_of(field: str, points: FloatArray) -> Hull:

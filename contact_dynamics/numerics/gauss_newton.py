@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Final, Generic, TypeVar
 
 import numpy as np
 
+from contact_dynamics.tolerances import SMALL_SHARE
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -28,20 +30,22 @@ MOST_ROUNDS: Final = 20
 MOST_HALVINGS: Final = 10
 """Of a step that does not make the residuals smaller."""
 
-SMALL_SHARE: Final = 1e-10
-"""Of the squares of the residuals: a round that explains less of them is the last. The parameters are then
-changed by some 1e-5 of their standard deviations, and by far less in a round to come."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fit(Generic[Model]):
-    """The model that fits best."""
+    """The model that fits best.
+
+    Attributes:
+        misses: (m,), weighted: measured less the model's.
+        inverse: (k, k): inverse @ inverse^T is the parameters' covariance for unit variances.
+        converged: Whether the last round changed next to nothing.
+    """
 
     model: Model
-    misses: FloatArray  # (m,), weighted: measured less the model's
-    inverse: FloatArray  # (k, k): inverse @ inverse^T is the parameters' covariance for unit variances
+    misses: FloatArray
+    inverse: FloatArray
     rounds: int
-    converged: bool  # whether the last round changed next to nothing
+    converged: bool
 
 
 def gauss_newton(

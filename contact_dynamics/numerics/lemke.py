@@ -11,14 +11,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.tolerances import COVERED, NO_PIVOT
+
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
-
-_NO_PIVOT: Final = 1e-11
-"""Relative to the column's largest entry: what is smaller is rounding, not a pivot."""
-
-_SOLVED: Final = 1e-12
-"""Relative to the largest of q: the covering variable's size that counts as zero."""
 
 _PIVOTS_A_ROW: Final = 50
 """Pivots, for each row, after which the search counts as failed; solutions take one to three."""
@@ -38,7 +34,7 @@ def solve_complementarity(M: FloatArray, q: FloatArray) -> FloatArray | None:
     # Columns: w, z, the covering variable, the right-hand side. Rows: the basic variables.
     table = np.hstack([np.eye(m), -M, -cover[:, None], q[:, None]])
     basis = list(range(m))
-    solved = _SOLVED * float(np.abs(q).max())
+    solved = COVERED * float(np.abs(q).max())
     leaving_row = int((q / cover).argmin())
     entering = 2 * m
     for _ in range(_PIVOTS_A_ROW * m):
@@ -52,7 +48,7 @@ def solve_complementarity(M: FloatArray, q: FloatArray) -> FloatArray | None:
             return z[m : 2 * m]
         entering = leaving + m if leaving < m else leaving - m
         column = table[:, entering]
-        rising = column > _NO_PIVOT * float(np.abs(column).max())
+        rising = column > NO_PIVOT * float(np.abs(column).max())
         if not rising.any():
             return None
         ratios = np.full(m, np.inf)

@@ -19,15 +19,13 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 
 from contact_dynamics.numerics.arithmetic import DECIMALS, within
+from contact_dynamics.tolerances import INDEPENDENT_FORCES, WRENCH_ROUNDING
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.validation import FloatArray
-
-_ROUNDING: Final = 1e-13  # relative to the wrench: less is not left over
-_INDEPENDENT: Final = 1e-12  # ratio of singular values below which directions count as the same
 
 _NOTHING: Final = Decimal("1e-60")
 """Relative: what decimals of `DECIMALS.sums` leave of zero, with room for products of products."""
@@ -63,7 +61,7 @@ def least_force(columns: Sequence[Vector3], target: Vector3, absent: Sequence[Ve
     right = np.array(target)
     for direction in absent:
         right -= np.dot(direction, right) * np.array(direction)
-    least = np.linalg.lstsq(matrix, right, rcond=_INDEPENDENT)[0]
+    least = np.linalg.lstsq(matrix, right, rcond=INDEPENDENT_FORCES)[0]
     if least.min() >= 0.0:
         return [float(value) for value in least]
     return [float(value) for value in _few_forces(matrix, right)]
@@ -74,7 +72,7 @@ def _few_forces(matrix: FloatArray, right: FloatArray) -> FloatArray:
     count = matrix.shape[1]
     x = np.zeros(count)
     acting = np.zeros(count, dtype=bool)
-    smallest = _ROUNDING * float(np.linalg.norm(right))
+    smallest = WRENCH_ROUNDING * float(np.linalg.norm(right))
     for _ in range(10 * count):
         help_of = matrix.T @ (right - matrix @ x)
         help_of[acting] = -np.inf
@@ -84,7 +82,7 @@ def _few_forces(matrix: FloatArray, right: FloatArray) -> FloatArray:
         acting[best] = True
         while True:
             trial = np.zeros(count)
-            trial[acting] = np.linalg.lstsq(matrix[:, acting], right, rcond=_INDEPENDENT)[0]
+            trial[acting] = np.linalg.lstsq(matrix[:, acting], right, rcond=INDEPENDENT_FORCES)[0]
             pulling = acting & (trial <= 0.0)
             if not pulling.any():
                 break

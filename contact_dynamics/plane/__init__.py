@@ -1,1 +1,33 @@
-"""Planar problems, and the way between space and a plane of motion."""
+"""Planar problems, and the way between space and a plane of motion.
+
+`types` has a planar body, its velocity, contacts and wrench. `projection` states a question in space as a
+planar one, or says by how much it is none; `lifting` brings a planar answer back to space, and `in_space`
+makes a spatial problem of a planar one. `force_dual` is lecture 26's picture of planar wrenches.
+"""
+
+from contact_dynamics.plane.in_space import planar_in_space
+from contact_dynamics.plane.projection import (
+    PlanarProblem,
+    PlaneOfMotion,
+    best_plane,
+    out_of_plane_speed,
+    project_onto_plane,
+)
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+
+__all__ = [
+    "PlanarBody",
+    "PlanarContact",
+    "PlanarProblem",
+    "PlanarVelocity",
+    "PlanarWrench",
+    "PlaneOfMotion",
+    "best_plane",
+    "out_of_plane_speed",
+    "planar_in_space",
+    "project_onto_plane",
+]
+
+
+def __dir__() -> list[str]:
+    return __all__

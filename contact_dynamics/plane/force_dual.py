@@ -9,13 +9,13 @@ contact with Coulomb's friction are the positive combinations of the two edges o
 from __future__ import annotations
 
 import math
-from enum import IntEnum
 from typing import NamedTuple
 
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench, Vector2
+from contact_dynamics.records import NamedInt
 
 
-class Turn(IntEnum):
+class Turn(NamedInt):
     """The sign that a point of the oriented plane carries."""
 
     CLOCKWISE = -1
@@ -25,9 +25,13 @@ class Turn(IntEnum):
 
 
 class OrientedPoint(NamedTuple):
-    """A wrench or an acceleration up to a positive factor, as a point of the plane with a sign."""
+    """A wrench or an acceleration up to a positive factor, as a point of the plane with a sign.
 
-    point: Vector2  # m, from the centre of mass; a unit direction where the point is at infinity
+    Attributes:
+        point: m, from the centre of mass; a unit direction where the point is at infinity.
+    """
+
+    point: Vector2
     turn: Turn
 
 

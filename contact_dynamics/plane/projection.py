@@ -23,6 +23,7 @@ from contact_dynamics.errors import OutOfPlaneError
 from contact_dynamics.numerics.linear_spaces import rough_span
 from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, scaled, without
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, Vector2
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tolerances import OUT_OF_PLANE_RATIO, OUT_OF_PLANE_SPEED
 from contact_dynamics.validation import FloatArray, check_unit
@@ -36,15 +37,19 @@ _STEEP: Final = 0.8
 """Cosine to the world's up above which a normal counts as upright: it is then over 36 degrees off x."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PlaneOfMotion:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class PlaneOfMotion(Record):
     """An oriented plane through the centre of mass, with axes x, y in it and z its normal.
+
+    Attributes:
+        normal_W: (3,), unit, world axes.
+        axes_W: (2, 3), unit, the plane's x and y, world axes; they follow from the normal.
 
     Raises:
         InvalidFieldError: the normal is not a unit vector of three finite numbers.
     """
 
-    normal_W: FloatArray  # (3,), unit, world axes
+    normal_W: FloatArray
     # x and y, (2, 3), world axes: y is the world's up as seen in the plane; its x where up is the normal
     axes_W: FloatArray = field(init=False)
 
@@ -68,9 +73,18 @@ class PlaneOfMotion:
         return lifted
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanarProblem:
-    """A spatial problem as the plane of motion sees it."""
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class PlanarProblem(Record):
+    """A spatial problem as the plane of motion sees it.
+
+    Attributes:
+        plane: The plane of motion.
+        body: The body's mass, and its angular inertia about the plane's normal.
+        velocity: Its velocity in the plane.
+        contacts: Its contacts in the plane, in their order.
+        wrench: The applied wrench in the plane.
+        out_of_plane: m/s, the largest motion out of the plane.
+    """
 
     plane: PlaneOfMotion
     body: PlanarBody

@@ -16,28 +16,27 @@ from typing import Any, TypeAlias
 
 from contact_dynamics.contact.curvature import planar_gap_acceleration
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.tolerances import LARGEST_NUMBER, UNIT_LENGTH_TOLERANCE
-from contact_dynamics.validation import (
-    LENGTH_ROUNDING,
-    check_finite,
-    check_not_negative,
-    check_positive,
-    check_within,
-)
+from contact_dynamics.records import Record
+from contact_dynamics.tolerances import LARGEST_NUMBER, LENGTH_ROUNDING, UNIT_LENGTH_TOLERANCE
+from contact_dynamics.validation import check_finite, check_not_negative, check_positive, check_within
 
 Vector2: TypeAlias = tuple[float, float]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanarBody:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class PlanarBody(Record):
     """Mass and scalar angular inertia of a planar body.
+
+    Attributes:
+        mass: kg.
+        inertia: kg m^2, about the centre of mass; m rho^2 with rho the radius of gyration.
 
     Raises:
         InvalidFieldError: either is not a finite number > 0, or beyond `LARGEST_NUMBER` or below its inverse.
     """
 
-    mass: float  # kg
-    inertia: float  # kg m^2, about the centre of mass; m rho^2 with rho the radius of gyration
+    mass: float
+    inertia: float
 
     def __post_init__(self) -> None:
         """Check both fields."""
@@ -50,16 +49,20 @@ class PlanarBody:
         return math.sqrt(self.inertia / self.mass)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanarVelocity:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class PlanarVelocity(Record):
     """Velocity of a planar body.
+
+    Attributes:
+        v: m/s, of the centre of mass.
+        w: rad/s, positive from x to y.
 
     Raises:
         InvalidFieldError: a number is not finite, or beyond `LARGEST_NUMBER`.
     """
 
-    v: Vector2  # m/s, of the centre of mass
-    w: float  # rad/s, positive from x to y
+    v: Vector2
+    w: float
 
     def __post_init__(self) -> None:
         """Check both fields."""
@@ -67,16 +70,20 @@ class PlanarVelocity:
         object.__setattr__(self, "w", _check_number("angular_velocity", self.w))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanarWrench:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class PlanarWrench(Record):
     """Force and moment applied to a planar body, besides those of its contacts.
+
+    Attributes:
+        f: N.
+        moment: N m, about the centre of mass.
 
     Raises:
         InvalidFieldError: a number is not finite, or beyond `LARGEST_NUMBER`.
     """
 
-    f: Vector2  # N
-    moment: float = 0.0  # N m, about the centre of mass
+    f: Vector2
+    moment: float = 0.0
 
     def __post_init__(self) -> None:
         """Check both fields."""
@@ -84,24 +91,32 @@ class PlanarWrench:
         object.__setattr__(self, "moment", _check_number("torque", self.moment))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanarContact:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class PlanarContact(Record):
     """A point of the body on a flat of the world; or sides that are curved, as `contact.curvature` has it.
 
     A corner of the world that a flat of the body slides over has ``body_curvature=0`` and
     ``surface_curvature=math.inf``; a disc of radius R on a floor has ``body_curvature=1 / R``.
+
+    Attributes:
+        r: m, from the centre of mass to the contact.
+        normal: Unit, into the body.
+        friction: Coulomb's mu, >= 0.
+        restitution: e, in [0, 1]; contact modes do not use it.
+        body_curvature: 1/m, of the body at the contact, convex positive; inf: a corner.
+        surface_curvature: 1/m, of what it touches, likewise.
 
     Raises:
         InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, e outside [0, 1], or two
             sides that do not touch in one point of one normal: curvatures of a sum <= 0, or two corners.
     """
 
-    r: Vector2  # m, from the centre of mass to the contact
-    normal: Vector2  # unit, into the body
-    friction: float  # Coulomb's mu, >= 0
-    restitution: float = 0.0  # e, in [0, 1]; contact modes do not use it
-    body_curvature: float = math.inf  # 1/m, of the body at the contact, convex positive; inf: a corner
-    surface_curvature: float = 0.0  # 1/m, of what it touches, likewise
+    r: Vector2
+    normal: Vector2
+    friction: float
+    restitution: float = 0.0
+    body_curvature: float = math.inf
+    surface_curvature: float = 0.0
 
     def __post_init__(self) -> None:
         """Check all fields and normalise the normal to rounding."""

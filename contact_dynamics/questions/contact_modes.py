@@ -2,33 +2,60 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.velocities import spatial_contact_velocities
 from contact_dynamics.contact_modes import (
     BodyStatics,
     ModeVerdict,
+    PlanarContactProblem,
     RefusedMode,
     SpatialMode,
     SpatialModeMargin,
     SpatialWrenchSet,
+    contact_modes,
+    mode_margins,
+    refused_modes,
+    spatial_kinematic_modes,
+    statics,
+    wrench_sets,
 )
-from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.contact_modes.planar.problem import MOST_PLANAR_CONTACTS
+from contact_dynamics.contact_modes.spatial.problem import FRICTION_FACETS
+from contact_dynamics.contact_modes.spatial.wrench_sets import WRENCH_FACETS
+from contact_dynamics.errors import InvalidFieldError, OutOfPlaneError, TooLargeError
+from contact_dynamics.plane.lifting import check_mirrored, mirror_partners
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions.knowledge import check_optional
-from contact_dynamics.questions.problem import Problem
-from contact_dynamics.questions.settled_impact import SettledImpact
-from contact_dynamics.questions.subject import NEWEST, StateSource
+from contact_dynamics.questions.knowledge import Knowledge, check_optional, or_default
+from contact_dynamics.questions.lifted_modes import (
+    lifted_margin,
+    lifted_mode,
+    lifted_vectors,
+    lifted_wrench_set,
+)
+from contact_dynamics.questions.problem import Problem, planar_problem_of
+from contact_dynamics.questions.settled_impact import (
+    ModeCase,
+    SettledImpact,
+    settled_in_plane,
+    settled_in_space,
+)
+from contact_dynamics.questions.subject import NEWEST, StateSource, subject_of
+from contact_dynamics.questions.touching import contacts_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.validation import FloatArray, check_array
+from contact_dynamics.validation import FloatArray, check_array, check_choice
 from contact_dynamics.world import Body
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+    from contact_dynamics.plane.projection import PlanarProblem
 
 MOST_FRICTION_FACETS: Final = 32
 """More edges of a friction pyramid are refused: 32 hold 99.5 % of the round cone, and more cost more."""
@@ -61,7 +88,7 @@ class ContactModeQuestion(Record):
         want_impact: Whether to resolve the impact that settles an inconsistency or an approach.
 
     Raises:
-        InvalidFieldError: a number is out of its range or not finite.
+        InvalidFieldError: a number is out of its range or not finite, or the problem is none.
     """
 
     body: Body | str
@@ -108,7 +135,8 @@ class ContactModeQuestion(Record):
             """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
-        """Check what has no type of its own."""
+        """Check what has no type of its own, and the choice."""
+        check_choice("problem", self.problem, Problem)
         object.__setattr__(self, "force_W", check_array("force_W", self.force_W, (3,)))
         object.__setattr__(self, "torque_W", check_array("torque_W", self.torque_W, (3,)))
         if self.gravity_W is not None:
@@ -177,3 +205,165 @@ class ContactModeAnswer(Record):
     distance_tolerance: float
     friction_facets: int
     wrench_facets: int
+
+
+def answer(question: ContactModeQuestion, knowledge: Knowledge | None = None) -> ContactModeAnswer:
+    """Answer a question about contact modes; without ``knowledge`` no body is known by name.
+
+    Raises:
+        ContactDynamicsError: nothing touches, a planar question leaves its plane, or something is asked for
+            that is not known or not allowed; the message says what.
+    """
+    known = Knowledge() if knowledge is None else knowledge
+    case = _case(question, known)
+    view, reason = _in_plane(question, case, known)
+    return _spatial_answer(question, case, reason) if view is None else _planar_answer(question, case, *view)
+
+
+def _case(question: ContactModeQuestion, knowledge: Knowledge) -> ModeCase:
+    """Look up all that a question names."""
+    subject = subject_of(question.body, question.state, knowledge)
+    defaults, world = knowledge.defaults, knowledge.world
+    distance_tolerance = or_default(question.distance_tolerance, defaults.distance_tolerance)
+    contacts = contacts_of(question.contacts, subject, world, distance_tolerance=distance_tolerance)
+    if len(contacts) > MOST_PLANAR_CONTACTS:
+        raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MOST_PLANAR_CONTACTS}")
+    gravity_W = world.gravity_W if question.gravity_W is None else question.gravity_W
+    return ModeCase(
+        subject=subject,
+        contacts=contacts,
+        force_W=question.force_W + subject.body.mass_properties.mass * gravity_W,
+        torque_W=question.torque_W,
+        velocity_tolerance=or_default(question.velocity_tolerance, defaults.velocity_tolerance),
+        distance_tolerance=distance_tolerance,
+        friction_facets=question.friction_facets or FRICTION_FACETS,
+    )
+
+
+def _in_plane(
+    question: ContactModeQuestion, case: ModeCase, knowledge: Knowledge
+) -> tuple[tuple[PlanarProblem, tuple[int, ...]] | None, str]:
+    """Return the problem in its plane of motion, with the mirror image of each contact in that plane.
+
+    Or None, and what AUTOMATIC found to be out of the plane.
+    """
+    if question.problem is Problem.SPATIAL:
+        return None, ""
+    state, contacts = case.subject.state, case.contacts
+    try:
+        problem = planar_problem_of(
+            case.subject.body.mass_properties,
+            state,
+            contacts,
+            plane=question.plane,
+            force_W=case.force_W,
+            torque_W=case.torque_W,
+            speed_tolerance=or_default(
+                question.out_of_plane_tolerance, knowledge.defaults.out_of_plane_tolerance
+            ),
+        )
+        partners = mirror_partners(problem.plane, state, contacts, distance_tolerance=case.distance_tolerance)
+        if question.problem is Problem.AUTOMATIC:
+            check_mirrored(problem.plane, state, contacts, partners)
+    except OutOfPlaneError as error:
+        if question.problem is Problem.PLANAR:
+            raise
+        return None, str(error)
+    return (problem, partners), ""
+
+
+def _planar_answer(
+    question: ContactModeQuestion, case: ModeCase, problem: PlanarProblem, partners: tuple[int, ...]
+) -> ContactModeAnswer:
+    plane, subject = problem.plane, case.subject
+    asked = PlanarContactProblem(
+        body=problem.body,
+        velocity=problem.velocity,
+        contacts=problem.contacts,
+        wrench=problem.wrench,
+        velocity_tolerance=case.velocity_tolerance,
+    )
+    found = contact_modes(asked)
+    margins, sets, at_rest, settled = None, None, None, None
+    if question.want_margins:
+        in_plane = mode_margins(asked, found, margin_length=question.margin_length)
+        margins = tuple(lifted_margin(margin, plane) for margin in in_plane)
+    if question.want_wrenches:
+        sets = tuple(lifted_wrench_set(wrenches, plane) for wrenches in wrench_sets(asked))
+    if question.want_statics:
+        at_rest = statics(asked, margin_length=question.margin_length)
+    if question.want_impact:
+        settled = settled_in_plane(case, problem, asked, found.verdict, partners)
+    return ContactModeAnswer(
+        body_name=subject.body.name,
+        p_FB_F=subject.body.p_FB_F,
+        state=subject.state,
+        contacts=case.contacts,
+        verdict=found.verdict,
+        modes=tuple(lifted_mode(mode, problem, partners) for mode in found.modes),
+        margins=margins,
+        approaching=found.approaching,
+        contact_velocities_W=lifted_vectors(found.contact_velocities, problem),
+        refused=found.refused,
+        kinematic_modes=found.kinematic_modes,
+        wrench_sets=sets,
+        statics=at_rest,
+        settled=settled,
+        problem=Problem.PLANAR,
+        plane=plane,
+        out_of_plane=problem.out_of_plane,
+        out_of_plane_reason="",
+        velocity_tolerance=found.velocity_tolerance,
+        acceleration_tolerance=found.acceleration_tolerance,
+        distance_tolerance=case.distance_tolerance,
+        friction_facets=0,
+        wrench_facets=0,
+    )
+
+
+def _spatial_answer(question: ContactModeQuestion, case: ModeCase, reason: str) -> ContactModeAnswer:
+    subject, state, contacts = case.subject, case.subject.state, case.contacts
+    asked = case.in_space
+    found = contact_modes(asked)
+    margins, sets, at_rest, settled = None, None, None, None
+    refused: tuple[RefusedMode, ...] = ()
+    wrench_facets = 0
+    if question.want_margins:
+        margins = mode_margins(asked, found, margin_length=question.margin_length)
+        refused = refused_modes(asked, found, margin_length=question.margin_length)
+    if question.want_wrenches:
+        wrench_facets = question.friction_facets or WRENCH_FACETS
+        sets = wrench_sets(replace(asked, friction_facets=wrench_facets))
+    if question.want_statics:
+        at_rest = statics(asked, margin_length=question.margin_length)
+    if question.want_impact:
+        settled = settled_in_space(case, found.verdict)
+    return ContactModeAnswer(
+        body_name=subject.body.name,
+        p_FB_F=subject.body.p_FB_F,
+        state=state,
+        contacts=contacts,
+        verdict=found.verdict,
+        modes=found.modes,
+        margins=margins,
+        approaching=found.approaching,
+        contact_velocities_W=spatial_contact_velocities(
+            state, contacts, velocity_tolerance=case.velocity_tolerance
+        ),
+        refused=refused,
+        kinematic_modes=tuple(
+            spatial_kinematic_modes(state, contacts, velocity_tolerance=case.velocity_tolerance)
+        ),
+        wrench_sets=sets,
+        statics=at_rest,
+        settled=settled,
+        problem=Problem.SPATIAL,
+        plane=None,
+        out_of_plane=math.nan,
+        out_of_plane_reason=reason,
+        velocity_tolerance=found.velocity_tolerance,
+        acceleration_tolerance=math.nan,
+        distance_tolerance=case.distance_tolerance,
+        friction_facets=found.friction_facets,
+        wrench_facets=wrench_facets,
+    )

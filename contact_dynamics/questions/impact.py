@@ -2,16 +2,65 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.errors import NoContactError, SeparatingContactError
+from contact_dynamics.impact import (
+    SequenceEnd,
+    bodies_impact,
+    impact_sequence,
+    impact_sequence_of,
+    outcomes_over_orders,
+    planar_impact,
+    several_impact,
+    spatial_impact,
+    spatial_impact_distribution,
+    spatial_pair_impact,
+)
+from contact_dynamics.impact.in_time.sequence import MOST_STRIKES, STRIKE_WINDOW
+from contact_dynamics.impact.several.result import SeveralContactsLaw
+from contact_dynamics.motion.covariance import propagate_covariance
+from contact_dynamics.plane.in_space import planar_in_space
+from contact_dynamics.plane.lifting import (
+    check_mirrored,
+    mirror_partners,
+    planar_velocity,
+    with_planar_velocity,
+)
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions.problem import Problem
-from contact_dynamics.questions.resolved_impact import ResolvedImpact
-from contact_dynamics.questions.subject import FitQuality
+from contact_dynamics.questions.knowledge import Knowledge, or_default
+from contact_dynamics.questions.problem import Problem, planar_problem_of
+from contact_dynamics.questions.resolved_impact import (
+    Before,
+    ResolvedImpact,
+    pair_resolved,
+    planar_resolved,
+    sequence_resolved,
+    several_resolved,
+    spatial_resolved,
+    with_distribution,
+    with_orders,
+)
+from contact_dynamics.questions.subject import FitQuality, Subject, covariance_of
+from contact_dynamics.questions.which_impact import ImpactQuestion, InTime, Strike, strike_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.validation import FloatArray
+
+if TYPE_CHECKING:
+    from contact_dynamics.impact import ImpactDistribution, ImpactSequence, OrderedOutcomes
+    from contact_dynamics.plane.projection import PlanarProblem
+    from contact_dynamics.rigid_body.body import MassProperties
+
+SAMPLES: Final = 2000
+"""Drawn states of an uncertain impact: probabilities to 0.011; some 20 ms, in which a server answers nobody
+else."""
+
+_NO_WRENCH: Final = np.zeros(3)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -62,3 +111,241 @@ class ImpactAnswer(Record):
     out_of_plane: float
     velocity_tolerance: float
     distance_tolerance: float
+
+
+def answer(question: ImpactQuestion, knowledge: Knowledge | None = None) -> ImpactAnswer:
+    """Answer a question about an impact; without ``knowledge`` no body is known by name, and no surface.
+
+    Raises:
+        ContactDynamicsError: nothing strikes, or something is asked for that is not known, not allowed or not
+            supported; the message says what.
+    """
+    known = Knowledge() if knowledge is None else knowledge
+    strike = strike_of(question, known)
+    problem: PlanarProblem | None = None
+    law = question.several_contacts_law
+    if isinstance(law, InTime):
+        sequence = _in_time(question, law, strike, known)
+        strike = _from_first(sequence, strike)
+        resolved = sequence_resolved(sequence, strike.before)
+    elif question.problem is Problem.PLANAR:
+        problem = _problem(question, strike, known)
+        resolved = _in_plane(question, law, strike, problem)
+    else:  # space contains the plane
+        resolved = _in_space(question, law, strike)
+    if question.want_covariance:
+        resolved = with_distribution(resolved, _distribution(question, strike, known))
+    body, other = strike.subject.body, strike.other
+    return ImpactAnswer(
+        body_name=body.name,
+        p_FB_F=body.p_FB_F,
+        state=strike.state,
+        fit=strike.subject.fit,
+        other=None
+        if other is None
+        else StruckBody(name=other.body.name, p_FB_F=other.body.p_FB_F, state=other.state),
+        seconds_to_contact=strike.seconds,
+        contacts=strike.contacts,
+        impact=resolved,
+        problem=Problem.SPATIAL if problem is None else Problem.PLANAR,
+        plane=None if problem is None else problem.plane,
+        out_of_plane=0.0 if problem is None else problem.out_of_plane,
+        velocity_tolerance=strike.velocity_tolerance,
+        distance_tolerance=strike.distance_tolerance,
+    )
+
+
+def _in_time(question: ImpactQuestion, law: InTime, strike: Strike, knowledge: Knowledge) -> ImpactSequence:
+    """Return the strikes from a state on; without one raise `SeparatingContactError` or `NoContactError`."""
+    window = or_default(law.strike_window, STRIKE_WINDOW)
+    most_strikes = MOST_STRIKES if law.most_strikes is None else law.most_strikes
+    world = knowledge.world
+    if question.contacts is not None:
+        sequence = impact_sequence_of(
+            strike.before.body,
+            strike.state,
+            strike.contacts,
+            gravity_W=world.gravity_W,
+            restitution_law=question.restitution_law,
+            window=window,
+            most_strikes=most_strikes,
+            distance_tolerance=strike.distance_tolerance,
+            velocity_tolerance=strike.velocity_tolerance,
+            hold_step=law.hold_step,
+        )
+    else:
+        sequence = impact_sequence(
+            strike.subject.body,
+            strike.state,
+            world,
+            restitution_law=question.restitution_law,
+            window=window,
+            most_strikes=most_strikes,
+            distance_tolerance=strike.distance_tolerance,
+            velocity_tolerance=strike.velocity_tolerance,
+            hold_step=law.hold_step,
+        )
+    if not sequence.strikes and sequence.end == SequenceEnd.STAYS:
+        message = (
+            "contacts: found one that stays and none that strikes (~/predict_contact_mode says what follows; "
+            "a hold_step goes on over it)"
+        )
+        raise NoContactError(message)
+    if not sequence.strikes:
+        raise SeparatingContactError(
+            "contacts",
+            "none that strikes",
+            f"one that approaches or comes back within the strike_window of {window:g} s",
+        )
+    return sequence
+
+
+def _from_first(sequence: ImpactSequence, strike: Strike) -> Strike:
+    """Return the impact that begins with the first of the strikes in time, at the contacts of them all."""
+    first = sequence.strikes[0]
+    return replace(
+        strike, seconds=strike.seconds + first.seconds, state=first.state_before, contacts=sequence.contacts
+    )
+
+
+def _in_space(question: ImpactQuestion, law: SeveralContactsLaw, strike: Strike) -> ResolvedImpact:
+    before, contacts = strike.before, strike.contacts
+    if strike.other is not None:
+        return _of_two(question, law, strike, strike.other)
+    if len(contacts) == 1:
+        impact = spatial_impact(
+            before.body,
+            strike.state,
+            contacts[0],
+            restitution_law=question.restitution_law,
+            velocity_tolerance=strike.velocity_tolerance,
+        )
+        resolved = spatial_resolved(impact, before)
+    else:
+        several = several_impact(
+            before.body,
+            strike.state,
+            contacts,
+            several_contacts_law=law,
+            restitution_law=question.restitution_law,
+            velocity_tolerance=strike.velocity_tolerance,
+        )
+        resolved = several_resolved(several, before)
+    if not question.want_orders:
+        return resolved
+    return with_orders(resolved, _orders(question, strike, before.body, strike.state, contacts))
+
+
+def _of_two(
+    question: ImpactQuestion, law: SeveralContactsLaw, strike: Strike, other: Subject
+) -> ResolvedImpact:
+    before, contacts = strike.before, strike.contacts
+    other_before = Before(body=other.body.mass_properties, state=other.state)
+    if len(contacts) == 1:
+        impact = spatial_pair_impact(
+            before.body,
+            strike.state,
+            other_before.body,
+            other.state,
+            contacts[0],
+            restitution_law=question.restitution_law,
+            velocity_tolerance=strike.velocity_tolerance,
+        )
+        return spatial_resolved(impact, before, other_before)
+    several = bodies_impact(
+        [before.body, other_before.body],
+        [strike.state, other.state],
+        contacts,
+        [(0, 1)] * len(contacts),
+        several_contacts_law=law,
+        restitution_law=question.restitution_law,
+        velocity_tolerance=strike.velocity_tolerance,
+    )
+    return pair_resolved(several, before, other_before)
+
+
+def _problem(question: ImpactQuestion, strike: Strike, knowledge: Knowledge) -> PlanarProblem:
+    """Return the problem in its plane of motion; refuse contacts beside it that have no mirror image."""
+    problem = planar_problem_of(
+        strike.subject.body.mass_properties,
+        strike.state,
+        strike.contacts,
+        plane=question.plane,
+        force_W=_NO_WRENCH,
+        torque_W=_NO_WRENCH,
+        speed_tolerance=or_default(
+            question.out_of_plane_tolerance, knowledge.defaults.out_of_plane_tolerance
+        ),
+    )
+    if len(problem.contacts) > 1:
+        partners = mirror_partners(
+            problem.plane, strike.state, strike.contacts, distance_tolerance=strike.distance_tolerance
+        )
+        check_mirrored(problem.plane, strike.state, strike.contacts, partners)
+    return problem
+
+
+def _in_plane(
+    question: ImpactQuestion, law: SeveralContactsLaw, strike: Strike, problem: PlanarProblem
+) -> ResolvedImpact:
+    before = strike.before
+    if len(problem.contacts) == 1:
+        impact = planar_impact(
+            problem.body,
+            problem.velocity,
+            problem.contacts[0],
+            restitution_law=question.restitution_law,
+            velocity_tolerance=strike.velocity_tolerance,
+        )
+        resolved = planar_resolved(impact, problem, before)
+        ordered = (before.body, strike.state, strike.contacts)
+    else:
+        ordered = planar_in_space(
+            problem.body, problem.velocity, problem.contacts, axes_W=problem.plane.axes_W
+        )
+        several = several_impact(
+            *ordered,
+            several_contacts_law=law,
+            restitution_law=question.restitution_law,
+            velocity_tolerance=strike.velocity_tolerance,
+        )
+        velocity = planar_velocity(problem.plane, several.state)
+        after = with_planar_velocity(problem, strike.state, velocity)
+        resolved = several_resolved(replace(several, state=after), before)
+    return with_orders(resolved, _orders(question, strike, *ordered)) if question.want_orders else resolved
+
+
+def _orders(
+    question: ImpactQuestion, strike: Strike, body: MassProperties, state: BodyState, contacts: ContactSet
+) -> OrderedOutcomes:
+    return outcomes_over_orders(
+        body,
+        state,
+        contacts,
+        restitution_law=question.restitution_law,
+        velocity_tolerance=strike.velocity_tolerance,
+    )
+
+
+def _distribution(question: ImpactQuestion, strike: Strike, knowledge: Knowledge) -> ImpactDistribution:
+    """Return where the state after the impact lies, for the covariance of the state that was taken."""
+    covariance = covariance_of(strike.subject)
+    body = strike.before.body
+    if strike.seconds > 0.0:
+        flight = propagate_covariance(
+            body,
+            strike.subject.state,
+            covariance,
+            [strike.seconds],
+            gravity_W=knowledge.world.gravity_W,
+        )
+        covariance = flight.covariances[0]
+    return spatial_impact_distribution(
+        body,
+        strike.state,
+        strike.contacts[0],
+        covariance=covariance,
+        restitution_law=question.restitution_law,
+        velocity_tolerance=strike.velocity_tolerance,
+        samples=SAMPLES,
+    )

@@ -6,13 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from contact_dynamics.questions.state_store import StateStore
+from contact_dynamics.records import Record
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, OUT_OF_PLANE_SPEED, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_not_negative, check_positive
 from contact_dynamics.world import World
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Defaults:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Defaults(Record):
     """What holds where a question says nothing itself.
 
     Attributes:
@@ -39,8 +40,8 @@ class Defaults:
         object.__setattr__(self, "rate", check_positive("rate", self.rate))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Knowledge:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Knowledge(Record):
     """What is known when a question is asked.
 
     Attributes:

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 
-from contact_dynamics.constants import NS_PER_S
+from contact_dynamics.constants import seconds_between
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
-from contact_dynamics.questions.knowledge import check_optional
+from contact_dynamics.landing.earliest import next_landing
+from contact_dynamics.landing.plane_arrival import first_contact
+from contact_dynamics.motion.integrated import ForcedMotion
+from contact_dynamics.questions.knowledge import check_optional, or_default
+from contact_dynamics.questions.touching import check_has_shape
 from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.validation import FloatArray, check_array, check_unit
 
@@ -19,9 +24,25 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
+    from contact_dynamics.questions.knowledge import Knowledge
+    from contact_dynamics.questions.subject import Subject
+    from contact_dynamics.tumbling import FreeMotion
+
 MOST_SAMPLES: Final = 20_000
 """Longest trajectory in one answer: 2.2 MB of numbers. More would stall the middleware for longer than the
 answer takes."""
+
+MOST_INTEGRATED_TURNS: Final = 100.0
+"""Longest motion under torque or drag in one answer, in turns at the present rate: 1 or 2 s of computing,
+during which a server answers nobody else."""
+
+MOST_INTEGRATED_STEPS: Final = 6000
+"""Most steps of the integrator in one answer: what a torque spins up takes more than its present rate says,
+and a server answers nobody else meanwhile."""
+
+MOST_SEARCHED_TURNS: Final = 1000.0
+"""Longest search for a contact in one answer, in turns: a body that spins close to a surface without touching
+it takes a millisecond a turn, during which a server answers nobody else."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -45,7 +66,7 @@ class AtTimes(Record):
 
     def __post_init__(self) -> None:
         """Check the times."""
-        times = ascending("times", self.times)
+        times = _ascending("times", self.times)
         if len(times) > 0 and times[0] < 0.0:
             raise InvalidFieldError("times[0]", times[0], "a number >= 0 (AT_STAMPS reaches into the past)")
         object.__setattr__(self, "times", times)
@@ -73,10 +94,10 @@ class AtStamps(Record):
     def __post_init__(self) -> None:
         """Check the stamps."""
         stamps = tuple(self.stamps_ns)
-        check_count("stamps_ns", len(stamps))
+        _check_count("stamps_ns", len(stamps))
         for i, (earlier, later) in enumerate(itertools.pairwise(stamps)):
             if later < earlier:
-                before = (earlier - later) / NS_PER_S
+                before = seconds_between(later, earlier)
                 raise InvalidFieldError(
                     f"stamps_ns[{i + 1}]", f"{before:.9g} s before stamps_ns[{i}]", "ascending times"
                 )
@@ -106,7 +127,12 @@ class AtRate(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class UntilContact(AtRate):
-    """Samples at a steady rate that end with the first contact of the body with a surface of the world."""
+    """Samples at a steady rate that end with the first contact of the body with a surface of the world.
+
+    Attributes:
+        rate: Hz, samples a second. None or zero: the default.
+        duration: s, >= 0, how far to go. None: the default horizon.
+    """
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -181,15 +207,113 @@ class Event(Record):
     surface: str
 
 
-def ascending(field: str, times: ArrayLike) -> FloatArray:
-    """Return times, (n,), s, that ascend and are not too many.
+def times_of(
+    sampling: Sampling, subject: Subject, motion: FreeMotion | ForcedMotion, knowledge: Knowledge
+) -> tuple[FloatArray, Event | None]:
+    """Return the times, (n,), s after the state's stamp, at which a motion is asked for, and what ends them.
 
     Raises:
-        InvalidFieldError: a time is not finite, or before the one in front of it.
-        TooLargeError: more than `MOST_SAMPLES` times.
+        InvalidFieldError: the motion would be integrated or searched for too long.
+        TooLargeError: more samples than `MOST_SAMPLES`.
+        NoContactError: contact is asked for of a body that has no shape.
     """
+    if isinstance(sampling, AtTimes):
+        _check_reach("times", motion, sampling.times)
+        return sampling.times, None
+    if isinstance(sampling, AtStamps):
+        begin_ns = subject.state.stamp_ns
+        times = np.array([seconds_between(begin_ns, stamp) for stamp in sampling.stamps_ns])
+        _check_reach("stamps_ns", motion, times)
+        return times, None
+    duration = or_default(sampling.duration, knowledge.defaults.horizon)
+    rate = or_default(sampling.rate, knowledge.defaults.rate)
+    searches = isinstance(sampling, UntilContact | UntilPlane)
+    _check_reach("duration", motion, np.array([duration]), search=searches)
+    event = None
+    if isinstance(sampling, UntilContact):
+        event = _contact(subject, motion, knowledge, duration)
+    elif isinstance(sampling, UntilPlane):
+        event = _plane_reached(sampling, subject, motion, duration)
+    return _at_rate(rate, duration, None if event is None else event.seconds), event
+
+
+def _contact(
+    subject: Subject, motion: FreeMotion | ForcedMotion, knowledge: Knowledge, duration: float
+) -> Event | None:
+    check_has_shape(subject.body)
+    landing = next_landing(
+        subject.body,
+        subject.state,
+        knowledge.world,
+        horizon=duration,
+        distance_tolerance=knowledge.defaults.distance_tolerance,
+        velocity_tolerance=knowledge.defaults.velocity_tolerance,
+        motion=motion,
+    )
+    if landing is None:
+        return None
+    return Event(
+        kind=EventKind.CONTACT,
+        seconds=landing.seconds,
+        point_W=landing.contacts.p_WC_W[0],
+        velocity_W=landing.velocities_W[0],
+        surface=landing.contacts.surfaces[0],
+    )
+
+
+def _plane_reached(
+    sampling: UntilPlane, subject: Subject, motion: FreeMotion | ForcedMotion, duration: float
+) -> Event | None:
+    point_B = sampling.body_point - subject.body.p_FB_F
+    found = first_contact(
+        motion, point_B[None, :], sampling.plane_point, sampling.plane_normal, horizon=duration
+    )
+    if found is None:
+        return None
+    return Event(
+        kind=EventKind.PLANE_REACHED,
+        seconds=found.seconds,
+        point_W=found.p_WC_W,
+        velocity_W=found.v_WC_W,
+        surface="",
+    )
+
+
+def _check_reach(
+    field: str, motion: FreeMotion | ForcedMotion, times: FloatArray, *, search: bool = False
+) -> None:
+    """Refuse what would be integrated or searched for too long, before it is."""
+    if isinstance(motion, ForcedMotion):
+        most, when = MOST_INTEGRATED_TURNS, "under torque or drag"
+    elif search:
+        most, when = MOST_SEARCHED_TURNS, "to search for a contact"
+    else:
+        return  # the closed form reaches everywhere
+    check_turns(field, motion, times, most, when)
+
+
+def check_turns(
+    field: str, motion: FreeMotion | ForcedMotion, times: FloatArray, most: float, when: str
+) -> None:
+    """Refuse times, (n,), s, by which a body turns more than ``most``, at its present rate; say why."""
+    w_WB_W = motion.state.w_WB_W
+    turns = float(np.abs(times).max(initial=0.0)) * math.sqrt(w_WB_W @ w_WB_W) / (2.0 * math.pi)
+    if turns > most:
+        raise InvalidFieldError(field, f"{turns:.6g} turns of the body ahead", f"at most {most:g} {when}")
+
+
+def _at_rate(rate: float, duration: float, end: float | None) -> FloatArray:
+    """Return times from 0 at a rate, up to the duration, or to the event, which is then the last."""
+    until = duration if end is None else end
+    _check_count("rate * duration", until * rate)
+    times = np.arange(math.floor(until * rate * (1.0 + 1e-12)) + 1) / rate
+    return times if end is None else np.append(times[times < end], end)
+
+
+def _ascending(field: str, times: ArrayLike) -> FloatArray:
+    """Return times, (n,), s, that ascend and are not too many."""
     listed = np.asarray(times)
-    check_count(field, listed.size)
+    _check_count(field, listed.size)
     checked = check_array(field, listed, (None,))
     steps = np.diff(checked)
     for i in np.flatnonzero(steps < 0.0)[:1]:
@@ -199,7 +323,6 @@ def ascending(field: str, times: ArrayLike) -> FloatArray:
     return checked
 
 
-def check_count(field: str, count: float) -> None:
-    """Refuse more than `MOST_SAMPLES` samples, with `TooLargeError`."""
+def _check_count(field: str, count: float) -> None:
     if count > MOST_SAMPLES:
         raise TooLargeError(field, f"{count:.9g} samples", f"at most {MOST_SAMPLES}")

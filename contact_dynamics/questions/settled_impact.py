@@ -2,11 +2,47 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.contact_modes import ModeVerdict, SpatialMode
-from contact_dynamics.questions.resolved_impact import ResolvedImpact
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact_modes import (
+    ModeVerdict,
+    PlanarContactProblem,
+    SpatialContactProblem,
+    SpatialMode,
+    contact_modes,
+)
+from contact_dynamics.impact import outcomes_over_orders, planar_impact, several_impact, spatial_impact
+from contact_dynamics.impact.several.settling import settling_impact
+from contact_dynamics.plane.in_space import planar_in_space
+from contact_dynamics.plane.lifting import equal_shares, planar_velocity, with_planar_velocity
+from contact_dynamics.questions.lifted_modes import lifted_mode
+from contact_dynamics.questions.resolved_impact import (
+    Before,
+    ResolvedImpact,
+    planar_resolved,
+    several_resolved,
+    spatial_resolved,
+    with_orders,
+)
+from contact_dynamics.questions.subject import Subject
 from contact_dynamics.records import Record
+from contact_dynamics.validation import FloatArray
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from contact_dynamics.contact_modes import PlanarModeAnswer, SpatialModeAnswer
+    from contact_dynamics.impact import OrderedOutcomes, SeveralImpact
+    from contact_dynamics.plane.projection import PlanarProblem
+    from contact_dynamics.plane.types import PlanarVelocity
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+
+MOST_CONTACTS_IN_ORDERS: Final = 4
+"""Up to that many contacts the outcomes over all orders are listed: 24 sequences, of some milliseconds."""
+
+_UNSETTLED: Final = (ModeVerdict.INCONSISTENT, ModeVerdict.IMPACT)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -22,3 +58,171 @@ class SettledImpact(Record):
     impact: ResolvedImpact
     verdict: ModeVerdict
     modes: tuple[SpatialMode, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ModeCase(Record):
+    """What a question about contact modes comes to once all that it names is looked up.
+
+    Attributes:
+        subject: The body in the state that was taken.
+        contacts: Where it touches.
+        force_W: (3,), N, applied besides contact forces, gravity included, world axes.
+        torque_W: (3,), N m, applied about the centre of mass, world axes.
+        velocity_tolerance: m/s.
+        distance_tolerance: m.
+        friction_facets: Edges of each friction pyramid in space.
+    """
+
+    subject: Subject
+    contacts: ContactSet
+    force_W: FloatArray
+    torque_W: FloatArray
+    velocity_tolerance: float
+    distance_tolerance: float
+    friction_facets: int
+
+    @property
+    def in_space(self) -> SpatialContactProblem:
+        """The question about contact modes in space."""
+        return SpatialContactProblem(
+            body=self.subject.body.mass_properties,
+            state=self.subject.state,
+            contacts=self.contacts,
+            force_W=self.force_W,
+            torque_W=self.torque_W,
+            friction_facets=self.friction_facets,
+            velocity_tolerance=self.velocity_tolerance,
+        )
+
+    @property
+    def before(self) -> Before:
+        """The body before the impact that settles the case."""
+        return Before(body=self.subject.body.mass_properties, state=self.subject.state)
+
+
+def settled_in_space(case: ModeCase, verdict: ModeVerdict) -> SettledImpact | None:
+    """Return the impact, and the modes after it, where the verdict on a case in space calls for one."""
+    if verdict not in _UNSETTLED:
+        return None
+    before, contacts, problem = case.before, case.contacts, case.in_space
+
+    def modes_after(state: BodyState) -> SpatialModeAnswer:
+        return contact_modes(replace(problem, state=state))
+
+    if len(contacts) == 1:
+        impact = spatial_impact(
+            before.body,
+            before.state,
+            contacts[0],
+            velocity_tolerance=case.velocity_tolerance,
+        )
+        resolved = spatial_resolved(impact, before)
+    else:
+        several = _several(
+            case,
+            before.body,
+            before.state,
+            contacts,
+            verdict,
+            is_settled=lambda state: modes_after(state).verdict != ModeVerdict.INCONSISTENT,
+        )
+        resolved = several_resolved(several, before)
+        outcomes = _orders(case, before.body, before.state, contacts, verdict)
+        if outcomes is not None:
+            resolved = with_orders(resolved, outcomes)
+    then = modes_after(resolved.state)
+    return SettledImpact(impact=resolved, verdict=then.verdict, modes=then.modes)
+
+
+def settled_in_plane(
+    case: ModeCase,
+    problem: PlanarProblem,
+    in_plane: PlanarContactProblem,
+    verdict: ModeVerdict,
+    partners: tuple[int, ...],
+) -> SettledImpact | None:
+    """Return the impact, and the modes after it, where the verdict on a planar case calls for one.
+
+    Args:
+        case: The case in space.
+        problem: The same as its plane of motion sees it.
+        in_plane: The question about contact modes there.
+        verdict: The verdict on it.
+        partners: The mirror image of each contact in the plane, for the shares of forces and of impulses at
+            once; impulses in turn belong to the contact that struck.
+    """
+    if verdict not in _UNSETTLED:
+        return None
+    plane, before = problem.plane, case.before
+
+    def modes_after(velocity: PlanarVelocity) -> PlanarModeAnswer:
+        return contact_modes(replace(in_plane, velocity=velocity))
+
+    if len(problem.contacts) == 1:
+        impact = planar_impact(
+            problem.body,
+            problem.velocity,
+            problem.contacts[0],
+            velocity_tolerance=case.velocity_tolerance,
+        )
+        velocity, resolved = impact.velocity, planar_resolved(impact, problem, before)
+    else:
+        flat = planar_in_space(problem.body, problem.velocity, problem.contacts, axes_W=plane.axes_W)
+        several = _several(
+            case,
+            *flat,
+            verdict,
+            is_settled=lambda state: (
+                modes_after(planar_velocity(plane, state)).verdict != ModeVerdict.INCONSISTENT
+            ),
+            plane_normal_W=plane.normal_W,
+        )
+        velocity = planar_velocity(plane, several.state)
+        after = with_planar_velocity(problem, before.state, velocity)
+        impulses = several.impulses_W if several.strikes else equal_shares(several.impulses_W, partners)
+        resolved = several_resolved(replace(several, state=after, impulses_W=impulses), before)
+        outcomes = _orders(case, *flat, verdict)
+        if outcomes is not None:
+            resolved = with_orders(resolved, outcomes)
+    then = modes_after(velocity)
+    return SettledImpact(
+        impact=resolved,
+        verdict=then.verdict,
+        modes=tuple(lifted_mode(mode, problem, partners) for mode in then.modes),
+    )
+
+
+def _several(
+    case: ModeCase,
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    verdict: ModeVerdict,
+    *,
+    is_settled: Callable[[BodyState], bool],
+    plane_normal_W: FloatArray | None = None,
+) -> SeveralImpact:
+    """Return the impact of several contacts: those that approach strike in turn, those that jam at once."""
+    if verdict == ModeVerdict.IMPACT:
+        return several_impact(body, state, contacts, velocity_tolerance=case.velocity_tolerance)
+    return settling_impact(
+        body,
+        state,
+        contacts,
+        is_settled=is_settled,
+        force_W=case.force_W,
+        torque_W=case.torque_W,
+        plane_normal_W=plane_normal_W,
+        friction_facets=case.friction_facets,
+        velocity_tolerance=case.velocity_tolerance,
+    )
+
+
+def _orders(
+    case: ModeCase, body: MassProperties, state: BodyState, contacts: ContactSet, verdict: ModeVerdict
+) -> OrderedOutcomes | None:
+    """Return the outcomes over the orders of contacts that approach, where they are few."""
+    if verdict != ModeVerdict.IMPACT or len(contacts) > MOST_CONTACTS_IN_ORDERS:
+        return None
+    return outcomes_over_orders(body, state, contacts, velocity_tolerance=case.velocity_tolerance)

@@ -33,8 +33,8 @@ class StateStore:
         """Forget all states: the clock was set back, and what they are stamped with has not come yet."""
         self._states.clear()
 
-    def newest(self, body_name: str, *, now_ns: int) -> BodyState:
-        """Return the newest state.
+    def newest(self, body_name: str, *, now_ns: int | None = None) -> BodyState:
+        """Return the newest state; without the present time, ns, however old it is.
 
         Raises:
             NoStateError: none was published yet.
@@ -44,7 +44,7 @@ class StateStore:
         if not states:
             message = f"state of {body_name!r}: none was published yet"
             raise NoStateError(message)
-        return self._fresh(body_name, states[-1], now_ns)
+        return states[-1] if now_ns is None else self._fresh(body_name, states[-1], now_ns)
 
     def window(self, body_name: str, newest: BodyState, seconds: float) -> list[BodyState]:
         """Return the states of the last ``seconds`` up to ``newest``, in order of time, one a stamp."""

@@ -5,13 +5,28 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.motion.free_fit import FitResult, fit_free_motion
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rigid_body.published_frame import (
+    origin_of_published_frame,
+    state_of_center_of_mass,
+    velocity_of_published_frame,
+)
 from contact_dynamics.validation import FloatArray, check_not_negative
 from contact_dynamics.validation_batches import check_covariance
+from contact_dynamics.world import Body
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from numpy.typing import ArrayLike
+
+    from contact_dynamics.questions.knowledge import Knowledge
+    from contact_dynamics.rigid_body.body import MassProperties
+
+    Fitting: TypeAlias = Callable[[MassProperties, Sequence[BodyState]], FitResult]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -82,3 +97,114 @@ class FitQuality(Record):
     count: int
     position_residual: float
     orientation_residual: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Subject(Record):
+    """The body that a question is about, and the state that was taken.
+
+    Attributes:
+        body: The body.
+        state: Its state.
+        covariance: (12, 12), of the state, in the order of `UncertainState`. None: not known.
+        fit: How well the motion fits the published states that the state was found from. None: no fit.
+    """
+
+    body: Body
+    state: BodyState
+    covariance: FloatArray | None = None
+    fit: FitQuality | None = None
+
+
+def subject_of(
+    body: Body | str, source: StateSource, knowledge: Knowledge, *, fit: Fitting | None = None
+) -> Subject:
+    """Return the body that a question names or describes, in the state that it says or names.
+
+    Args:
+        body: The body, or its name in the known world.
+        source: Where its state comes from.
+        knowledge: What is known.
+        fit: Finds the state that fits a window of published ones best. None: that of a free flight.
+
+    Raises:
+        UnknownBodyError: the known world has no body of that name.
+        NoStateError: no state of it was published, or none that old.
+        StaleStateError: the newest is too old.
+        InvalidFieldError: a published state of a body without a name; a window that cannot be fitted.
+        TooLargeError: more states in the window than are fitted.
+    """
+    if isinstance(body, str):
+        body = knowledge.world.body(body)
+    if isinstance(source, BodyState):
+        return Subject(body=body, state=source)
+    if isinstance(source, UncertainState):
+        return Subject(body=body, state=source.state, covariance=source.covariance)
+    states = _published(body, source, knowledge)
+    if source.fit_window == 0.0:
+        return Subject(body=body, state=states[-1])
+    if fit is None:
+        best = fit_free_motion(body.mass_properties, states, gravity_W=knowledge.world.gravity_W)
+    else:
+        best = fit(body.mass_properties, states)
+    quality = FitQuality(
+        count=best.count,
+        position_residual=best.position_residual,
+        orientation_residual=best.orientation_residual,
+    )
+    return Subject(body=body, state=best.state, covariance=best.covariance, fit=quality)
+
+
+def covariance_of(subject: Subject) -> FloatArray:
+    """Return the covariance of a subject's state, (12, 12); without one raise `InvalidFieldError`."""
+    if subject.covariance is None:
+        raise InvalidFieldError(
+            "state.covariance",
+            "none",
+            "144 numbers of an explicit state, or a fit_window",
+        )
+    return subject.covariance
+
+
+def changed_body(known: Body, mass_properties: MassProperties, p_FB_F: FloatArray) -> Body:
+    """Return a known body, with its name and its shape, but with another mass.
+
+    Args:
+        known: The body as it is known.
+        mass_properties: Its mass and angular inertia now.
+        p_FB_F: (3,), m, its centre of mass now, in its published frame F.
+    """
+    return Body(
+        name=known.name,
+        mass_properties=mass_properties,
+        p_FB_F=p_FB_F,
+        shape=known.shape.moved(known.p_FB_F - p_FB_F),
+    )
+
+
+def _published(body: Body, source: PublishedState, knowledge: Knowledge) -> Sequence[BodyState]:
+    """Return the published states that are asked for, in order of time, of the body's centre of mass."""
+    name = body.name
+    if not name:
+        raise InvalidFieldError("body_name", name, "the name of a configured body, or an explicit state")
+    if source.stamp_ns is None:
+        now_ns = None if knowledge.now_ns is None else knowledge.now_ns()
+        newest = knowledge.states.newest(name, now_ns=now_ns)
+    else:
+        newest = knowledge.states.at(name, source.stamp_ns)
+    window = source.fit_window
+    states = knowledge.states.window(name, newest, window) if window > 0.0 else [newest]
+    known = knowledge.world.body(name)
+    return states if body is known else [_carried_over(state, known, body) for state in states]
+
+
+def _carried_over(state: BodyState, known: Body, body: Body) -> BodyState:
+    """Return a published state of a known body as that of the same body with another centre of mass."""
+    return state_of_center_of_mass(
+        p_WF_W=origin_of_published_frame(state, known.p_FB_F),
+        q_WF=state.q_WB,
+        v_WF_W=velocity_of_published_frame(state, known.p_FB_F),
+        w_WF_W=state.w_WB_W,
+        p_FB_F=body.p_FB_F,
+        stamp_ns=state.stamp_ns,
+    )

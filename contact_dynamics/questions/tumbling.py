@@ -6,21 +6,52 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.errors import TooLargeError
-from contact_dynamics.motion.covariance import CarriedCovariance
+from contact_dynamics.motion.covariance import CarriedCovariance, covariance_along
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag
-from contact_dynamics.motion.integrated import Method
-from contact_dynamics.questions.sample_times import AtRate, Event, Sampling
-from contact_dynamics.questions.subject import NEWEST, FitQuality, StateSource
+from contact_dynamics.motion.integrated import ForcedMotion, Method, motion_of
+from contact_dynamics.motion.integrated_fit import fit_motion
+from contact_dynamics.questions.knowledge import Knowledge
+from contact_dynamics.questions.sample_times import (
+    MOST_INTEGRATED_STEPS,
+    AtRate,
+    Event,
+    Sampling,
+    check_turns,
+    times_of,
+)
+from contact_dynamics.questions.subject import (
+    NEWEST,
+    FitQuality,
+    StateSource,
+    Subject,
+    covariance_of,
+    subject_of,
+)
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.tumbling import Trajectory
-from contact_dynamics.tumbling.flips import Flips
-from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves
+from contact_dynamics.tumbling import FreeMotion, Trajectory, free_motion
+from contact_dynamics.tumbling.flips import Flips, next_flips
+from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves, poinsot, rolling_curves
 from contact_dynamics.validation import FloatArray, check_array
 from contact_dynamics.world import Body
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike
+
+    from contact_dynamics.motion.free_fit import FitResult
+    from contact_dynamics.motion.integrated import ChosenMotion
+    from contact_dynamics.rigid_body.body import MassProperties
+
+FLIPS: Final = 3
+"""How many of the next flips are told."""
+
+MOST_COVARIANCES: Final = 2000
+"""Most samples with covariances in one answer. More would stall the middleware."""
+
+MOST_CARRIED_TURNS: Final = 30.0
+"""Longest motion under torque or drag with covariances, in turns: 1 or 2 s of computing."""
 
 MOST_CURVE_POINTS: Final = 10_000
 """Longest polhode and herpolhode in one answer. More would stall the middleware."""
@@ -74,7 +105,7 @@ class TumblingQuestion(Record):
     def __post_init__(self) -> None:
         """Check what has no type of its own."""
         if self.gravity_W is not None:
-            object.__setattr__(self, "gravity_W", check_array("gravity", self.gravity_W, (3,)))
+            object.__setattr__(self, "gravity_W", check_array("gravity_W", self.gravity_W, (3,)))
         if self.curve_points > MOST_CURVE_POINTS:
             raise TooLargeError("curve_points", self.curve_points, f"at most {MOST_CURVE_POINTS}")
 
@@ -108,3 +139,89 @@ class TumblingAnswer(Record):
     poinsot: Poinsot | None
     flips: Flips | None
     curves: RollingCurves | None
+
+
+def answer(question: TumblingQuestion, knowledge: Knowledge | None = None) -> TumblingAnswer:
+    """Answer a question about tumbling; without ``knowledge`` no body is known by name, and no surface.
+
+    Raises:
+        ContactDynamicsError: something is asked for that is not known or not allowed; the message says what.
+    """
+    known = Knowledge() if knowledge is None else knowledge
+    forces = _Forces(
+        gravity_W=known.world.gravity_W if question.gravity_W is None else question.gravity_W,
+        wrench=question.wrench,
+        drag=question.drag,
+    )
+    subject = subject_of(question.body, question.state, known, fit=forces.fit)
+    motion, method = forces.motion(subject.body.mass_properties, subject.state)
+    times, event = times_of(question.sampling, subject, motion, known)
+    picture, flips, curves = _rotation(question, subject, motion)
+    return TumblingAnswer(
+        body_name=subject.body.name,
+        p_FB_F=subject.body.p_FB_F,
+        state=subject.state,
+        fit=subject.fit,
+        trajectory=motion.at(times),
+        covariance=_covariance(subject, motion, times) if question.want_covariance else None,
+        method=method,
+        event=event,
+        poinsot=picture,
+        flips=flips,
+        curves=curves,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Forces:
+    """What acts on the body."""
+
+    gravity_W: FloatArray
+    wrench: ConstantWrench
+    drag: Drag
+
+    def motion(self, body: MassProperties, state: BodyState) -> ChosenMotion:
+        """Return the motion from a state on."""
+        return motion_of(
+            body,
+            state,
+            gravity_W=self.gravity_W,
+            wrench=self.wrench,
+            drag=self.drag,
+            most_steps=MOST_INTEGRATED_STEPS,
+        )
+
+    def fit(self, body: MassProperties, states: Sequence[BodyState]) -> FitResult:
+        """Return the motion that fits states best."""
+        return fit_motion(
+            body,
+            states,
+            gravity_W=self.gravity_W,
+            wrench=self.wrench,
+            drag=self.drag,
+            most_steps=MOST_INTEGRATED_STEPS,
+        )
+
+
+def _rotation(
+    question: TumblingQuestion, subject: Subject, motion: FreeMotion | ForcedMotion
+) -> tuple[Poinsot | None, Flips | None, RollingCurves | None]:
+    """Return Poinsot's picture of a rotation, its next flips and its curves; none of them under a torque."""
+    if isinstance(motion, ForcedMotion):
+        if not motion.rotates_freely:
+            return None, None, None
+        motion = free_motion(motion.body, motion.state)
+    count = question.curve_points
+    return (
+        poinsot(motion),
+        next_flips(motion, FLIPS, covariance=subject.covariance),
+        rolling_curves(motion, count) if count else None,
+    )
+
+
+def _covariance(subject: Subject, motion: FreeMotion | ForcedMotion, times: FloatArray) -> CarriedCovariance:
+    if len(times) > MOST_COVARIANCES:
+        raise TooLargeError("times", f"{len(times)} samples with covariances", f"at most {MOST_COVARIANCES}")
+    if isinstance(motion, ForcedMotion):
+        check_turns("times", motion, times, MOST_CARRIED_TURNS, "with covariances under torque or drag")
+    return covariance_along(motion, covariance_of(subject), times)

@@ -20,24 +20,38 @@ CHECKSUM_KEY: Final = "checksum"  # in that record, because MCAP gives metadata 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TopicSummary:
-    """What ``metadata.yaml`` says of one topic."""
+    """What ``metadata.yaml`` says of one topic.
 
-    name: str  # with its leading slash
-    type_name: str  # "package/msg/Name" or "package/srv/Name_Event"
-    type_hash: str  # "RIHS01_..." or empty
-    qos: tuple[str, ...]  # lines of a YAML list of profiles, `qos_lines`
+    Attributes:
+        name: With its leading slash.
+        type_name: "package/msg/Name" or "package/srv/Name_Event".
+        type_hash: "RIHS01_..." or empty.
+        qos: Lines of a YAML list of profiles, `qos_lines`.
+    """
+
+    name: str
+    type_name: str
+    type_hash: str
+    qos: tuple[str, ...]
     message_count: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BagSummary:
-    """What ``metadata.yaml`` says of a bag of one file."""
+    """What ``metadata.yaml`` says of a bag of one file.
 
-    file_name: str  # relative to the folder
-    start_ns: int  # log time of the earliest message, ns since the epoch
-    end_ns: int  # log time of the latest message, ns since the epoch
+    Attributes:
+        file_name: Relative to the folder.
+        start_ns: Log time of the earliest message, ns since the epoch.
+        end_ns: Log time of the latest message, ns since the epoch.
+        custom_data: What the writer says of the run.
+    """
+
+    file_name: str
+    start_ns: int
+    end_ns: int
     topics: Sequence[TopicSummary]
-    custom_data: Mapping[str, str]  # what the writer says of the run
+    custom_data: Mapping[str, str]
 
 
 def sealed_run(run: Mapping[str, str]) -> dict[str, str]:

@@ -36,13 +36,21 @@ _SPLIT_NUMBER: Final = re.compile(r"_(\d+)\.mcap$")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoggedMessage:
-    """One message as it was logged."""
+    """One message as it was logged.
 
-    topic: str  # with its leading slash
-    type_name: str  # "package/msg/Name" or "package/srv/Name_Event"
-    data: bytes  # serialised (CDR)
-    log_time_ns: int  # when it was received, ns since the epoch
-    publish_time_ns: int  # when its source made it, ns since the epoch
+    Attributes:
+        topic: With its leading slash.
+        type_name: "package/msg/Name" or "package/srv/Name_Event".
+        data: Serialised (CDR).
+        log_time_ns: When it was received, ns since the epoch.
+        publish_time_ns: When its source made it, ns since the epoch.
+    """
+
+    topic: str
+    type_name: str
+    data: bytes
+    log_time_ns: int
+    publish_time_ns: int
 
 
 class BagReader:

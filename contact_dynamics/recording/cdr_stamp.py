@@ -33,12 +33,19 @@ class EventType(enum.IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EventInfo:
-    """Who asked what when: the head of a service event."""
+    """Who asked what when: the head of a service event.
 
-    event_type: EventType  # whether it tells of a request or a response, at the client or the server
-    stamp_ns: int  # ns since the epoch of the clock given to configure_introspection
-    client_gid: bytes  # 16 bytes, the client within this session
-    sequence_number: int  # of the request among those of that client
+    Attributes:
+        event_type: Whether it tells of a request or a response, at the client or the server.
+        stamp_ns: ns since the epoch of the clock given to configure_introspection.
+        client_gid: 16 bytes, the client within this session.
+        sequence_number: Of the request among those of that client.
+    """
+
+    event_type: EventType
+    stamp_ns: int
+    client_gid: bytes
+    sequence_number: int
 
 
 def leading_stamp_ns(data: bytes) -> int:

@@ -43,12 +43,19 @@ _STAMP_FIRST: Final = frozenset({"std_msgs/Header", "builtin_interfaces/Time"})
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TypeDefinition:
-    """One message type as a log describes it."""
+    """One message type as a log describes it.
 
-    type_name: str  # "package/msg/Name" or "package/srv/Name_Event"
-    text: str  # its fields, then each type it is built of, in MCAP's ros2msg form
-    type_hash: str  # "RIHS01_..." of REP 2011; empty where no .json stands beside the text
-    begins_with_stamp: bool  # the first field is a std_msgs/Header or a time
+    Attributes:
+        type_name: "package/msg/Name" or "package/srv/Name_Event".
+        text: Its fields, then each type it is built of, in MCAP's ros2msg form.
+        type_hash: "RIHS01_..." of REP 2011; empty where no .json stands beside the text.
+        begins_with_stamp: The first field is a std_msgs/Header or a time.
+    """
+
+    type_name: str
+    text: str
+    type_hash: str
+    begins_with_stamp: bool
 
     @property
     def is_service_event(self) -> bool:

@@ -43,12 +43,18 @@ WalkedRecord: TypeAlias = Schema | Channel | Message | Metadata
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loss:
-    """A stretch of a log that could not be read."""
+    """A stretch of a log that could not be read.
+
+    Attributes:
+        begin: Byte that it begins at.
+        end: Byte behind it.
+        messages: Messages lost with it, by the file's own summary; None: that is not there to tell.
+    """
 
     path: Path
-    begin: int  # byte that it begins at
-    end: int  # byte behind it
-    messages: int | None  # messages lost with it, by the file's own summary; None: that is not there to tell
+    begin: int
+    end: int
+    messages: int | None
     reason: str
 
     def __str__(self) -> str:

@@ -16,17 +16,29 @@ _FOREVER_NS: Final = 2**63 - 1
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OfferedQos:
-    """A quality of service without rclpy; the defaults are those of an ordinary publisher."""
+    """A quality of service without rclpy; the defaults are those of an ordinary publisher.
 
-    history: str = "keep_last"  # keep_last, keep_all, system_default, unknown
-    depth: int = 10  # messages kept, for keep_last
-    reliability: str = "reliable"  # reliable, best_effort, system_default, best_available, unknown
-    durability: str = "volatile"  # volatile, transient_local, system_default, best_available, unknown
-    deadline: int = _FOREVER_NS  # ns
-    lifespan: int = _FOREVER_NS  # ns
-    liveliness: str = "automatic"  # automatic, manual_by_topic, system_default, best_available, unknown
-    liveliness_lease_duration: int = _FOREVER_NS  # ns
-    avoid_ros_namespace_conventions: bool = False  # topic name used as it is
+    Attributes:
+        history: Keep_last, keep_all, system_default, unknown.
+        depth: Messages kept, for keep_last.
+        reliability: Reliable, best_effort, system_default, best_available, unknown.
+        durability: Volatile, transient_local, system_default, best_available, unknown.
+        deadline: ns.
+        lifespan: ns.
+        liveliness: Automatic, manual_by_topic, system_default, best_available, unknown.
+        liveliness_lease_duration: ns.
+        avoid_ros_namespace_conventions: Topic name used as it is.
+    """
+
+    history: str = "keep_last"
+    depth: int = 10
+    reliability: str = "reliable"
+    durability: str = "volatile"
+    deadline: int = _FOREVER_NS
+    lifespan: int = _FOREVER_NS
+    liveliness: str = "automatic"
+    liveliness_lease_duration: int = _FOREVER_NS
+    avoid_ros_namespace_conventions: bool = False
 
 
 def qos_lines(qos: Any) -> list[str]:

@@ -37,13 +37,21 @@ _WAKE_BYTES: Final = 1024 * 1024  # waiting bytes that wake the thread before it
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecorderStatus:
-    """How the log fares; every message given is written, lost or waiting."""
+    """How the log fares; every message given is written, lost or waiting.
 
-    written: int  # messages in the file, where a kill cannot take them
-    lost: int  # messages dropped: disk failed, queue full, or refused as invalid
-    waiting: int  # messages not in the file yet
-    most_waiting_bytes: int  # high-water mark of the memory taken by messages waiting, bytes
-    problem: str | None  # the first thing that went wrong, None while all is well
+    Attributes:
+        written: Messages in the file, where a kill cannot take them.
+        lost: Messages dropped: disk failed, queue full, or refused as invalid.
+        waiting: Messages not in the file yet.
+        most_waiting_bytes: High-water mark of the memory taken by messages waiting, bytes.
+        problem: The first thing that went wrong, None while all is well.
+    """
+
+    written: int
+    lost: int
+    waiting: int
+    most_waiting_bytes: int
+    problem: str | None
 
 
 class _Item(NamedTuple):

@@ -24,14 +24,23 @@ EVENT_TOPIC_SUFFIX: Final = "/_service_event"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServiceCall:
-    """One call of a service as its server logged it."""
+    """One call of a service as its server logged it.
 
-    service: str  # with its leading slash
-    service_type: str  # "package/srv/Name"
-    client_gid: bytes  # 16 bytes, the client within its session
-    sequence_number: int  # of the request among those of that client
-    request_event: LoggedMessage | None = None  # None: the log begins later
-    response_event: LoggedMessage | None = None  # None: never answered, or the log ends earlier
+    Attributes:
+        service: With its leading slash.
+        service_type: "package/srv/Name".
+        client_gid: 16 bytes, the client within its session.
+        sequence_number: Of the request among those of that client.
+        request_event: None: the log begins later.
+        response_event: None: never answered, or the log ends earlier.
+    """
+
+    service: str
+    service_type: str
+    client_gid: bytes
+    sequence_number: int
+    request_event: LoggedMessage | None = None
+    response_event: LoggedMessage | None = None
 
     def request(self) -> Any:
         """Return the request as a ROS message; None where the log does not have it."""

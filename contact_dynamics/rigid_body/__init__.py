@@ -1,1 +1,30 @@
-"""Rigid bodies (Mason, lectures 24 and 25): mass properties, states, momenta and energies."""
+"""Rigid bodies (Mason, lectures 24 and 25): mass properties, states, momenta and energies.
+
+`body` has a body's mass properties, its state, and what follows from the two. `published_frame`
+takes a state from a body's published frame to its centre of mass and back. `inertia` makes mass properties
+from particles, shapes and meshes, and has principal axes.
+"""
+
+from contact_dynamics.rigid_body import inertia
+from contact_dynamics.rigid_body.body import (
+    BodyState,
+    MassProperties,
+    angular_momentum,
+    kinetic_energy,
+    momentum,
+    rotational_energy,
+)
+
+__all__ = [
+    "BodyState",
+    "MassProperties",
+    "angular_momentum",
+    "inertia",
+    "kinetic_energy",
+    "momentum",
+    "rotational_energy",
+]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -1,7 +1,7 @@
 """A rigid body: its mass properties, its state, and what follows from the two (Mason, lectures 24 and 25).
 
-Frames: W is the world; B is the body's, with its origin at the centre of mass. A body whose published frame
-has its origin elsewhere is converted where its messages are (`msg_adapters`).
+Frames: W is the world; B is the body's, with its origin at the centre of mass. Between B and a published
+frame whose origin is elsewhere stands `published_frame`.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.records import Record
 from contact_dynamics.rotations.one import cross_matrix, rotation_matrix
 from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, TRIANGLE_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array, check_positive, check_unit
@@ -21,9 +22,13 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class MassProperties:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class MassProperties(Record):
     """Mass and angular inertia of a rigid body (lecture 24, "Angular inertia").
+
+    Attributes:
+        mass: kg, > 0.
+        I_B: (3, 3), kg m^2, about the centre of mass, in body axes.
 
     Raises:
         InvalidFieldError: mass not > 0; inertia not symmetric, not positive definite, or with principal
@@ -31,8 +36,8 @@ class MassProperties:
             distribution of mass has (I1 + I2 >= I3).
     """
 
-    mass: float  # kg, > 0
-    I_B: FloatArray  # (3, 3), kg m^2, about the centre of mass, in body axes
+    mass: float
+    I_B: FloatArray
 
     if TYPE_CHECKING:
 
@@ -62,19 +67,26 @@ class MassProperties:
         return mean_radius_of_gyration(self.mass, self.I_B)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class BodyState:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class BodyState(Record):
     """Where a body is and how it moves at one time.
+
+    Attributes:
+        p_WB_W: (3,), m, centre of mass in the world.
+        q_WB: (4,), unit quaternion x, y, z, w: body coordinates into world coordinates.
+        v_WB_W: (3,), m/s, velocity of the centre of mass, world axes.
+        w_WB_W: (3,), rad/s, angular velocity, world axes.
+        stamp_ns: ns, the time of this state, on whatever clock the caller uses.
 
     Raises:
         InvalidFieldError: a number is not finite, or the quaternion is not unit.
     """
 
-    p_WB_W: FloatArray  # (3,), m, centre of mass in the world
-    q_WB: FloatArray  # (4,), unit quaternion x, y, z, w: body coordinates into world coordinates
-    v_WB_W: FloatArray  # (3,), m/s, velocity of the centre of mass, world axes
-    w_WB_W: FloatArray  # (3,), rad/s, angular velocity, world axes
-    stamp_ns: int = 0  # ns, the time of this state, on whatever clock the caller uses
+    p_WB_W: FloatArray
+    q_WB: FloatArray
+    v_WB_W: FloatArray
+    w_WB_W: FloatArray
+    stamp_ns: int = 0
 
     if TYPE_CHECKING:
 
@@ -148,10 +160,7 @@ def rotational_energy(body: MassProperties, state: BodyState) -> float:
 
 
 def _check_inertia(field: str, value: FloatArray) -> FloatArray:
-    inertia = check_array(field, value, (3, 3))
-    scale = float(np.abs(inertia).max())
-    if float(np.abs(inertia - inertia.T).max()) > SYMMETRY_TOLERANCE * scale:
-        raise InvalidFieldError(field, inertia.tolist(), "a symmetric matrix")
+    inertia = check_symmetric(field, value)
     moments = np.linalg.eigvalsh(inertia)
     if moments[0] <= 0.0:
         raise InvalidFieldError(field, f"principal moments {moments.tolist()}", "a positive definite matrix")
@@ -160,3 +169,11 @@ def _check_inertia(field: str, value: FloatArray) -> FloatArray:
             field, f"principal moments {moments.tolist()}", "moments that a body can have (I1 + I2 >= I3)"
         )
     return inertia
+
+
+def check_symmetric(field: str, value: ArrayLike) -> FloatArray:
+    """Return a (3, 3) matrix, or raise `InvalidFieldError` where it is not symmetric."""
+    matrix = check_array(field, value, (3, 3))
+    if float(np.abs(matrix - matrix.T).max()) > SYMMETRY_TOLERANCE * float(np.abs(matrix).max()):
+        raise InvalidFieldError(field, matrix.tolist(), "a symmetric matrix")
+    return matrix

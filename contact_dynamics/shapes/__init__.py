@@ -1,1 +1,40 @@
-"""Shapes of bodies and of obstacles."""
+"""Shapes of bodies and of obstacles.
+
+`convex` has the shapes of bodies, from spheres to rounded polyhedra, made by functions that are named after
+them. An `obstacle` is a convex piece of the world with edges and corners. `hull_features` and `rim` have
+what of a shape can touch.
+"""
+
+from contact_dynamics.shapes.convex import (
+    ConvexShape,
+    Rim,
+    box,
+    box_vertices,
+    capsule,
+    cone,
+    cylinder,
+    polygon,
+    polyhedron,
+    rounded,
+    sphere,
+)
+from contact_dynamics.shapes.obstacle import Obstacle
+
+__all__ = [
+    "ConvexShape",
+    "Obstacle",
+    "Rim",
+    "box",
+    "box_vertices",
+    "capsule",
+    "cone",
+    "cylinder",
+    "polygon",
+    "polyhedron",
+    "rounded",
+    "sphere",
+]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.errors import TooLargeError
+from contact_dynamics.records import Record
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.validation import (
     FloatArray,
@@ -37,25 +38,36 @@ MOST_RIMS: Final = 1_000
 
 
 class Rim(NamedTuple):
-    """A circle."""
+    """A circle.
 
-    center: tuple[float, float, float]  # m
-    axis: tuple[float, float, float]  # unit, normal to its plane; either sense
-    radius: float  # m, > 0
+    Attributes:
+        center: m.
+        axis: Unit, normal to its plane; either sense.
+        radius: m, > 0.
+    """
+
+    center: tuple[float, float, float]
+    axis: tuple[float, float, float]
+    radius: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ConvexShape:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ConvexShape(Record):
     """The convex hull of points and circles, rolled over by a ball; without points and circles, no shape.
+
+    Attributes:
+        vertices: (k, 3), m, body axes.
+        rims: Body axes.
+        rounding: m, >= 0, the ball's radius.
 
     Raises:
         InvalidFieldError: a number is not finite, a negative radius, an axis that is not unit.
         TooLargeError: more than `MOST_VERTICES` vertices or `MOST_RIMS` rims.
     """
 
-    vertices: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))  # (k, 3), m, body axes
-    rims: tuple[Rim, ...] = ()  # body axes
-    rounding: float = 0.0  # m, >= 0, the ball's radius
+    vertices: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
+    rims: tuple[Rim, ...] = ()
+    rounding: float = 0.0
 
     if TYPE_CHECKING:
 

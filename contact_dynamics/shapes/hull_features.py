@@ -9,16 +9,11 @@ import numpy as np
 
 from contact_dynamics.numerics.convex_hull import hull_of
 from contact_dynamics.shapes.rim import radii_of
+from contact_dynamics.tolerances import FLAT_HULL, SAME_DIRECTION
 
 if TYPE_CHECKING:
     from contact_dynamics.shapes.convex import ConvexShape
     from contact_dynamics.validation import FloatArray
-
-_FLAT: Final = 1e-9
-"""Relative to the size: thinner than this a hull is a plate or a rod. Corners carry 1e-16 of rounding."""
-
-_SAME: Final = 1e-9
-"""1 - cos of the angle, 4e-5 rad, within which normals, or directions of edges, are one."""
 
 _RIM_CORNERS: Final = 32
 
@@ -27,12 +22,19 @@ _KEPT: Final = 64
 
 
 class Features(NamedTuple):
-    """Of a hull that is solid, a plate (two faces), a rod (one edge) or a point."""
+    """Of a hull that is solid, a plate (two faces), a rod (one edge) or a point.
 
-    corners: FloatArray  # (k, 3), m
-    normals: FloatArray  # (f, 3), unit, outward
-    edges: FloatArray  # (e, 3), unit, one for each direction
-    triangles: FloatArray  # (t, 3, 3), m, the faces
+    Attributes:
+        corners: (k, 3), m.
+        normals: (f, 3), unit, outward.
+        edges: (e, 3), unit, one for each direction.
+        triangles: (t, 3, 3), m, the faces.
+    """
+
+    corners: FloatArray
+    normals: FloatArray
+    edges: FloatArray
+    triangles: FloatArray
 
 
 @lru_cache(maxsize=_KEPT)
@@ -57,7 +59,7 @@ def hull_features(points: FloatArray) -> Features:
     if size == 0.0:
         return Features(points[:1], nothing, nothing, np.zeros((0, 3, 3)))
     _, spread, axes = np.linalg.svd(points - center, full_matrices=False)
-    rank = int(np.sum(spread > _FLAT * size))
+    rank = int(np.sum(spread > FLAT_HULL * size))
     if rank == 1:
         along = (points - center) @ axes[0]
         ends = points[[int(along.argmin()), int(along.argmax())]]
@@ -74,7 +76,7 @@ def hull_features(points: FloatArray) -> Features:
         points[a] - points[b]
         for i, simplex in enumerate(hull.simplices)
         for corner, j in enumerate(hull.neighbors[i])
-        if i < j and 1.0 - normals[i] @ normals[j] > _SAME
+        if i < j and 1.0 - normals[i] @ normals[j] > SAME_DIRECTION
         for a, b in [np.delete(simplex, corner)]
     ]
     return Features(
@@ -95,6 +97,6 @@ def _distinct(directions: FloatArray, *, signed: bool) -> FloatArray:
     kept: list[FloatArray] = []
     for direction in directions:
         cosines = np.array(kept).reshape(-1, 3) @ direction
-        if not (1.0 - (cosines if signed else np.abs(cosines)) <= _SAME).any():
+        if not (1.0 - (cosines if signed else np.abs(cosines)) <= SAME_DIRECTION).any():
             kept.append(direction)
     return np.array(kept)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.records import Record
 from contact_dynamics.shapes.convex import MOST_VERTICES
 from contact_dynamics.shapes.hull_features import Features, hull_features
 from contact_dynamics.validation import FloatArray, check_array, check_not_negative, check_within
@@ -16,9 +17,16 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Obstacle:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Obstacle(Record):
     """The hull of corners that stand still: a solid, or a plate (a convex polygon) with two sides.
+
+    Attributes:
+        name: What contacts call it.
+        vertices_W: (k, 3), m, world.
+        friction: Coulomb's mu, >= 0, between this obstacle and any body.
+        restitution: e, in [0, 1], likewise.
+        features: Its faces, edges and corners; they follow from the vertices.
 
     Raises:
         InvalidFieldError: a number is not finite, corners on a line, mu < 0, or e outside [0, 1].
@@ -26,9 +34,9 @@ class Obstacle:
     """
 
     name: str
-    vertices_W: FloatArray  # (k, 3), m, world
-    friction: float  # Coulomb's mu, >= 0, between this obstacle and any body
-    restitution: float  # e, in [0, 1], likewise
+    vertices_W: FloatArray
+    friction: float
+    restitution: float
     features: Features = field(init=False)
 
     if TYPE_CHECKING:

@@ -15,12 +15,19 @@ if TYPE_CHECKING:
 
 
 class Radii(NamedTuple):
-    """A rim as two orthogonal radii."""
+    """A rim as two orthogonal radii.
 
-    center: Vector  # m
-    first: Vector  # m
-    second: Vector  # m
-    reach: float  # m, a distance from the origin that no point of the rim exceeds
+    Attributes:
+        center: m.
+        first: m.
+        second: m.
+        reach: m, a distance from the origin that no point of the rim exceeds.
+    """
+
+    center: Vector
+    first: Vector
+    second: Vector
+    reach: float
 
 
 def radii_of(rim: Rim) -> Radii:

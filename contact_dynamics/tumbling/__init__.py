@@ -1,23 +1,39 @@
 """Tumbling (Mason, lecture 25): where a free rigid body will be, at any time, in closed form.
 
-In reading order: principal axes (`principal_frame`), the constants of a rotation (`polhode`) with the
-elliptic integrals they need (`elliptic`, in the numbers of `arithmetic`), attitude as quotients of theta
-functions (`theta`, set up by `attitude_form`), phases over many turns (`double_double`), the motion of one
-body (`motion`), what to call it (`regime`), and many bodies at once (`many`).
+`motion` answers for one body and `many` for many at once; `regime` says what kind of rotation it is. `flips`
+has the flips of a body that spins near its middle axis. `poinsot_construction` is Poinsot's picture: an
+ellipsoid that rolls on a plane.
+
+How it is done: the `constants` of a rotation come from the principal axes (`rigid_body.inertia`) and from
+where it starts on its `polhode`, with `elliptic` integrals. The attitude is made of quotients of `theta`
+functions (`attitude_form` sets them up), and `double_double` keeps their phases exact over many turns.
 """
 
 from contact_dynamics.numerics.arithmetic import Precision
-from contact_dynamics.tumbling.many import rotations_of_many, states_of_many
+from contact_dynamics.tumbling.flips import Flips, next_flips
+from contact_dynamics.tumbling.many import flips_of_many, rotations_of_many, states_of_many
 from contact_dynamics.tumbling.motion import FreeMotion, Sample, Trajectory, free_motion
+from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves, poinsot, rolling_curves
 from contact_dynamics.tumbling.regime import Regime
 
 __all__ = [
+    "Flips",
     "FreeMotion",
+    "Poinsot",
     "Precision",
     "Regime",
+    "RollingCurves",
     "Sample",
     "Trajectory",
+    "flips_of_many",
     "free_motion",
+    "next_flips",
+    "poinsot",
+    "rolling_curves",
     "rotations_of_many",
     "states_of_many",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

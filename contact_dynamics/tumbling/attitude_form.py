@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from contact_dynamics.numerics.arithmetic import DOUBLES, Number, Scalar, within
+from contact_dynamics.records import Record
+from contact_dynamics.tolerances import NEGLIGIBLE_TERM
 from contact_dynamics.tumbling.double_double import linear_phase
 from contact_dynamics.tumbling.elliptic import carlson_rf
 from contact_dynamics.tumbling.polhode import Spin, Tumble
@@ -24,13 +26,19 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 
-@dataclass(frozen=True, slots=True)
-class AttitudeForm:
-    """The attitude about L as a function of time."""
+@dataclass(frozen=True, slots=True, repr=False)
+class AttitudeForm(Record):
+    """The attitude about L as a function of time.
+
+    Attributes:
+        series: The theta functions, in the form that suits this rotation.
+        z: In the series' unit.
+        psi: Half turns.
+    """
 
     series: Steady | Harmonics | Bumps | OneFlip
-    z: LinearPhase  # in the series' unit
-    psi: LinearPhase  # half turns
+    z: LinearPhase
+    psi: LinearPhase
 
     def point(self, seconds: float) -> Values:
         """Return what `theta` says at a time, s."""
@@ -53,9 +61,6 @@ SWITCH: Final = 1.0
 """Value of pi K'/K below which theta functions are summed as bumps. There both forms reach the last bit with
 nine terms or fewer; well above it bumps would need more of them, well below it the series' terms would
 cancel."""
-
-NEGLIGIBLE: Final = 1e-18
-"""Relative to the largest term of a sum: far below the last bit."""
 
 
 def attitude_form(rotation: Tumble[Scalar] | Spin[Scalar], numbers: Arithmetic[Scalar]) -> AttitudeForm:
@@ -104,7 +109,7 @@ def harmonics(xi: Any, eta: Any, peaks: tuple[Any, Any], *, functions: ModuleTyp
     A_even, A_odd, B_even, B_odd = [1.0], [0.0], [1.0], [0.0]
     inner, sign, q_2j, p_j, s_j = 1.0, 1.0, 1.0, 1.0, 1.0
     for j in range(1, MOST_TERMS):
-        if largest_q ** (2 * j * (j - 1)) * largest_p**j < NEGLIGIBLE:
+        if largest_q ** (2 * j * (j - 1)) * largest_p**j < NEGLIGIBLE_TERM:
             break
         sign, q_2j, p_j, s_j = -sign, q_2j * (q * q), p_j * p, s_j * s
         outer = inner * q_2j  # q^(2 j^2), as inner is q^(2 j (j-1))
@@ -115,7 +120,7 @@ def harmonics(xi: Any, eta: Any, peaks: tuple[Any, Any], *, functions: ModuleTyp
         inner = outer * q_2j
     theta_2, theta_3, square, power = [1.0], [1.0], 1.0, 1.0
     for n in range(1, MOST_TERMS):
-        if largest_q ** (n * n) < NEGLIGIBLE:
+        if largest_q ** (n * n) < NEGLIGIBLE_TERM:
             break
         square = square * power * (power * q)  # q^(n^2)
         power = power * q

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.records import Record
+
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
@@ -21,16 +23,25 @@ _SPLITTER: Final = 134217729.0
 """2^27 + 1: splits a double into two halves of 26 bits, whose products are exact."""
 
 
-@dataclass(frozen=True, slots=True)
-class LinearPhase:
-    """The phase ``rate * t + offset``, in turns."""
+@dataclass(frozen=True, slots=True, repr=False)
+class LinearPhase(Record):
+    """The phase ``rate * t + offset``, in turns.
 
-    rate: float  # turns/s, leading part
-    rate_rest: float  # turns/s
-    rate_upper: float  # turns/s, upper half of the bits of ``rate``
-    rate_lower: float  # turns/s, lower half
-    offset: float  # turns, leading part
-    offset_rest: float  # turns
+    Attributes:
+        rate: Turns/s, leading part.
+        rate_rest: Turns/s.
+        rate_upper: Turns/s, upper half of the bits of ``rate``.
+        rate_lower: Turns/s, lower half.
+        offset: Turns, leading part.
+        offset_rest: Turns.
+    """
+
+    rate: float
+    rate_rest: float
+    rate_upper: float
+    rate_lower: float
+    offset: float
+    offset_rest: float
 
     def fraction(self, seconds: float) -> tuple[float, float]:
         """Return the phase at a time, s, as its fraction in [-1/2, 1/2] and its whole turns."""

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.inertia.principal_frame import in_doubles
 from contact_dynamics.rotations.one import cross_matrix
 from contact_dynamics.tumbling.many import flips_of_many
@@ -40,11 +41,16 @@ DRAWS: Final = 500
 """Pairs of opposite errors: they tell a deviation to 3 % in about a millisecond."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Flips:
-    """The next flips of a body."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Flips(Record):
+    """The next flips of a body.
 
-    seconds: FloatArray  # (n,), s after the state's stamp, ascending; empty where there are none
+    Attributes:
+        seconds: (n,), s after the state's stamp, ascending; empty where there are none.
+        deviations: (n,), s, standard deviation of each time; empty: no covariance was given.
+    """
+
+    seconds: FloatArray
     deviations: (
         FloatArray  # (n,), s, one standard deviation of each; NaN: the state's covariance is not known
     )

@@ -15,11 +15,16 @@ from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.arithmetic import ARRAYS, FloatArray
 from contact_dynamics.rotations.many import matrices_of, products
-from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, TRIANGLE_TOLERANCE, UNIT_LENGTH_TOLERANCE
+from contact_dynamics.tolerances import (
+    MOTIONLESS,
+    SMALLEST,
+    SYMMETRY_TOLERANCE,
+    TRIANGLE_TOLERANCE,
+    UNIT_LENGTH_TOLERANCE,
+)
 from contact_dynamics.tumbling.attitude_form import SWITCH, bumps, harmonics, zeros
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
 from contact_dynamics.tumbling.motion import Trajectory
-from contact_dynamics.tumbling.polhode import MOTIONLESS
 from contact_dynamics.validation import check_array
 
 if TYPE_CHECKING:
@@ -29,9 +34,6 @@ if TYPE_CHECKING:
 
 CHUNK: Final = 4096
 """Rotations at a time: their intermediate arrays stay in the processor's cache."""
-
-SMALLEST: Final = 1e-300
-"""Stands for zero where a quotient or a logarithm of it is wanted."""
 
 
 def states_of_many(

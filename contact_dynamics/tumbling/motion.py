@@ -14,7 +14,7 @@ middle axis it changes much when they do: `contact_dynamics.tumbling.poinsot_con
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -22,6 +22,7 @@ import numpy as np
 from contact_dynamics.constants import STANDARD_GRAVITY_W, ns_after
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.arithmetic import Precision
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import make_continuous
 from contact_dynamics.rotations.one import (
@@ -53,15 +54,23 @@ FEW: Final = 16
 """Samples that cost less one by one than NumPy's calls do."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Trajectory:
-    """A motion at n times; row i belongs to ``seconds[i]``."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Trajectory(Record):
+    """A motion at n times; row i belongs to ``seconds[i]``.
 
-    seconds: FloatArray  # (n,), s after the stamp of the state that the motion began with
-    p_WB_W: FloatArray  # (n, 3), m, centre of mass in the world
-    q_WB: FloatArray  # (n, 4), unit, x y z w, body to world; of q and -q the one nearer to the row before
-    v_WB_W: FloatArray  # (n, 3), m/s, velocity of the centre of mass, world axes
-    w_WB_W: FloatArray  # (n, 3), rad/s, angular velocity, world axes
+    Attributes:
+        seconds: (n,), s after the stamp of the state that the motion began with.
+        p_WB_W: (n, 3), m, centre of mass in the world.
+        q_WB: (n, 4), unit, x y z w, body to world; of q and -q the one nearer to the row before.
+        v_WB_W: (n, 3), m/s, velocity of the centre of mass, world axes.
+        w_WB_W: (n, 3), rad/s, angular velocity, world axes.
+    """
+
+    seconds: FloatArray
+    p_WB_W: FloatArray
+    q_WB: FloatArray
+    v_WB_W: FloatArray
+    w_WB_W: FloatArray
 
     def __len__(self) -> int:
         """Return the number of samples."""
@@ -69,12 +78,19 @@ class Trajectory:
 
 
 class Sample(NamedTuple):
-    """A motion at one time, in plain floats: what `BodyState` holds, without the cost of its arrays."""
+    """A motion at one time, in plain floats: what `BodyState` holds, without the cost of its arrays.
 
-    p_WB_W: tuple[float, float, float]  # m
-    q_WB: tuple[float, float, float, float]  # x y z w
-    v_WB_W: tuple[float, float, float]  # m/s
-    w_WB_W: tuple[float, float, float]  # rad/s
+    Attributes:
+        p_WB_W: m.
+        q_WB: X y z w.
+        v_WB_W: m/s.
+        w_WB_W: rad/s.
+    """
+
+    p_WB_W: tuple[float, float, float]
+    q_WB: tuple[float, float, float, float]
+    v_WB_W: tuple[float, float, float]
+    w_WB_W: tuple[float, float, float]
 
     def as_state(self, begin_ns: int, seconds: float) -> BodyState:
         """Return it as the state at a time, s after the stamp ``begin_ns``, ns."""
@@ -87,22 +103,37 @@ class Sample(NamedTuple):
         )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class FreeMotion:
-    """Where a body without torque is at any time; made by `free_motion`."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class FreeMotion(Record):
+    """Where a body without torque is at any time; made by `free_motion`.
+
+    Attributes:
+        body: Mass and angular inertia.
+        state: At time 0.
+        gravity_W: (3,), m/s^2, world axes.
+        frame: Principal moments and axes of the body.
+        rotation: Constants of the rotation.
+        form: Attitude about L as a function of time.
+        q_WL: Unit quaternion x, y, z, w: axes with z along L into world axes.
+        q_PB: Unit quaternion x, y, z, w: body axes into principal axes.
+        w_along: rad/s, component of the angular velocity along L, constant.
+        w_across: rad/s, L (1/I_1 - 1/I_2) and L (1/I_3 - 1/I_2).
+        farthest: s, how far from now times may be, on either side.
+        regime: What kind of rotation it is.
+    """
 
     body: MassProperties
-    state: BodyState  # at time 0
-    gravity_W: FloatArray  # (3,), m/s^2, world axes
-    frame: PrincipalFrame[Decimal]  # principal moments and axes of the body
-    rotation: Rotation  # constants of the rotation
-    form: AttitudeForm  # attitude about L as a function of time
-    q_WL: Quaternion
-    q_PB: Quaternion
-    w_along: float  # rad/s, component of the angular velocity along L, constant
-    w_across: tuple[float, float]  # rad/s, L (1/I_1 - 1/I_2) and L (1/I_3 - 1/I_2)
-    farthest: float  # s, how far from now times may be, on either side
-    regime: Regime  # what kind of rotation it is
+    state: BodyState
+    gravity_W: FloatArray
+    frame: PrincipalFrame[Decimal] = field(repr=False)
+    rotation: Rotation = field(repr=False)
+    form: AttitudeForm = field(repr=False)
+    q_WL: Quaternion = field(repr=False)
+    q_PB: Quaternion = field(repr=False)
+    w_along: float = field(repr=False)
+    w_across: tuple[float, float] = field(repr=False)
+    farthest: float = field(repr=False)
+    regime: Regime
 
     def sample(self, seconds: float) -> Sample:
         """Return the motion at one time, s after the state's stamp, in plain floats, unchecked."""
@@ -257,9 +288,9 @@ def check_extent(body: MassProperties, state: BodyState, gravity_W: FloatArray) 
         "angular_velocity": state.w_WB_W,
         "gravity": gravity_W,
     }
-    for field, values in numbers.items():
+    for name, values in numbers.items():
         if max(map(abs, values.ravel().tolist())) > LARGEST_NUMBER:  # NumPy's calls would cost more
-            check_magnitude(field, values)
+            check_magnitude(name, values)
     if min(body.I_B.diagonal().tolist()) * LARGEST_NUMBER < 1.0:
         raise InvalidFieldError(
             "inertia", body.I_B.diagonal().tolist(), f"moments of at least {1.0 / LARGEST_NUMBER:g} kg m^2"

@@ -18,9 +18,11 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.arithmetic import ARRAYS, DOUBLES
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import angular_momentum
-from contact_dynamics.rigid_body.inertia.principal_axes import axes_of_bytes
+from contact_dynamics.rigid_body.inertia.axes_of_inertia import axes_of_bytes
 from contact_dynamics.rotations.one import rotated, rotation_matrix
+from contact_dynamics.tolerances import SEPARATRIX_END, SMALLEST_COMPLEMENT
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
 from contact_dynamics.tumbling.polhode import Rotation, Spin, Tumble, largest_rate
 from contact_dynamics.tumbling.regime import Regime
@@ -36,28 +38,40 @@ if TYPE_CHECKING:
 CONSTANT_RATE: Final = (Regime.AT_REST, Regime.SPHERICAL, Regime.PRINCIPAL_AXIS)
 """Where the angular velocity does not change, or only within rounding: there is no polhode to speak of."""
 
-SEPARATRIX_END: Final = 1e-6
-"""rad of Jacobi's amplitude. The motion is this near to spin about the middle axis 14 time constants before
-and after its flip."""
 
-SMALLEST_COMPLEMENT: Final = 1e-100
-"""Of 1 - m. Below it the sensitivity is beyond 1e90: infinite for all that numbers can say."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Poinsot(Record):
+    """The constants of a free rotation.
 
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Poinsot:
-    """The constants of a free rotation."""
+    Attributes:
+        regime: What the rotation is called.
+        rotational_energy: J, T.
+        L_W: (3,), kg m^2/s, angular momentum, world axes: the normal of the invariable plane.
+        invariable_plane_distance: rad/s, 2 T / |L|; NaN at rest.
+        polhode_period: s; inf on the separatrix, NaN where the angular velocity is constant.
+        precession_per_period: rad, turn about L in one period; NaN where there is no period.
+        principal_moments: (3,), kg m^2, ascending.
+        principal_axes_B: (3, 3), columns: their axes in body coordinates; see `inertia.principal`.
+        ellipsoid_semi_axes: (3,), rad/s, of the energy ellipsoid, along those axes: sqrt(2 T / I).
+        sensitivity: Attitude error per rad turned and relative error of the rate; NaN at rest.
+    """
 
     regime: Regime
-    rotational_energy: float  # J, T
-    L_W: FloatArray  # (3,), kg m^2/s, angular momentum, world axes: the normal of the invariable plane
-    invariable_plane_distance: float  # rad/s, 2 T / |L|; NaN at rest
-    polhode_period: float  # s; inf on the separatrix, NaN where the angular velocity is constant
-    precession_per_period: float  # rad, turn about L in one period; NaN where there is no period
-    principal_moments: FloatArray  # (3,), kg m^2, ascending
-    principal_axes_B: FloatArray  # (3, 3), columns: their axes in body coordinates; see `inertia.principal`
-    ellipsoid_semi_axes: FloatArray  # (3,), rad/s, of the energy ellipsoid, along those axes: sqrt(2 T / I)
-    sensitivity: float  # attitude error per rad turned and relative error of the rate; NaN at rest
+    rotational_energy: float
+    L_W: FloatArray
+    invariable_plane_distance: float
+    polhode_period: float
+    precession_per_period: float
+    principal_moments: FloatArray
+    principal_axes_B: FloatArray
+    ellipsoid_semi_axes: FloatArray
+    sensitivity: float
+
+    @property
+    def I_B(self) -> FloatArray:
+        """Return the inertia, (3, 3), kg m^2, about the centre of mass, body axes."""
+        inertia: FloatArray = self.principal_axes_B * self.principal_moments @ self.principal_axes_B.T
+        return inertia
 
 
 def poinsot(motion: FreeMotion) -> Poinsot:
@@ -76,9 +90,15 @@ def poinsot(motion: FreeMotion) -> Poinsot:
         precession_per_period=_precession(rotation) * period if math.isfinite(period) else math.nan,
         principal_moments=axes.moments,
         principal_axes_B=axes.R_BP,
-        ellipsoid_semi_axes=np.sqrt(twice_energy / axes.moments),
+        ellipsoid_semi_axes=semi_axes(0.5 * twice_energy, axes.moments),
         sensitivity=sensitivity(motion),
     )
+
+
+def semi_axes(rotational_energy: float, principal_moments: FloatArray) -> FloatArray:
+    """Return the semi-axes of the energy ellipsoid, (3,), rad/s, from T, J, and the moments, kg m^2."""
+    axes: FloatArray = np.sqrt(2.0 * rotational_energy / principal_moments)
+    return axes
 
 
 def polhode_period(rotation: Rotation) -> float:
@@ -147,16 +167,21 @@ def _sensitivity_of_spin(motion: FreeMotion) -> float:
     return math.inf if abs(middle_B @ w_B) > 0.5 * np.linalg.norm(w_B) else 1.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class RollingCurves:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class RollingCurves(Record):
     """Polhode and herpolhode, which roll on each other: row i of both is where they touch at ``seconds[i]``.
 
     Arcs of the two between the same rows are equally long.
+
+    Attributes:
+        seconds: (n,), s after the state's stamp, ascending; 0 throughout where nothing moves.
+        polhode_B: (n, 3), rad/s, angular velocity in body axes.
+        herpolhode_W: (n, 3), rad/s, the same in world axes, in the invariable plane.
     """
 
-    seconds: FloatArray  # (n,), s after the state's stamp, ascending; 0 throughout where nothing moves
-    polhode_B: FloatArray  # (n, 3), rad/s, angular velocity in body axes
-    herpolhode_W: FloatArray  # (n, 3), rad/s, the same in world axes, in the invariable plane
+    seconds: FloatArray
+    polhode_B: FloatArray
+    herpolhode_W: FloatArray
 
 
 def rolling_curves(motion: FreeMotion, count: int) -> RollingCurves:

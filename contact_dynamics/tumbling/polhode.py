@@ -17,9 +17,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Generic, TypeAlias
+from typing import TYPE_CHECKING, Generic, TypeAlias
 
 from contact_dynamics.numerics.arithmetic import Scalar, within
+from contact_dynamics.tolerances import MOTIONLESS
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
 
 if TYPE_CHECKING:
@@ -29,35 +30,51 @@ if TYPE_CHECKING:
     from contact_dynamics.numerics.arithmetic import Arithmetic
     from contact_dynamics.rigid_body.inertia.principal_frame import PrincipalFrame
 
-MOTIONLESS: Final = 1e-60
-"""Squared angle between the angular velocity and the major or minor axis, below which the spin is taken as
-steady. The motion left out is an angle of 1e-30 rad for ever, since spin about these axes is stable."""
-
 
 @dataclass(frozen=True, slots=True)
 class Spin(Generic[Scalar]):
-    """The angular velocity is constant."""
+    """The angular velocity is constant.
 
-    rate: Scalar  # rad/s, >= 0
+    Attributes:
+        rate: rad/s, >= 0.
+    """
+
+    rate: Scalar
 
 
 @dataclass(frozen=True, slots=True)
 class Tumble(Generic[Scalar]):
-    """The angular velocity moves on a polhode; axes in Jacobi's order, right-handed, axis 3 on L's side."""
+    """The angular velocity moves on a polhode; axes in Jacobi's order, right-handed, axis 3 on L's side.
 
-    moments: tuple[Scalar, Scalar, Scalar]  # kg m^2, about axes 1, 2, 3
-    gaps: tuple[Scalar, Scalar, Scalar]  # kg m^2, I_2 - I_1, I_3 - I_2, I_3 - I_1; > 0 about the major axis
-    axes_B: tuple[tuple[Scalar, Scalar, Scalar], ...]  # 3 rows: unit axes 1, 2, 3 in body coordinates
-    L: Scalar  # kg m^2/s, |angular momentum|
-    m: Scalar  # parameter of the elliptic functions, in [0, 1]
-    m1: Scalar  # 1 - m, in [0, 1]; 0 on the separatrix
-    a2: Scalar  # a^2 = 1 - c^2, > 0
-    b2: Scalar  # b^2
-    c2: Scalar  # c^2
-    omega_p: Scalar  # rad/s, du/dt, < 0 where axis 3 is the minor one
-    u0: Scalar  # u at time 0
-    quarter: Scalar  # pi / 2K, 0 on the separatrix
-    precession: Scalar  # rad/s, mean rate about L; on the separatrix the rate in the far past and future
+    Attributes:
+        moments: kg m^2, about axes 1, 2, 3.
+        gaps: kg m^2, I_2 - I_1, I_3 - I_2, I_3 - I_1; > 0 about the major axis.
+        axes_B: 3 rows: unit axes 1, 2, 3 in body coordinates.
+        L: kg m^2/s, |angular momentum|.
+        m: Parameter of the elliptic functions, in [0, 1].
+        m1: 1 - m, in [0, 1]; 0 on the separatrix.
+        a2: A^2 = 1 - c^2, > 0.
+        b2: B^2.
+        c2: C^2.
+        omega_p: rad/s, du/dt, < 0 where axis 3 is the minor one.
+        u0: U at time 0.
+        quarter: Pi / 2K, 0 on the separatrix.
+        precession: rad/s, mean rate about L; on the separatrix the rate in the far past and future.
+    """
+
+    moments: tuple[Scalar, Scalar, Scalar]
+    gaps: tuple[Scalar, Scalar, Scalar]
+    axes_B: tuple[tuple[Scalar, Scalar, Scalar], ...]
+    L: Scalar
+    m: Scalar
+    m1: Scalar
+    a2: Scalar
+    b2: Scalar
+    c2: Scalar
+    omega_p: Scalar
+    u0: Scalar
+    quarter: Scalar
+    precession: Scalar
 
 
 Rotation: TypeAlias = "Spin[Decimal] | Tumble[Decimal] | Spin[float] | Tumble[float]"

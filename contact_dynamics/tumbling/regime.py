@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import enum
 from typing import TYPE_CHECKING
 
+from contact_dynamics.records import NamedInt
 from contact_dynamics.tolerances import EQUAL_MOMENTS_TOLERANCE, STEADY_AXIS_TOLERANCE
 from contact_dynamics.tumbling.polhode import Spin
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from contact_dynamics.tumbling.polhode import Rotation
 
 
-class Regime(enum.IntEnum):
+class Regime(NamedInt):
     """A name for people; the formulas do not go by it, and hold in between as well."""
 
     UNKNOWN = 0  # a torque acts: Poinsot's picture does not apply

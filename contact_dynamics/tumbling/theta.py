@@ -28,6 +28,9 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from contact_dynamics.records import Record
+from contact_dynamics.tolerances import SMALLEST
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from types import ModuleType
@@ -38,8 +41,8 @@ Values: TypeAlias = "tuple[Any, Any, Any, Any, Any, Any, Any]"
 Three: TypeAlias = "tuple[Any, Any, Any]"
 
 
-@dataclass(frozen=True, slots=True)
-class Steady:
+@dataclass(frozen=True, slots=True, repr=False)
+class Steady(Record):
     """Spin at a constant rate about z."""
 
     def values(self, functions: ModuleType, z: Any, _: Any, psi: Any) -> Values:
@@ -49,17 +52,27 @@ class Steady:
         return one, zero, zero, zero, zero, one, functions.tan(math.pi * psi)
 
 
-@dataclass(frozen=True, slots=True)
-class Harmonics:
-    """Theta functions as trigonometric series: polynomials in cos 2z, lowest power first."""
+@dataclass(frozen=True, slots=True, repr=False)
+class Harmonics(Record):
+    """Theta functions as trigonometric series: polynomials in cos 2z, lowest power first.
 
-    r: float  # e^{-xi}
-    A_cos: tuple[float, ...]  # Re A
-    A_sin: tuple[float, ...]  # Im A / sin 2z
-    B_cos: tuple[float, ...]  # Re B
-    B_sin: tuple[float, ...]  # Im B / sin 2z
-    C: tuple[float, ...]  # C / cos z
-    D: tuple[float, ...]  # D
+    Attributes:
+        r: e^{-xi}.
+        A_cos: Re A.
+        A_sin: Im A / sin 2z.
+        B_cos: Re B.
+        B_sin: Im B / sin 2z.
+        C: C / cos z.
+        D: D.
+    """
+
+    r: float
+    A_cos: tuple[float, ...]
+    A_sin: tuple[float, ...]
+    B_cos: tuple[float, ...]
+    B_sin: tuple[float, ...]
+    C: tuple[float, ...]
+    D: tuple[float, ...]
 
     def values(self, functions: ModuleType, z: Any, _: Any, psi: Any) -> Values:
         """Return the values for z in turns, of which whole ones do not matter."""
@@ -81,19 +94,31 @@ class Harmonics:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class Bumps:
-    """Theta functions after Poisson's summation: stays near the middle axis, and a flip between each two."""
+@dataclass(frozen=True, slots=True, repr=False)
+class Bumps(Record):
+    """Theta functions after Poisson's summation: stays near the middle axis, and a flip between each two.
 
-    steepness: float  # |log| of the ratio of the two nearest bumps, per half turn of z
-    drift: float  # half turns of psi per half turn of z
-    g: float  # ratio of a bump to the next at its own top
+    Attributes:
+        steepness: |log| of the ratio of the two nearest bumps, per half turn of z.
+        drift: Half turns of psi per half turn of z.
+        g: Ratio of a bump to the next at its own top.
+        A_cos: Amplitudes of the cosines of A, three terms.
+        A_sin: Amplitudes of the sines of A, three terms.
+        B_cos: Amplitudes of the cosines of B, three terms.
+        B_sin: Amplitudes of the sines of B, three terms.
+        C: At z = 0, but for terms in g.
+        D: Likewise.
+    """
+
+    steepness: float
+    drift: float
+    g: float
     A_cos: Three
     A_sin: Three
     B_cos: Three
     B_sin: Three
-    C: float  # at z = 0, but for terms in g
-    D: float  # likewise
+    C: float
+    D: float
 
     def values(self, functions: ModuleType, z: Any, flips: Any, psi: Any) -> Values:
         """Return the values for z in half turns from the middle of a flip, and the number of flips before."""
@@ -103,7 +128,7 @@ class Bumps:
         A_re, A_im = self.A_cos[0] * even, self.A_sin[0] * odd
         B_re, B_im = self.B_cos[0] * even, self.B_sin[0] * odd
         g = self.g
-        v = g / (w + 1e-300)  # both vanish where the period is beyond 1e300 rad
+        v = g / (w + SMALLEST)  # both vanish where the period is beyond 1e300 rad
         www, vvv = g * w**3, g * v**3
         for k, near, far in ((1, v, g * w * w), (2, g * v * v, g * g * www)):
             even, odd = near + far, side * (near - far)
@@ -114,14 +139,21 @@ class Bumps:
         return A_re, A_im, parity * B_re, parity * B_im, (self.C * parity) * C, self.D * D, tangent
 
 
-@dataclass(frozen=True, slots=True)
-class OneFlip:
-    """The separatrix: from spin about the middle axis, by one flip, to spin about it the other way round."""
+@dataclass(frozen=True, slots=True, repr=False)
+class OneFlip(Record):
+    """The separatrix: from spin about the middle axis, by one flip, to spin about it the other way round.
+
+    Attributes:
+        A: The two amplitudes of A.
+        B: The two amplitudes of B.
+        C: At u = 0.
+        D: At u = 0.
+    """
 
     A: tuple[float, float]
     B: tuple[float, float]
-    C: float  # at u = 0
-    D: float  # at u = 0
+    C: float
+    D: float
 
     def values(self, functions: ModuleType, fraction: Any, whole: Any, psi: Any) -> Values:
         """Return the values for u = whole + fraction, 0 in the middle of the flip."""

@@ -59,11 +59,17 @@ _ELEVATION: Final = 0.33  # of the eye above what it looks at, relative to its h
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Eye:
-    """Where the scene is looked at from."""
+    """Where the scene is looked at from.
 
-    position_W: FloatArray  # (3,), m, world
-    target_W: FloatArray  # (3,), m, world
-    up_W: FloatArray  # (3,), unit, world axes
+    Attributes:
+        position_W: (3,), m, world.
+        target_W: (3,), m, world.
+        up_W: (3,), unit, world axes.
+    """
+
+    position_W: FloatArray
+    target_W: FloatArray
+    up_W: FloatArray
 
 
 def eye_on(points_W: FloatArray, *, up_W: FloatArray, margin: float) -> Eye:

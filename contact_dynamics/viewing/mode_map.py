@@ -54,18 +54,29 @@ _HOVERED_SIZE: Final = -2.0
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ModeRegions:
-    """Which modes are consistent at each point of a chart."""
+    """Which modes are consistent at each point of a chart.
 
-    classes: NDArray[np.uint16]  # (h, w), indices into ``modes``
-    modes: tuple[tuple[str, ...], ...]  # the consistent modes of each class; empty for OUTSIDE and NO_MODE
+    Attributes:
+        classes: (h, w), indices into ``modes``.
+        modes: The consistent modes of each class; empty for OUTSIDE and NO_MODE.
+    """
+
+    classes: NDArray[np.uint16]
+    modes: tuple[tuple[str, ...], ...]
 
 
 class WidestPlace(NamedTuple):
-    """Where a region has most room for its name."""
+    """Where a region has most room for its name.
 
-    region: int  # its class
-    place: FloatArray  # (2,), points
-    has_room: bool  # whether the name fits
+    Attributes:
+        region: Its class.
+        place: (2,), points.
+        has_room: Whether the name fits.
+    """
+
+    region: int
+    place: FloatArray
+    has_room: bool
 
 
 def mode_regions(sets: Sequence[PlanarWrenchSet], chart: WrenchChart) -> ModeRegions:

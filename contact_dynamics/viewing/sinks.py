@@ -36,12 +36,18 @@ class ViewerMode(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sinks:
-    """Where to draw to."""
+    """Where to draw to.
 
-    rrd_path: str = ""  # file to write, which is replaced; empty: none
+    Attributes:
+        rrd_path: File to write, which is replaced; empty: none.
+        port: Of the viewer that is started, or that is served.
+        url: Of the viewer to connect to, as rerun+http://127.0.0.1:9876/proxy.
+    """
+
+    rrd_path: str = ""
     viewer: ViewerMode = ViewerMode.NONE
-    port: int = DEFAULT_PORT  # of the viewer that is started, or that is served
-    url: str = ""  # of the viewer to connect to, as rerun+http://127.0.0.1:9876/proxy
+    port: int = DEFAULT_PORT
+    url: str = ""
 
 
 class NowhereToDrawError(ContactDynamicsError):

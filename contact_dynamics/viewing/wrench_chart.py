@@ -88,9 +88,13 @@ def bounds(chart: WrenchChart) -> rrb.VisualBounds2D:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DirectionChart:
-    """All directions of wrenches: two discs."""
+    """All directions of wrenches: two discs.
 
-    length: float  # m, > 0, that makes a torque comparable with a force: the radius of gyration
+    Attributes:
+        length: m, > 0, that makes a torque comparable with a force: the radius of gyration.
+    """
+
+    length: float
     resolution: int = 400
 
     @property
@@ -122,11 +126,17 @@ class DirectionChart:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForceDualChart:
-    """Force duals in the plane of the body: two squares, each seen as the body is."""
+    """Force duals in the plane of the body: two squares, each seen as the body is.
 
-    length: float  # m, > 0, the radius of gyration
-    half_side: float  # m, > 0, of each square
-    centre: Vector2 = (0.0, 0.0)  # m, of each square, from the centre of mass
+    Attributes:
+        length: m, > 0, the radius of gyration.
+        half_side: m, > 0, of each square.
+        centre: m, of each square, from the centre of mass.
+    """
+
+    length: float
+    half_side: float
+    centre: Vector2 = (0.0, 0.0)
     resolution: int = 400
 
     @property
@@ -163,10 +173,15 @@ class ForceDualChart:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForceChart:
-    """Forces at one torque: a square."""
+    """Forces at one torque: a square.
 
-    moment: float  # N m
-    half_side: float  # N, > 0
+    Attributes:
+        moment: N m.
+        half_side: N, > 0.
+    """
+
+    moment: float
+    half_side: float
     resolution: int = 400
 
     @property

@@ -13,9 +13,10 @@ from nav_msgs.msg import Odometry
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.errors import FrameMismatchError, InvalidFieldError
+from contact_dynamics.questions import UncertainState
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
-from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, covariance_from_msg
+from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, known_state_from_msg
 from msg_adapters.odometry import body_state_from_odometry, odometry_from_body_state
 from msg_adapters.pose_twist import body_state_from_pose_twist, pose_twist_from_body_state
 
@@ -144,11 +145,15 @@ def test_a_quaternion_that_is_not_unit_is_refused() -> None:
 
 
 def test_a_covariance_is_read_whole_or_refused() -> None:
-    assert covariance_from_msg(BodyStateMsg()) is None
+    def read(msg: BodyStateMsg) -> BodyState | UncertainState:
+        return known_state_from_msg(msg, world_frame="world", p_FB_F=np.zeros(3))
+
+    assert isinstance(read(BodyStateMsg()), BodyState)
     matrix = np.diag(np.arange(12.0))
-    found = covariance_from_msg(BodyStateMsg(covariance=matrix.ravel().tolist()))
-    np.testing.assert_array_equal(found, matrix)
+    found = read(BodyStateMsg(covariance=matrix.ravel().tolist()))
+    assert isinstance(found, UncertainState)
+    np.testing.assert_array_equal(found.covariance, matrix)
     with pytest.raises(InvalidFieldError, match=r"covariance: found 36 numbers, allowed is none or 144"):
-        covariance_from_msg(BodyStateMsg(covariance=[0.0] * 36))
+        read(BodyStateMsg(covariance=[0.0] * 36))
     with pytest.raises(InvalidFieldError, match=r"state\.covariance: found variances"):
-        covariance_from_msg(BodyStateMsg(covariance=(-matrix).ravel().tolist()))
+        read(BodyStateMsg(covariance=(-matrix).ravel().tolist()))

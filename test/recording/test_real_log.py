@@ -136,4 +136,4 @@ def test_rerun_draws_nothing_of_a_log_by_itself(real_log: Any, tmp_path: Path) -
         "LineStrips3D",
     )
     assert [shape for shape in shapes if f"{shape}:" in printed] == []
-    assert "3D view stays empty" in (ROOT / "docs" / "log.md").read_text(encoding="utf-8")
+    assert "viewport stays empty" in (ROOT / "docs" / "log.md").read_text(encoding="utf-8")

@@ -176,7 +176,7 @@ def test_an_sdist_holds_the_project_and_installs(tmp_path: Path) -> None:
     assert answer.returncode == 0, answer.stderr
     assert answer.stdout.startswith(str(installed))
     assert "usage: contact-dynamics" in answer.stdout
-    assert (installed / "contact_dynamics" / "demo" / "tosses" / "brick.csv").exists()
+    assert (installed / "contact_dynamics" / "measured" / "tosses" / "brick.csv").exists()
     assert (installed / "share" / "contact_dynamics" / "config" / "server.yaml").exists()
 
 

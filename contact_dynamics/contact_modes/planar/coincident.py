@@ -19,11 +19,17 @@ if TYPE_CHECKING:
 
 
 class Coincident(NamedTuple):
-    """Which contacts are the same."""
+    """Which contacts are the same.
 
-    firsts: list[int]  # of each group, the first contact
-    group: list[int]  # of each contact
-    counts: list[int]  # contacts of each group
+    Attributes:
+        firsts: Of each group, the first contact.
+        group: Of each contact.
+        counts: Contacts of each group.
+    """
+
+    firsts: list[int]
+    group: list[int]
+    counts: list[int]
 
     def letters_of_all(self, mode: str) -> str:
         """Return the letters of all contacts from those of the groups."""

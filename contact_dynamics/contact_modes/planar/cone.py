@@ -48,11 +48,17 @@ class _NotClearError(Exception):
 
 
 class Sector(NamedTuple):
-    """A two-dimensional cone spanned by two rays less than 180 degrees apart, all of it on some rows."""
+    """A two-dimensional cone spanned by two rays less than 180 degrees apart, all of it on some rows.
 
-    start: Vector3  # unit
-    end: Vector3  # unit
-    tight: int  # bit set of the rows that vanish on it
+    Attributes:
+        start: Unit.
+        end: Unit.
+        tight: Bit set of the rows that vanish on it.
+    """
+
+    start: Vector3
+    end: Vector3
+    tight: int
 
 
 class PolyhedralCone:

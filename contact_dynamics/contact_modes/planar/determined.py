@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 from contact_dynamics.contact_modes.planar.enumeration import FIXED, LEFT, RIGHT, Letters
 from contact_dynamics.contact_modes.result import Refusal, RefusedMode
 from contact_dynamics.numerics.vectors import Vector3, dot, norm
+from contact_dynamics.tolerances import SUM_ROUNDING
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.planar.problem import ContactRow, PlanarCase
     from contact_dynamics.plane.types import Vector2
 
 _MOST_EQUATIONS: Final = 3  # that can be independent: a planar body's freedoms
-_ROUNDING: Final = 1e-14  # relative to the terms of a sum: some ten times what they are rounded by
 
 _INDEPENDENT: Final = 1e-6
 """The pivot of unit rows below which equations do not count as independent: their solution would carry more
@@ -146,7 +146,9 @@ class IndependentModes:
             y += size * unknown.wrench[1]
             z += size * unknown.wrench[2]
         clear = (
-            (self._accuracy + _ROUNDING) * self._load * (1.5 + sum(_size(one.response) for one in unknowns))
+            (self._accuracy + SUM_ROUNDING)
+            * self._load
+            * (1.5 + sum(_size(one.response) for one in unknowns))
         )
         staying = dict(letters)
         for position, row in enumerate(case.rows):
@@ -176,7 +178,7 @@ class IndependentModes:
             part = dot(row[:3], unknown.wrench)
             gradient = _combined(1.0, gradient, -part, unknown.response)
             terms += abs(part) * _size(unknown.response)
-        return self._load * (self._accuracy * _size(gradient) + _ROUNDING * terms)
+        return self._load * (self._accuracy * _size(gradient) + SUM_ROUNDING * terms)
 
     def _offset(self, offset: float, length: float) -> float:
         """Return the fourth part of a unit row: what the scale adds to its acceleration."""

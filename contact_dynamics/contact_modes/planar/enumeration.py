@@ -34,10 +34,14 @@ Letters: TypeAlias = tuple[tuple[int, int], ...]
 
 
 class Cell(NamedTuple):
-    """The accelerations of one mode: positive combinations of rays."""
+    """The accelerations of one mode: positive combinations of rays.
+
+    Attributes:
+        rays: Unit, in the coordinates of the problem's cone; may repeat; none: the origin.
+    """
 
     letters: Letters
-    rays: list[Vector3]  # unit, in the coordinates of the problem's cone; may repeat; none: the origin
+    rays: list[Vector3]
 
 
 class _Tangent(NamedTuple):

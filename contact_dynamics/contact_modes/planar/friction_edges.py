@@ -21,18 +21,29 @@ if TYPE_CHECKING:
 
 
 class Edges(NamedTuple):
-    """The contact forces of a mode are positive combinations of these."""
+    """The contact forces of a mode are positive combinations of these.
 
-    positions: list[int]  # the row of the problem that each belongs to
-    slopes: list[float]  # f_t / f_n
-    wrenches: list[Vector3]  # of a unit f_n
+    Attributes:
+        positions: The row of the problem that each belongs to.
+        slopes: F_t / f_n.
+        wrenches: Of a unit f_n.
+    """
+
+    positions: list[int]
+    slopes: list[float]
+    wrenches: list[Vector3]
 
 
 class Reactions(NamedTuple):
-    """Edges turned round, as the cone of applied wrenches sees them."""
+    """Edges turned round, as the cone of applied wrenches sees them.
 
-    edges: list[int]  # those that act across the line of symmetry
-    lengths: list[float]  # there, per unit f_n
+    Attributes:
+        edges: Those that act across the line of symmetry.
+        lengths: There, per unit f_n.
+    """
+
+    edges: list[int]
+    lengths: list[float]
     units: list[Vector3]
 
 

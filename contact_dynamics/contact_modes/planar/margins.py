@@ -10,9 +10,15 @@ from contact_dynamics.contact_modes.letters import PLANAR_LETTERS, SEPARATES
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.judgement import judge_all
 from contact_dynamics.contact_modes.planar.problem import touching_case
-from contact_dynamics.contact_modes.planar.wrench_sets import wrench_set_of
+from contact_dynamics.contact_modes.planar.wrench_sets import (
+    PlanarWrenchSet,
+    WrenchHalfSpace,
+    wrench_set_of,
+)
 from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
 from contact_dynamics.plane.types import PlanarWrench
+from contact_dynamics.records import Record
+from contact_dynamics.tolerances import BEYOND_MARGIN
 from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
@@ -21,21 +27,27 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.planar.wrench_sets import PlanarWrenchSet, WrenchHalfSpace
 
 _NO_WRENCH: Final = PlanarWrench(f=(0.0, 0.0))
-_BEYOND: Final = 1e-5
-"""Part of a margin (or of the wrench, where the margin is less) by which the boundary is passed to see what
-lies behind: far more than the tolerances that make the boundary, far less than the way to the next one."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanarModeMargin:
-    """How far an applied wrench is from leaving one of its consistent modes, and where it would go."""
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class PlanarModeMargin(Record):
+    """How far an applied wrench is from leaving one of its consistent modes, and where it would go.
 
-    mode: str  # one letter a contact
-    margin: float  # N, length of the least change in |f|^2 + (moment / length)^2; infinite: none does
-    length: float  # m, of that metric
-    change: PlanarWrench  # the least change itself; zero where there is none
-    verdict_beyond: ModeVerdict  # just behind the boundary; the present one where there is none
-    modes_beyond: tuple[str, ...]  # the consistent modes there
+    Attributes:
+        mode: One letter a contact.
+        margin: N, length of the least change in |f|^2 + (moment / length)^2; infinite: none does.
+        length: m, of that metric.
+        change: The least change itself; zero where there is none.
+        verdict_beyond: Just behind the boundary; the present one where there is none.
+        modes_beyond: The consistent modes there.
+    """
+
+    mode: str
+    margin: float
+    length: float
+    change: PlanarWrench
+    verdict_beyond: ModeVerdict
+    modes_beyond: tuple[str, ...]
 
 
 def planar_mode_margins(
@@ -86,7 +98,7 @@ def planar_mode_margins(
             )
             continue
         way = side.outward(length)
-        step = margin + _BEYOND * max(margin, math.hypot(*wrench.f, wrench.moment / length))
+        step = margin + BEYOND_MARGIN * max(margin, math.hypot(*wrench.f, wrench.moment / length))
         beyond = _stepped(wrench, step, way)
         there, _ = judge_all(case._replace(w=(*beyond.f, beyond.moment / case.rho)), cells, accuracy)
         found.append(

@@ -15,15 +15,13 @@ Does not cover: several contacts (`planar`), moving surfaces.
 from __future__ import annotations
 
 import math
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 from contact_dynamics.contact_modes.letters import SEPARATES, SLIDES_LEFT, SLIDES_RIGHT, STICKS
 from contact_dynamics.contact_modes.planar.result import PlanarMode
 from contact_dynamics.contact_modes.result import Refusal, RefusedMode
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench, Vector2
-from contact_dynamics.tolerances import LARGEST_NUMBER, ROW_TOLERANCE
-
-_ROUNDING: Final = 1e-14  # relative to the terms of a sum: some ten times what they are rounded by
+from contact_dynamics.tolerances import LARGEST_NUMBER, ROW_TOLERANCE, SUM_ROUNDING
 
 
 class _Solution(NamedTuple):
@@ -69,7 +67,7 @@ class _ContactAxes(NamedTuple):
             square: Of the function's row, as `along` has it for accelerations.
             terms: The sizes that the value is a sum of, in its unit.
         """
-        return self.accuracy * math.sqrt(square) * self.load + _ROUNDING * terms
+        return self.accuracy * math.sqrt(square) * self.load + SUM_ROUNDING * terms
 
 
 def single_contact_modes(

@@ -26,6 +26,7 @@ from contact_dynamics.contact_modes.planar.coincident import coincident
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, tangents, without
 from contact_dynamics.plane.types import PlanarVelocity
+from contact_dynamics.records import Record
 from contact_dynamics.tolerances import (
     ACCELERATION_TOLERANCE,
     LARGEST_GRIP,
@@ -46,25 +47,31 @@ MOST_PLANAR_CONTACTS: Final = 1000
 AT_REST: Final = PlanarVelocity(v=(0.0, 0.0), w=0.0)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PlanarContactProblem:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class PlanarContactProblem(Record):
     """A question about the contact modes of one planar body; its sister in space is `SpatialContactProblem`.
+
+    Attributes:
+        body: Mass and angular inertia.
+        velocity: Of the body.
+        contacts: Any may coincide, oppose or repeat another.
+        wrench: On the body besides its contact forces, gravity included.
+        velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero, and so
+            does an angular velocity that moves no contact relative to the centre of mass by more than that.
+        acceleration_tolerance: Relative to the applied wrench and the centripetal terms, >= 0. Forces and
+            accelerations whose sign a change by that part turns count as zero.
 
     Raises:
         InvalidFieldError: a tolerance is negative.
         TooLargeError: more than `MOST_PLANAR_CONTACTS` contacts.
     """
 
-    body: PlanarBody  # mass and angular inertia
-    velocity: PlanarVelocity = AT_REST  # of the body
-    contacts: Sequence[PlanarContact]  # any may coincide, oppose or repeat another
-    wrench: PlanarWrench  # on the body besides its contact forces, gravity included
+    body: PlanarBody
+    velocity: PlanarVelocity = AT_REST
+    contacts: Sequence[PlanarContact]
+    wrench: PlanarWrench
     velocity_tolerance: float = VELOCITY_TOLERANCE
-    """m/s, >= 0. A component of a contact's velocity within it counts as zero, and so does an angular
-    velocity that moves no contact relative to the centre of mass by more than that."""
     acceleration_tolerance: float = ACCELERATION_TOLERANCE
-    """Relative to the applied wrench and the centripetal terms, >= 0: forces and accelerations whose sign a
-    change by that part turns count as zero."""
 
     def __post_init__(self) -> None:
         """Check the tolerances and the number of contacts."""
@@ -91,39 +98,68 @@ class PlanarContactProblem:
 
 
 class ContactRow(NamedTuple):
-    """One touching contact."""
+    """One touching contact.
 
-    contact: int  # in the caller's order
-    N: Vector3  # normal row, not unit
-    T: Vector3  # tangent row, not unit
-    unit_n: Vector3  # along N
-    unit_t: Vector3  # along T
-    size_n: float  # |N|
-    size_t: float  # |T|
-    b_n: float  # m/s^2
-    b_t: float  # m/s^2
-    slides: float  # -1 moves left, +1 right, 0 at rest
+    Attributes:
+        contact: In the caller's order.
+        N: Normal row, not unit.
+        T: Tangent row, not unit.
+        unit_n: Along N.
+        unit_t: Along T.
+        size_n: |N|.
+        size_t: |T|.
+        b_n: m/s^2.
+        b_t: m/s^2.
+        slides: -1 moves left, +1 right, 0 at rest.
+    """
+
+    contact: int
+    N: Vector3
+    T: Vector3
+    unit_n: Vector3
+    unit_t: Vector3
+    size_n: float
+    size_t: float
+    b_n: float
+    b_t: float
+    slides: float
     friction: float
 
 
 class Lift(NamedTuple):
-    """The line of symmetry of a body that turns about its contacts, and coordinates across it."""
+    """The line of symmetry of a body that turns about its contacts, and coordinates across it.
 
-    line: Vector3  # unit, the velocity
-    across: tuple[Vector3, Vector3]  # unit, orthogonal to it and to each other
-    scale: float  # m/s^2, the largest |b|: the third coordinate's unit
+    Attributes:
+        line: Unit, the velocity.
+        across: Unit, orthogonal to it and to each other.
+        scale: m/s^2, the largest |b|: the third coordinate's unit.
+    """
+
+    line: Vector3
+    across: tuple[Vector3, Vector3]
+    scale: float
 
 
 class PlanarCase(NamedTuple):
-    """Everything the enumeration and the judgement of modes need."""
+    """Everything the enumeration and the judgement of modes need.
 
-    contacts: Sequence[PlanarContact]  # touching or not
-    mass: float  # kg
-    rho: float  # m, radius of gyration
-    w: Vector3  # N, applied wrench
-    rows: list[ContactRow]  # the touching contacts
-    omega: float  # rad/s, angular velocity that the contacts allow
-    lift: Lift | None  # None: centripetal terms vanish, the problem is a cone as it stands
+    Attributes:
+        contacts: Touching or not.
+        mass: kg.
+        rho: m, radius of gyration.
+        w: N, applied wrench.
+        rows: The touching contacts.
+        omega: rad/s, angular velocity that the contacts allow.
+        lift: None: centripetal terms vanish, the problem is a cone as it stands.
+    """
+
+    contacts: Sequence[PlanarContact]
+    mass: float
+    rho: float
+    w: Vector3
+    rows: list[ContactRow]
+    omega: float
+    lift: Lift | None
 
     @property
     def load(self) -> float:

@@ -11,32 +11,53 @@ from dataclasses import dataclass
 
 from contact_dynamics.contact_modes.result import ModeVerdict, RefusedMode
 from contact_dynamics.plane.types import Vector2
+from contact_dynamics.records import Record
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanarMode:
-    """A mode that is consistent with mechanics, with accelerations and forces that realise it."""
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class PlanarMode(Record):
+    """A mode that is consistent with mechanics, with accelerations and forces that realise it.
 
-    mode: str  # one letter a contact
-    acceleration: Vector2  # m/s^2, of the centre of mass
-    angular_acceleration: float  # rad/s^2
-    contact_forces: tuple[Vector2, ...]  # N, on the body, (f_t, f_n) of each contact
-    contact_accelerations: tuple[Vector2, ...]  # m/s^2, (a_t, a_n) of the body's point at each contact
-    forces_unique: bool  # whether the forces above are the only ones with this mode
-    motion_unique: bool  # whether the accelerations above are the only ones with this mode
+    Attributes:
+        mode: One letter a contact.
+        acceleration: m/s^2, of the centre of mass.
+        angular_acceleration: rad/s^2.
+        contact_forces: N, on the body, (f_t, f_n) of each contact.
+        contact_accelerations: m/s^2, (a_t, a_n) of the body's point at each contact.
+        forces_unique: Whether the forces above are the only ones with this mode.
+        motion_unique: Whether the accelerations above are the only ones with this mode.
+    """
+
+    mode: str
+    acceleration: Vector2
+    angular_acceleration: float
+    contact_forces: tuple[Vector2, ...]
+    contact_accelerations: tuple[Vector2, ...]
+    forces_unique: bool
+    motion_unique: bool
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanarModeAnswer:
-    """The answer to one question about contact modes."""
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class PlanarModeAnswer(Record):
+    """The answer to one question about contact modes.
 
-    verdict: ModeVerdict  # on the whole contact set
-    modes: tuple[PlanarMode, ...]  # all consistent modes
-    refused: tuple[RefusedMode, ...]  # the kinematically possible rest
-    approaching: tuple[int, ...]  # contacts that approach; not empty exactly where the verdict is IMPACT
-    contact_velocities: tuple[Vector2, ...]  # m/s, (v_t, v_n), with values within tolerance as 0
-    velocity_tolerance: float  # m/s, below which a contact's velocity counted as zero
-    acceleration_tolerance: float  # m/s^2, below which one of the centre of mass counted as zero
+    Attributes:
+        verdict: On the whole contact set.
+        modes: All consistent modes.
+        refused: The kinematically possible rest.
+        approaching: Contacts that approach; not empty exactly where the verdict is IMPACT.
+        contact_velocities: m/s, (v_t, v_n), with values within tolerance as 0.
+        velocity_tolerance: m/s, below which a contact's velocity counted as zero.
+        acceleration_tolerance: m/s^2, below which one of the centre of mass counted as zero.
+    """
+
+    verdict: ModeVerdict
+    modes: tuple[PlanarMode, ...]
+    refused: tuple[RefusedMode, ...]
+    approaching: tuple[int, ...]
+    contact_velocities: tuple[Vector2, ...]
+    velocity_tolerance: float
+    acceleration_tolerance: float
 
     @property
     def kinematic_modes(self) -> tuple[str, ...]:

@@ -35,10 +35,15 @@ _MOST_INDEPENDENT: Final = 3  # wrenches in the plane
 
 
 class HalfSpace(NamedTuple):
-    """Wrenches w = (f_x, f_y, moment / rho) with a . w <= b."""
+    """Wrenches w = (f_x, f_y, moment / rho) with a . w <= b.
 
-    a: Vector3  # unit
-    b: float  # N
+    Attributes:
+        a: Unit.
+        b: N.
+    """
+
+    a: Vector3
+    b: float
 
 
 class ModeWrenches:

@@ -19,9 +19,10 @@ from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.problem import touching_case
 from contact_dynamics.contact_modes.planar.wrench_cone import ModeWrenches
 from contact_dynamics.plane.types import PlanarWrench
+from contact_dynamics.records import Record
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Sequence
 
     from contact_dynamics.contact_modes.planar.enumeration import Cell
     from contact_dynamics.contact_modes.planar.problem import PlanarCase, PlanarContactProblem
@@ -29,10 +30,15 @@ if TYPE_CHECKING:
 
 
 class WrenchHalfSpace(NamedTuple):
-    """Applied wrenches with a . (f_x, f_y, moment) <= b."""
+    """Applied wrenches with a . (f_x, f_y, moment) <= b.
 
-    a: Vector3  # (1, 1, 1/m); of unit length once its third part is multiplied by the radius of gyration
-    b: float  # N
+    Attributes:
+        a: (1, 1, 1/m); of unit length once its third part is multiplied by the radius of gyration.
+        b: N.
+    """
+
+    a: Vector3
+    b: float
 
     def depth(self, wrench: PlanarWrench, length: float) -> float:
         """Return how far inside the wrench lies, N, in the metric of ``length``, m; < 0: outside."""
@@ -48,14 +54,21 @@ class WrenchHalfSpace(NamedTuple):
         return self.a[0] ** 2 + self.a[1] ** 2 + (self.a[2] * length) ** 2
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanarWrenchSet:
-    """The applied wrenches that can bring one mode about, as the closure of their set in two forms."""
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class PlanarWrenchSet(Record):
+    """The applied wrenches that can bring one mode about, as the closure of their set in two forms.
 
-    mode: str  # one letter a contact
-    vertices: tuple[PlanarWrench, ...]  # the set is all averages of these plus
-    generators: tuple[PlanarWrench, ...]  # all positive combinations of these, any scale
-    half_spaces: tuple[WrenchHalfSpace, ...]  # the same set; empty: every wrench
+    Attributes:
+        mode: One letter a contact.
+        vertices: The set is all averages of these plus.
+        generators: All positive combinations of these, any scale.
+        half_spaces: The same set; empty: every wrench.
+    """
+
+    mode: str
+    vertices: tuple[PlanarWrench, ...]
+    generators: tuple[PlanarWrench, ...]
+    half_spaces: tuple[WrenchHalfSpace, ...]
 
     def depth(self, wrench: PlanarWrench, length: float) -> float:
         """Return how far inside the set a wrench lies, N, in the metric of ``length``, m.
@@ -63,6 +76,17 @@ class PlanarWrenchSet:
         Infinite: every wrench does; < 0: outside (then a lower bound of the distance).
         """
         return min((side.depth(wrench, length) for side in self.half_spaces), default=math.inf)
+
+
+def length_of(sets: Sequence[PlanarWrenchSet]) -> float:
+    """Return the radius of gyration, m, of the body that sets were made for; 1 where no torque bounds them.
+
+    It is the length with which the half-spaces have unit size, see `WrenchHalfSpace`.
+    """
+    normals = [side.a for one in sets for side in one.half_spaces]
+    a = max(normals, key=lambda row: abs(row[2]), default=(0.0, 0.0, 0.0))
+    left = 1.0 - a[0] * a[0] - a[1] * a[1]
+    return math.sqrt(left) / abs(a[2]) if a[2] != 0.0 and left > 0.0 else 1.0
 
 
 def planar_wrench_sets(

@@ -15,7 +15,7 @@ Does not cover: margins (`spatial.margins`).
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,17 +23,14 @@ from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
 from contact_dynamics.contact_modes.spatial.exact_friction import Sliding, sharpened
 from contact_dynamics.contact_modes.spatial.least_forces import least_forces, misdirection
-from contact_dynamics.contact_modes.spatial.options import STRICT
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
+from contact_dynamics.tolerances import SAME_MOTION, STRICT
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.contact_modes.spatial.search import Found, Search
     from contact_dynamics.validation import FloatArray
-
-_SAME: Final = 1e-6
-"""Relative: how far the motions of two modes may lie apart where they count as the same."""
 
 
 def spatial_contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer:
@@ -87,7 +84,7 @@ def _are_twins(mode: SpatialMode, other: SpatialMode) -> bool:
         return True
     one = np.concatenate([mode.acceleration_W, mode.angular_acceleration_W])
     two = np.concatenate([other.acceleration_W, other.angular_acceleration_W])
-    return bool(np.abs(one - two).max() <= _SAME * (1.0 + np.abs(one).max()))
+    return bool(np.abs(one - two).max() <= SAME_MOTION * (1.0 + np.abs(one).max()))
 
 
 def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool) -> SpatialMode:

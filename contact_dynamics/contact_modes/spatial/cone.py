@@ -37,12 +37,19 @@ point."""
 
 
 class Cone(NamedTuple):
-    """The parts of {x : rows x >= 0}: positive sums of rays, plus sums of lines."""
+    """The parts of {x : rows x >= 0}: positive sums of rays, plus sums of lines.
 
-    strict: NDArray[np.bool_]  # (m,), which rows can be positive; the others vanish all over the cone
-    rows: FloatArray  # (k, d), the strict ones, unit, within the space where the others vanish
-    rays: FloatArray  # (r, d), unit, orthogonal to the lines; a ray may appear several times
-    lines: FloatArray  # (l, d), orthonormal
+    Attributes:
+        strict: (m,), which rows can be positive; the others vanish all over the cone.
+        rows: (k, d), the strict ones, unit, within the space where the others vanish.
+        rays: (r, d), unit, orthogonal to the lines; a ray may appear several times.
+        lines: (l, d), orthonormal.
+    """
+
+    strict: NDArray[np.bool_]
+    rows: FloatArray
+    rays: FloatArray
+    lines: FloatArray
 
 
 def cone_of(rows: FloatArray) -> Cone:

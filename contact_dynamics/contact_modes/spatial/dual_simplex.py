@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.tolerances import FEASIBLE, ROW_TOLERANCE, SAME_MOTION
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -21,10 +21,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from contact_dynamics.validation import FloatArray
-
-_FEASIBLE: Final = 1e-11
-"""Relative to the largest acceleration, and to edge forces that cause it: what a condition may miss. Some
-thousand roundings, and a hundredth of the least strictness asked for."""
 
 _HEAD: Final = 7
 """Rows of the table before the conditions: the weighted sum of edge forces, then the motion."""
@@ -39,16 +35,18 @@ _MOST_STEPS: Final = 500
 """Of the primal simplex; Bland's rule, which cannot cycle, holds from a fifth of it."""
 
 
-_SAME: Final = 1e-6
-"""Relative: how far the ends of what a mode allows may lie apart where it counts as unique."""
-
-
 class Ends(NamedTuple):
-    """What a weighted sum of edge forces ranges over."""
+    """What a weighted sum of edge forces ranges over.
 
-    unique: bool  # it is one number
-    low: FloatArray | None  # (K,), edge forces where it is least; None: it has no bound
-    high: FloatArray | None  # (K,), and largest
+    Attributes:
+        unique: It is one number.
+        low: (K,), edge forces where it is least; None: it has no bound.
+        high: (K,), and largest.
+    """
+
+    unique: bool
+    low: FloatArray | None
+    high: FloatArray | None
 
 
 class Program:
@@ -169,7 +167,7 @@ class Program:
             values = table[_HEAD:, -1]
             missed = np.maximum(-values, values * fixed)
             worst = int(missed.argmax())
-            if missed[worst] <= _FEASIBLE:
+            if missed[worst] <= FEASIBLE:
                 return True
             row = table[_HEAD + worst, :-1]
             helps = row if values[worst] < 0.0 else -row
@@ -232,7 +230,7 @@ class Program:
         if found is None:
             return Ends(unique=False, low=None, high=None)
         low, high = float(weights @ found[0]), float(weights @ found[1])
-        return Ends(high - low <= _SAME * (1.0 + abs(low)), *found)
+        return Ends(high - low <= SAME_MOTION * (1.0 + abs(low)), *found)
 
     def _settle_fixed(self) -> None:
         """Exchange what is fixed at zero for columns, as far as those move it."""

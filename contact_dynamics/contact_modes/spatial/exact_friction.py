@@ -16,7 +16,7 @@ import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.contact_modes.spatial.dual_simplex import Program
-from contact_dynamics.contact_modes.spatial.options import STRICT
+from contact_dynamics.tolerances import SETTLED_DIRECTION, STRICT, TRIAL_TURN
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,34 +29,41 @@ _MOST_STEPS: Final = 12
 """Each solves as many times, 0.1 ms each, as there are sliding contacts. Four suffice where there is a
 solution nearby."""
 
-_TRIAL: Final = 1e-6
-"""rad, by which a direction is turned to see how the sliding turns; about the root of what rounding is."""
-
 _LONGEST_STEP: Final = 0.3
 """rad. Half a sector of the usual pyramid is 0.39."""
 
 _FAST: Final = 0.1
 """Share of its error that a step may leave where sliding is followed without asking how it would turn."""
 
-_SETTLED: Final = 1e-11
-"""rad. Directions that are as close as that are those of the rounded forces."""
-
 
 class Sharpened(NamedTuple):
-    """Forces with exact friction at the contacts that slide."""
+    """Forces with exact friction at the contacts that slide.
 
-    forces: FloatArray  # (n, 3), in the units of the motion
-    edges: list[FloatArray]  # (k, 3) for each contact, those that may act
+    Attributes:
+        forces: (n, 3), in the units of the motion.
+        edges: (k, 3) for each contact, those that may act.
+    """
+
+    forces: FloatArray
+    edges: list[FloatArray]
 
 
 class Sliding(NamedTuple):
-    """A mode whose friction is to be turned."""
+    """A mode whose friction is to be turned.
 
-    touching: Sequence[Touching]  # the n contacts
-    pyramids: Sequence[Pyramid]  # their force edges
-    letters: str  # s, c or f for each contact
-    of_forces: FloatArray  # (6, 3 n), motion for unit forces
-    free: FloatArray  # (6,), motion without forces
+    Attributes:
+        touching: The n contacts.
+        pyramids: Their force edges.
+        letters: s, c or f for each contact.
+        of_forces: (6, 3 n), motion for unit forces.
+        free: (6,), motion without forces.
+    """
+
+    touching: Sequence[Touching]
+    pyramids: Sequence[Pyramid]
+    letters: str
+    of_forces: FloatArray
+    free: FloatArray
 
 
 def sharpened(mode: Sliding, forces: FloatArray) -> Sharpened | None:
@@ -80,7 +87,7 @@ def _followed(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpene
             return None
         errors = _errors(mode, turning, angles, found)
         error = float(np.abs(errors).max())
-        if error <= _SETTLED:
+        if error <= SETTLED_DIRECTION:
             return found
         if not error <= _FAST * last:
             return None
@@ -96,24 +103,24 @@ def _by_newton(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpen
             continue
         angles = angles + step
         errors = _errors(mode, turning, angles, found)
-        if np.abs(errors).max() <= _SETTLED:
+        if np.abs(errors).max() <= SETTLED_DIRECTION:
             return found
         slopes = _slopes(mode, turning, angles, errors)
         if slopes is None:
             return None
         step = np.asarray(np.linalg.lstsq(slopes, -errors, rcond=None)[0], dtype=float)
-        step *= min(1.0, _LONGEST_STEP / max(float(np.abs(step).max()), _SETTLED))
+        step *= min(1.0, _LONGEST_STEP / max(float(np.abs(step).max()), SETTLED_DIRECTION))
     return None
 
 
 def _slopes(mode: Sliding, turning: list[int], angles: FloatArray, errors: FloatArray) -> FloatArray | None:
     """Return how the errors change with the directions, (k, k); None: the mode ends there."""
     found = np.zeros((len(turning), len(turning)))
-    for k, trial in enumerate(_TRIAL * np.eye(len(turning))):
+    for k, trial in enumerate(TRIAL_TURN * np.eye(len(turning))):
         beside = _solved(mode, turning, angles + trial)
         if beside is None:
             return None
-        found[:, k] = (_errors(mode, turning, angles + trial, beside) - errors) / _TRIAL
+        found[:, k] = (_errors(mode, turning, angles + trial, beside) - errors) / TRIAL_TURN
     return None if np.isnan(found).any() else found
 
 

@@ -7,21 +7,17 @@ every contact's friction pyramid allows them, and otherwise those of fewest edge
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from contact_dynamics.numerics.linear_spaces import row_space
-from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.tolerances import ON_PYRAMIDS_SIDE, ROW_TOLERANCE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.validation import FloatArray
-
-_OUTSIDE: Final = 1e-9
-"""Relative to the largest force: how far outside of a pyramid still counts as on its side. A force as small
-as that has no direction either."""
 
 
 def least_forces(of_forces: FloatArray, forces: FloatArray, edges: Sequence[FloatArray]) -> FloatArray:
@@ -41,7 +37,7 @@ def least_forces(of_forces: FloatArray, forces: FloatArray, edges: Sequence[Floa
     causes = of_forces @ basis
     found = basis @ np.linalg.lstsq(causes, of_forces @ forces.ravel(), rcond=ROW_TOLERANCE)[0]
     least: FloatArray = found.reshape(-1, 3)
-    slack = _OUTSIDE * float(np.abs(forces).max(initial=0.0))
+    slack = ON_PYRAMIDS_SIDE * float(np.abs(forces).max(initial=0.0))
     allowed = all(_holds(of_contact, force, slack) for of_contact, force in zip(edges, least, strict=True))
     return least if allowed else forces
 
@@ -55,7 +51,7 @@ def misdirection(forces: FloatArray, directions: FloatArray, normals: FloatArray
         normals: (n, 3), unit.
     """
     largest = 0.0
-    slack = _OUTSIDE * float(np.abs(forces).max(initial=0.0))
+    slack = ON_PYRAMIDS_SIDE * float(np.abs(forces).max(initial=0.0))
     for force, way, normal in zip(forces, directions, normals, strict=True):
         friction = force - (force @ normal) * normal
         if np.any(way) and float(np.linalg.norm(friction)) > slack:

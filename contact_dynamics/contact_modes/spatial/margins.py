@@ -13,18 +13,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
 from contact_dynamics.contact_modes.spatial.answer import evidenced, spatial_contact_modes
 from contact_dynamics.contact_modes.spatial.margins_of_sliding import union_margin
-from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
-from contact_dynamics.contact_modes.spatial.statics import MOST_EDGES
+from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of_few_edges, spatial_case
 from contact_dynamics.contact_modes.spatial.wrenches import Way, supports, wrench_generators
-from contact_dynamics.errors import TooLargeError
-from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.records import Record
+from contact_dynamics.tolerances import BEYOND_MARGIN, ROW_TOLERANCE
 from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
@@ -33,21 +32,26 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.search import Found, Search
     from contact_dynamics.validation import FloatArray
 
-_BEYOND: Final = 1e-5
-"""Part of a margin (or of the wrench, where the margin is less) by which the boundary is passed to see what
-lies behind: far more than the tolerances that make the boundary, far less than the way to the next one."""
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class SpatialModeMargin(Record):
+    """How far an applied wrench in space is from leaving one of its modes, and where it would go.
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SpatialModeMargin:
-    """How far an applied wrench in space is from leaving one of its modes, and where it would go."""
+    Attributes:
+        mode: One letter a contact.
+        margin: N, least change, in |f|^2 + |torque / length|^2; infinite: none does it; NaN: unknown.
+        length: m, of that metric.
+        change_W: (6,), N and N m, the least change itself, world axes; zero where there is none.
+        verdict_beyond: Just behind the boundary; the present one where there is none.
+        modes_beyond: The letters of the consistent modes there, each once.
+    """
 
-    mode: str  # one letter a contact
-    margin: float  # N, least change, in |f|^2 + |torque / length|^2; infinite: none does it; NaN: unknown
-    length: float  # m, of that metric
-    change_W: FloatArray  # (6,), N and N m, the least change itself, world axes; zero where there is none
-    verdict_beyond: ModeVerdict  # just behind the boundary; the present one where there is none
-    modes_beyond: tuple[str, ...]  # the letters of the consistent modes there, each once
+    mode: str
+    margin: float
+    length: float
+    change_W: FloatArray
+    verdict_beyond: ModeVerdict
+    modes_beyond: tuple[str, ...]
 
 
 def spatial_mode_margins(
@@ -77,10 +81,7 @@ def spatial_mode_margins(
     if not isinstance(case, SpatialCase):
         return ()
 
-    search = search_of(case, friction_facets)
-    edges = sum(len(pyramid.edges) for pyramid in search.pyramids)
-    if edges > MOST_EDGES:
-        raise TooLargeError("contacts", f"{edges} edges of friction pyramids", f"at most {MOST_EDGES}")
+    search = search_of_few_edges(case, friction_facets)
     metric = np.array([1.0, 1.0, 1.0, length, length, length])
     present = None if answer is None or not problem.sharpen else tuple(one.mode for one in answer.modes)
     margins = []
@@ -116,7 +117,7 @@ def _beyond(
     rest = (1.0 / math.cos(math.pi / problem.friction_facets) - 1.0) * size
     found: tuple[str, ...] = ()
     for further in (0.0, rest):
-        step = margin + further + _BEYOND * max(margin, size)
+        step = margin + further + BEYOND_MARGIN * max(margin, size)
         found = _modes_under(problem, problem.wrench_W + step * way * metric)
         if mode not in found:
             break

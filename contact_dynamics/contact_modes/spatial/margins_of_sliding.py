@@ -26,7 +26,7 @@ from contact_dynamics.contact_modes.spatial.problem import search_of
 from contact_dynamics.contact_modes.spatial.wrenches import Way, distinct, supports, wrench_generators
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.rigid_body.body import mean_radius_of_gyration
-from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.tolerances import ALONG_BOUNDARY, BEHIND_BOUNDARY, ON_BOUNDARY, ROW_TOLERANCE
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialCase
@@ -39,22 +39,19 @@ MOST_PROBES: Final = 64
 MOST_BEGINNING: Final = 4
 """Contacts that begin to slide: the ways in which more do that are too many to go through."""
 
-_BEHIND: Final = 1e-5
-"""Relative to the wrench: how far behind a boundary is looked, a thousand times the strictness of letters."""
-
-_ALONG: Final = 1e-3
-"""Relative to the wrench: how far from the boundary's own borders that is done."""
-
-_HELD: Final = 10.0 * ROW_TOLERANCE
-"""On unit rows: how far outside of a cone still counts as on its boundary."""
-
 
 class UnionMargin(NamedTuple):
-    """How far a wrench is from leaving a mode, and where it would."""
+    """How far a wrench is from leaving a mode, and where it would.
 
-    margin: float  # N, in the metric; infinite: nowhere; NaN: unknown
-    way: FloatArray  # (6,), unit, there, in the metric
-    beyond: tuple[str, ...] | None  # the consistent modes just behind; None: there is none, or it is unknown
+    Attributes:
+        margin: N, in the metric; infinite: nowhere; NaN: unknown.
+        way: (6,), unit, there, in the metric.
+        beyond: The consistent modes just behind; None: there is none, or it is unknown.
+    """
+
+    margin: float
+    way: FloatArray
+    beyond: tuple[str, ...] | None
 
 
 class _Cone(NamedTuple):
@@ -110,14 +107,16 @@ def _gone_through(union: _Union, wrench: FloatArray, stretch: FloatArray) -> Uni
             return UnionMargin(math.inf, np.zeros(6), None)
         inner = side.spans.mean(axis=0)
         inner = inner / max(float(np.linalg.norm(inner)), ROW_TOLERANCE)
-        way = _ALONG * inner + _BEHIND * side.outward
+        way = ALONG_BOUNDARY * inner + BEHIND_BOUNDARY * side.outward
         behind = side.nearest + float(np.linalg.norm(wrench)) * way
         cones = union.cones_at(behind)
         if cones is None:
             there = (side.nearest if side.distance > ROW_TOLERANCE else behind) - wrench
             there = there * stretch / float(np.linalg.norm(there * stretch))
             return UnionMargin(side.distance * union.unit, there, union.modes_at(behind))
-        whole = [(ways, cone) for ways, cone in cones if float((cone.sides @ side.spans.T).min()) >= -_HELD]
+        whole = [
+            (ways, cone) for ways, cone in cones if float((cone.sides @ side.spans.T).min()) >= -ON_BOUNDARY
+        ]
         if not whole:
             break
         ways, cone = whole[0]
@@ -188,7 +187,7 @@ def _boundaries(
 ) -> list[_Boundary]:
     found = []
     for inward in cone.sides:
-        tight = cone.spans[np.abs(cone.spans @ inward) <= _HELD]
+        tight = cone.spans[np.abs(cone.spans @ inward) <= ON_BOUNDARY]
         distance = abs(float(inward @ wrench)) / float(np.linalg.norm(inward / stretch))
         found.append(_Boundary(distance, next(numbers), -inward, tight, None))
     return found

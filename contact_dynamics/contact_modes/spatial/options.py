@@ -17,41 +17,51 @@ import numpy as np
 from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.numerics.vectors import tangents_towards
+from contact_dynamics.tolerances import AT_SECTORS_BORDER, STRICT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from contact_dynamics.validation import FloatArray
 
-STRICT: Final = 1e-8
-"""Relative to the largest acceleration: what an inequality must have to hold strictly. A thousand times what
-a condition may miss (`dual_simplex`)."""
-
 MILDER: Final = 0.1
 """How much less an arc must hold than its letters, whose rows are differences of unit ones."""
 
-_AT_BORDER: Final = 1e-9
-"""In sectors: how far beyond its border a sector's edge still counts as acting."""
-
 
 class Option(NamedTuple):
-    """A letter of one contact, or several together; rows are (motion, constant), 7 numbers."""
+    """A letter of one contact, or several together; rows are (motion, constant), 7 numbers.
 
-    letter: str  # s, f, c; c also for an arc of sliding directions; empty: several
-    item: int  # of sliding; -1: none, or several
-    zeroed: frozenset[int]  # edge forces, and normal acceleration, that are zero
-    raised: int | None  # the normal acceleration's name, where that is positive
-    rows: FloatArray  # (k, 7), zero or not negative
-    equalities: int  # how many rows are zero; the first ones
-    parts: tuple[Option, ...]  # what it stands for, in groups; empty where it is a letter
+    Attributes:
+        letter: s, f, c; c also for an arc of sliding directions; empty: several.
+        item: Of sliding; -1: none, or several.
+        zeroed: Edge forces, and normal acceleration, that are zero.
+        raised: The normal acceleration's name, where that is positive.
+        rows: (k, 7), zero or not negative.
+        equalities: How many rows are zero; the first ones.
+        parts: What it stands for, in groups; empty where it is a letter.
+    """
+
+    letter: str
+    item: int
+    zeroed: frozenset[int]
+    raised: int | None
+    rows: FloatArray
+    equalities: int
+    parts: tuple[Option, ...]
 
 
 class Pyramid(NamedTuple):
-    """The edges of a contact's force: a friction pyramid, or one edge where friction or sliding is known."""
+    """The edges of a contact's force: a friction pyramid, or one edge where friction or sliding is known.
 
-    edges: FloatArray  # (K, 3), of unit normal force
-    frame: tuple[FloatArray, FloatArray] | None  # unit tangents, edge 0 along the first; None: one edge
-    first: int  # name of the first edge force; the others follow
+    Attributes:
+        edges: (K, 3), of unit normal force.
+        frame: Unit tangents, edge 0 along the first; None: one edge.
+        first: Name of the first edge force; the others follow.
+    """
+
+    edges: FloatArray
+    frame: tuple[FloatArray, FloatArray] | None
+    first: int
 
     def tangential(self) -> FloatArray:
         """Return the edges' parts along the frame, (K, 2)."""
@@ -176,9 +186,9 @@ def acting_edges(directions: FloatArray, count: int) -> NDArray[np.bool_]:
     gap = gaps[each, widest]
     sector = 2.0 * math.pi / count
     start = (angles[each, (widest + 1) % angles.shape[1]] - math.pi) / sector + 0.5
-    first = np.floor(start - _AT_BORDER)
-    more = np.floor(start + (2.0 * math.pi - gap) / sector + _AT_BORDER) - first
+    first = np.floor(start - AT_SECTORS_BORDER)
+    more = np.floor(start + (2.0 * math.pi - gap) / sector + AT_SECTORS_BORDER) - first
     acting: NDArray[np.bool_] = (np.arange(count) - first[:, None]) % count <= more[:, None]
     least = (x * x + y * y).min(axis=1)
-    acting[(gap <= math.pi + _AT_BORDER) | (least <= _AT_BORDER**2)] = True
+    acting[(gap <= math.pi + AT_SECTORS_BORDER) | (least <= AT_SECTORS_BORDER**2)] = True
     return acting

@@ -17,6 +17,7 @@ from contact_dynamics.contact.kinds import velocity_accelerations
 from contact_dynamics.contact_modes.spatial.search import Search, Touching
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.numerics.vectors import point_jacobians
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import inverse_mass_matrix
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_not_negative
@@ -28,6 +29,9 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
 
+MOST_EDGES: Final = 128
+"""Most edges of all friction pyramids together: a cone of so many in R^6 has thousands of facets."""
+
 MOST_DYNAMIC_CONTACTS: Final = 32
 """Longest list of touching contacts accepted: a tenth of a second, two where many modes are consistent."""
 
@@ -36,8 +40,8 @@ FRICTION_FACETS: Final = 8
 """Edges of a friction pyramid where nothing else is asked for: it holds at least 92 % of the round cone's."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SpatialContactProblem:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class SpatialContactProblem(Record):
     """A question about the contact modes of one body in space; its sister is `PlanarContactProblem`.
 
     Friction cones are pyramids where contacts are at rest, and 8 edges serve most questions. Margins of
@@ -46,27 +50,34 @@ class SpatialContactProblem:
     edges, some 200 to 350 for a box on four feet with 4 edges and 1300 with 8: state it with 4 for these
     (`dataclasses.replace`). Statics take 128 edges in all.
 
+    Attributes:
+        body: Mass and angular inertia.
+        state: Of the body, with its origin at the centre of mass.
+        contacts: Of any kind; at most `MOST_DYNAMIC_CONTACTS` of them touch.
+        force_W: (3,), N, on the body besides its contact forces, gravity included, world axes.
+        torque_W: (3,), N m, likewise, about the centre of mass, world axes.
+        friction_facets: Edges of the pyramid that stands for a friction cone, >= 3.
+        sharpen: Whether the pyramids' sectors are left behind. Then friction is turned exactly against the
+            sliding, in modes of unique motion where that has a solution (`exact_friction`), and modes with
+            the same letters are one if their motion is the same, or where some of them has none that is
+            unique. Otherwise each sector counts, hundreds where the motion under many feet is not unique.
+            Margins are always those of the sharpened modes.
+        velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero, and so
+            does an angular velocity that moves no contact relative to the centre of mass by more than that.
+
     Raises:
         InvalidFieldError: a wrench that is not finite, a negative tolerance, fewer than 3 facets or
             more than 1000.
     """
 
-    body: MassProperties  # mass and angular inertia
-    state: BodyState  # of the body, with its origin at the centre of mass
-    contacts: ContactSet  # of any kind; at most `MOST_DYNAMIC_CONTACTS` of them touch
-    force_W: FloatArray  # (3,), N, on the body besides its contact forces, gravity included, world axes
-    torque_W: FloatArray = field(
-        default_factory=lambda: np.zeros(3)
-    )  # (3,), N m, likewise, about the centre of mass, world axes
-    friction_facets: int = FRICTION_FACETS  # edges of the pyramid that stands for a friction cone, >= 3
+    body: MassProperties
+    state: BodyState
+    contacts: ContactSet
+    force_W: FloatArray
+    torque_W: FloatArray = field(default_factory=lambda: np.zeros(3))
+    friction_facets: int = FRICTION_FACETS
     sharpen: bool = True
-    """Whether the pyramids' sectors are left behind: friction is turned exactly against the sliding, in modes
-    of unique motion where that has a solution (`exact_friction`), and modes with the same letters are one if
-    their motion is the same, or where some of them has none that is unique. Otherwise each sector counts,
-    hundreds where the motion under many feet is not unique. Margins are always of the sharpened modes."""
     velocity_tolerance: float = VELOCITY_TOLERANCE
-    """m/s, >= 0. A component of a contact's velocity within it counts as zero, and so does an angular
-    velocity that moves no contact relative to the centre of mass by more than that."""
 
     if TYPE_CHECKING:  # what the constructor takes, beside what the fields then hold
 
@@ -134,12 +145,17 @@ class AccelerationMap:
 
 
 class SpatialCase(NamedTuple):
-    """A body with its contacts, none of which approaches."""
+    """A body with its contacts, none of which approaches.
+
+    Attributes:
+        sliding: (n, 3), m/s, tangential velocities; zero: at rest.
+        touching: Contacts that neither approach nor leave.
+    """
 
     motion: AccelerationMap
     contacts: ContactSet
-    sliding: FloatArray  # (n, 3), m/s, tangential velocities; zero: at rest
-    touching: NDArray[np.intp]  # contacts that neither approach nor leave
+    sliding: FloatArray
+    touching: NDArray[np.intp]
 
 
 def spatial_case(problem: SpatialContactProblem) -> SpatialCase | tuple[int, ...]:
@@ -172,6 +188,19 @@ def spatial_case(problem: SpatialContactProblem) -> SpatialCase | tuple[int, ...
         rolling_W=velocity_accelerations(contacts, sliding, w),
     )
     return SpatialCase(motion, contacts, sliding, touching)
+
+
+def search_of_few_edges(case: SpatialCase, facets: int) -> Search:
+    """Return `search_of`, for what goes through all edges of all friction pyramids.
+
+    Raises:
+        TooLargeError: these are more than `MOST_EDGES`.
+    """
+    search = search_of(case, facets)
+    edges = sum(len(pyramid.edges) for pyramid in search.pyramids)
+    if edges > MOST_EDGES:
+        raise TooLargeError("contacts", f"{edges} edges of friction pyramids", f"at most {MOST_EDGES}")
+    return search
 
 
 def search_of(case: SpatialCase, facets: int) -> Search:

@@ -23,7 +23,7 @@ from contact_dynamics.contact_modes.spatial.cone import nearest_sum
 from contact_dynamics.contact_modes.spatial.kinematic import spatial_kinematic_modes
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial.wrenches import Way, wrench_generators
-from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.tolerances import NO_DISTANCE, ROW_TOLERANCE
 from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
@@ -34,9 +34,6 @@ if TYPE_CHECKING:
 
 _EXACT: Final = 1e4
 """How much the height of a wrench (`wrenches`), which must be met, counts beside its distance."""
-
-_NOTHING: Final = 1e-7
-"""Relative to the applied wrench: a distance that counts as none, ten times what `_EXACT` leaves."""
 
 
 def spatial_refused_modes(
@@ -116,6 +113,6 @@ def _short(case: SpatialCase, search: Search, string: str, metric: FloatArray) -
     spans = np.vstack([generators.rays, generators.lines, -generators.lines])
     heights = np.append(np.ones(6), _EXACT)
     left = nearest_sum(spans * heights, heights * target)[1]
-    if left <= _NOTHING * float(np.linalg.norm(target[:6])):
+    if left <= NO_DISTANCE * float(np.linalg.norm(target[:6])):
         return RefusedMode(mode=string, refusal=Refusal.WRONG_MOTION, contact=-1, amount=0.0)
     return RefusedMode(mode=string, refusal=Refusal.NO_SOLUTION, contact=-1, amount=left * unit)

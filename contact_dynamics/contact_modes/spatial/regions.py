@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.spatial.options import MILDER, STRICT, acting_edges
+from contact_dynamics.contact_modes.spatial.options import MILDER, acting_edges
 from contact_dynamics.numerics.linear_spaces import seen_and_unseen
-from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.tolerances import ROW_TOLERANCE, STRICT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -36,18 +36,29 @@ _NARROW_OF_MORE: Final = 0.64
 
 
 class Image(NamedTuple):
-    """The tangential accelerations of some contacts under the motions in which others stay as well."""
+    """The tangential accelerations of some contacts under the motions in which others stay as well.
 
-    coordinates: FloatArray  # (p, 6), of a motion
-    unseen: FloatArray  # (q, 6), motions without tangential acceleration
-    maps: FloatArray  # (m, 2, p), from coordinates to the contacts' accelerations in their pyramids' frames
+    Attributes:
+        coordinates: (p, 6), of a motion.
+        unseen: (q, 6), motions without tangential acceleration.
+        maps: (m, 2, p), from coordinates to the contacts' accelerations in their pyramids' frames.
+    """
+
+    coordinates: FloatArray
+    unseen: FloatArray
+    maps: FloatArray
 
 
 class Region(NamedTuple):
-    """The positive sums of some rays."""
+    """The positive sums of some rays.
 
-    rays: FloatArray  # (p, p), one a row
-    height: FloatArray  # (p,), a combination of coordinates that is positive in the region
+    Attributes:
+        rays: (p, p), one a row.
+        height: (p,), a combination of coordinates that is positive in the region.
+    """
+
+    rays: FloatArray
+    height: FloatArray
 
     def rows(self, image: Image) -> FloatArray:
         """Return the conditions on the motion, (p + 1, 7): within the region, and not without sliding."""
@@ -91,12 +102,19 @@ class Region(NamedTuple):
 
 
 class Flat(NamedTuple):
-    """The motions in which some contacts stick."""
+    """The motions in which some contacts stick.
 
-    chosen: tuple[int, ...]  # contacts that were asked to
-    stuck: frozenset[int]  # those and all that stick with them
-    rows: FloatArray  # (k, 6), of the motion, zero
-    image: Image  # of the contacts that need not stick
+    Attributes:
+        chosen: Contacts that were asked to.
+        stuck: Those and all that stick with them.
+        rows: (k, 6), of the motion, zero.
+        image: Of the contacts that need not stick.
+    """
+
+    chosen: tuple[int, ...]
+    stuck: frozenset[int]
+    rows: FloatArray
+    image: Image
 
     def parts(self, normals: FloatArray, frames: FloatArray) -> Iterator[Flat]:
         """Yield the flats in which one contact more sticks, with all that must then; none within a line."""

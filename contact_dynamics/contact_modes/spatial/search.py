@@ -23,14 +23,10 @@ import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS
 from contact_dynamics.contact_modes.spatial.dual_simplex import Ends, Program
-from contact_dynamics.contact_modes.spatial.options import (
-    STRICT,
-    any_letter,
-    pyramid_of,
-    ways_of_sliding,
-)
+from contact_dynamics.contact_modes.spatial.options import any_letter, pyramid_of, ways_of_sliding
 from contact_dynamics.contact_modes.spatial.regions import Image, Region, flat_of, whole
 from contact_dynamics.errors import TooLargeError
+from contact_dynamics.tolerances import STRICT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -49,31 +45,53 @@ _CONTACT_TAG = -3
 
 
 class Touching(NamedTuple):
-    """A contact that neither approaches nor leaves."""
+    """A contact that neither approaches nor leaves.
 
-    normal: FloatArray  # (3,), unit
-    friction: float  # Coulomb's mu
-    sliding: FloatArray  # (3,), m/s, tangential velocity; zero: it is at rest
-    point: FloatArray  # (3, 7), its acceleration as a function of the motion
-    free: FloatArray  # (3,), its acceleration without contact forces
+    Attributes:
+        normal: (3,), unit.
+        friction: Coulomb's mu.
+        sliding: (3,), m/s, tangential velocity; zero: it is at rest.
+        point: (3, 7), its acceleration as a function of the motion.
+        free: (3,), its acceleration without contact forces.
+    """
+
+    normal: FloatArray
+    friction: float
+    sliding: FloatArray
+    point: FloatArray
+    free: FloatArray
 
 
 class Found(NamedTuple):
-    """A mode that some forces bring about."""
+    """A mode that some forces bring about.
 
-    letters: list[Option]  # of each touching contact
-    program: Program  # solved
-    motion: Ends  # of a mixture of the motion's components: whether it is unique
+    Attributes:
+        letters: Of each touching contact.
+        program: Solved.
+        motion: Of a mixture of the motion's components: whether it is unique.
+    """
+
+    letters: list[Option]
+    program: Program
+    motion: Ends
 
 
 class Common(NamedTuple):
-    """What regions of common sliding share."""
+    """What regions of common sliding share.
 
-    image: Image  # their space
-    open_ones: list[int]  # contacts that slide
-    pyramids: list[Pyramid]  # theirs
-    names: NDArray[np.intp]  # (m, K), of their edge forces
-    gains: FloatArray | None  # (p,), power of the applied wrench; None: not known, something moves
+    Attributes:
+        image: Their space.
+        open_ones: Contacts that slide.
+        pyramids: Theirs.
+        names: (m, K), of their edge forces.
+        gains: (p,), power of the applied wrench; None: not known, something moves.
+    """
+
+    image: Image
+    open_ones: list[int]
+    pyramids: list[Pyramid]
+    names: NDArray[np.intp]
+    gains: FloatArray | None
 
 
 class Search:

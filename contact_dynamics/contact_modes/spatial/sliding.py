@@ -22,7 +22,7 @@ from contact_dynamics.contact_modes.spatial.kinematic import cone_faces
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.numerics.linear_spaces import null_space
 from contact_dynamics.numerics.vectors import tangents_towards
-from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.tolerances import ROW_TOLERANCE, SMALLEST
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -61,7 +61,7 @@ def spatial_sliding_modes(contacts: ContactSet, *, planes: int = 2) -> tuple[str
     if n == 0:
         return ("",)
     arms = contacts.p_WC_W - contacts.p_WC_W.mean(axis=0)
-    arms = arms / max(float(np.linalg.norm(arms, axis=1).max()), 1e-300)
+    arms = arms / max(float(np.linalg.norm(arms, axis=1).max()), SMALLEST)
     normals = _rows(contacts.normals_W, arms)
     across = []  # normals of the planes, within the tangent plane: quarter a turn from each line
     for normal, arm in zip(contacts.normals_W, arms, strict=True):

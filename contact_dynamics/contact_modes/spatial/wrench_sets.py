@@ -23,11 +23,11 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, SPATIAL_LETTERS, check_modes
-from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
-from contact_dynamics.contact_modes.spatial.statics import MOST_EDGES
+from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of_few_edges, spatial_case
 from contact_dynamics.contact_modes.spatial.ways_of_sliding import sliding_range, ways_of
 from contact_dynamics.contact_modes.spatial.wrenches import distinct, supports, wrench_generators
 from contact_dynamics.errors import TooLargeError
+from contact_dynamics.records import Record
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
@@ -48,19 +48,27 @@ MOST_WRENCH_SETS: Final = 2000
 four edges, some 1300 with eight."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SpatialWrenchSet:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class SpatialWrenchSet(Record):
     """The applied wrenches that can bring about one mode with one way of sliding: a closed convex set.
 
     Wrenches are force, N, then torque about the centre of mass, N m, world axes.
+
+    Attributes:
+        mode: One letter a contact: s, f or c.
+        sliding_from_W: (n, 3), unit; a contact that begins to slide does between this direction.
+        sliding_to_W: (n, 3), and this, anticlockwise about its normal; zero: none is asked for.
+        vertices: (k, 6), N and N m: the set is all averages of these plus.
+        generators: (k, 6), all positive combinations of these, any scale.
+        half_spaces: (k, 7), the same set: a . w <= b, a then b; none: every wrench.
     """
 
-    mode: str  # one letter a contact: s, f or c
-    sliding_from_W: FloatArray  # (n, 3), unit; a contact that begins to slide does between this direction
-    sliding_to_W: FloatArray  # (n, 3), and this, anticlockwise about its normal; zero: none is asked for
-    vertices: FloatArray  # (k, 6), N and N m: the set is all averages of these plus
-    generators: FloatArray  # (k, 6), all positive combinations of these, any scale
-    half_spaces: FloatArray  # (k, 7), the same set: a . w <= b, a then b; none: every wrench
+    mode: str
+    sliding_from_W: FloatArray
+    sliding_to_W: FloatArray
+    vertices: FloatArray
+    generators: FloatArray
+    half_spaces: FloatArray
 
     def depth(self, wrench_W: ArrayLike, length: float) -> float:
         """Return how far inside the set a wrench, (6,), lies, N, in |f|^2 + |torque / length|^2.
@@ -92,7 +100,7 @@ def spatial_wrench_sets(
         InvalidFieldError: modes that are not strings of s, f and c.
         UndecidedError: contacts so nearly the same that rounding decides the sets.
         TooLargeError: as for `spatial_contact_modes`; more than `MOST_WRENCH_SETS` sets, more than
-            `spatial.statics.MOST_EDGES` edges of all pyramids, or too many ways of sliding
+            `spatial.problem.MOST_EDGES` edges of all pyramids, or too many ways of sliding
             (`ways_of_sliding.MOST_MEETINGS`).
 
     Source: lecture 26, "Force dual for dynamic contact problem"; Huang, Cheng and Mason 2020 for the ways.
@@ -102,10 +110,7 @@ def spatial_wrench_sets(
     case = spatial_case(problem)
     if not isinstance(case, SpatialCase):
         return ()
-    search = search_of(case, friction_facets)
-    edges = sum(len(pyramid.edges) for pyramid in search.pyramids)
-    if edges > MOST_EDGES:
-        raise TooLargeError("contacts", f"{edges} edges of friction pyramids", f"at most {MOST_EDGES}")
+    search = search_of_few_edges(case, friction_facets)
     every = [(_letters(case, ways), ways) for ways in ways_of(search)]
     wanted = sorted(one for one in every if modes is None or one[0] in modes)
     if len(wanted) > MOST_WRENCH_SETS:

@@ -30,17 +30,27 @@ _ALIKE: Final = 7
 
 
 class Way(NamedTuple):
-    """What one touching contact does."""
+    """What one touching contact does.
 
-    letter: str  # s (separates), f (sticks) or c (stays)
-    item: int  # of sliding (`options`); -1: none is asked for
+    Attributes:
+        letter: s (separates), f (sticks) or c (stays).
+        item: Of sliding (`options`); -1: none is asked for.
+    """
+
+    letter: str
+    item: int
 
 
 class Generators(NamedTuple):
-    """Wrenches that bring something about, with their heights: positive sums of rays, plus sums of lines."""
+    """Wrenches that bring something about, with their heights: positive sums of rays, plus sums of lines.
 
-    rays: FloatArray  # (k, 7), unit
-    lines: FloatArray  # (l, 7), unit
+    Attributes:
+        rays: (k, 7), unit.
+        lines: (l, 7), unit.
+    """
+
+    rays: FloatArray
+    lines: FloatArray
 
 
 class _Conditions(NamedTuple):

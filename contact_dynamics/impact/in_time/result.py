@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.spatial.result import SpatialImpact
+from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.validation import FloatArray
 
 
-class SequenceEnd(IntEnum):
+class SequenceEnd(NamedInt):
     """Why a sequence of strikes has no further one."""
 
     NOTHING_STRIKES = 0
@@ -28,29 +28,48 @@ class SequenceEnd(IntEnum):
     """Nothing has struck before the window ended, which began with the state: the body may land later."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class TimedStrike:
-    """One strike of a sequence."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class TimedStrike(Record):
+    """One strike of a sequence.
 
-    seconds: float  # s after the stamp of the state that the sequence began with
-    contact: int  # index into the sequence's contacts
-    p_WC_W: FloatArray  # (3,), m, where the contact is then, world
-    state_before: BodyState  # just before, stamped with the time of the strike
-    impact: SpatialImpact  # its single-contact impact; `impact.state` is the state just after
+    Attributes:
+        seconds: s after the stamp of the state that the sequence began with.
+        contact: Index into the sequence's contacts.
+        p_WC_W: (3,), m, where the contact is then, world.
+        state_before: Just before, stamped with the time of the strike.
+        impact: Its single-contact impact; `impact.state` is the state just after.
+    """
+
+    seconds: float
+    contact: int
+    p_WC_W: FloatArray
+    state_before: BodyState
+    impact: SpatialImpact
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ImpactSequence:
-    """A landing as strikes in time, with free flight between them."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ImpactSequence(Record):
+    """A landing as strikes in time, with free flight between them.
 
-    restitution_law: RestitutionLaw  # the law of each strike
-    window: float  # s, the longest flight that was followed
-    contacts: ContactSet  # those given; from geometry: those that struck or stay, where they first did
-    strikes: tuple[TimedStrike, ...]  # in the order of time; those of one instant in the order of resolution
-    end: SequenceEnd  # why there is no further one
-    state: BodyState  # just after the last strike; without a strike the state that it began with
-    staying: tuple[int, ...]  # contacts that stay, where `end` is STAYS or CHATTERS
-    limit_seconds: float | None  # s after the first state's stamp: from when on they stay
+    Attributes:
+        restitution_law: The law of each strike.
+        window: s, the longest flight that was followed.
+        contacts: Those given; from geometry: those that struck or stay, where they first did.
+        strikes: In the order of time; those of one instant in the order of resolution.
+        end: Why there is no further one.
+        state: Just after the last strike; without a strike the state that it began with.
+        staying: Contacts that stay, where `end` is STAYS or CHATTERS.
+        limit_seconds: s after the first state's stamp: from when on they stay.
+    """
+
+    restitution_law: RestitutionLaw
+    window: float
+    contacts: ContactSet
+    strikes: tuple[TimedStrike, ...]
+    end: SequenceEnd
+    state: BodyState
+    staying: tuple[int, ...]
+    limit_seconds: float | None
 
     @property
     def seconds(self) -> float:

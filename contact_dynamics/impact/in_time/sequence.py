@@ -35,7 +35,13 @@ from contact_dynamics.impact.in_time.result import ImpactSequence, SequenceEnd, 
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.spatial.one_contact import spatial_impact
 from contact_dynamics.rotations.one import cross_matrix
-from contact_dynamics.tolerances import DISTANCE_TOLERANCE, VELOCITY_TOLERANCE
+from contact_dynamics.tolerances import (
+    CHATTER_HEIGHT,
+    CHATTER_PAUSE,
+    DISTANCE_TOLERANCE,
+    HELD_STILL,
+    VELOCITY_TOLERANCE,
+)
 from contact_dynamics.tumbling import Precision, free_motion
 from contact_dynamics.validation import check_array, check_choice, check_not_negative, check_positive
 
@@ -56,15 +62,8 @@ STRIKE_WINDOW: Final = 0.05
 MOST_STRIKES: Final = 200
 """Strikes after which a sequence ends unfinished: rebounds of e = 0.9 have lost their height by then."""
 
-CHATTER_HEIGHT: Final = 1e-7
-"""m. Rebounds lower than this are not followed: a hundred times what the search for the first contact may
-overlook, and far below the roughness of surfaces."""
-
 HELD: Final = 2.0
 """Of the speed that a step of free motion gives a contact that is held: above it, something else struck."""
-
-HELD_STILL: Final = 0.01
-"""Of that speed: what may be left of it, where several contacts that are held throw each other back."""
 
 MOST_HELD: Final = 100
 """Impulses that hold contacts at one instant. Two ends of a rod need four, the corners of a face some ten."""
@@ -72,9 +71,6 @@ MOST_HELD: Final = 100
 STILL: Final = 0.1
 """Of that speed: a body that is held and moves no faster, after a step, rests. One that begins to fall over
 has more by then, unless it is balanced to within some degrees."""
-
-PAUSE: Final = 1e-6
-"""s. When to look again where a contact that leaves, at the height of rounding, was found as arriving."""
 
 
 def impact_sequence(
@@ -319,7 +315,7 @@ class _Sequence:
         approach = _normal_parts(landing.velocities_W, landing.contacts)
         lifting = self._lifting(landing)
         if len(lifting) == 0:
-            return PAUSE
+            return CHATTER_PAUSE
         if not (lifting > 0.0).all():
             return None
         return float(((2.0 * self.tolerance - approach) / lifting).max())

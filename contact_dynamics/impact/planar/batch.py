@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import SeparatingContactError
-from contact_dynamics.impact.energy import energy_change, law_created
+from contact_dynamics.impact.energy import ManyEnergies
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
@@ -47,29 +47,29 @@ _OUTCOMES: Final = np.array(
 )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PlanarImpacts:
-    """The answers to N planar impacts; row i belongs to case i. Meanings as in `PlanarImpact`."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class PlanarImpacts(ManyEnergies):
+    """The answers to N planar impacts; row i belongs to case i. Meanings as in `PlanarImpact`.
 
-    restitution_law: RestitutionLaw  # the restitution law of all of them
-    outcomes: NDArray[np.int64]  # (N,), values of ImpactOutcome
-    v: FloatArray  # (N, 2), m/s, of the centres of mass afterwards, axes of the plane
-    w: FloatArray  # (N,), rad/s, afterwards
-    impulses_C: FloatArray  # (N, 2), N s, contact axes
-    compressions_C: FloatArray  # (N, 2), N s, contact axes
-    velocities_before_C: FloatArray  # (N, 2), m/s, of the contacts, contact axes
-    velocities_after_C: FloatArray  # (N, 2), m/s, of the contacts, contact axes
+    Attributes:
+        restitution_law: The restitution law of all of them.
+        outcomes: (N,), values of ImpactOutcome.
+        v: (N, 2), m/s, of the centres of mass afterwards, axes of the plane.
+        w: (N,), rad/s, afterwards.
+        impulses_C: (N, 2), N s, contact axes.
+        compressions_C: (N, 2), N s, contact axes.
+        velocities_before_C: (N, 2), m/s, of the contacts, contact axes.
+        velocities_after_C: (N, 2), m/s, of the contacts, contact axes.
+    """
 
-    @property
-    def energy_changes(self) -> FloatArray:
-        """Return the changes of kinetic energy, (N,), J."""
-        return energy_change(*self._at_contacts())
-
-    @property
-    def creates_energy(self) -> NDArray[np.bool_]:
-        """Return which of them the law gave energy, (N,), beyond rounding. Only Newton's can."""
-        created: NDArray[np.bool_] = law_created(*self._at_contacts())
-        return created
+    restitution_law: RestitutionLaw
+    outcomes: NDArray[np.int64]
+    v: FloatArray
+    w: FloatArray
+    impulses_C: FloatArray
+    compressions_C: FloatArray
+    velocities_before_C: FloatArray
+    velocities_after_C: FloatArray
 
     def _at_contacts(self) -> tuple[list[FloatArray], ...]:
         return list(self.impulses_C.T), list(self.velocities_before_C.T), list(self.velocities_after_C.T)

@@ -8,19 +8,30 @@ from contact_dynamics.impact.energy import energy_change, law_created
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.impact.planar.routh import ImpulsePath, InverseInertia
 from contact_dynamics.plane.types import PlanarVelocity, Vector2
+from contact_dynamics.records import Record
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanarImpact:
-    """The answer to one planar impact; contact axes are tangent, normal, and impulses act on the body."""
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class PlanarImpact(Record):
+    """The answer to one planar impact; contact axes are tangent, normal, and impulses act on the body.
 
-    restitution_law: RestitutionLaw  # the restitution law that was asked for
-    velocity: PlanarVelocity  # m/s, rad/s, of the body afterwards, axes of the plane
-    velocity_before_C: Vector2  # m/s, of the contact before, relative, contact axes; 0: within tolerance
-    inverse_inertia: InverseInertia  # 1/kg, the contact's response to impulse
-    contact_path: ImpulsePath  # impulse path and the contact's velocity afterwards, contact axes
-    impulse: Vector2  # N s, total, on the body, axes of the plane
-    other_velocity: PlanarVelocity | None = None  # of the second body afterwards; None: the fixed world
+    Attributes:
+        restitution_law: The restitution law that was asked for.
+        velocity: m/s, rad/s, of the body afterwards, axes of the plane.
+        velocity_before_C: m/s, of the contact before, relative, contact axes; 0: within tolerance.
+        inverse_inertia: 1/kg, the contact's response to impulse.
+        contact_path: Impulse path and the contact's velocity afterwards, contact axes.
+        impulse: N s, total, on the body, axes of the plane.
+        other_velocity: Of the second body afterwards; None: the fixed world.
+    """
+
+    restitution_law: RestitutionLaw
+    velocity: PlanarVelocity
+    velocity_before_C: Vector2
+    inverse_inertia: InverseInertia
+    contact_path: ImpulsePath
+    impulse: Vector2
+    other_velocity: PlanarVelocity | None = None
 
     @property
     def outcome(self) -> ImpactOutcome:

@@ -33,27 +33,47 @@ LARGEST_FRICTION: Final = 1e100
 
 
 class InverseInertia(NamedTuple):
-    """The contact's response to impulse: the symmetric matrix [[a, b], [b, c]] of lecture 27, eq. 8."""
+    """The contact's response to impulse: the symmetric matrix [[a, b], [b, c]] of lecture 27, eq. 8.
 
-    a: float  # 1/kg, tangential velocity per tangential impulse, > 0
-    b: float  # 1/kg, either per the other
-    c: float  # 1/kg, normal velocity per normal impulse, > 0
-    det: float  # 1/kg^2, a c - b^2 > 0, formed without that subtraction
+    Attributes:
+        a: 1/kg, tangential velocity per tangential impulse, > 0.
+        b: 1/kg, either per the other.
+        c: 1/kg, normal velocity per normal impulse, > 0.
+        det: 1/kg^2, a c - b^2 > 0, formed without that subtraction.
+    """
+
+    a: float
+    b: float
+    c: float
+    det: float
 
 
 class ImpulsePath(NamedTuple):
-    """One impulse path in contact axes; a tangential impulse belongs to the normal one before it."""
+    """One impulse path in contact axes; a tangential impulse belongs to the normal one before it.
 
-    outcome: ImpactOutcome  # what the contact did
-    jams: bool  # whether sliding drove the contact into compression
-    p_stop: float  # N s, normal impulse at which sliding stops; infinite: never
-    t_stop: float  # N s
-    p_compression: float  # N s, normal impulse at the end of compression
-    t_compression: float  # N s
-    p_end: float  # N s, total normal impulse
-    t_end: float  # N s
-    v_t: float  # m/s, tangential velocity of the contact afterwards
-    v_n: float  # m/s, normal velocity of the contact afterwards, >= 0
+    Attributes:
+        outcome: What the contact did.
+        jams: Whether sliding drove the contact into compression.
+        p_stop: N s, normal impulse at which sliding stops; infinite: never.
+        t_stop: N s.
+        p_compression: N s, normal impulse at the end of compression.
+        t_compression: N s.
+        p_end: N s, total normal impulse.
+        t_end: N s.
+        v_t: m/s, tangential velocity of the contact afterwards.
+        v_n: m/s, normal velocity of the contact afterwards, >= 0.
+    """
+
+    outcome: ImpactOutcome
+    jams: bool
+    p_stop: float
+    t_stop: float
+    p_compression: float
+    t_compression: float
+    p_end: float
+    t_end: float
+    v_t: float
+    v_n: float
 
 
 def inverse_inertia(mass: float, inertia: float, r_t: float, r_n: float) -> InverseInertia:
@@ -116,7 +136,7 @@ def impulse_path(  # noqa: C901, PLR0912, PLR0915, PLR0917 - one computation; ea
         p_c = -v_n / rate_1
         rate = rate_1
 
-    # The end, if the path does not bend during restitution.
+    # The end, if the path does not bend during restitution: the laws' closed forms (see `impact.law`).
     taken = 0.0
     if law == RestitutionLaw.POISSON:
         gain = restitution * p_c

@@ -30,7 +30,7 @@ from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralIm
 from contact_dynamics.numerics.lemke import solve_complementarity
 from contact_dynamics.numerics.vectors import point_jacobians, tangents_towards
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, inverse_mass_matrix
-from contact_dynamics.tolerances import VELOCITY_TOLERANCE
+from contact_dynamics.tolerances import HELD_INDEPENDENT, SHORT_TIMES, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_not_negative
 
 if TYPE_CHECKING:
@@ -41,10 +41,6 @@ if TYPE_CHECKING:
 
 MOST_JAMMED_CONTACTS: Final = 64
 """Longest list of contacts accepted: the pivots of their complementarity problem take a second or so."""
-
-_SHORT: Final = (1e-7, 1e-5, 1e-3)
-"""What the wrench may change of velocities in the time it acts, relative to the largest speed: the first that
-rounding does not keep from an answer is taken."""
 
 _ZERO: Final = 100.0
 """Velocities relative to that change, and impulses relative to mass times it, that count as zero."""
@@ -122,7 +118,7 @@ def jamming_impact(
     cleaned = spatial_contact_velocities(state, contacts, velocity_tolerance=tolerance)
     directions = _directions(contacts, before, plane_normal_W, friction_facets)
     total, after, resolved = np.zeros_like(before), twist, False
-    for share in _SHORT:
+    for share in SHORT_TIMES:
         short = share * speed / hurry if hurry > 0.0 else 0.0
         seen = _Contacts(
             rows=point_jacobians(arms + short * np.cross(w, arms)),
@@ -236,7 +232,8 @@ def _made_exact(
     if len(held) == 0:
         return impulses, after
     held_rows = held @ rows.reshape(-1, 6)
-    missing = np.linalg.lstsq(held_rows @ inverse @ held_rows.T, -held_rows @ after, rcond=1e-9)[0]
+    response = held_rows @ inverse @ held_rows.T
+    missing = np.linalg.lstsq(response, -held_rows @ after, rcond=HELD_INDEPENDENT)[0]
     return impulses + (missing @ held).reshape(-1, 3), after + inverse @ held_rows.T @ missing
 
 

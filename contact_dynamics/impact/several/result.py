@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
 
 import numpy as np
 
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.spatial.result import SpatialImpact
+from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.validation import FloatArray
 
 
-class SeveralContactsLaw(IntEnum):
+class SeveralContactsLaw(NamedInt):
     """The law for several contacts at once."""
 
     SEQUENTIAL = 0
     SIMULTANEOUS = 1
 
 
-class SeveralVerdict(IntEnum):
+class SeveralVerdict(NamedInt):
     """Whether the law has an answer."""
 
     RESOLVED = 0
@@ -29,37 +29,29 @@ class SeveralVerdict(IntEnum):
     """The bound on strikes or iterations was reached; the state is the last one."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SeveralImpact:
-    """The answer for several contacts; contact i is row i, impulses act on the body, axes are the world's."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class SeveralImpact(Record):
+    """The answer for several contacts; contact i is row i, impulses act on the body, axes are the world's.
 
-    several_contacts_law: SeveralContactsLaw  # the law for several contacts
-    restitution_law: RestitutionLaw  # the law of restitution
-    verdict: SeveralVerdict  # whether the answer holds
-    state: BodyState  # afterwards: the pose of before, new velocities
-    impulses_W: FloatArray  # (n, 3), N s, total
-    velocities_before_W: FloatArray  # (n, 3), m/s, of the contacts
-    velocities_after_W: FloatArray  # (n, 3), m/s, of the contacts
-    strikes: tuple[tuple[int, SpatialImpact], ...]  # sequential: each contact struck, in order, its impact
+    Attributes:
+        several_contacts_law: The law for several contacts.
+        restitution_law: The law of restitution.
+        verdict: Whether the answer holds.
+        state: Afterwards: the pose of before, new velocities.
+        impulses_W: (n, 3), N s, total.
+        velocities_before_W: (n, 3), m/s, of the contacts.
+        velocities_after_W: (n, 3), m/s, of the contacts.
+        strikes: Sequential: each contact struck, in order, its impact.
+    """
 
-    @property
-    def order(self) -> tuple[int, ...]:
-        """Return the contacts that were struck, in order; empty for a simultaneous law."""
-        return tuple(contact for contact, _ in self.strikes)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class BodiesImpact:
-    """The answer for several contacts of several bodies; contact i is row i, axes are the world's."""
-
-    several_contacts_law: SeveralContactsLaw  # the law for several contacts
-    restitution_law: RestitutionLaw  # the law of restitution
-    verdict: SeveralVerdict  # whether the answer holds
-    states: tuple[BodyState, ...]  # of each body afterwards: the pose of before, new velocities
-    impulses_W: FloatArray  # (n, 3), N s, total, on the first body of each contact
-    velocities_before_W: FloatArray  # (n, 3), m/s, of the first body's point relative to the second's
-    velocities_after_W: FloatArray  # (n, 3), m/s, likewise
-    strikes: tuple[tuple[int, SpatialImpact], ...]  # sequential: each contact struck, in order, its impact
+    several_contacts_law: SeveralContactsLaw
+    restitution_law: RestitutionLaw
+    verdict: SeveralVerdict
+    state: BodyState
+    impulses_W: FloatArray
+    velocities_before_W: FloatArray
+    velocities_after_W: FloatArray
+    strikes: tuple[tuple[int, SpatialImpact], ...]
 
     @property
     def order(self) -> tuple[int, ...]:
@@ -67,14 +59,51 @@ class BodiesImpact:
         return tuple(contact for contact, _ in self.strikes)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class OrderedOutcomes:
-    """What the sequential law comes to over its admissible orders; row i belongs to order i."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class BodiesImpact(Record):
+    """The answer for several contacts of several bodies; contact i is row i, axes are the world's.
 
-    orders: tuple[tuple[int, ...], ...]  # the contacts struck, in order
-    velocities_W: FloatArray  # (m, 6), m/s and rad/s, linear then angular velocity afterwards, world axes
-    complete: bool  # whether every priority of the contacts was tried
-    not_converged: int  # how many sequences were left out because they reached the bound on strikes
+    Attributes:
+        several_contacts_law: The law for several contacts.
+        restitution_law: The law of restitution.
+        verdict: Whether the answer holds.
+        states: Of each body afterwards: the pose of before, new velocities.
+        impulses_W: (n, 3), N s, total, on the first body of each contact.
+        velocities_before_W: (n, 3), m/s, of the first body's point relative to the second's.
+        velocities_after_W: (n, 3), m/s, likewise.
+        strikes: Sequential: each contact struck, in order, its impact.
+    """
+
+    several_contacts_law: SeveralContactsLaw
+    restitution_law: RestitutionLaw
+    verdict: SeveralVerdict
+    states: tuple[BodyState, ...]
+    impulses_W: FloatArray
+    velocities_before_W: FloatArray
+    velocities_after_W: FloatArray
+    strikes: tuple[tuple[int, SpatialImpact], ...]
+
+    @property
+    def order(self) -> tuple[int, ...]:
+        """Return the contacts that were struck, in order; empty for a simultaneous law."""
+        return tuple(contact for contact, _ in self.strikes)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class OrderedOutcomes(Record):
+    """What the sequential law comes to over its admissible orders; row i belongs to order i.
+
+    Attributes:
+        orders: The contacts struck, in order.
+        velocities_W: (m, 6), m/s and rad/s, linear then angular velocity afterwards, world axes.
+        complete: Whether every priority of the contacts was tried.
+        not_converged: How many sequences were left out because they reached the bound on strikes.
+    """
+
+    orders: tuple[tuple[int, ...], ...]
+    velocities_W: FloatArray
+    complete: bool
+    not_converged: int
 
     @property
     def spread(self) -> FloatArray:

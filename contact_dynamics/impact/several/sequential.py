@@ -97,13 +97,18 @@ def bodies_impact(
 
 
 class Touching(NamedTuple):
-    """Bodies in contact, and the laws of their strikes."""
+    """Bodies in contact, and the laws of their strikes.
+
+    Attributes:
+        pairs: As in `bodies_impact`.
+        tolerance: m/s.
+    """
 
     bodies: Sequence[MassProperties]
     contacts: ContactSet
-    pairs: Sequence[tuple[int, int | None]]  # as in `bodies_impact`
+    pairs: Sequence[tuple[int, int | None]]
     restitution_law: RestitutionLaw
-    tolerance: float  # m/s
+    tolerance: float
 
 
 def check_touching(touching: Touching, states: Sequence[BodyState]) -> FloatArray:

@@ -7,17 +7,22 @@ takes energy, so that it comes to an end: in hundreds of drawn sets after at mos
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final
+from functools import partial
+from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.impact.several.jamming import jamming_impact
 from contact_dynamics.impact.several.result import SeveralVerdict
+from contact_dynamics.tolerances import VELOCITY_TOLERANCE
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from numpy.typing import ArrayLike
+
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.impact.several.result import SeveralImpact
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.validation import FloatArray
 
 MOST_JAMS: Final = 10
 """Jamming impacts after which the case counts as not settled."""
@@ -29,7 +34,11 @@ def settling_impact(
     contacts: ContactSet,
     *,
     is_settled: Callable[[BodyState], bool],
-    **how: Any,
+    force_W: ArrayLike,
+    torque_W: ArrayLike = (0.0, 0.0, 0.0),
+    plane_normal_W: FloatArray | None = None,
+    friction_facets: int = 8,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SeveralImpact:
     """Return the impact of jammed contacts after which ``is_settled`` holds of the state, as one.
 
@@ -40,17 +49,31 @@ def settling_impact(
         state: As for `jamming_impact`.
         contacts: As for `jamming_impact`.
         is_settled: Whether some mode of a state is consistent, or a contact approaches.
-        how: All else that `jamming_impact` takes.
+        force_W: As for `jamming_impact`.
+        torque_W: As for `jamming_impact`.
+        plane_normal_W: As for `jamming_impact`.
+        friction_facets: As for `jamming_impact`.
+        velocity_tolerance: As for `jamming_impact`.
 
     Raises:
         InvalidFieldError: as `jamming_impact`.
         TooLargeError: as `jamming_impact`.
     """
-    total = jamming_impact(body, state, contacts, **how)
+    jam = partial(
+        jamming_impact,
+        body,
+        contacts=contacts,
+        force_W=force_W,
+        torque_W=torque_W,
+        plane_normal_W=plane_normal_W,
+        friction_facets=friction_facets,
+        velocity_tolerance=velocity_tolerance,
+    )
+    total = jam(state)
     for _ in range(MOST_JAMS - 1):
         if total.verdict != SeveralVerdict.RESOLVED or is_settled(total.state):
             return total
-        again = jamming_impact(body, total.state, contacts, **how)
+        again = jam(total.state)
         total = replace(
             again,
             impulses_W=total.impulses_W + again.impulses_W,

@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.tolerances import SWEEPS_CONVERGED
 from contact_dynamics.validation import FloatArray
 
 if TYPE_CHECKING:
@@ -37,9 +38,6 @@ _MOST_STEPS: Final = 20_000
 
 _AGREE: Final = 1e-8
 """Relative to the largest impulse: two ways to a solution that differ by less have found the same one."""
-
-CONVERGED: Final = 1e-13
-"""Relative to the largest approach velocity: what a sweep may still change in the contacts' velocities."""
 
 
 class _Problem(NamedTuple):
@@ -83,6 +81,8 @@ def simultaneous_impulses(
     approach[approach >= -tolerance] = 0.0
 
     none = np.zeros(len(contacts))
+    # `RestitutionRule` is for a path. Here Newton's law asks for velocities, in one problem, and Poisson's
+    # for impulses, in a second one. The energetic law has neither, and is refused before.
     if law == RestitutionLaw.NEWTON:
         bounce = -contacts.restitutions * approach
         return _solve(
@@ -155,7 +155,7 @@ def _together(problem: _Problem) -> tuple[FloatArray, bool]:
         after = p[:, None] * normals + tangential
         change = float(abs(after - impulses).max())
         impulses = after
-        if change <= CONVERGED * scale * step_size:
+        if change <= SWEEPS_CONVERGED * scale * step_size:
             return impulses, True
     return impulses, False
 
@@ -186,6 +186,6 @@ def _in_turn(problem: _Problem, order: tuple[int, ...]) -> tuple[FloatArray, boo
             impulses[i] += step
             twist = twist + response[i] @ step
             change = max(change, float(abs(blocks[i] @ step).max()))
-        if change <= CONVERGED * scale:
+        if change <= SWEEPS_CONVERGED * scale:
             return impulses, True
     return impulses, False

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from contact_dynamics.errors import SeparatingContactError
-from contact_dynamics.impact.energy import energy_change, law_created
+from contact_dynamics.impact.energy import ManyEnergies
 from contact_dynamics.impact.law import RestitutionLaw, check_law_rows
 from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
 from contact_dynamics.impact.spatial.batch_paths import trace_all
@@ -24,6 +24,7 @@ from contact_dynamics.impact.spatial.response import (
     velocity_at_contact,
 )
 from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
+from contact_dynamics.records import Record
 from contact_dynamics.tolerances import (
     SYMMETRY_TOLERANCE,
     TRIANGLE_TOLERANCE,
@@ -46,20 +47,28 @@ _CHUNK: Final = 8192
 """Cases that go together. More save little and take 2 kB each while they slide."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class StrikingBodies:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class StrikingBodies(Record):
     """Bodies that strike, at their contacts; each field has a row a case, or one for all cases.
+
+    Attributes:
+        masses: (N,) or (), kg, > 0.
+        inertias_B: (N, 3, 3) or (3, 3), kg m^2, about the centres of mass, body axes.
+        q_WB: (N, 4) or (4,), unit quaternions x, y, z, w: body into world coordinates.
+        v_WB_W: (N, 3) or (3,), m/s, of the centres of mass, world axes.
+        w_WB_W: (N, 3) or (3,), rad/s, world axes.
+        r_W: (N, 3) or (3,), m, from the centres of mass to the contacts, world axes.
 
     Raises:
         InvalidFieldError: a number is not allowed; the message names the field and the first row.
     """
 
-    masses: FloatArray  # (N,) or (), kg, > 0
-    inertias_B: FloatArray  # (N, 3, 3) or (3, 3), kg m^2, about the centres of mass, body axes
-    q_WB: FloatArray  # (N, 4) or (4,), unit quaternions x, y, z, w: body into world coordinates
-    v_WB_W: FloatArray  # (N, 3) or (3,), m/s, of the centres of mass, world axes
-    w_WB_W: FloatArray  # (N, 3) or (3,), rad/s, world axes
-    r_W: FloatArray  # (N, 3) or (3,), m, from the centres of mass to the contacts, world axes
+    masses: FloatArray
+    inertias_B: FloatArray
+    q_WB: FloatArray
+    v_WB_W: FloatArray
+    w_WB_W: FloatArray
+    r_W: FloatArray
 
     if TYPE_CHECKING:
 
@@ -100,31 +109,33 @@ class StrikingBodies:
         return {field: getattr(self, field) for field in self.__slots__}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SpatialImpacts:
-    """The answers to N impacts in space; row i belongs to case i. Meanings as in `SpatialImpact`."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class SpatialImpacts(ManyEnergies):
+    """The answers to N impacts in space; row i belongs to case i. Meanings as in `SpatialImpact`.
 
-    restitution_laws: NDArray[np.int64]  # (N,), values of RestitutionLaw
-    outcomes: NDArray[np.int64]  # (N,), values of ImpactOutcome
-    v_WB_W: FloatArray  # (N, 3), m/s, of the centres of mass afterwards, world axes
-    w_WB_W: FloatArray  # (N, 3), rad/s, afterwards, world axes
-    impulses_W: FloatArray  # (N, 3), N s, total
-    compressions_W: FloatArray  # (N, 3), N s, up to the end of compression
-    velocities_before_W: FloatArray  # (N, 3), m/s, of the contacts, relative to what they touch
-    velocities_after_W: FloatArray  # (N, 3), m/s, of the contacts, relative to what they touch
-    other_v_WB_W: FloatArray | None = None  # (N, 3), m/s, of the second bodies; None: the fixed world
-    other_w_WB_W: FloatArray | None = None  # (N, 3), rad/s, of the second bodies; None: the fixed world
+    Attributes:
+        restitution_laws: (N,), values of RestitutionLaw.
+        outcomes: (N,), values of ImpactOutcome.
+        v_WB_W: (N, 3), m/s, of the centres of mass afterwards, world axes.
+        w_WB_W: (N, 3), rad/s, afterwards, world axes.
+        impulses_W: (N, 3), N s, total.
+        compressions_W: (N, 3), N s, up to the end of compression.
+        velocities_before_W: (N, 3), m/s, of the contacts, relative to what they touch.
+        velocities_after_W: (N, 3), m/s, of the contacts, relative to what they touch.
+        other_v_WB_W: (N, 3), m/s, of the second bodies; None: the fixed world.
+        other_w_WB_W: (N, 3), rad/s, of the second bodies; None: the fixed world.
+    """
 
-    @property
-    def energy_changes(self) -> FloatArray:
-        """Return the changes of kinetic energy, (N,), J."""
-        return energy_change(*self._at_contacts())
-
-    @property
-    def creates_energy(self) -> NDArray[np.bool_]:
-        """Return which of them the law gave energy, (N,), beyond rounding. Only Newton's can."""
-        created: NDArray[np.bool_] = law_created(*self._at_contacts())
-        return created
+    restitution_laws: NDArray[np.int64]
+    outcomes: NDArray[np.int64]
+    v_WB_W: FloatArray
+    w_WB_W: FloatArray
+    impulses_W: FloatArray
+    compressions_W: FloatArray
+    velocities_before_W: FloatArray
+    velocities_after_W: FloatArray
+    other_v_WB_W: FloatArray | None = None
+    other_w_WB_W: FloatArray | None = None
 
     def _at_contacts(self) -> tuple[list[FloatArray], ...]:
         return list(self.impulses_W.T), list(self.velocities_before_W.T), list(self.velocities_after_W.T)

@@ -15,12 +15,10 @@ import numpy as np
 
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.impact.spatial.batch_restitution import ManyProgress, crossings, taken
-from contact_dynamics.impact.spatial.path import MOST_STRETCHES, STOPPED, STRAIGHT, UNCOUPLED, at_stop, slide
+from contact_dynamics.impact.spatial.path import MOST_STRETCHES, at_stop, slide
 from contact_dynamics.impact.spatial.sliding_law import ESCAPE_ROUNDS, SlidingLaw
 from contact_dynamics.impact.spatial.stop import (
-    ARRIVED,
     FARTHEST,
-    LAST_TERM,
     ROUNDS,
     TERMS,
     Stop,
@@ -30,6 +28,7 @@ from contact_dynamics.impact.spatial.stop import (
     turns_slowly,
 )
 from contact_dynamics.impact.spatial.taylor import SlidingSeries, value
+from contact_dynamics.tolerances import AT_THE_STOP, ESCAPE_ARRIVED, LAST_TERM, STOPPED, STRAIGHT, UNCOUPLED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -43,13 +42,21 @@ FEW: Final = 32
 
 
 class SpatialPaths(NamedTuple):
-    """Many impulse paths, in contact axes; element i of each array belongs to contact i."""
+    """Many impulse paths, in contact axes; element i of each array belongs to contact i.
 
-    outcomes: NDArray[np.int64]  # values of ImpactOutcome
-    compression: tuple[FloatArray, FloatArray, FloatArray]  # N s, at the end of compression
-    impulse: tuple[FloatArray, FloatArray, FloatArray]  # N s, total
-    u: tuple[FloatArray, FloatArray]  # m/s, sliding velocities afterwards
-    v_n: FloatArray  # m/s, normal velocities afterwards
+    Attributes:
+        outcomes: Values of ImpactOutcome.
+        compression: N s, at the end of compression.
+        impulse: N s, total.
+        u: m/s, sliding velocities afterwards.
+        v_n: m/s, normal velocities afterwards.
+    """
+
+    outcomes: NDArray[np.int64]
+    compression: tuple[FloatArray, FloatArray, FloatArray]
+    impulse: tuple[FloatArray, FloatArray, FloatArray]
+    u: tuple[FloatArray, FloatArray]
+    v_n: FloatArray
 
 
 def trace_all(
@@ -106,7 +113,7 @@ class _Slide:
         self.sliding = sliding
         self.u1, self.u2 = u[0].copy(), u[1].copy()
         self.progress = progress
-        self.with_work = progress.law == RestitutionLaw.ENERGETIC
+        self.with_work = progress.rule.needs_work
 
     def run(self, lanes: Lanes) -> None:
         """Follow ``lanes`` until each stops, with u = 0, or its impact is over."""
@@ -229,7 +236,7 @@ def _after_stop(sliding: SlidingLaw) -> tuple[FloatArray, FloatArray, FloatArray
             break
         step = law.escape_step(g)[2]
         g = np.where(moving, g + step, g)
-        moving &= ~(step <= 1e-16 * g)
+        moving &= ~(step <= ESCAPE_ARRIVED * g)
     d1, d2, _ = law.escape_step(g)
     length = np.sqrt(d1 * d1 + d2 * d2)
     d1, d2 = d1 / length, d2 / length
@@ -276,7 +283,7 @@ def _near_stops(
         lanes, step, turned = lanes[good], step[good], turned[good]
         fixed[lanes] = turned
         d1[lanes], d2[lanes] = list(map(math.cos, turned.tolist())), list(map(math.sin, turned.tolist()))
-        lanes = lanes[~(abs(step) < ARRIVED)]
+        lanes = lanes[~(abs(step) < AT_THE_STOP)]
         if lanes.size == 0:
             break
     near &= ~((sliding.speeding(d1, d2) >= 0.0) | (sliding.attraction(d1, d2) >= 0.0))

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.law import RULES, RestitutionLaw
 from contact_dynamics.impact.spatial.restitution import Progress
-from contact_dynamics.impact.spatial.taylor import CLOSE, MOST_ITERATIONS, value, value_and_slope
+from contact_dynamics.impact.spatial.taylor import MOST_ITERATIONS, value, value_and_slope
+from contact_dynamics.tolerances import EVENT_LOCATED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -33,14 +34,14 @@ class ManyProgress:
 
     def __init__(self, law: RestitutionLaw, restitution: FloatArray, v_n: FloatArray) -> None:
         count = len(v_n)
-        self.law = law
+        self.rule = RULES[law]
         self.v_n = v_n.copy()  # m/s
         self.impulse = (np.zeros(count), np.zeros(count), np.zeros(count))  # N s
         self.compression = (np.zeros(count), np.zeros(count), np.zeros(count))
         self.compressing = np.ones(count, dtype=bool)
         self.over = np.zeros(count, dtype=bool)
         self._final_velocity = restitution * -v_n
-        self._share = restitution * restitution if law == RestitutionLaw.ENERGETIC else restitution
+        self._share = self.rule.share(restitution)
         self._due = np.zeros(count)  # N s or J
 
     def go_straight(
@@ -124,7 +125,7 @@ class ManyProgress:
     @contextmanager
     def alone(self, lane: int) -> Iterator[Progress]:
         """Give one lane as a `Progress`, and take over how far it comes."""
-        one = Progress(self.law, 0.0, float(self.v_n[lane]))
+        one = Progress(self.rule.law, 0.0, float(self.v_n[lane]))
         i1, i2, p = (x.item(lane) for x in self.impulse)
         c1, c2, c = (x.item(lane) for x in self.compression)
         one.impulse, one.compression = (i1, i2, p), (c1, c2, c)
@@ -141,10 +142,8 @@ class ManyProgress:
 
     def reaches(self, at: Lanes, p: FloatArray, v_n: FloatArray, work: FloatArray) -> Mask:
         """Return which lanes come to ``v_n`` after ``p`` and ``work`` before compression or impact ends."""
-        if self.law == RestitutionLaw.NEWTON:
-            ends = v_n >= self._final_velocity[at]
-        else:
-            ends = (p if self.law == RestitutionLaw.POISSON else work) >= self._due[at]
+        due, final = self._due[at], self._final_velocity[at]
+        ends = self.rule.is_done(p=p, v_n=v_n, work=work, due=due, final=final)
         reached: Mask = np.where(self.compressing[at], ~(v_n > 0.0), ~((v_n < 0.0) | ends))
         return reached
 
@@ -161,16 +160,7 @@ class ManyProgress:
         self.v_n[at] = v_n
 
     def _distance_to_end(self, at: Lanes, lifting: FloatArray) -> FloatArray:
-        if self.law == RestitutionLaw.POISSON:
-            return self._due[at]
-        v_n = self.v_n[at]
-        if self.law == RestitutionLaw.NEWTON:
-            missing = self._final_velocity[at] - v_n
-            return np.where(missing <= 0.0, 0.0, np.where(lifting > 0.0, missing / lifting, math.inf))
-        due = self._due[at]
-        square = v_n * v_n + 2.0 * lifting * due
-        distance = np.where(square > 0.0, 2.0 * due / (v_n + np.sqrt(square)), math.inf)
-        return np.where(due <= 0.0, 0.0, distance)
+        return self.rule.distances(self.v_n[at], lifting, self._due[at], self._final_velocity[at])
 
     def _curved_step(
         self, at: Lanes, series: SlidingSeries, positions: Lanes, begin: FloatArray, end: FloatArray
@@ -180,7 +170,7 @@ class ManyProgress:
             for part in (taken(x, positions) for x in (series.normal_impulse, series.t1, series.t2))
         )
         work = p
-        if self.law == RestitutionLaw.ENERGETIC:
+        if self.rule.needs_work:
             part = taken(series.normal_work, positions)
             work = value(part, end) - value(part, begin)
         self._account(at, p, work)
@@ -190,14 +180,10 @@ class ManyProgress:
         self, at: Lanes, series: SlidingSeries, positions: Lanes, begin: FloatArray, end: FloatArray
     ) -> tuple[Mask, FloatArray]:
         """Return whether restitution is complete before ``end``, and where; ``end`` where not."""
-        if self.law == RestitutionLaw.NEWTON:
-            meter, level = taken(series.normal_velocity, positions), self._final_velocity[at]
-            first = value(meter, begin)
-        else:
-            whole = series.normal_impulse if self.law == RestitutionLaw.POISSON else series.normal_work
-            meter = taken(whole, positions)
-            first = value(meter, begin)
-            level = first + self._due[at]
+        whole = self.rule.meter(series.normal_velocity, series.normal_impulse, series.normal_work)
+        meter = taken(whole, positions)
+        first = value(meter, begin)
+        level = self.rule.level(first, self._due[at], self._final_velocity[at])
         at_once = first >= level
         later = ~at_once & (value(meter, end) >= level)
         where = np.where(at_once, begin, end)
@@ -207,7 +193,7 @@ class ManyProgress:
         return at_once | later, where
 
     def _account(self, at: Lanes, p: FloatArray, work: FloatArray) -> None:
-        amount = work if self.law == RestitutionLaw.ENERGETIC else p
+        amount = self.rule.amount(p, work)
         self._due[at] += np.where(self.compressing[at], self._share[at] * abs(amount), -amount)
 
     def _advance(self, at: Lanes, impulse: Iterable[FloatArray]) -> None:
@@ -245,7 +231,7 @@ def crossings(series: list[FloatArray], level: FloatArray, begin: FloatArray, en
         beyond = (excess > 0.0) == rising
         high, low = np.where(beyond, s, high), np.where(beyond, low, s)
         guess = np.where(slope != 0.0, s - excess / slope, high)
-        done = (abs(guess - s) <= CLOSE * abs(guess)) & (slope != 0.0)
+        done = (abs(guess - s) <= EVENT_LOCATED * abs(guess)) & (slope != 0.0)
         inside = (low < guess) & (guess < high)
         s = np.where(done, s, np.where(inside, guess, 0.5 * (low + high)))
         result[lanes] = s

@@ -17,32 +17,31 @@ from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
 from contact_dynamics.impact.spatial.stop import Stop, stop_ahead
 from contact_dynamics.impact.spatial.taylor import SlidingSeries, crossing, value
 from contact_dynamics.numerics.elementwise import Number
-
-STRAIGHT: Final = 1e-12
-"""Dimensionless, of the sliding law's scale. A direction that turns more slowly is invariant: what turns it
-is the rounding of contact axes and inertia, some 1e-15, which an unstable direction would amplify."""
-
-UNCOUPLED: Final = 1e-15
-"""Dimensionless, of the tangential inverse inertia. A slower turn is the rounding of a coupling that is zero,
-as of a sphere's, whose scale is rounding too."""
-
-STOPPED: Final = 1e-13
-"""Dimensionless, of the first sliding speed. The error in impulse from going the rest of the way straight is
-below this part of the impulse that stops the contact."""
+from contact_dynamics.tolerances import STOPPED, STRAIGHT, UNCOUPLED
 
 MOST_STRETCHES: Final = 2000
 
 
 class SpatialPath(NamedTuple):
-    """An impulse path in contact axes: the two principal tangents, then the normal."""
+    """An impulse path in contact axes: the two principal tangents, then the normal.
 
-    outcome: ImpactOutcome  # what the contact did
-    jams: bool  # whether sliding drove the contact into compression at first
-    vertices: list[tuple[PathEvent, Impulse]]  # N s
-    compression: Impulse  # N s, at the end of compression
-    impulse: Impulse  # N s, total
-    u: tuple[float, float]  # m/s, sliding velocity afterwards
-    v_n: float  # m/s, normal velocity afterwards
+    Attributes:
+        outcome: What the contact did.
+        jams: Whether sliding drove the contact into compression at first.
+        vertices: N s.
+        compression: N s, at the end of compression.
+        impulse: N s, total.
+        u: m/s, sliding velocity afterwards.
+        v_n: m/s, normal velocity afterwards.
+    """
+
+    outcome: ImpactOutcome
+    jams: bool
+    vertices: list[tuple[PathEvent, Impulse]]
+    compression: Impulse
+    impulse: Impulse
+    u: tuple[float, float]
+    v_n: float
 
 
 def trace(
@@ -108,7 +107,7 @@ def slide(
     u1, u2 = u
     slowest = STOPPED * first_speed
     still = max(STRAIGHT * sliding.scale, UNCOUPLED * (sliding.l1 + sliding.l2))
-    with_work = progress.law == RestitutionLaw.ENERGETIC
+    with_work = progress.rule.needs_work
     for _ in range(MOST_STRETCHES):
         speed = math.sqrt(u1 * u1 + u2 * u2)
         d1, d2 = u1 / speed, u2 / speed

@@ -10,33 +10,37 @@ shares of the relative velocity.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from contact_dynamics.numerics.elementwise import Number, larger, sign, sqrt
 from contact_dynamics.numerics.vectors import combined, cross, dot, tangents_by_sign
 from contact_dynamics.rotations.one import rows_of
+from contact_dynamics.tolerances import LEAST_PIVOT, SMALLEST
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 Vector3: TypeAlias = "tuple[Number, Number, Number]"
 
-_LEAST_PIVOT: Final = 1e-30
-"""Relative to its diagonal entry. A pivot of an inertia matrix is > 0 but for rounding."""
-
-_NOT_ZERO: Final = 1e-300
-"""1/kg. Added to a sum that is 0 where its quotient is 0/0 and meant as 0."""
-
 
 class Responding(NamedTuple):
-    """A body at a contact: what its change of velocity follows from, world axes."""
+    """A body at a contact: what its change of velocity follows from, world axes.
 
-    per_mass: Number  # 1/kg
-    inertia: tuple[Number, ...]  # kg m^2, body axes: pivots d1, d2, d3, then L's l21, l31, l32 (I = L D L^T)
-    rotation: tuple[Vector3, Vector3, Vector3]  # columns of R_WB: the body's axes in the world
-    r: Vector3  # m, from the centre of mass to the contact
-    v: Vector3  # m/s, of the centre of mass
-    w: Vector3  # rad/s
+    Attributes:
+        per_mass: 1/kg.
+        inertia: kg m^2, body axes: pivots d1, d2, d3, then L's l21, l31, l32 (I = L D L^T).
+        rotation: Columns of R_WB: the body's axes in the world.
+        r: m, from the centre of mass to the contact.
+        v: m/s, of the centre of mass.
+        w: rad/s.
+    """
+
+    per_mass: Number
+    inertia: tuple[Number, ...]
+    rotation: tuple[Vector3, Vector3, Vector3]
+    r: Vector3
+    v: Vector3
+    w: Vector3
 
 
 class Response(NamedTuple):
@@ -51,16 +55,27 @@ class Response(NamedTuple):
 
 
 class ContactAxes(NamedTuple):
-    """The principal tangents and the normal, world axes, with the response in them."""
+    """The principal tangents and the normal, world axes, with the response in them.
 
-    t1: Vector3  # unit
-    t2: Vector3  # unit
-    n: Vector3  # unit
-    l1: Number  # 1/kg, tangential response, first direction
-    l2: Number  # 1/kg, second direction
-    k1: Number  # 1/kg, between the first and the normal
-    k2: Number  # 1/kg, between the second and the normal
-    kn: Number  # 1/kg, normal response
+    Attributes:
+        t1: Unit.
+        t2: Unit.
+        n: Unit.
+        l1: 1/kg, tangential response, first direction.
+        l2: 1/kg, second direction.
+        k1: 1/kg, between the first and the normal.
+        k2: 1/kg, between the second and the normal.
+        kn: 1/kg, normal response.
+    """
+
+    t1: Vector3
+    t2: Vector3
+    n: Vector3
+    l1: Number
+    l2: Number
+    k1: Number
+    k2: Number
+    kn: Number
 
     def components(self, vector: Vector3) -> Vector3:
         """Return the contact components of a vector in world axes."""
@@ -89,10 +104,10 @@ def responding(  # noqa: PLR0917 - the columns of one table
     (i_xx, i_xy, i_xz), (i_yx, i_yy, i_yz), (i_zx, i_zy, i_zz) = inertia
     i_xy, i_xz, i_yz = 0.5 * (i_xy + i_yx), 0.5 * (i_xz + i_zx), 0.5 * (i_yz + i_zy)
     l21, l31 = i_xy / i_xx, i_xz / i_xx
-    d2 = larger(i_yy - l21 * i_xy, _LEAST_PIVOT * i_yy)
+    d2 = larger(i_yy - l21 * i_xy, LEAST_PIVOT * i_yy)
     rest = i_yz - l31 * i_xy
     l32 = rest / d2
-    d3 = larger(i_zz - l31 * i_xz - l32 * rest, _LEAST_PIVOT * i_zz)
+    d3 = larger(i_zz - l31 * i_xz - l32 * rest, LEAST_PIVOT * i_zz)
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rows_of(*q)
     columns = ((xx, yx, zx), (xy, yy, zy), (xz, yz, zz))
     return Responding(1.0 / mass, (i_xx, d2, d3, l21, l31, l32), columns, r, v, w)
@@ -138,7 +153,7 @@ def contact_axes(body: Responding, other: Responding | None, normal: Vector3) ->
     # Jacobi's rotation by the smaller angle.
     difference = bb - aa
     root = sqrt(difference * difference + 4.0 * ab * ab)
-    tangent = sign(difference) * (2.0 * ab) / (abs(difference) + root + _NOT_ZERO)
+    tangent = sign(difference) * (2.0 * ab) / (abs(difference) + root + SMALLEST)
     c = 1.0 / sqrt(1.0 + tangent * tangent)
     s = tangent * c
     return ContactAxes(

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from contact_dynamics.impact.law import PathEvent, RestitutionLaw
+from contact_dynamics.impact.law import RULES, PathEvent, RestitutionLaw
 from contact_dynamics.impact.spatial.taylor import crossing, gain, value
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ class Progress:
     """State of an impact on its way: impulse, normal velocity, and what restitution still owes."""
 
     def __init__(self, law: RestitutionLaw, restitution: float, v_n: float) -> None:
-        self.law = law
+        self.rule = RULES[law]
         self.v_n = v_n  # m/s, <= 0 at first
         self.impulse: Impulse = (0.0, 0.0, 0.0)
         self.compression: Impulse = (0.0, 0.0, 0.0)  # at the last end of compression
@@ -35,7 +35,7 @@ class Progress:
         self.over = False
         self.path: list[tuple[PathEvent, Impulse]] = [(PathEvent.START, self.impulse)]
         self.final_velocity = restitution * -v_n  # m/s, Newton's end
-        self.share = restitution * restitution if law == RestitutionLaw.ENERGETIC else restitution
+        self.share = self.rule.share(restitution)
         self.due = 0.0  # N s or J, what restitution still owes
 
     def go_straight(self, length: float, rates: Impulse, lifting: float) -> float:
@@ -128,27 +128,15 @@ class Progress:
         self.v_n += lifting * step
 
     def _distance_to_end(self, lifting: float) -> float:
-        if self.law == RestitutionLaw.POISSON:
-            return self.due
-        if self.law == RestitutionLaw.NEWTON:
-            missing = self.final_velocity - self.v_n
-            if missing <= 0.0:
-                return 0.0
-            return missing / lifting if lifting > 0.0 else math.inf
-        if self.due <= 0.0:
-            return 0.0
-        square = self.v_n * self.v_n + 2.0 * lifting * self.due
-        return 2.0 * self.due / (self.v_n + math.sqrt(square)) if square > 0.0 else math.inf
+        return self.rule.distance(self.v_n, lifting, self.due, self.final_velocity)
 
     def _ends_within(self, p: float, v_n: float, work: float) -> bool:
-        if self.law == RestitutionLaw.NEWTON:
-            return v_n >= self.final_velocity
-        return (p if self.law == RestitutionLaw.POISSON else work) >= self.due
+        return bool(self.rule.is_done(p=p, v_n=v_n, work=work, due=self.due, final=self.final_velocity))
 
     def _curved_step(self, series: SlidingSeries, begin: float, end: float, v_n: float) -> float:
         """Advance to ``end``, where the normal velocity is ``v_n``; return it."""
         p = gain(series.normal_impulse, begin, end)
-        work = gain(series.normal_work, begin, end) if self.law == RestitutionLaw.ENERGETIC else 0.0
+        work = gain(series.normal_work, begin, end) if self.rule.needs_work else 0.0
         self._account(p, work)
         i1, i2, i_n = self.impulse
         self.impulse = (
@@ -161,19 +149,15 @@ class Progress:
 
     def _curved_finish(self, series: SlidingSeries, begin: float, end: float) -> float | None:
         """Return the parameter in [begin, end] at which restitution is complete, if it is."""
-        if self.law == RestitutionLaw.NEWTON:
-            meter, level = series.normal_velocity, self.final_velocity
-            first = value(meter, begin)
-        else:
-            meter = series.normal_impulse if self.law == RestitutionLaw.POISSON else series.normal_work
-            first = value(meter, begin)
-            level = first + self.due
+        meter = self.rule.meter(series.normal_velocity, series.normal_impulse, series.normal_work)
+        first = value(meter, begin)
+        level = self.rule.level(first, self.due, self.final_velocity)
         if first >= level:
             return begin
         return crossing(meter, level, begin, end) if value(meter, end) >= level else None
 
     def _account(self, p: float, work: float) -> None:
-        amount = work if self.law == RestitutionLaw.ENERGETIC else p
+        amount = self.rule.amount(p, work)
         self.due += self.share * abs(amount) if self.compressing else -amount
 
     def _end_compression(self) -> None:

@@ -6,28 +6,45 @@ from dataclasses import dataclass
 
 from contact_dynamics.impact.energy import energy_change, law_created
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.validation import FloatArray
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SpatialImpact:
-    """The answer to one impact in space. Impulses act on the body; all arrays are in world axes."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class SpatialImpact(Record):
+    """The answer to one impact in space. Impulses act on the body; all arrays are in world axes.
 
-    restitution_law: RestitutionLaw  # the restitution law that was asked for
-    outcome: ImpactOutcome  # what the contact did
-    jams: bool  # whether sliding drove the contact into compression at first
-    state: BodyState  # afterwards: the pose of before, new velocities
-    impulse_W: FloatArray  # (3,), N s, total
-    compression_W: FloatArray  # (3,), N s, up to the end of compression
-    path_W: FloatArray  # (k, 3), N s, points of the impulse path; those at a SAMPLE lie on a curve
-    path_events: tuple[PathEvent, ...]  # (k,), what each point stands for
+    Attributes:
+        restitution_law: The restitution law that was asked for.
+        outcome: What the contact did.
+        jams: Whether sliding drove the contact into compression at first.
+        state: Afterwards: the pose of before, new velocities.
+        impulse_W: (3,), N s, total.
+        compression_W: (3,), N s, up to the end of compression.
+        path_W: (k, 3), N s, points of the impulse path; those at a SAMPLE lie on a curve.
+        path_events: (k,), what each point stands for.
+        velocity_before_W: (3,), m/s, of the contact before, relative, world axes; what is within the
+            tolerance is 0.
+        velocity_after_W: (3,), m/s, of the contact, relative to what it touches.
+        inverse_inertia_W: (3, 3), 1/kg, the contact's change of velocity per impulse.
+        other_state: Of the second body afterwards; None: the fixed world.
+    """
+
+    restitution_law: RestitutionLaw
+    outcome: ImpactOutcome
+    jams: bool
+    state: BodyState
+    impulse_W: FloatArray
+    compression_W: FloatArray
+    path_W: FloatArray
+    path_events: tuple[PathEvent, ...]
     velocity_before_W: (
         FloatArray  # (3,), m/s, of the contact, relative to what it touches; 0: within tolerance
     )
-    velocity_after_W: FloatArray  # (3,), m/s, of the contact, relative to what it touches
-    inverse_inertia_W: FloatArray  # (3, 3), 1/kg, the contact's change of velocity per impulse
-    other_state: BodyState | None = None  # of the second body afterwards; None: the fixed world
+    velocity_after_W: FloatArray
+    inverse_inertia_W: FloatArray
+    other_state: BodyState | None = None
 
     @property
     def restitution_W(self) -> FloatArray:

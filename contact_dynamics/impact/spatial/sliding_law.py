@@ -23,20 +23,30 @@ import math
 from typing import Final, NamedTuple
 
 from contact_dynamics.numerics.elementwise import Number, larger, sqrt
+from contact_dynamics.tolerances import ESCAPE_ARRIVED
 
 ESCAPE_ROUNDS: Final = 60
 """Bound on the iterations for the direction in which a contact leaves; they converge quadratically."""
 
 
 class SlidingLaw(NamedTuple):
-    """Coefficients of the equations above, in 1/kg, friction included where named so."""
+    """Coefficients of the equations above, in 1/kg, friction included where named so.
 
-    l1: Number  # 1/kg, first principal tangential inverse inertia, > 0
-    l2: Number  # 1/kg, second, > 0
-    k1: Number  # 1/kg, coupling of the first tangential direction with the normal
-    k2: Number  # 1/kg, coupling of the second
-    kn: Number  # 1/kg, normal inverse inertia, > 0
-    mu: Number  # Coulomb's coefficient, >= 0
+    Attributes:
+        l1: 1/kg, first principal tangential inverse inertia, > 0.
+        l2: 1/kg, second, > 0.
+        k1: 1/kg, coupling of the first tangential direction with the normal.
+        k2: 1/kg, coupling of the second.
+        kn: 1/kg, normal inverse inertia, > 0.
+        mu: Coulomb's coefficient, >= 0.
+    """
+
+    l1: Number
+    l2: Number
+    k1: Number
+    k2: Number
+    kn: Number
+    mu: Number
 
     @property
     def holds(self) -> Number:
@@ -95,7 +105,7 @@ class SlidingLaw(NamedTuple):
         for _ in range(ESCAPE_ROUNDS):
             step = self.escape_step(g)[2]
             g += step
-            if step <= 1e-16 * g:
+            if step <= ESCAPE_ARRIVED * g:
                 break
         d1, d2, _ = self.escape_step(g)
         length = math.sqrt(d1 * d1 + d2 * d2)

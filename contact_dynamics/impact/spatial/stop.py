@@ -21,6 +21,7 @@ import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.numerics.elementwise import Number, larger, sqrt
+from contact_dynamics.tolerances import AT_THE_STOP, LAST_TERM, SLOW_TURNING
 
 if TYPE_CHECKING:
     from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
@@ -29,34 +30,30 @@ TERMS: Final = 24
 """Terms of the series. With the limit on the last of them it reaches a third to a half of the way to the next
 zero of h."""
 
-LAST_TERM: Final = 1e-15
-"""Relative to the sum. What is left out is of the size of the last term."""
-
 FARTHEST: Final = 0.8
 """rad. Beyond it the series is not tried, since it would not converge."""
 
 ROUNDS: Final = 8
 """Newton's steps towards f; they converge quadratically."""
 
-ARRIVED: Final = 1e-15
-"""rad. The last of these steps."""
-
-
-SLOW: Final = 1e-12
-"""Relative. Turning counts as slow where (|h| + |h'|)/|g|, to the power of the terms and times the speed, is
-below this part of the first speed: there the iteration has a prospect of `LAST_TERM`."""
-
 SLOW_TERMS: Final = 10
 """Terms of the iteration for slow turning, with derivatives up to this order."""
 
 
 class Stop(NamedTuple):
-    """What lies between a sliding contact and its stop."""
+    """What lies between a sliding contact and its stop.
 
-    p: Number  # N s, normal impulse
-    dissipated: Number  # J, by friction; NaN where it was not asked for
-    d1: Number  # the sliding direction at the stop, first component
-    d2: Number  # second
+    Attributes:
+        p: N s, normal impulse.
+        dissipated: J, by friction; NaN where it was not asked for.
+        d1: The sliding direction at the stop, first component.
+        d2: Second.
+    """
+
+    p: Number
+    dissipated: Number
+    d1: Number
+    d2: Number
 
 
 def stop_ahead(
@@ -88,7 +85,7 @@ def turns_slowly(sliding: SlidingLaw, d1: Number, d2: Number, speed: Number, fir
     eighth = squared * squared * squared * squared
     coupling = sliding.mu * sqrt(sliding.k1 * sliding.k1 + sliding.k2 * sliding.k2)
     keeps_rate = (sliding.kn > coupling) | (abs(sliding.lifting(d1, d2)) > 0.5 * coupling)
-    return (eighth * squared * speed <= SLOW * first_speed) & keeps_rate
+    return (eighth * squared * speed <= SLOW_TURNING * first_speed) & keeps_rate
 
 
 def _near_stop(sliding: SlidingLaw, u: tuple[float, float], *, with_work: bool) -> Stop | None:
@@ -105,7 +102,7 @@ def _near_stop(sliding: SlidingLaw, u: tuple[float, float], *, with_work: bool) 
         if abs(fixed - angle) > FARTHEST:
             return None
         d1, d2 = math.cos(fixed), math.sin(fixed)
-        if abs(step) < ARRIVED:
+        if abs(step) < AT_THE_STOP:
             break
     if sliding.speeding(d1, d2) >= 0.0 or sliding.attraction(d1, d2) >= 0.0:
         return None

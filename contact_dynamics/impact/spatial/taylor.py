@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.numerics.elementwise import Number, larger, power, smaller, sqrt
+from contact_dynamics.tolerances import EVENT_LOCATED, TRUNCATION
 
 if TYPE_CHECKING:
     from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
@@ -28,10 +29,6 @@ if TYPE_CHECKING:
 ORDER: Final = 24
 """Degree of the series. A decay e^-s, whose series converges everywhere, is reached over s = 0.9 by 16 terms
 and over s = 2.6 by 24, for twice the work."""
-
-TRUNCATION: Final = 1e-14
-"""Relative. The last terms of u and |u| may be this part of |u| where a stretch ends; the terms left out are
-smaller."""
 
 LONGEST: Final = 16.0
 """Of s. A bound where hardly anything changes; a decay that is in sight ends a stretch long before."""
@@ -42,9 +39,6 @@ SURE: Final = 0.5
 WITH_WORK: Final = 0.85
 """Part of the length that is used where the work is asked for: as a product of two series, it leaves out more
 at the same degree, by a factor of some 0.85^-24 = 50."""
-
-CLOSE: Final = 1e-15
-"""Relative. Newton's method has located an event where its next step is within it."""
 
 MOST_ITERATIONS: Final = 100
 
@@ -164,7 +158,7 @@ def crossing(series: list[float], level: float, begin: float, end: float) -> flo
         else:
             low = s
         guess = s - excess / slope if slope != 0.0 else high
-        if abs(guess - s) <= CLOSE * abs(guess) and slope != 0.0:
+        if abs(guess - s) <= EVENT_LOCATED * abs(guess) and slope != 0.0:
             break
         s = guess if low < guess < high else 0.5 * (low + high)
     return s

@@ -3,19 +3,21 @@
 `from contact_dynamics import inertia`, then for a hammer: ``inertia.combined([inertia.cylinder(...),
 inertia.box(...).placed(p_GF_G=...)])``; `Body.of` makes a body of it for a `World`.
 
-In reading order: what all shapes become (`distribution`), put together (`composition`);
-`system_of_particles`; `solids`, `thin` sheets and wires (of an `amount` of mass); `triangle_mesh` (checked by
-`surface` and `parts`, integrated by `polyhedron`); `principal` axes and the inertia ellipsoid.
+`distribution` is what all shapes become, and `composition` puts several together. Mass properties come from
+`system_of_particles`, `solids`, `sheets_and_wires` (each of a `mass_or_density`), or a `triangle_mesh`,
+which is checked by `closed_surface` and `mesh_parts` and integrated by `polyhedron_integrals`.
+`axes_of_inertia` has principal axes and the inertia ellipsoid, `principal_frame` the same in extended
+precision.
 """
 
-from contact_dynamics.rigid_body.inertia.composition import combined, without
-from contact_dynamics.rigid_body.inertia.distribution import MassDistribution
-from contact_dynamics.rigid_body.inertia.principal_axes import (
+from contact_dynamics.rigid_body.inertia.axes_of_inertia import (
     InertiaEllipsoid,
     PrincipalAxes,
     inertia_ellipsoid,
     principal_axes,
 )
+from contact_dynamics.rigid_body.inertia.composition import combined, without
+from contact_dynamics.rigid_body.inertia.distribution import MassDistribution
 from contact_dynamics.rigid_body.inertia.sheets_and_wires import (
     cylindrical_shell,
     disc,
@@ -67,3 +69,7 @@ __all__ = [
     "tube",
     "without",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final, NoReturn
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.records import Record
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -25,13 +26,19 @@ _CLOSED: Final = "a closed surface: each edge in exactly two triangles"
 _WOUND: Final = "triangles wound alike: both pass their common edge in opposite directions"
 
 
-@dataclass(frozen=True, slots=True)
-class ClosedSurface:
-    """Triangles that close and are wound alike."""
+@dataclass(frozen=True, slots=True, repr=False)
+class ClosedSurface(Record):
+    """Triangles that close and are wound alike.
 
-    triangles: NDArray[np.int64]  # (m, 3), indices of vertices
-    numbers: NDArray[np.int64]  # (m,), each triangle's number in the caller's list
-    neighbors: NDArray[np.int64]  # (3 m / 2, 2), the two triangles at each edge, indices into ``triangles``
+    Attributes:
+        triangles: (m, 3), indices of vertices.
+        numbers: (m,), each triangle's number in the caller's list.
+        neighbors: (3 m / 2, 2), the two triangles at each edge, indices into ``triangles``.
+    """
+
+    triangles: NDArray[np.int64]
+    numbers: NDArray[np.int64]
+    neighbors: NDArray[np.int64]
 
 
 def closed_surface(p_FV_F: FloatArray, triangles: ArrayLike) -> ClosedSurface:

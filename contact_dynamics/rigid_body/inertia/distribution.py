@@ -10,35 +10,38 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.rigid_body.body import MassProperties
+from contact_dynamics.records import Record
+from contact_dynamics.rigid_body.body import MassProperties, check_symmetric
 from contact_dynamics.rotations.one import rotation_matrix
-from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, TRIANGLE_TOLERANCE
+from contact_dynamics.tolerances import SUM_ROUNDING, TRIANGLE_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_positive, check_unit
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-ROUNDING: Final = 1e-14
-"""Relative to the largest term of a difference of inertias: some ten roundings of 1e-16, with room."""
 
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class MassDistribution:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class MassDistribution(Record):
     """A rigid distribution of mass in a frame F.
+
+    Attributes:
+        mass: kg, > 0.
+        p_FB_F: (3,), m, centre of mass, F's axes.
+        I_B: (3, 3), kg m^2, about the centre of mass, F's axes.
 
     Raises:
         InvalidFieldError: mass not > 0, a number not finite, a centre beyond `LARGEST_NUMBER`, or an inertia
             that no mass has: not symmetric, or principal moments that break I1 + I2 >= I3.
     """
 
-    mass: float  # kg, > 0
-    p_FB_F: FloatArray  # (3,), m, centre of mass, F's axes
-    I_B: FloatArray  # (3, 3), kg m^2, about the centre of mass, F's axes
+    mass: float
+    p_FB_F: FloatArray
+    I_B: FloatArray
 
     def __post_init__(self) -> None:
         """Check all fields."""
@@ -161,7 +164,7 @@ def difference(minuend: FloatArray, subtrahend: FloatArray, *, terms: float) -> 
     inertia: FloatArray = minuend - subtrahend
     half_trace = 0.5 * float(np.trace(inertia))
     spreads, axes = np.linalg.eigh(half_trace * np.eye(3) - _symmetric(inertia))  # integrals of x^2, y^2, z^2
-    if not -ROUNDING * terms <= spreads[0] < 0.0:
+    if not -SUM_ROUNDING * terms <= spreads[0] < 0.0:
         return inertia
     return inertia_of_second_moments(_symmetric((axes * np.maximum(spreads, 0.0)) @ axes.T))
 
@@ -172,10 +175,7 @@ def _symmetric(matrix: FloatArray) -> FloatArray:
 
 def _check_inertia(field: str, value: ArrayLike) -> FloatArray:
     """Return the matrix if some mass has it: I1 + I2 >= I3 >= I2 also makes every moment >= 0."""
-    inertia = check_array(field, value, (3, 3))
-    scale = float(np.abs(inertia).max())
-    if float(np.abs(inertia - inertia.T).max()) > SYMMETRY_TOLERANCE * scale:
-        raise InvalidFieldError(field, inertia.tolist(), "a symmetric matrix")
+    inertia = check_symmetric(field, value)
     moments = np.linalg.eigvalsh(inertia)
     if moments[0] + moments[1] < moments[2] - TRIANGLE_TOLERANCE * abs(moments[2]):
         raise InvalidFieldError(

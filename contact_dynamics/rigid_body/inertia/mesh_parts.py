@@ -18,21 +18,13 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.inertia.polyhedron_integrals import signed_volumes
+from contact_dynamics.tolerances import EPSILON, SURFACES_TOUCH, VOLUME_ROUNDING
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from contact_dynamics.rigid_body.inertia.closed_surface import ClosedSurface
     from contact_dynamics.validation import FloatArray
-
-ROUNDING: Final = 1e-13
-"""Relative to a surface's area times its size, m^3. A volume within it is rounding: the surface is flat."""
-
-_EPSILON: Final = 2.0**-52
-"""Of coordinates, relative: what rounding moves them by. Far from the origin that is a volume too."""
-
-TOUCHING: Final = 1e-9
-"""Relative to a part's size. Surfaces nearer than this touch; what lies between them is not looked for."""
 
 _OUTWARDS: Final = "triangles counter-clockwise seen from outside"
 
@@ -85,8 +77,8 @@ class _Parts:
         volumes: FloatArray = np.bincount(labels, each).astype(np.float64)
         edges = np.diff(points.reshape(-1, 3, 3), axis=1)
         areas: FloatArray = 0.5 * np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1)
-        reach = ROUNDING * np.abs(points).reshape(-1, 9).max(axis=1)
-        reach += _EPSILON * float(np.abs(corners).max())
+        reach = VOLUME_ROUNDING * np.abs(points).reshape(-1, 9).max(axis=1)
+        reach += EPSILON * float(np.abs(corners).max())
         lowest, highest = np.full((len(sizes), 3), math.inf), np.full((len(sizes), 3), -math.inf)
         np.minimum.at(lowest, labels, corners.min(axis=1))
         np.maximum.at(highest, labels, corners.max(axis=1))
@@ -135,11 +127,16 @@ def _point_inside(own: FloatArray, near: FloatArray, inwards: float) -> FloatArr
     ray = inwards / sizes[largest] * normals[largest]
     one, other, from_corner = near[:, 1] - near[:, 0], near[:, 2] - near[:, 0], start - near[:, 0]
     across, back = np.cross(ray, other), np.cross(from_corner, one)
-    touching = TOUCHING * float(np.ptp(own.reshape(-1, 3), axis=0).max())
+    touching = SURFACES_TOUCH * float(np.ptp(own.reshape(-1, 3), axis=0).max())
     with np.errstate(divide="ignore", invalid="ignore"):  # planes along the ray are met nowhere
         slope = _dots(one, across)
         u, v, distance = _dots(from_corner, across) / slope, back @ ray / slope, _dots(other, back) / slope
-        met = (u > -TOUCHING) & (v > -TOUCHING) & (u + v < 1.0 + TOUCHING) & (distance > touching)
+        met = (
+            (u > -SURFACES_TOUCH)
+            & (v > -SURFACES_TOUCH)
+            & (u + v < 1.0 + SURFACES_TOUCH)
+            & (distance > touching)
+        )
         met &= np.isfinite(distance)
     gap = float(distance[met].min()) if met.any() else touching  # none: the part is thinner than that
     point: FloatArray = start + 0.5 * gap * ray

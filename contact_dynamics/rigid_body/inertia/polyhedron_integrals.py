@@ -17,19 +17,27 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contact_dynamics.records import Record
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from contact_dynamics.validation import FloatArray
 
 
-@dataclass(frozen=True, slots=True)
-class Polyhedron:
-    """What triangles enclose."""
+@dataclass(frozen=True, slots=True, repr=False)
+class Polyhedron(Record):
+    """What triangles enclose.
 
-    volume: float  # m^3
-    center_F: FloatArray  # (3,), m
-    second: FloatArray  # (3, 3), m^5, integral of x x^T dV about the centre, F's axes
+    Attributes:
+        volume: m^3.
+        center_F: (3,), m.
+        second: (3, 3), m^5, integral of x x^T dV about the centre, F's axes.
+    """
+
+    volume: float
+    center_F: FloatArray
+    second: FloatArray
 
 
 def polyhedron(p_FV_F: FloatArray, triangles: NDArray[np.int64]) -> Polyhedron:

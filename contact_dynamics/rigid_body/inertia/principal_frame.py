@@ -18,12 +18,10 @@ from typing import TYPE_CHECKING, Final, Generic
 import numpy as np
 
 from contact_dynamics.numerics.arithmetic import DECIMALS, Scalar, within
+from contact_dynamics.tolerances import EXACTLY_EQUAL_MOMENTS
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
-
-EQUAL_MOMENTS: Final = Decimal("1e-110")
-"""Relative to the largest moment. Closer ones are equal: Jacobi's rotations leave this much in 120 digits."""
 
 _MOST_SWEEPS: Final = 30
 """Convergence takes four to eight."""
@@ -31,13 +29,17 @@ _MOST_SWEEPS: Final = 30
 
 @dataclass(frozen=True, slots=True)
 class PrincipalFrame(Generic[Scalar]):
-    """The principal moments in ascending order, and their axes."""
+    """The principal moments in ascending order, and their axes.
 
-    moments: tuple[Scalar, Scalar, Scalar]  # kg m^2
-    gaps: tuple[Scalar, Scalar, Scalar]  # kg m^2, >= 0: middle - small, large - middle, large - small
-    axes_B: tuple[
-        tuple[Scalar, Scalar, Scalar], ...
-    ]  # 3 rows: unit axes, body coordinates, either handedness
+    Attributes:
+        moments: kg m^2.
+        gaps: kg m^2, >= 0: middle - small, large - middle, large - small.
+        axes_B: 3 rows: unit axes, body coordinates, either handedness.
+    """
+
+    moments: tuple[Scalar, Scalar, Scalar]
+    gaps: tuple[Scalar, Scalar, Scalar]
+    axes_B: tuple[tuple[Scalar, Scalar, Scalar], ...]
 
 
 def principal_frame(I_B: FloatArray) -> PrincipalFrame[Decimal]:
@@ -64,9 +66,9 @@ def _of_bytes(data: bytes) -> PrincipalFrame[Decimal]:
         _diagonalise(matrix, axes)
         order = sorted(range(3), key=lambda i: matrix[i][i])
         small, middle, large = (matrix[i][i] for i in order)
-        if middle - small <= EQUAL_MOMENTS * large:
+        if middle - small <= EXACTLY_EQUAL_MOMENTS * large:
             small = middle
-        if large - middle <= EQUAL_MOMENTS * large:
+        if large - middle <= EXACTLY_EQUAL_MOMENTS * large:
             large = middle
         return PrincipalFrame(
             moments=(small, middle, large),
@@ -77,7 +79,7 @@ def _of_bytes(data: bytes) -> PrincipalFrame[Decimal]:
 
 def _diagonalise(matrix: list[list[Decimal]], axes: list[list[Decimal]]) -> None:
     """Make ``matrix`` diagonal, and turn ``axes`` (columns) likewise (Golub and Van Loan, 8.5)."""
-    negligible = EQUAL_MOMENTS / 10**5 * sum(matrix[i][i] for i in range(3))
+    negligible = EXACTLY_EQUAL_MOMENTS / 10**5 * sum(matrix[i][i] for i in range(3))
     for _ in range(_MOST_SWEEPS):
         if all(abs(matrix[p][q]) <= negligible for p, q in ((0, 1), (0, 2), (1, 2))):
             return

@@ -6,7 +6,7 @@ well wound is said in `surface` and `parts`; the integrals are in `polyhedron`.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,13 +17,11 @@ from contact_dynamics.rigid_body.inertia.distribution import MassDistribution, i
 from contact_dynamics.rigid_body.inertia.mass_or_density import mass_of
 from contact_dynamics.rigid_body.inertia.mesh_parts import check_facing
 from contact_dynamics.rigid_body.inertia.polyhedron_integrals import polyhedron, signed_volumes
+from contact_dynamics.tolerances import EPSILON
 from contact_dynamics.validation import FloatArray, check_array, check_magnitude
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
-
-_EPSILON: Final = 2.0**-52
-"""Of coordinates, relative: points within what rounding moves them by lie in one plane."""
 
 
 def mesh(
@@ -67,7 +65,7 @@ def convex_hull(
         raise flat
     points = vertices - vertices.mean(axis=0)
     thickness = float(np.linalg.svd(points, compute_uv=False)[2])
-    if thickness <= _EPSILON * len(vertices) * float(np.abs(vertices).max()):
+    if thickness <= EPSILON * len(vertices) * float(np.abs(vertices).max()):
         raise flat
     try:
         triangles = hull_of("vertices", points).simplices

@@ -5,7 +5,7 @@ This is the choice:
 
 - moments ascend, and the axes are right-handed;
 - of the first and the second axis the largest component is positive (of equally large ones the first; equal
-  means within `TIE`); the third is their cross product;
+  means within `AXIS_TIE`); the third is their cross product;
 - of two equal moments, the axis of the other moment has its largest component positive, and the frame is the
   one nearest to the body's: what the least rotation makes of x, y, z when it takes the body axis nearest to
   that axis onto it; so all three axes point the way of the body axes nearest to them;
@@ -25,8 +25,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.inertia.principal_frame import principal_frame
-from contact_dynamics.tolerances import EQUAL_MOMENTS_TOLERANCE, SYMMETRY_TOLERANCE
+from contact_dynamics.tolerances import AXIS_TIE, EQUAL_MOMENTS_TOLERANCE, SYMMETRY_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array, check_positive, check_unit
 
 if TYPE_CHECKING:
@@ -35,26 +36,35 @@ if TYPE_CHECKING:
 REMEMBERED: Final = 128
 """Bodies whose axes are kept."""
 
-TIE: Final = 1e-9
-"""Dimensionless, between components of a unit axis: far above the rounding of, say, (1, 1, 0) / sqrt(2)."""
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class PrincipalAxes(Record):
+    """Principal moments and axes, in the order and with the signs of this module.
+
+    Attributes:
+        moments: (3,), kg m^2, ascending.
+        R_BP: (3, 3), a rotation; columns: the axis of each moment, body axes.
+    """
+
+    moments: FloatArray
+    R_BP: FloatArray
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PrincipalAxes:
-    """Principal moments and axes, in the order and with the signs of this module."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class InertiaEllipsoid(Record):
+    """The surface r^T I r = a about the centre of mass (lecture 25, eq. 14).
 
-    moments: FloatArray  # (3,), kg m^2, ascending
-    R_BP: FloatArray  # (3, 3), a rotation; columns: the axis of each moment, body axes
+    Attributes:
+        I_B: (3, 3), kg m^2.
+        level: A, kg m^4 where r is in m.
+        semi_axes: (3,), m, descending: sqrt(a / I); inf where a moment is 0.
+        R_BP: (3, 3), columns: their directions, body axes.
+    """
 
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class InertiaEllipsoid:
-    """The surface r^T I r = a about the centre of mass (lecture 25, eq. 14)."""
-
-    I_B: FloatArray  # (3, 3), kg m^2
-    level: float  # a, kg m^4 where r is in m
-    semi_axes: FloatArray  # (3,), m, descending: sqrt(a / I); inf where a moment is 0
-    R_BP: FloatArray  # (3, 3), columns: their directions, body axes
+    I_B: FloatArray
+    level: float
+    semi_axes: FloatArray
+    R_BP: FloatArray
 
     def distance(self, axis_B: ArrayLike) -> float:
         """Return the distance sqrt(a / I_n), m, to the surface along a unit axis, (3,) (lecture 25, eq. 16).
@@ -147,4 +157,4 @@ def _signed(axis: FloatArray) -> FloatArray:
 def _largest(axis: FloatArray) -> int:
     """Return the index of the largest component, the first among equals."""
     size = np.abs(axis)
-    return int(np.argmax(size >= size.max() * (1.0 - TIE)))
+    return int(np.argmax(size >= size.max() * (1.0 - AXIS_TIE)))

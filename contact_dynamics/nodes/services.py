@@ -1,0 +1,113 @@
+"""The three services: which question each answers, and the adapters on both sides of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, Protocol, TypeAlias, TypeVar
+
+from contact_dynamics.questions import contact_modes, impact, tumbling
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from msg_adapters.contact_mode import contact_mode_answer_to_msg
+from msg_adapters.impact import impact_answer_to_msg
+from msg_adapters.questions import (
+    contact_mode_question_from_msg,
+    impact_question_from_msg,
+    tumbling_question_from_msg,
+)
+from msg_adapters.tumbling import tumbling_answer_to_msg
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from contact_dynamics.questions.knowledge import Knowledge
+    from contact_dynamics.world import World
+    from msg_adapters.status import Response
+
+Request: TypeAlias = object
+"""A message, of which only its adapter knows what it holds."""
+
+Question = TypeVar("Question")
+Answer = TypeVar("Answer")
+Question_co = TypeVar("Question_co", covariant=True)
+Answer_contra = TypeVar("Answer_contra", contravariant=True)
+
+
+class ServiceType(Protocol):
+    """What rosidl makes of a service's file."""
+
+    Response: Callable[[], Response]
+    Event: type
+
+
+class FromMsg(Protocol[Question_co]):
+    """Makes a question of a request."""
+
+    def __call__(self, request: Request, /, *, world: World, world_frame: str) -> Question_co:
+        """Return the question."""
+
+
+class ToMsg(Protocol[Answer_contra]):
+    """Makes a response of an answer."""
+
+    def __call__(self, answer: Answer_contra, /, *, world_frame: str, into: Response) -> Response:
+        """Return the response, which is the one to fill."""
+
+
+class Serve(Protocol):
+    """Answers a request."""
+
+    def __call__(
+        self, request: Request, response: Response, knowledge: Knowledge, *, world_frame: str
+    ) -> None:
+        """Fill the response, or raise a `ContactDynamicsError` that says what is wrong with the request."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Service:
+    """A service of the server.
+
+    Attributes:
+        service_type: Its type.
+        type_name: The name of its type.
+        name: Its name below the node's.
+        serve: Answers a request.
+    """
+
+    service_type: ServiceType
+    type_name: str
+    name: str
+    serve: Serve
+
+
+def _serving(
+    from_msg: FromMsg[Question], answer: Callable[[Question, Knowledge], Answer], to_msg: ToMsg[Answer]
+) -> Serve:
+    """Return what takes a request the whole way: to a question, to its answer, to the response."""
+
+    def serve(request: Request, response: Response, knowledge: Knowledge, *, world_frame: str) -> None:
+        question = from_msg(request, world=knowledge.world, world_frame=world_frame)
+        to_msg(answer(question, knowledge), world_frame=world_frame, into=response)
+
+    return serve
+
+
+SERVICES: Final = (
+    Service(
+        service_type=PredictContactMode,
+        type_name="PredictContactMode",
+        name="predict_contact_mode",
+        serve=_serving(contact_mode_question_from_msg, contact_modes.answer, contact_mode_answer_to_msg),
+    ),
+    Service(
+        service_type=PredictImpact,
+        type_name="PredictImpact",
+        name="predict_impact",
+        serve=_serving(impact_question_from_msg, impact.answer, impact_answer_to_msg),
+    ),
+    Service(
+        service_type=PredictTumbling,
+        type_name="PredictTumbling",
+        name="predict_tumbling",
+        serve=_serving(tumbling_question_from_msg, tumbling.answer, tumbling_answer_to_msg),
+    ),
+)

@@ -1,0 +1,44 @@
+"""Which contacts a question is about: those that it names, or those that geometry finds."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from contact_dynamics.contact.found import find_contacts
+from contact_dynamics.errors import NoContactError
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.questions.subject import Subject
+    from contact_dynamics.world import Body, World
+
+
+def contacts_of(
+    named: ContactSet | None, subject: Subject, world: World, *, distance_tolerance: float
+) -> ContactSet:
+    """Return the contacts that a question names; None: those of the body's shape with the world's surfaces.
+
+    Raises:
+        NoContactError: there is none.
+    """
+    if named is not None:
+        if len(named) == 0:
+            message = "contacts: found none, allowed is at least one"
+            raise NoContactError(message)
+        return named
+    body = subject.body
+    check_has_shape(body)
+    contacts = find_contacts(body, subject.state, world.surfaces, distance_tolerance=distance_tolerance)
+    if len(contacts) == 0:
+        message = f"contacts: no point of {body.name!r} is within {distance_tolerance:g} m of a surface"
+        raise NoContactError(message)
+    return contacts
+
+
+def check_has_shape(body: Body) -> None:
+    """Refuse a body without a shape that could touch anything, with `NoContactError`."""
+    if body.shape.is_empty:
+        message = (
+            f"contacts: body {body.name!r} has no shape to find them from, allowed are explicit contacts"
+        )
+        raise NoContactError(message)

@@ -1,0 +1,365 @@
+"""Requests of the three services to questions: the only place that reads a request.
+
+A request says zero or nothing where a question leaves a field out. What it says of things that are not asked
+about, such as a horizon where the contacts are given, is not read.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING, Final, Protocol, TypeVar
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.several.result import SeveralContactsLaw
+from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions.contact_modes import ContactModeQuestion
+from contact_dynamics.questions.problem import Problem
+from contact_dynamics.questions.sample_times import AtRate, AtStamps, AtTimes, UntilContact, UntilPlane
+from contact_dynamics.questions.subject import NEWEST, PublishedState, changed_body
+from contact_dynamics.questions.tumbling import TumblingQuestion
+from contact_dynamics.questions.which_impact import ImpactQuestion, InTime
+from contact_dynamics.validation import check_not_negative
+from contact_dynamics.world import Body
+from msg_adapters.body_state import known_state_from_msg
+from msg_adapters.contacts import contacts_from_msg
+from msg_adapters.geometry import mass_properties_from_msg, vector_from_msg
+from msg_adapters.stamps import stamp_ns_from_msg
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from builtin_interfaces.msg import Time
+    from geometry_msgs.msg import Inertia, Vector3
+
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.numerics.vectors import Vector3 as Vector
+    from contact_dynamics.questions.sample_times import Sampling
+    from contact_dynamics.questions.subject import StateSource
+    from contact_dynamics.rigid_body.body import MassProperties
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import World
+    from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
+    from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
+    from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+
+_LONGEST_NAME: Final = 256
+_REMEMBERED: Final = 16  # bodies that requests describe; who sends an inertia sends it with every request
+
+_NO_GRAVITY: Final = np.zeros(3)
+_WRENCH_FIELDS: Final = {
+    "force": "applied_wrench.force",
+    "torque": "applied_wrench.torque",
+    "force_W": "applied_wrench.force",
+    "torque_W": "applied_wrench.torque",
+}
+"""What a request calls the fields of a wrench, by their own names."""
+
+T = TypeVar("T", bound=InvalidFieldError)
+
+
+class _SubjectRequest(Protocol):
+    """What the requests of all services say of the body."""
+
+    STATE_PUBLISHED: int
+    STATE_EXPLICIT: int
+    body_name: str
+    inertia: Inertia
+    state_source: int
+    stamp: Time
+    state: BodyStateMsg
+
+
+class _ContactRequest(Protocol):
+    """What requests say of contacts."""
+
+    CONTACTS_FROM_GEOMETRY: int
+    CONTACTS_EXPLICIT: int
+    contact_source: int
+    contacts: ContactSetMsg
+
+
+class _GravityRequest(Protocol):
+    """What requests say of gravity."""
+
+    GRAVITY_AS_CONFIGURED: int
+    GRAVITY_NONE: int
+    gravity: int
+
+
+def tumbling_question_from_msg(
+    request: PredictTumbling.Request, *, world: World, world_frame: str
+) -> TumblingQuestion:
+    """Return the question of a `PredictTumbling` request.
+
+    Args:
+        request: The request.
+        world: The bodies that it can name.
+        world_frame: The frame that an explicit state must be in.
+
+    Raises:
+        ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
+    """
+    gravity_W, wrench, drag = _gravity(request), _wrench(request), _drag(request)
+    body, state = _subject(request, world, world_frame, fit_window=request.fit_window)
+    return TumblingQuestion(
+        body=body,
+        state=state,
+        sampling=_sampling(request),
+        gravity_W=gravity_W,
+        wrench=wrench,
+        drag=drag,
+        want_covariance=request.want_covariance,
+        curve_points=request.curve_points,
+    )
+
+
+def impact_question_from_msg(
+    request: PredictImpact.Request, *, world: World, world_frame: str
+) -> ImpactQuestion:
+    """Return the question of a `PredictImpact` request.
+
+    Args:
+        request: The request.
+        world: The bodies that it can name.
+        world_frame: The frame that explicit states must be in.
+
+    Raises:
+        ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
+    """
+    problem = _problem(request.problem)
+    is_planar = problem is Problem.PLANAR
+    body, state = _subject(request, world, world_frame, fit_window=request.fit_window)
+    other, other_state = _other(request, world, world_frame)
+    contacts = _contacts(request)
+    return ImpactQuestion(
+        body=body,
+        state=state,
+        other=other,
+        other_state=other_state,
+        contacts=contacts,
+        horizon=request.horizon or None if contacts is None else None,
+        restitution_law=_restitution_law(request.restitution_law),
+        several_contacts_law=_several_contacts_law(request),
+        want_orders=request.want_orders,
+        want_covariance=request.want_covariance,
+        problem=problem,
+        plane=_plane(request.plane_normal) if is_planar else None,
+        out_of_plane_tolerance=request.out_of_plane_tolerance or None if is_planar else None,
+        velocity_tolerance=request.velocity_tolerance or None,
+        distance_tolerance=request.distance_tolerance or None,
+    )
+
+
+def contact_mode_question_from_msg(
+    request: PredictContactMode.Request, *, world: World, world_frame: str
+) -> ContactModeQuestion:
+    """Return the question of a `PredictContactMode` request.
+
+    Args:
+        request: The request.
+        world: The bodies that it can name.
+        world_frame: The frame that an explicit state must be in.
+
+    Raises:
+        ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
+    """
+    problem = _problem(request.problem)
+    may_be_planar = problem is not Problem.SPATIAL
+    body, state = _subject(request, world, world_frame)
+    contacts = _contacts(request)
+    compares_torques = request.want_margins or request.want_statics
+    try:
+        return ContactModeQuestion(
+            body=body,
+            state=state,
+            contacts=contacts,
+            force_W=vector_from_msg(request.applied_wrench.force),
+            torque_W=vector_from_msg(request.applied_wrench.torque),
+            gravity_W=_gravity(request),
+            problem=problem,
+            plane=_plane(request.plane_normal) if may_be_planar else None,
+            out_of_plane_tolerance=request.out_of_plane_tolerance or None if may_be_planar else None,
+            velocity_tolerance=request.velocity_tolerance or None,
+            distance_tolerance=request.distance_tolerance or None,
+            friction_facets=int(request.friction_facets),
+            margin_length=request.margin_length if compares_torques else None,
+            want_margins=request.want_margins,
+            want_wrenches=request.want_wrenches,
+            want_statics=request.want_statics,
+            want_impact=request.want_impact,
+        )
+    except InvalidFieldError as error:
+        raise _renamed(error, _WRENCH_FIELDS) from None
+
+
+def _subject(
+    request: _SubjectRequest, world: World, world_frame: str, *, fit_window: float = 0.0
+) -> tuple[Body, StateSource]:
+    """Return the body that a request names or describes, and where its state comes from."""
+    is_explicit = request.state_source == request.STATE_EXPLICIT
+    if not is_explicit and request.state_source != request.STATE_PUBLISHED:
+        raise InvalidFieldError(
+            "state_source", request.state_source, "STATE_PUBLISHED (0) or STATE_EXPLICIT (1)"
+        )
+    if is_explicit and check_not_negative("fit_window", fit_window) > 0.0:
+        raise InvalidFieldError(
+            "fit_window", fit_window, "0 for an explicit state: published states are fitted"
+        )
+    body = _body(request.body_name, request.inertia, world)
+    if is_explicit:
+        return body, known_state_from_msg(request.state, world_frame=world_frame, p_FB_F=body.p_FB_F)
+    return body, _published(request.stamp, fit_window)
+
+
+def _other(request: PredictImpact.Request, world: World, world_frame: str) -> tuple[Body | None, StateSource]:
+    """Return the second body of an impact, and where its state comes from; None: the world is struck."""
+    explicit = request.other_state[0] if request.other_state else None
+    if not request.other_body_name and request.other_inertia.m == 0.0 and explicit is None:
+        return None, NEWEST
+    body = _body(request.other_body_name, request.other_inertia, world)
+    if explicit is None:
+        return body, _published(request.stamp)
+    return body, known_state_from_msg(explicit, world_frame=world_frame, p_FB_F=body.p_FB_F)
+
+
+def _body(name: str, inertia: Inertia, world: World) -> Body:
+    if len(name) > _LONGEST_NAME:
+        raise TooLargeError("body_name", f"{len(name)} characters", f"at most {_LONGEST_NAME}")
+    if not name and inertia.m == 0.0:
+        raise InvalidFieldError("body_name", name, "the name of a configured body, or an inertia of mass > 0")
+    known = world.body(name) if name else None
+    if known is not None and inertia.m == 0.0:
+        return known
+    mass_properties, p_FB_F = mass_properties_from_msg(inertia)
+    return _described_body(mass_properties, tuple(p_FB_F.tolist()), known)
+
+
+@lru_cache(maxsize=_REMEMBERED)
+def _described_body(mass_properties: MassProperties, com: Vector, known: Body | None) -> Body:
+    """Return a body of the mass properties that a request describes, with the shape that is known of it."""
+    if known is None:
+        return Body(name="", mass_properties=mass_properties, p_FB_F=com)
+    return changed_body(known, mass_properties, np.array(com))
+
+
+def _published(stamp: Time, fit_window: float = 0.0) -> PublishedState:
+    stamp_ns = stamp_ns_from_msg(stamp)
+    if stamp_ns == 0 and fit_window == 0.0:
+        return NEWEST
+    return PublishedState(stamp_ns=stamp_ns or None, fit_window=fit_window)
+
+
+def _contacts(request: _ContactRequest) -> ContactSet | None:
+    """Return the contacts that a request carries; None: geometry finds them."""
+    if request.contact_source == request.CONTACTS_EXPLICIT:
+        return contacts_from_msg(request.contacts)
+    if request.contact_source == request.CONTACTS_FROM_GEOMETRY:
+        return None
+    raise InvalidFieldError(
+        "contact_source", request.contact_source, "CONTACTS_FROM_GEOMETRY (0) or CONTACTS_EXPLICIT (1)"
+    )
+
+
+def _gravity(request: _GravityRequest) -> FloatArray | None:
+    """Return the acceleration of gravity that a request asks for; None: as configured."""
+    if request.gravity == request.GRAVITY_AS_CONFIGURED:
+        return None
+    if request.gravity == request.GRAVITY_NONE:
+        return _NO_GRAVITY
+    raise InvalidFieldError("gravity", request.gravity, "GRAVITY_AS_CONFIGURED (0) or GRAVITY_NONE (1)")
+
+
+def _wrench(request: PredictTumbling.Request) -> ConstantWrench:
+    wrench = request.applied_wrench
+    force, torque = wrench.force, wrench.torque
+    if not any((force.x, force.y, force.z, torque.x, torque.y, torque.z)):
+        return NO_WRENCH
+    try:
+        return ConstantWrench(
+            force=vector_from_msg(force),
+            torque=vector_from_msg(torque),
+            axes=WrenchAxes.BODY if request.wrench_in_body_axes else WrenchAxes.WORLD,
+        )
+    except InvalidFieldError as error:
+        raise _renamed(error, _WRENCH_FIELDS) from None
+
+
+def _drag(request: PredictTumbling.Request) -> Drag:
+    linear, quadratic = request.linear_drag, request.quadratic_drag
+    linear_angular, quadratic_angular = request.linear_angular_drag, request.quadratic_angular_drag
+    if not any((linear, quadratic, linear_angular, quadratic_angular)):
+        return NO_DRAG
+    return Drag(
+        linear=linear,
+        quadratic=quadratic,
+        linear_angular=linear_angular,
+        quadratic_angular=quadratic_angular,
+    )
+
+
+def _sampling(request: PredictTumbling.Request) -> Sampling:
+    if request.sampling == request.AT_TIMES:
+        return AtTimes(times=request.times)
+    if request.sampling == request.AT_STAMPS:
+        return AtStamps(stamps_ns=request.stamps_ns)
+    rate, duration = request.rate or None, request.duration or None
+    if request.sampling == request.AT_RATE:
+        return AtRate(rate=rate, duration=duration)
+    if request.sampling == request.UNTIL_CONTACT:
+        return UntilContact(rate=rate, duration=duration)
+    if request.sampling == request.UNTIL_PLANE:
+        return UntilPlane(
+            rate=rate,
+            duration=duration,
+            plane_point=vector_from_msg(request.plane_point),
+            plane_normal=vector_from_msg(request.plane_normal),
+            body_point=vector_from_msg(request.body_point),
+        )
+    allowed = "AT_TIMES (0), AT_STAMPS (1), AT_RATE (2), UNTIL_CONTACT (3) or UNTIL_PLANE (4)"
+    raise InvalidFieldError("sampling", request.sampling, allowed)
+
+
+def _problem(value: int) -> Problem:
+    try:
+        return Problem(value)
+    except ValueError:
+        raise InvalidFieldError("problem", value, "AUTOMATIC (0), PLANAR (1) or SPATIAL (2)") from None
+
+
+def _plane(normal: Vector3) -> PlaneOfMotion | None:
+    """Return the plane of motion that a request names; None: the one that fits best."""
+    if not any((normal.x, normal.y, normal.z)):
+        return None
+    return PlaneOfMotion(normal_W=vector_from_msg(normal))
+
+
+def _restitution_law(value: int) -> RestitutionLaw:
+    try:
+        return RestitutionLaw(value)
+    except ValueError:
+        allowed = ", ".join(f"{law.name} ({law.value})" for law in RestitutionLaw)
+        raise InvalidFieldError("restitution_law", value, allowed) from None
+
+
+def _several_contacts_law(request: PredictImpact.Request) -> SeveralContactsLaw | InTime:
+    value = request.several_contacts_law
+    if value == request.SEQUENTIAL_IN_TIME:
+        return InTime(
+            strike_window=request.strike_window,
+            most_strikes=request.most_strikes,
+            hold_step=request.hold_step,
+        )
+    try:
+        return SeveralContactsLaw(value)
+    except ValueError:
+        allowed = "SEQUENTIAL (0), SIMULTANEOUS (1), SEQUENTIAL_IN_TIME (2)"
+        raise InvalidFieldError("several_contacts_law", value, allowed) from None
+
+
+def _renamed(error: T, names: Mapping[str, str]) -> T:
+    """Return an error with the field as the request calls it."""
+    return type(error)(names.get(error.field, error.field), error.found, error.allowed)

@@ -1,0 +1,92 @@
+"""What users see: a first page, and chapters that say what is in them."""
+
+from __future__ import annotations
+
+import importlib
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+import contact_dynamics
+
+CHAPTERS = (
+    "rigid_body",
+    "rigid_body.inertia",
+    "tumbling",
+    "motion",
+    "shapes",
+    "contact",
+    "plane",
+    "landing",
+    "contact_modes",
+    "impact",
+    "questions",
+)
+MOST_ON_THE_FIRST_PAGE = 30
+
+
+def door(chapter: str) -> ModuleType:
+    return importlib.import_module(f"contact_dynamics.{chapter}")
+
+
+def test_the_first_page_is_short() -> None:
+
+    first = [
+        name
+        for name in contact_dynamics.__all__
+        if not isinstance(getattr(contact_dynamics, name), ModuleType)
+    ]
+    assert len(first) <= MOST_ON_THE_FIRST_PAGE
+    chapters = {chapter.rpartition(".")[2] for chapter in CHAPTERS}
+    assert {*first, *chapters} == set(contact_dynamics.__all__)
+
+
+@pytest.mark.parametrize("chapter", ["", *CHAPTERS])
+def test_completion_shows_what_is_for_users(chapter: str) -> None:
+    module = door(chapter) if chapter else contact_dynamics
+    assert set(dir(module)) - {"__version__"} == set(module.__all__)
+    assert all(hasattr(module, name) for name in module.__all__)
+
+
+@pytest.mark.parametrize("chapter", CHAPTERS)
+def test_no_name_hides_a_file(chapter: str) -> None:
+    """`import contact_dynamics.x.y as m` gives the file, not a function of its name."""
+    module = door(chapter)
+    folder = Path(module.__file__ or "").parent
+    files = {path.stem for path in folder.glob("*.py")} | {path.parent.name for path in folder.glob("*/*.py")}
+    for name in files & set(vars(module)) - {"__init__"}:
+        assert isinstance(getattr(module, name), ModuleType), name
+
+
+@pytest.mark.parametrize("chapter", CHAPTERS)
+def test_a_chapters_page_names_its_files(chapter: str) -> None:
+    """Every file and folder of it stands in its docstring, and nothing that is no longer there."""
+    module = door(chapter)
+    folder = Path(module.__file__ or "").parent
+    page = module.__doc__ or ""
+    for path in folder.iterdir():
+        if path.stem not in {"__init__", "__pycache__"} and (path.suffix == ".py" or path.is_dir()):
+            assert f"`{path.stem}`" in page, f"{chapter}: {path.stem}"
+
+
+def test_a_name_means_one_thing() -> None:
+    """What two pages show is the same object, but for shapes: a box of mass, and the shape of a box."""
+    seen: dict[str, object] = {}
+    for chapter in CHAPTERS:
+        module = door(chapter)
+        for name in module.__all__:
+            if chapter != "shapes":
+                assert seen.setdefault(name, getattr(module, name)) is getattr(module, name), name
+    # `contact_modes` has a function of its name, which the first page does not show.
+    chapters = {chapter.rpartition(".")[2] for chapter in CHAPTERS}
+    for name in set(contact_dynamics.__all__) - chapters:
+        assert seen.get(name, getattr(contact_dynamics, name)) is getattr(contact_dynamics, name), name
+
+
+def test_the_whole_library_is_imported_without_scipy() -> None:
+    """Its import takes longer than all of ours."""
+    code = "import sys, contact_dynamics; sys.exit('scipy' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
