@@ -19,7 +19,13 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 
 from contact_dynamics.numerics.arithmetic import DECIMALS, within
-from contact_dynamics.tolerances import INDEPENDENT_FORCES, WRENCH_ROUNDING
+from contact_dynamics.tolerances import (
+    DECIMALS_MET,
+    DECIMALS_ZERO,
+    INDEPENDENT_FORCES,
+    TARGET_ROUNDING,
+    WRENCH_ROUNDING,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,16 +33,8 @@ if TYPE_CHECKING:
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.validation import FloatArray
 
-_NOTHING: Final = Decimal("1e-60")
-"""Relative: what decimals of `DECIMALS.sums` leave of zero, with room for products of products."""
-
-_ROUNDED: Final = Decimal("1e-14")
-"""Relative: the target's own rounding. Columns that differ by no more would need huge shares to meet it."""
-
 _LARGEST_SHARE: Final = 1e13
-
-_MET: Final = Decimal("1e-30")
-"""Relative: what may be left over where all is met."""
+"""Of the target, that one column may have for the target to count as reached."""
 
 _GUESSES: Final = 30
 """After which a search for the least forces is given up; it takes a few."""
@@ -140,7 +138,9 @@ def _least_exact_forces(rows: list[_Decimals], right: _Decimals) -> dict[int, De
         if pushing == acting:
             met = [sum((sizes[i] * rows[i][j] for i in acting), Decimal(0)) for j in range(3)]
             wrong = max(abs(a - b) for a, b in zip(met, right, strict=True))
-            return {i: sizes[i] for i in acting} if wrong <= _MET * _inner(right, right).sqrt() else None
+            return (
+                {i: sizes[i] for i in acting} if wrong <= DECIMALS_MET * _inner(right, right).sqrt() else None
+            )
         acting = pushing
     return None
 
@@ -150,9 +150,9 @@ def _few_exact_forces(rows: list[_Decimals], right: _Decimals) -> dict[int, Deci
     acting: dict[int, Decimal] = {}
     left = list(right)
     size = _inner(right, right).sqrt()
-    nothing = _NOTHING * size
+    nothing = DECIMALS_ZERO * size
     for _ in range(10 * len(rows)):
-        if _inner(left, left).sqrt() <= _ROUNDED * size:
+        if _inner(left, left).sqrt() <= TARGET_ROUNDING * size:
             break
         help_of = [(_inner(row, left), -i) for i, row in enumerate(rows) if i not in acting]
         most, best = max(help_of, default=(Decimal(0), 0))
@@ -182,7 +182,7 @@ def _solution(matrix: list[_Decimals], right: _Decimals) -> _Decimals:
     """Return an x with matrix @ x = right for a symmetric matrix, singular ones included."""
     count = len(right)
     table = [[*row, value] for row, value in zip(matrix, right, strict=True)]
-    smallest = _NOTHING * max((abs(value) for row in matrix for value in row), default=Decimal(0))
+    smallest = DECIMALS_ZERO * max((abs(value) for row in matrix for value in row), default=Decimal(0))
     x = [Decimal(0)] * count
     pivots: list[tuple[int, int]] = []
     for column in range(count):

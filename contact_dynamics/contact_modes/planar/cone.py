@@ -24,7 +24,7 @@ import numpy as np
 
 from contact_dynamics.numerics.arithmetic import DECIMALS, within
 from contact_dynamics.numerics.vectors import AXES, Vector3, cross, dot, opposite, tangents
-from contact_dynamics.tolerances import CLEAR_ROWS, SAME_ROWS
+from contact_dynamics.tolerances import CLEAR_ROWS, SAME_ROWS, SAME_SHARP_ROWS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -36,11 +36,6 @@ if TYPE_CHECKING:
 _WIDE: Final = 0.1  # sine: planes that meet at more serve to start with, without a look at the others
 MANY: Final = 24
 """Rows, from which on arrays are faster."""
-
-
-_SAME_SHARP: Final = 1e-14
-"""The sine below which rows that are known better than to floats are one: friction that never slips leaves of
-a contact's normal no more than 1e-10 of the tangent, and short arms less."""
 
 
 class _NotClearError(Exception):
@@ -95,7 +90,7 @@ class PolyhedralCone:
             except _NotClearError:
                 self.exact = True
         if self.exact:
-            self._same = SAME_ROWS if sharp is None else _SAME_SHARP
+            self._same = SAME_ROWS if sharp is None else SAME_SHARP_ROWS
             with within(DECIMALS.sums):
                 known = [decimal_vector(row) for row in rows] if sharp is None else sharp()
                 self._build([_unit(row) for row in known])

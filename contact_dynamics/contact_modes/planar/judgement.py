@@ -18,6 +18,7 @@ from contact_dynamics.contact_modes.planar.result import PlanarMode
 from contact_dynamics.contact_modes.planar.wrench_cone import ModeWrenches
 from contact_dynamics.contact_modes.result import Refusal, RefusedMode
 from contact_dynamics.numerics.vectors import Vector3, dot, norm
+from contact_dynamics.tolerances import FORCES_ROUNDING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
 
 _EVIDENCE: Final = 3.0
 """By how many tolerances forces may miss what the letters say."""
-
-_ROUNDING: Final = 1e-13  # relative to the forces: what sums of them leave
 
 
 def judge_all(
@@ -78,7 +77,7 @@ def _judged(
         f_t, f_n = sums[position]
         sums[position] = (f_t + slope * share, f_n + share)
     forces = [sums[position] for position, _ in cell.letters]
-    allowed = _EVIDENCE * (accuracy + _ROUNDING) * (case.load + sum(shares))
+    allowed = _EVIDENCE * (accuracy + FORCES_ROUNDING) * (case.load + sum(shares))
     if wrenches.dual.exact:
         # So close to the boundary that the strict inequalities are lost in what forces round to.
         lost = _contradiction(case, cell, forces)
@@ -155,7 +154,7 @@ def _contradiction(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> tuple
             value = value if letter == RIGHT else -value
         else:
             continue
-        if value <= _ROUNDING * length * size:
+        if value <= FORCES_ROUNDING * length * size:
             return row.contact, value
     return None
 

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.impact.law import RestitutionLaw
-from contact_dynamics.tolerances import SWEEPS_CONVERGED
+from contact_dynamics.tolerances import SAME_IMPULSES, SWEEPS_CONVERGED
 from contact_dynamics.validation import FloatArray
 
 if TYPE_CHECKING:
@@ -35,9 +35,6 @@ MOST_SWEEPS: Final = 5000
 
 _MOST_STEPS: Final = 20_000
 """Steps of all contacts at once, which are smaller than those of one after the other, and cheaper."""
-
-_AGREE: Final = 1e-8
-"""Relative to the largest impulse: two ways to a solution that differ by less have found the same one."""
 
 
 class _Problem(NamedTuple):
@@ -127,7 +124,7 @@ def _solve(
         canonical = tuple(sorted(listed, key=lambda i: values[i].tolist()))
         together, also = _in_turn(problem, canonical)
     size = float(np.abs(together).max())
-    if converged and (not also or float(np.abs(impulses - together).max()) <= _AGREE * size):
+    if converged and (not also or float(np.abs(impulses - together).max()) <= SAME_IMPULSES * size):
         return impulses, converged
     return together, also
 
