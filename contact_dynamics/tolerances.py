@@ -192,6 +192,43 @@ the cosine's second order."""
 
 # landing
 
+SAME_ROWS: Final = 1e-11
+"""Dimensionless, in the plane: the sine below which contact planes, and wrenches, are one where modes are
+enumerated, and the part of the radius of gyration (or of the arm, if longer) and of the unit normal within
+which contacts are one. Some 1e5 roundings of the input, and far below what any sensor resolves."""
+
+CLEAR_ROWS: Final = 1e-4
+"""Dimensionless: the sine above which floats tell contact planes, and wrenches, apart, to within `SAME_ROWS`.
+Between the two, what is the case is found with more digits."""
+
+DECIMALS_ZERO: Final = Decimal("1e-60")
+"""Relative: what decimals of `DECIMALS.sums` leave of zero, with room for products of products."""
+
+TARGET_ROUNDING: Final = Decimal("1e-14")
+"""Relative: the target's own rounding. Columns that differ by no more would need huge shares to meet it."""
+
+DECIMALS_MET: Final = Decimal("1e-30")
+"""Relative: what may be left over where all is met."""
+
+SAME_SHARP_ROWS: Final = 1e-14
+"""The sine below which rows that are known better than to floats are one: friction that never slips leaves of
+a contact's normal no more than 1e-10 of the tangent, and short arms less."""
+
+INDEPENDENT_EQUATIONS: Final = 1e-6
+"""The pivot of unit rows below which equations do not count as independent: their solution would carry more
+rounding than the accuracy asked for."""
+
+FORCES_ROUNDING: Final = 1e-13
+"""Relative to the forces: what sums of them leave."""
+
+SAME_IMPULSES: Final = 1e-8
+"""Relative to the largest impulse: two ways to a solution that differ by less have found the same one."""
+
+LARGEST_GRIP: Final = 1e10
+"""Dimensionless, in the plane: a coefficient of friction above it, or above it divided by the contact's arm
+in radii of gyration, acts as that one does. They differ in forces whose normal part is less than 1e-10 of
+the wrench of the tangential one, below what wrenches are known to."""
+
 GRAZING_DEPTH: Final = 1e-9
 """m. A point that dips into a plane by less, and rises again, may be overlooked by the search for the first
 contact; deeper ones never are. Far below what sensors resolve, and enough for the search not to creep."""
