@@ -28,7 +28,7 @@ from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.parameters import read_server_parameters, refuse_unknown_parameters
 from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.services import SERVICES
-from contact_dynamics.nodes.state_subscriptions import STATE_QOS, subscribe_to_states
+from contact_dynamics.nodes.state_subscriptions import STATE_QOS, present_ns, subscribe_to_states
 from contact_dynamics.questions.knowledge import Knowledge
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics_interfaces.srv import PredictTumbling
@@ -67,7 +67,11 @@ class Server(Node):
         parameters = read_server_parameters(self)
         # One file may configure both nodes.
         refuse_unknown_parameters(self, also_known=VISUALIZER_PARAMETERS)
-        states = StateStore(history=parameters.state_history, timeout=parameters.state_timeout)
+        states = StateStore(
+            history=parameters.state_history,
+            timeout=parameters.state_timeout,
+            future_tolerance=parameters.future_tolerance,
+        )
         # A simulation or a log that is played again: without this its new states would count as old ones.
         set_back = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
         self._jumps = self.get_clock().create_jump_callback(set_back, post_callback=lambda _: states.clear())
@@ -75,7 +79,7 @@ class Server(Node):
             world=parameters.world,
             states=states,
             defaults=parameters.defaults,
-            now_ns=lambda: self.get_clock().now().nanoseconds,
+            now_ns=lambda: present_ns(self),
         )
         self._world_frame = parameters.world_frame
         self._log = Log(
