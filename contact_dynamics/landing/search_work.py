@@ -13,7 +13,7 @@ to a surface some thirty."""
 SEARCH_BEGUN: Final = 5
 """Steps that a search counts for before its first one: what it takes to set it up."""
 
-OBSTACLE_STEP: Final = 10
+OBSTACLE_STEP: Final = 25
 """Steps that one beside an obstacle counts for, where the plane that separates best is found anew."""
 
 

@@ -223,7 +223,7 @@ class _WaitingStates(StateStore):
         self._waiting: dict[str, list[BodyState]] = {}
 
     def add(self, body_name: str, state: BodyState, *, now_ns: int | None = None) -> None:  # noqa: ARG002
-        """Keep a state whatever its stamp: a log's are not of this clock, and what is drawn misleads nobody."""
+        """Keep a state whatever its stamp: those of a log are not of this clock."""
         self._waiting.setdefault(body_name, []).append(state)
 
     def take(self) -> dict[str, list[BodyState]]:

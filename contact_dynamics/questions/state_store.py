@@ -19,9 +19,7 @@ keeps differ by far less."""
 class StateStore:
     """States by body, sorted by their stamps; older ones than the history are dropped as new ones come."""
 
-    def __init__(
-        self, *, history: float, timeout: float, future_tolerance: float = FUTURE_TOLERANCE
-    ) -> None:
+    def __init__(self, *, history: float, timeout: float, future_tolerance: float = FUTURE_TOLERANCE) -> None:
         """Begin without states.
 
         Args:

@@ -124,7 +124,9 @@ def test_a_state_from_the_future_never_becomes_the_newest() -> None:
     states = StateStore(history=10.0, timeout=0.5, future_tolerance=0.1)
     states.add("cube", rising(0), now_ns=0)
     states.add("cube", rising(100 * MS), now_ns=0)
-    with pytest.raises(InvalidFieldError, match=r"stamp: found 0\.101 s ahead of the clock, allowed is at most"):
+    with pytest.raises(
+        InvalidFieldError, match=r"stamp: found 0\.101 s ahead of the clock, allowed is at most"
+    ):
         states.add("cube", rising(101 * MS), now_ns=0)
     assert states.newest("cube", now_ns=0).stamp_ns == 100 * MS
 

@@ -41,8 +41,8 @@ MOST_ORDERS: Final = 120
 """Orders that `outcomes_over_orders` tries: all of them up to five contacts."""
 
 MOST_STRIKES_OVER_ORDERS: Final = 6000
-"""Strikes of all these orders together, some 2 s of computing. An order takes ten or twenty, but where contacts
-throw each other back for long."""
+"""Strikes of all these orders together, some 2 s of computing. An order takes ten or twenty, and more only
+where contacts throw each other back for long."""
 
 
 def several_impact(

@@ -33,8 +33,8 @@ MOST_SWEEPS: Final = 5000
 """Sweeps after which the problem counts as not converged."""
 
 MOST_PROJECTIONS: Final = 100_000
-"""Projections of one contact's impulse in one problem, some 2 s of computing. Up to 20 contacts, `MOST_SWEEPS`
-end before."""
+"""Projections of one contact's impulse in one problem, some 2 s of computing. Up to 20 contacts,
+`MOST_SWEEPS` come before."""
 
 
 def simultaneous_impulses(
