@@ -11,7 +11,7 @@ import rerun.blueprint as rrb
 
 from contact_dynamics import Body, BodyState, ContactSet, MassProperties
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions import ImpactQuestion, Problem, impact
+from contact_dynamics.questions import ImpactQuestion, Problem, ask
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.impulse_space import draw_impulse_space
 from contact_dynamics.viewing.words import outcome_in_words
@@ -39,7 +39,7 @@ with rr.RecordingStream("contact_dynamics") as recording:
             problem=Problem.PLANAR,
             plane=PlaneOfMotion(normal_W=[0.0, -1.0, 0.0]),
         )
-        answer = impact.answer(question)
+        answer = ask(question)
         struck = answer.impact
         ((t, _, n),), outcome = struck.impulses_W, outcome_in_words(struck.outcome)
         if struck.jams:

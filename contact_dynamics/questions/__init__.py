@@ -10,7 +10,7 @@ body be: lectures 24, 25), `impact` (which velocities follow: lecture 27; the qu
 (the world, defaults, and in a `state_store` what was published), `subject` (which body, in which state),
 `sample_times` (when), `touching` (which contacts), `extent` (how large numbers may be) and `problem` (in a
 plane or in space). Answers tell every impact alike (`resolved_impact`), modes of a plane in world axes
-(`lifted_modes`), and what follows an inconsistency (`settled_impact`).
+(`lifted_modes`) and back (`planar_view`), and what follows an inconsistency (`settled_impact`).
 """
 
 from contact_dynamics.questions.asking import ask

@@ -1,11 +1,12 @@
 """The log: every state received and every request and response, in MCAP as rosbag2 of Jazzy lays it out.
 
 Writing: `BagWriter` (one thread), `Recorder` (beside a server). Reading: `BagReader`, `service_calls`,
-`decode`.
+`decode` with the classes of ROS, `decode_without_ros` with the definitions in the log.
 """
 
 from contact_dynamics.recording.bag_reader import BagReader, LoggedMessage
 from contact_dynamics.recording.bag_writer import BagWriter
+from contact_dynamics.recording.cdr import decode_without_ros
 from contact_dynamics.recording.decoding import decode
 from contact_dynamics.recording.errors import DamagedLogWarning, LogExistsError, LogFailedError, NotALogError
 from contact_dynamics.recording.mcap_walk import Loss
@@ -28,5 +29,6 @@ __all__ = [
     "RecorderStatus",
     "ServiceCall",
     "decode",
+    "decode_without_ros",
     "service_calls",
 ]

@@ -49,6 +49,7 @@ SEQUENCE_ENDS: Final = {
     SequenceEnd.STAYS: "a contact stays",
     SequenceEnd.CHATTERS: "it chatters to rest at a contact",
     SequenceEnd.MOST_STRIKES: "the bound on their number was reached",
+    SequenceEnd.WINDOW_ENDED: "the window ended",
 }
 """What follows the last of several strikes in time."""
 
