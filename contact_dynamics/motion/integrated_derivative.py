@@ -44,7 +44,7 @@ PIECE: Final = 0.5
 some (PIECE / 4)^8 / 8!, 1e-12, in the middle of a piece, and by far less at its end."""
 
 MOST_PIECES: Final = 5000
-"""Pieces in one direction of time: 0.5 GB, and some 2 s of computing. A turn takes some twenty."""
+"""Pieces in one direction of time: 0.2 GB, and some seconds of computing. A turn takes some twenty."""
 
 P, THETA, V, W = (slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12))
 """Rows and columns of the parts of a state; in the equations the last is dL / I_max, rad/s."""
