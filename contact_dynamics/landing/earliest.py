@@ -29,11 +29,11 @@ class Landing(Record):
     """The end of a flight: the body touches.
 
     Attributes:
-        seconds: s after the state's stamp; 0 where it touches already.
-        state: Just then.
-        contacts: That touch and do not leave; more than one where an edge or a face lands.
-        velocities_W: (n, 3), m/s, of the body's points at the contacts, world axes.
-        strikes: Whether one of them approaches faster than the velocity tolerance: an impact.
+        seconds: Time of the landing, s after the state's stamp; 0 if the body touches already.
+        state: The state of the body at that time.
+        contacts: The contacts that touch and do not leave. An edge or a face has more than one.
+        velocities_W: (n, 3), m/s, velocities of the body's points at the contacts, world axes.
+        strikes: Whether a contact approaches faster than the velocity tolerance, so that there is an impact.
     """
 
     seconds: float
@@ -53,15 +53,16 @@ def next_landing(
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     motion: Motion | None = None,
 ) -> Landing | None:
-    """Return where a body's flight ends within ``horizon`` (s), or None: it flies at least until then.
+    """Return where a body's flight ends within ``horizon`` (s), or None if it flies at least until then.
 
     A point within ``distance_tolerance`` (m) of a surface touches it. A body that touches flies only if each
-    of its contacts leaves faster than ``velocity_tolerance`` (m/s); what counts then is where it comes down.
-    ``motion`` is the flight, in closed form or under forces; None: that of the state in the world's gravity.
+    of its contacts leaves faster than ``velocity_tolerance`` (m/s). Then the next landing is returned.
+    ``motion`` is the flight, in closed form or under forces. The default is the flight from the state in the
+    world's gravity.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
-        InvalidFieldError: a horizon or a tolerance that is negative or not finite.
+        InvalidFieldError: the horizon or a tolerance is negative or not finite.
     """
     check_has_shape(body)
     check_not_negative("horizon", horizon)

@@ -1,7 +1,7 @@
 """The log: every state received and every request and response, in MCAP as rosbag2 of Jazzy lays it out.
 
-Writing: `BagWriter` (one thread), `Recorder` (beside a server). Reading: `BagReader`, `service_calls`,
-`decode`.
+`BagWriter` writes a log from one thread, and `Recorder` writes it beside a server. `BagReader`,
+`service_calls` and `decode` read it.
 """
 
 from contact_dynamics.recording.bag_reader import BagReader, LoggedMessage

@@ -1,6 +1,7 @@
 """Rigid bodies (Mason, lectures 24 and 25): mass properties, states, momenta and energies.
 
-`body` has a body's mass properties, its state, and what follows from the two. `inertia` makes mass
+`body` has a body's mass properties, its state, and what follows from the two. `published_frame` converts
+between the frame that is published for a body and the one at its centre of mass. `inertia` makes mass
 properties from particles, shapes and meshes, and has principal axes.
 """
 
