@@ -45,7 +45,7 @@ class PlanarModesPicture:
         modes: Every consistent mode.
         margins: What to say of each mode's margin; empty: nothing.
         verdict: What to say where there is no mode.
-        sets: Of all modes; empty: not told.
+        sets: The wrench sets of all modes; empty if not known.
         length: m, the radius of gyration.
         applied: The wrench in question, if known.
         change: The least change that takes it out of the first mode, if told.

@@ -1,7 +1,7 @@
-"""Contacts that coincide, as those of a body's two sides do in a plane of motion: answered as one.
+"""Contacts that coincide are answered as one, such as those of a body's two sides in a plane of motion.
 
-Contacts of one place, normal, friction and kind have the same letter in every mode. Their force is known only
-in sum, and told in equal shares.
+Contacts of one place, normal, friction and kind have the same letter in every mode. Only the sum of their
+forces is known. Each gets an equal share.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ class Coincident(NamedTuple):
     """Which contacts are the same.
 
     Attributes:
-        firsts: Of each group, the first contact.
-        group: Of each contact.
+        firsts: The first contact of each group.
+        group: The group of each contact.
         counts: Contacts of each group.
     """
 

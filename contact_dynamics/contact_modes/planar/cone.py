@@ -8,8 +8,8 @@ out as such, because ties are decided by one tolerance and remembered as bits, n
 A cone's dual has the rows as generators: the rays found here are then its facets. So this one construction
 serves the faces of the accelerations that do not penetrate, and the cones of wrenches.
 
-Plain floats: the sets are small, and most rows change nothing, which costs three multiplications a ray. Of
-many rows, arrays tell those that change nothing.
+The code uses plain floats, because the sets are small and most rows change nothing, which takes three
+multiplications for each ray to find out. For many rows, arrays find those that change nothing.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Several contacts of one body at once: no single law is accepted for them, so laws have names here.
+"""Several contacts of one body at once. No single law is accepted for them, so laws have names here.
 
 * SEQUENTIAL (Routh 1860; Ivanov 1995; Smith et al. 2012): the single-contact law at one contact after the
   other, the one that approaches fastest first (the first in the list where they tie), until none approaches.
@@ -7,10 +7,11 @@
   needs the work at each contact along the path, which complementarity of the ends does not know.
 
 `outcomes_over_orders` gives the set that the sequential law reaches over its admissible orders, and its
-spread: how far the answer is undecided. In the plane: `several_planar`.
+spread, which says how far the answer is undecided. `planar` has the same in the plane, `sequential` has
+several bodies, and `impact.in_time` has contacts that strike one after the other.
 
-Not covered: moments at the contacts, and resting contacts that their own sliding would jam (`spatial` answers
-that for one). Several bodies: `bodies`. Contacts that strike one after the other in time: `sequence`.
+Not covered: moments at the contacts, and resting contacts that their own sliding would jam (`impact.spatial`
+answers that for one).
 """
 
 from __future__ import annotations
