@@ -17,6 +17,7 @@ what is in it. All of it needs NumPy and SciPy, but no ROS.
   a `SpatialContactProblem`, and ask it: ``contact_modes.contact_modes(problem)``.
 - `impact`: velocities after an impact (lecture 27): `planar_impact`, `spatial_impact`, several contacts at
   once (`several_impact`) or one after the other in time (`impact_sequence`).
+- `questions`: what the services answer, asked in Python: one question with all its options, one answer.
 
 `errors` has what misuse raises, and `tolerances` says what counts as zero.
 """
@@ -28,6 +29,7 @@ from contact_dynamics import (
     landing,
     motion,
     plane,
+    questions,
     rigid_body,
     shapes,
     tumbling,
@@ -91,6 +93,7 @@ __all__ = [
     "next_landing",
     "planar_impact",
     "plane",
+    "questions",
     "rigid_body",
     "several_impact",
     "shapes",

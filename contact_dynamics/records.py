@@ -15,7 +15,7 @@ import numpy as np
 _DIGITS: Final = 6
 """Significant digits of a number that is shown. `to_dict` keeps all of them."""
 
-_MOST_SHOWN: Final = 8
+_MOST_SHOWN: Final = 9
 """Largest number of elements of an array or a list that is shown. Longer ones are shown as their shape."""
 
 
@@ -34,8 +34,16 @@ class NamedInt(enum.IntEnum):
         return format(self.name, spec)
 
 
+_LINE: Final = 100
+"""Letters of a value in a list that is shown in one line; a longer one has a line for each field."""
+
+
 class Record:
-    """A value of named fields, made by `dataclasses.dataclass` with ``repr=False``."""
+    """A value of named fields, made by `dataclasses.dataclass` with ``repr=False``.
+
+    Fields whose name begins with an underscore, functions, and fields of ``field(repr=False)``, which are how
+    a value works inside, are not shown.
+    """
 
     __slots__ = ()
 
@@ -58,13 +66,15 @@ class Record:
 
 
 def _fields(record: object) -> list[tuple[str, Any]]:
-    """Return the public fields and their values, without functions."""
+    """Return the fields that are shown, and their values."""
     if isinstance(record, tuple):
         return list(record._asdict().items())  # type: ignore[attr-defined]  # a NamedTuple
     return [
         (field.name, value)
         for field in dataclasses.fields(record)  # type: ignore[arg-type]
-        if not field.name.startswith("_") and not callable(value := getattr(record, field.name))
+        if field.repr
+        and not field.name.startswith("_")
+        and not callable(value := getattr(record, field.name))
     ]
 
 
@@ -127,7 +137,10 @@ def _lines(record: object, indent: str) -> list[str]:
         elif isinstance(value, tuple | list) and value and all(isinstance(each, Record) for each in value):
             lines.append(f"{indent}{name}:")
             for i, each in enumerate(value):
-                lines += [f"{indent}  [{i}] {type(each).__name__}", *_lines(each, indent + "    ")]
+                if len(repr(each)) <= _LINE:
+                    lines.append(f"{indent}  [{i}] {each!r}")
+                else:
+                    lines += [f"{indent}  [{i}] {type(each).__name__}", *_lines(each, indent + "    ")]
         else:
             lines.append(f"{indent}{name:{width}}  {_short(value)}")
     return lines

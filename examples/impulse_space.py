@@ -9,10 +9,12 @@ import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 
-from contact_dynamics import BodyState, Contact, ContactSet, MassProperties, spatial_impact
+from contact_dynamics import Body, BodyState, ContactSet, MassProperties
+from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions import ImpactQuestion, Problem, ask
 from contact_dynamics.viewing import palette
-from contact_dynamics.viewing.impact import ImpactPicture
 from contact_dynamics.viewing.impulse_space import draw_impulse_space
+from contact_dynamics.viewing.words import outcome_in_words
 
 # rho = 1, m = 1, v = (-1, -1), w = 0, mu = 0.25, e = 0.5; the plane is x, z. The figure with r is lost.
 ARMS = [(0.0, -1.0), (0.1, -1.5), (0.3, -3.0), (1.0, -1.2), (1.0, -2.0), (-1.0, -9.0)]
@@ -23,34 +25,30 @@ state = BodyState(
     v_WB_W=np.array([-1.0, 0.0, -1.0]),
     w_WB_W=np.zeros(3),
 )
-up = np.array([0.0, 0.0, 1.0])
 
 views = []
 with rr.RecordingStream("contact_dynamics") as recording:
     recording.save(sys.argv[1] if len(sys.argv) > 1 else "impulse_space.rrd")
     for i, (x, z) in enumerate(ARMS):
-        arm = np.array([x, 0.0, z])
-        impact = spatial_impact(body, state, Contact(p_WC_W=arm, normal_W=up, friction=0.25, restitution=0.5))
-        (t, _, n), outcome = impact.impulse_W, impact.outcome.name.lower().replace("_", " ")
-        if impact.jams:
+        question = ImpactQuestion(
+            body=Body(name="body", mass_properties=body),
+            state=state,
+            contacts=ContactSet(
+                p_WC_W=[[x, 0.0, z]], normals_W=[[0.0, 0.0, 1.0]], frictions=0.25, restitutions=0.5
+            ),
+            problem=Problem.PLANAR,
+            plane=PlaneOfMotion(normal_W=[0.0, -1.0, 0.0]),
+        )
+        answer = ask(question)
+        struck = answer.impact
+        ((t, _, n),), outcome = struck.impulses_W, outcome_in_words(struck.outcome)
+        if struck.jams:
             outcome = f"jams, {outcome}"
         print(f"r = ({x:g}, {z:g}): {outcome}, impulse ({t:.4f}, {n:.4f}) N s")
-        picture = ImpactPicture(
-            state=state,
-            v_after_W=impact.state.v_WB_W,
-            contacts=ContactSet(
-                p_WC_W=arm[None], normals_W=up[None], frictions=np.array([0.25]), restitutions=np.array([0.5])
-            ),
-            impulses_W=impact.impulse_W[None],
-            path_W=impact.path_W,
-            path_events=tuple(int(event) for event in impact.path_events),
-            path_contacts=(0,) * len(impact.path_W),
-            plane_normal_W=np.array([0.0, -1.0, 0.0]),
-        )
         entity = f"example_{i}"
-        draw_impulse_space(recording, body, picture, entity=entity)
+        draw_impulse_space(recording, body, answer, entity=entity)
         name = f"r = ({x:g}, {z:g}): {outcome}"
-        height = 1.3 * float(np.abs(impact.path_W).max())
+        height = 1.3 * float(np.abs(struck.path_W).max())
         # Rerun's 2D views have the second coordinate downwards.
         bounds = rrb.VisualBounds2D(x_range=(-1.25 * height, 1.25 * height), y_range=(-height, 0.2 * height))
         views.append(

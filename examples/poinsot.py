@@ -10,11 +10,11 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from contact_dynamics import BodyState, MassProperties, free_motion
-from contact_dynamics.tumbling import poinsot, rolling_curves
+from contact_dynamics.tumbling import RollingCurves, poinsot, rolling_curves
 from contact_dynamics.viewing.blueprint import poinsot_view
 from contact_dynamics.viewing.entities import TIMELINE
 from contact_dynamics.viewing.measured import set_time
-from contact_dynamics.viewing.poinsot import PoinsotPicture, draw_poinsot, draw_rolling
+from contact_dynamics.viewing.poinsot import draw_poinsot, draw_rolling
 
 body = MassProperties(mass=0.2, I_B=np.diag([1.0e-4, 2.0e-4, 2.6e-4]))
 spin = BodyState(
@@ -28,18 +28,14 @@ constants = poinsot(motion)
 print(f"the polhode repeats every {constants.polhode_period:.3f} s: {constants.regime.name.lower()}")
 
 times = np.linspace(0.0, 5.0 * constants.polhode_period, 1500)
-picture = PoinsotPicture(
-    semi_axes=constants.ellipsoid_semi_axes,
-    principal_axes_B=constants.principal_axes_B,
-    L_W=constants.L_W,
-    distance=constants.invariable_plane_distance,
-    polhode_B=rolling_curves(motion, 200).polhode_B,
-    herpolhode_W=motion.at(times).w_WB_W,
+# The polhode closes after one period, the herpolhode never does.
+curves = RollingCurves(
+    seconds=times, polhode_B=rolling_curves(motion, 200).polhode_B, herpolhode_W=motion.at(times).w_WB_W
 )
 with rr.RecordingStream("contact_dynamics") as recording:
     recording.save(sys.argv[1] if len(sys.argv) > 1 else "poinsot.rrd")
     set_time(recording, 0)
-    draw_poinsot(recording, "body", picture)
+    draw_poinsot(recording, "body", constants, curves)
     draw_rolling(recording, "body", [motion.state_at(seconds) for seconds in times.tolist()])
     panel = rrb.TimePanel(timeline=TIMELINE, play_state="Playing", loop_mode="All")
     recording.send_blueprint(rrb.Blueprint(poinsot_view(), panel, collapse_panels=True))

@@ -16,12 +16,14 @@ from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rigid_body.published_frame import origin_of_published_frame, turned
 from contact_dynamics.validation import check_unit
 from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
+from msg_adapters.contacts import flat
 from msg_adapters.frames import check_frame
 from msg_adapters.geometry import quaternion_from_msg, vector_from_msg
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import World
 
 _COVARIANCE_LENGTH: Final = 144
 
@@ -34,14 +36,22 @@ def body_state_from_msg(msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArr
         InvalidFieldError: a number is not finite, or the quaternion is not unit.
     """
     check_frame("state.header.frame_id", msg.header.frame_id or world_frame, world_frame)
-    q_WB = check_unit("state.pose.orientation", quaternion_from_msg(msg.pose.orientation), 4)
-    return BodyState(
-        p_WB_W=vector_from_msg(msg.pose.position) + turned(q_WB, p_FB_F),
-        q_WB=q_WB,
-        v_WB_W=vector_from_msg(msg.linear_velocity),
-        w_WB_W=vector_from_msg(msg.angular_velocity),
-        stamp_ns=stamp_ns_from_msg(msg.header.stamp),
-    )
+    p_WB_W, q_WB = vector_from_msg(msg.pose.position), quaternion_from_msg(msg.pose.orientation)
+    if p_FB_F.any():
+        q_WB = check_unit("state.pose.orientation", q_WB, 4)
+        p_WB_W = p_WB_W + turned(q_WB, p_FB_F)
+    try:
+        return BodyState(
+            p_WB_W=p_WB_W,
+            q_WB=q_WB,
+            v_WB_W=vector_from_msg(msg.linear_velocity),
+            w_WB_W=vector_from_msg(msg.angular_velocity),
+            stamp_ns=stamp_ns_from_msg(msg.header.stamp),
+        )
+    except InvalidFieldError as error:
+        if not error.field.startswith("orientation"):
+            raise
+        raise InvalidFieldError(f"state.pose.{error.field}", error.found, error.allowed) from None
 
 
 def body_state_to_msg(
@@ -66,6 +76,15 @@ def body_state_to_msg(
     return msg
 
 
+def center_of_mass(body_name: str, world: World) -> FloatArray:
+    """Return where a body's centre of mass is in its published frame, (3,), m.
+
+    Messages do not say it. Of a body that the world does not know it is taken to be at that frame's origin.
+    """
+    known = (body.p_FB_F for body in world.bodies if body.name == body_name)
+    return next(known, np.zeros(3))
+
+
 def known_state_from_msg(
     msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArray
 ) -> BodyState | UncertainState:
@@ -84,3 +103,19 @@ def known_state_from_msg(
             "state.covariance", f"{len(msg.covariance)} numbers", f"none or {_COVARIANCE_LENGTH}"
         )
     return UncertainState(state=state, covariance=np.array(msg.covariance).reshape(12, 12))
+
+
+def known_state_to_msg(
+    known: BodyState | UncertainState,
+    *,
+    body_name: str,
+    world_frame: str,
+    p_FB_F: FloatArray,
+    into: BodyStateMsg | None = None,
+) -> BodyStateMsg:
+    """Return the state, with its covariance where that is known: a new message, or the one to fill."""
+    state = known if isinstance(known, BodyState) else known.state
+    msg = body_state_to_msg(state, body_name=body_name, world_frame=world_frame, p_FB_F=p_FB_F, into=into)
+    if isinstance(known, UncertainState):
+        msg.covariance = flat(known.covariance)
+    return msg

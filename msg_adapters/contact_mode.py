@@ -1,4 +1,4 @@
-"""Answers about contact modes to the service's response, in world axes."""
+"""Answers about contact modes to the service's response and back, in world axes."""
 
 from __future__ import annotations
 
@@ -8,23 +8,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict, Refusal, RefusedMode
+from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
+from contact_dynamics.contact_modes.spatial.result import SpatialMode
+from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
+from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions.contact_modes import ContactModeAnswer
+from contact_dynamics.questions.problem import Problem
+from contact_dynamics.questions.settled_impact import SettledImpact
 from contact_dynamics_interfaces.msg import ContactMode, ModeWrenches
 from contact_dynamics_interfaces.srv import PredictContactMode
-from msg_adapters.body_state import body_state_to_msg
-from msg_adapters.contacts import contacts_to_msg, flat
-from msg_adapters.geometry import vector_to_msg
-from msg_adapters.impact import resolved_impact_to_msg
+from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
+from msg_adapters.contacts import contacts_from_msg, contacts_to_msg, flat, rows
+from msg_adapters.geometry import vector_from_msg, vector_to_msg
+from msg_adapters.impact import resolved_impact_from_msg, resolved_impact_to_msg
 
 if TYPE_CHECKING:
-    from contact_dynamics.contact_modes import (
-        BodyStatics,
-        RefusedMode,
-        SpatialMode,
-        SpatialModeMargin,
-        SpatialWrenchSet,
-    )
-    from contact_dynamics.questions.contact_modes import ContactModeAnswer
-    from contact_dynamics.questions.settled_impact import SettledImpact
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import World
 
 
 def contact_mode_answer_to_msg(
@@ -65,6 +66,45 @@ def contact_mode_answer_to_msg(
     return msg
 
 
+def contact_mode_answer_from_msg(msg: PredictContactMode.Response, *, world: World) -> ContactModeAnswer:
+    """Return the answer that a response carries; ``world`` knows the body's centre of mass.
+
+    Where there is no mode, the response does not tell margins that were not asked for from none.
+
+    Raises:
+        InvalidFieldError: arrays of unequal length, or a number that is not allowed.
+    """
+    p_FB_F = center_of_mass(msg.state.body_name, world)
+    margins = tuple(filter(None, map(margin_from_msg, msg.modes)))
+    wrench_sets = tuple(wrench_set_from_msg(wrenches) for wrenches in msg.wrench_sets)
+    is_planar = msg.problem == PredictContactMode.Request.PLANAR
+    return ContactModeAnswer(
+        body_name=msg.state.body_name,
+        p_FB_F=p_FB_F,
+        state=body_state_from_msg(msg.state, world_frame=msg.state.header.frame_id, p_FB_F=p_FB_F),
+        contacts=contacts_from_msg(msg.contacts),
+        verdict=ModeVerdict(msg.verdict),
+        modes=tuple(mode_from_msg(mode) for mode in msg.modes),
+        margins=margins or None,
+        approaching=tuple(msg.approaching_contacts),
+        contact_velocities_W=rows(msg.contact_velocities),
+        refused=_read_refused(msg),
+        kinematic_modes=tuple(msg.kinematic_modes),
+        wrench_sets=wrench_sets or None,
+        statics=_read_statics(msg),
+        settled=_read_settled(msg, p_FB_F) if msg.impact else None,
+        problem=Problem(msg.problem),
+        plane=PlaneOfMotion(normal_W=vector_from_msg(msg.plane_normal)) if is_planar else None,
+        out_of_plane=msg.out_of_plane,
+        out_of_plane_reason=msg.out_of_plane_reason,
+        velocity_tolerance=msg.velocity_tolerance,
+        acceleration_tolerance=msg.acceleration_tolerance,
+        distance_tolerance=msg.distance_tolerance,
+        friction_facets=msg.friction_facets,
+        wrench_facets=msg.wrench_facets,
+    )
+
+
 def mode_to_msg(mode: SpatialMode, margin: SpatialModeMargin | None = None) -> ContactMode:
     """Return a mode, with its margin where that was asked for."""
     msg = ContactMode(
@@ -88,6 +128,35 @@ def mode_to_msg(mode: SpatialMode, margin: SpatialModeMargin | None = None) -> C
     return msg
 
 
+def mode_from_msg(msg: ContactMode) -> SpatialMode:
+    """Return a mode, without its margin."""
+    return SpatialMode(
+        mode=msg.mode,
+        acceleration_W=np.array(msg.linear_acceleration),
+        angular_acceleration_W=np.array(msg.angular_acceleration),
+        contact_forces_W=rows(msg.contact_forces),
+        contact_accelerations_W=rows(msg.contact_accelerations),
+        tangential_directions_W=rows(msg.tangential_directions),
+        misdirection=msg.misdirection,
+        forces_unique=msg.forces_unique,
+        motion_unique=msg.motion_unique,
+    )
+
+
+def margin_from_msg(msg: ContactMode) -> SpatialModeMargin | None:
+    """Return the margin of a mode; None: it was not asked for."""
+    if msg.margin_length == 0.0:
+        return None
+    return SpatialModeMargin(
+        mode=msg.mode,
+        margin=msg.margin,
+        length=msg.margin_length,
+        change_W=np.array(msg.margin_wrench),
+        verdict_beyond=ModeVerdict(msg.margin_verdict),
+        modes_beyond=tuple(msg.margin_modes),
+    )
+
+
 def wrench_set_to_msg(wrenches: SpatialWrenchSet) -> ModeWrenches:
     """Return the applied wrenches of one mode, in space with one way of sliding."""
     return ModeWrenches(
@@ -100,12 +169,33 @@ def wrench_set_to_msg(wrenches: SpatialWrenchSet) -> ModeWrenches:
     )
 
 
+def wrench_set_from_msg(msg: ModeWrenches) -> SpatialWrenchSet:
+    """Return the applied wrenches of one mode, in space with one way of sliding."""
+    return SpatialWrenchSet(
+        mode=msg.mode,
+        sliding_from_W=rows(msg.sliding_from),
+        sliding_to_W=rows(msg.sliding_to),
+        vertices=rows(msg.vertices, 6),
+        generators=rows(msg.generators, 6),
+        half_spaces=rows(msg.half_spaces, 7),
+    )
+
+
 def _write_refused(msg: PredictContactMode.Response, modes: tuple[RefusedMode, ...]) -> None:
     """Write which modes mechanics refuses, and why."""
     msg.refused_modes = [refused.mode for refused in modes]
     msg.refusals = [int(refused.refusal) for refused in modes]
     msg.refused_contacts = [refused.contact for refused in modes]
     msg.refusal_amounts = flat(np.array([refused.amount for refused in modes]))
+
+
+def _read_refused(msg: PredictContactMode.Response) -> tuple[RefusedMode, ...]:
+    """Return which modes mechanics refuses, and why."""
+    columns = zip(msg.refused_modes, msg.refusals, msg.refused_contacts, msg.refusal_amounts, strict=True)
+    return tuple(
+        RefusedMode(mode=mode, refusal=Refusal(refusal), contact=contact, amount=amount)
+        for mode, refusal, contact, amount in columns
+    )
 
 
 def _write_statics(msg: PredictContactMode.Response, statics: BodyStatics | None) -> None:
@@ -116,6 +206,19 @@ def _write_statics(msg: PredictContactMode.Response, statics: BodyStatics | None
         msg.jammed = int(statics.jammed)
         msg.wedged = msg.POSSIBLE if statics.wedged else msg.NO
         msg.stable_disturbance = statics.stable_disturbance
+
+
+def _read_statics(msg: PredictContactMode.Response) -> BodyStatics | None:
+    """Return the answers to the static questions, without the length of their metric, which is not told."""
+    if msg.equilibrium == msg.NOT_ASKED:
+        return None
+    return BodyStatics(
+        equilibrium=Certainty(msg.equilibrium),
+        jammed=Certainty(msg.jammed),
+        wedged=msg.wedged == msg.POSSIBLE,
+        stable_disturbance=msg.stable_disturbance,
+        margin_length=math.nan,
+    )
 
 
 def _write_settled(
@@ -132,3 +235,12 @@ def _write_settled(
     ]
     msg.verdict_after_impact = int(settled.verdict)
     msg.modes_after_impact = [mode_to_msg(mode) for mode in settled.modes]
+
+
+def _read_settled(msg: PredictContactMode.Response, p_FB_F: FloatArray) -> SettledImpact:
+    """Return the impact that settles a case, and the modes after it."""
+    return SettledImpact(
+        impact=resolved_impact_from_msg(msg.impact[0], p_FB_F=p_FB_F),
+        verdict=ModeVerdict(msg.verdict_after_impact),
+        modes=tuple(mode_from_msg(mode) for mode in msg.modes_after_impact),
+    )

@@ -14,6 +14,8 @@ from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLar
 from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from contact_dynamics.validation import FloatArray
@@ -88,6 +90,11 @@ def flat(values: FloatArray) -> array[float]:
     numbers = array("d")
     numbers.frombytes(np.ascontiguousarray(values, dtype=np.float64).tobytes())
     return numbers
+
+
+def rows(numbers: Sequence[float], width: int = 3) -> FloatArray:
+    """Return the numbers of a flat field, each ``width`` of them as a row, (n, width)."""
+    return np.array(numbers, dtype=np.float64).reshape(-1, width)
 
 
 def _sides(msg: ContactSetMsg) -> tuple[Curvatures | None, Curvatures | None]:

@@ -6,7 +6,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from geometry_msgs.msg import Inertia, Point, Pose, Quaternion, Vector3
+from geometry_msgs.msg import Inertia, Point, Pose, Quaternion, Vector3, Wrench
 
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.validation import check_array
@@ -35,6 +35,11 @@ def point_to_msg(vector: Iterable[float]) -> Point:
     msg = Point()
     msg.x, msg.y, msg.z = map(float, vector)
     return msg
+
+
+def wrench_to_msg(force: Iterable[float], torque: Iterable[float]) -> Wrench:
+    """Return a force and a torque as a message."""
+    return Wrench(force=vector_to_msg(force), torque=vector_to_msg(torque))
 
 
 def quaternion_from_msg(msg: Quaternion) -> FloatArray:

@@ -1,4 +1,4 @@
-"""Answers about impacts to the service's response, and impacts to messages.
+"""Answers about impacts to the service's response and back, and impacts to messages and back.
 
 Messages are new, or, for ``into``, the empty ones that a response has already: they cost more to build than
 to fill.
@@ -10,21 +10,30 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.rigid_body.published_frame import origin_of_published_frame
+from contact_dynamics.constants import ns_after
+from contact_dynamics.impact.in_time.result import SequenceEnd
+from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
+from contact_dynamics.impact.several.result import SeveralContactsLaw
+from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions.impact import ImpactAnswer, StruckBody
+from contact_dynamics.questions.problem import Problem
+from contact_dynamics.questions.resolved_impact import ResolvedImpact, SequenceStrike
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rigid_body.published_frame import centers_of_mass, origin_of_published_frame
 from contact_dynamics_interfaces.msg import Impact as ImpactMsg
 from contact_dynamics_interfaces.srv import PredictImpact
-from msg_adapters.body_state import body_state_to_msg
-from msg_adapters.contacts import contacts_to_msg, flat
-from msg_adapters.geometry import vector_to_msg
-from msg_adapters.tumbling import write_fit
+from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
+from msg_adapters.contacts import contacts_from_msg, contacts_to_msg, flat, rows
+from msg_adapters.geometry import vector_from_msg, vector_to_msg
+from msg_adapters.stamps import stamp_ns_from_msg
+from msg_adapters.tumbling import read_fit, write_fit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.questions.impact import ImpactAnswer, StruckBody
-    from contact_dynamics.questions.resolved_impact import ResolvedImpact
-    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import World
+    from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 
 
 def impact_answer_to_msg(
@@ -43,9 +52,7 @@ def impact_answer_to_msg(
         answer.state, body_name=name, world_frame=world_frame, p_FB_F=p_FB_F, into=msg.state_before
     )
     if other is not None:
-        msg.other_state_before = [
-            body_state_to_msg(other.state, body_name=other.name, world_frame=world_frame, p_FB_F=other.p_FB_F)
-        ]
+        msg.other_state_before = [struck_body_to_msg(other, world_frame=world_frame)]
     contacts_to_msg(answer.contacts, into=msg.contacts)
     if answer.plane is not None:
         msg.plane_normal = vector_to_msg(answer.plane.normal_W)
@@ -53,6 +60,48 @@ def impact_answer_to_msg(
     msg.velocity_tolerance = answer.velocity_tolerance
     msg.distance_tolerance = answer.distance_tolerance
     return msg
+
+
+def impact_answer_from_msg(msg: PredictImpact.Response, *, world: World) -> ImpactAnswer:
+    """Return the answer that a response carries; ``world`` knows the bodies' centres of mass.
+
+    Raises:
+        InvalidFieldError: arrays of unequal length, or a number that is not allowed.
+    """
+    p_FB_F = center_of_mass(msg.state_before.body_name, world)
+    other = struck_body_from_msg(msg.other_state_before[0], world=world) if msg.other_state_before else None
+    is_planar = msg.problem == PredictImpact.Request.PLANAR
+    return ImpactAnswer(
+        body_name=msg.state_before.body_name,
+        p_FB_F=p_FB_F,
+        state=body_state_from_msg(
+            msg.state_before, world_frame=msg.state_before.header.frame_id, p_FB_F=p_FB_F
+        ),
+        fit=read_fit(msg),
+        other=other,
+        seconds_to_contact=msg.time_to_contact,
+        contacts=contacts_from_msg(msg.contacts),
+        impact=resolved_impact_from_msg(
+            msg.impact, p_FB_F=p_FB_F, other_p_FB_F=None if other is None else other.p_FB_F
+        ),
+        problem=Problem(msg.problem),
+        plane=PlaneOfMotion(normal_W=vector_from_msg(msg.plane_normal)) if is_planar else None,
+        out_of_plane=msg.out_of_plane,
+        velocity_tolerance=msg.velocity_tolerance,
+        distance_tolerance=msg.distance_tolerance,
+    )
+
+
+def struck_body_to_msg(other: StruckBody, *, world_frame: str) -> BodyStateMsg:
+    """Return the second body just before."""
+    return body_state_to_msg(other.state, body_name=other.name, world_frame=world_frame, p_FB_F=other.p_FB_F)
+
+
+def struck_body_from_msg(msg: BodyStateMsg, *, world: World) -> StruckBody:
+    """Return the second body just before; ``world`` knows its centre of mass."""
+    p_FB_F = center_of_mass(msg.body_name, world)
+    state = body_state_from_msg(msg, world_frame=msg.header.frame_id, p_FB_F=p_FB_F)
+    return StruckBody(name=msg.body_name, p_FB_F=p_FB_F, state=state)
 
 
 def resolved_impact_to_msg(
@@ -105,6 +154,52 @@ def resolved_impact_to_msg(
     return msg
 
 
+def resolved_impact_from_msg(
+    msg: ImpactMsg, *, p_FB_F: FloatArray, other_p_FB_F: FloatArray | None = None
+) -> ResolvedImpact:
+    """Return an impact of a body whose centre of mass is at ``p_FB_F``, (3,), m, in its published frame.
+
+    ``other_p_FB_F`` is the same of the second body, if there is one.
+    """
+    in_time = len(msg.strike_times) > 0
+    law = SeveralContactsLaw.SEQUENTIAL if in_time else SeveralContactsLaw(msg.several_contacts_law)
+    other_state = None
+    if other_p_FB_F is not None:
+        after = msg.other_state_after[0]
+        other_state = body_state_from_msg(after, world_frame=after.header.frame_id, p_FB_F=other_p_FB_F)
+    covariance, probabilities = msg.state_after.covariance, msg.outcome_probabilities
+    return ResolvedImpact(
+        restitution_law=RestitutionLaw(msg.restitution_law),
+        several_contacts_law=law,
+        outcome=None if msg.outcome == msg.NOT_TOLD else ImpactOutcome(msg.outcome),
+        jams=msg.jams,
+        converged=msg.converged,
+        state=body_state_from_msg(
+            msg.state_after, world_frame=msg.state_after.header.frame_id, p_FB_F=p_FB_F
+        ),
+        other_state=other_state,
+        impulses_W=rows(msg.impulses),
+        compression_impulses_W=rows(msg.compression_impulses),
+        velocities_before_W=rows(msg.contact_velocities_before),
+        velocities_after_W=rows(msg.contact_velocities_after),
+        path_W=rows(msg.path),
+        path_events=tuple(PathEvent(event) for event in msg.path_events),
+        path_contacts=tuple(msg.path_contacts),
+        kinetic_energy_before=msg.kinetic_energy_before,
+        kinetic_energy_after=msg.kinetic_energy_after,
+        creates_energy=msg.creates_energy,
+        orders=tuple(tuple(map(int, order.split(","))) for order in msg.orders),
+        order_velocities_W=rows(msg.order_velocities, 6),
+        covariance=rows(covariance, 12) if len(covariance) > 0 else None,
+        outcome_probabilities=np.array(probabilities) if len(probabilities) > 0 else None,
+        miss_probability=msg.miss_probability,
+        strikes=_read_strikes(msg, p_FB_F),
+        end=SequenceEnd(msg.sequence_end) if in_time else None,
+        staying=tuple(msg.staying_contacts),
+        limit_seconds=msg.limit_time if len(msg.staying_contacts) > 0 else None,
+    )
+
+
 def _write_strikes(msg: ImpactMsg, impact: ResolvedImpact, p_FB_F: FloatArray) -> None:
     """Write strikes in time, and why there is no further one."""
     strikes = impact.strikes
@@ -123,6 +218,40 @@ def _write_strikes(msg: ImpactMsg, impact: ResolvedImpact, p_FB_F: FloatArray) -
         msg.sequence_end = int(impact.end)
     msg.staying_contacts = list(impact.staying)
     msg.limit_time = 0.0 if impact.limit_seconds is None else impact.limit_seconds
+
+
+def _read_strikes(msg: ImpactMsg, p_FB_F: FloatArray) -> tuple[SequenceStrike, ...]:
+    """Return strikes in time, if there are any; the last of them leads to the state after the impact."""
+    orientations = rows(msg.strike_body_orientations, 4)
+    places = centers_of_mass(rows(msg.strike_body_positions), orientations, p_FB_F)
+    last_ns = stamp_ns_from_msg(msg.state_after.header.stamp)
+    strikes = []
+    for i, (seconds, contact) in enumerate(zip(msg.strike_times, msg.strike_contacts, strict=True)):
+        before, after = (
+            BodyState(
+                p_WB_W=places[i],
+                q_WB=orientations[i],
+                v_WB_W=twist[:3],
+                w_WB_W=twist[3:],
+                stamp_ns=ns_after(last_ns, seconds - msg.strike_times[-1]),
+            )
+            for twist in (
+                rows(msg.strike_velocities_before, 6)[i],
+                rows(msg.strike_velocities_after, 6)[i],
+            )
+        )
+        strikes.append(
+            SequenceStrike(
+                seconds=seconds,
+                contact=contact,
+                outcome=ImpactOutcome(msg.strike_outcomes[i]),
+                p_WC_W=rows(msg.strike_positions)[i],
+                impulse_W=rows(msg.strike_impulses)[i],
+                state_before=before,
+                state_after=after,
+            )
+        )
+    return tuple(strikes)
 
 
 def _twists(states: Sequence[BodyState]) -> FloatArray:

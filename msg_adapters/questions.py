@@ -14,7 +14,7 @@ import numpy as np
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw
-from contact_dynamics.motion.forces import NO_WRENCH, ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions.contact_modes import ContactModeQuestion
 from contact_dynamics.questions.problem import Problem
@@ -103,13 +103,7 @@ def tumbling_question_from_msg(
     Raises:
         ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
     """
-    gravity_W, wrench = _gravity(request), _wrench(request)
-    drag = Drag(
-        linear=request.linear_drag,
-        quadratic=request.quadratic_drag,
-        linear_angular=request.linear_angular_drag,
-        quadratic_angular=request.quadratic_angular_drag,
-    )
+    gravity_W, wrench, drag = _gravity(request), _wrench(request), _drag(request)
     body, state = _subject(request, world, world_frame, fit_window=request.fit_window)
     return TumblingQuestion(
         body=body,
@@ -292,6 +286,19 @@ def _wrench(request: PredictTumbling.Request) -> ConstantWrench:
         )
     except InvalidFieldError as error:
         raise _renamed(error, _WRENCH_FIELDS) from None
+
+
+def _drag(request: PredictTumbling.Request) -> Drag:
+    linear, quadratic = request.linear_drag, request.quadratic_drag
+    linear_angular, quadratic_angular = request.linear_angular_drag, request.quadratic_angular_drag
+    if not any((linear, quadratic, linear_angular, quadratic_angular)):
+        return NO_DRAG
+    return Drag(
+        linear=linear,
+        quadratic=quadratic,
+        linear_angular=linear_angular,
+        quadratic_angular=quadratic_angular,
+    )
 
 
 def _sampling(request: PredictTumbling.Request) -> Sampling:

@@ -1,4 +1,4 @@
-"""Answers about tumbling to the service's response: trajectories, Poinsot's picture, events."""
+"""Answers about tumbling to the service's response and back: trajectories, Poinsot's picture, events."""
 
 from __future__ import annotations
 
@@ -7,23 +7,27 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.rigid_body.published_frame import origins_of_published_frame
+from contact_dynamics.motion.covariance import CarriedCovariance, PropagationMethod, orientation_deviations
+from contact_dynamics.motion.integrated import Method
+from contact_dynamics.questions.sample_times import Event, EventKind
+from contact_dynamics.questions.subject import FitQuality
+from contact_dynamics.questions.tumbling import TumblingAnswer
+from contact_dynamics.rigid_body.published_frame import centers_of_mass, origins_of_published_frame
+from contact_dynamics.tumbling import Trajectory
+from contact_dynamics.tumbling.flips import Flips
+from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves, semi_axes
+from contact_dynamics.tumbling.regime import Regime
 from contact_dynamics_interfaces.msg import Poinsot as PoinsotMsg
 from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
 from contact_dynamics_interfaces.srv import PredictTumbling
-from msg_adapters.body_state import body_state_to_msg
-from msg_adapters.contacts import flat
-from msg_adapters.geometry import point_to_msg, vector_to_msg
+from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
+from msg_adapters.contacts import flat, rows
+from msg_adapters.geometry import point_to_msg, vector_from_msg, vector_to_msg
 from msg_adapters.stamps import stamp_to_msg
 
 if TYPE_CHECKING:
-    from contact_dynamics.motion.covariance import CarriedCovariance
-    from contact_dynamics.questions.subject import FitQuality
-    from contact_dynamics.questions.tumbling import TumblingAnswer
-    from contact_dynamics.tumbling import Trajectory
-    from contact_dynamics.tumbling.flips import Flips
-    from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves
     from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import World
     from contact_dynamics_interfaces.srv import PredictImpact
 
 
@@ -65,6 +69,38 @@ def tumbling_answer_to_msg(
     return msg
 
 
+def tumbling_answer_from_msg(msg: PredictTumbling.Response, *, world: World) -> TumblingAnswer:
+    """Return the answer that a response carries; ``world`` knows the bodies' centres of mass.
+
+    Raises:
+        InvalidFieldError: a number is not finite, or a quaternion is not unit.
+    """
+    p_FB_F = center_of_mass(msg.state.body_name, world)
+    return TumblingAnswer(
+        body_name=msg.state.body_name,
+        p_FB_F=p_FB_F,
+        state=body_state_from_msg(msg.state, world_frame=msg.state.header.frame_id, p_FB_F=p_FB_F),
+        fit=read_fit(msg),
+        trajectory=trajectory_from_msg(msg.trajectory, p_FB_F=p_FB_F),
+        covariance=read_covariances(msg.trajectory),
+        method=Method(msg.method),
+        event=None if msg.event == msg.NONE else _event_from_msg(msg),
+        poinsot=poinsot_from_msg(msg.poinsot),
+        flips=flips_from_msg(msg.poinsot),
+        curves=curves_from_msg(msg.poinsot),
+    )
+
+
+def _event_from_msg(msg: PredictTumbling.Response) -> Event:
+    return Event(
+        kind=EventKind(msg.event),
+        seconds=msg.event_time,
+        point_W=vector_from_msg(msg.event_point),
+        velocity_W=vector_from_msg(msg.event_velocity),
+        surface=msg.event_surface,
+    )
+
+
 def trajectory_to_msg(
     trajectory: Trajectory,
     *,
@@ -88,10 +124,36 @@ def trajectory_to_msg(
     return msg
 
 
+def trajectory_from_msg(msg: TrajectoryMsg, *, p_FB_F: FloatArray) -> Trajectory:
+    """Return a trajectory of the centre of mass, which is at ``p_FB_F``, (3,), m, in the published frame."""
+    orientations = rows(msg.orientations, 4)
+    return Trajectory(
+        seconds=np.array(msg.times),
+        p_WB_W=centers_of_mass(rows(msg.positions), orientations, p_FB_F),
+        q_WB=orientations,
+        v_WB_W=rows(msg.linear_velocities),
+        w_WB_W=rows(msg.angular_velocities),
+    )
+
+
 def write_covariances(msg: TrajectoryMsg, carried: CarriedCovariance) -> None:
     """Write the covariances of its samples into a trajectory."""
     msg.covariances = flat(carried.covariances)
     msg.covariances_trusted = carried.trusted.tolist()
+
+
+def read_covariances(msg: TrajectoryMsg) -> CarriedCovariance | None:
+    """Return the covariances of a trajectory's samples; None: it has none."""
+    if len(msg.covariances) == 0:
+        return None
+    covariances = rows(msg.covariances, 144).reshape(-1, 12, 12)
+    return CarriedCovariance(
+        seconds=np.array(msg.times),
+        covariances=covariances,
+        orientation_deviations=orientation_deviations(covariances),
+        trusted=np.array(msg.covariances_trusted),
+        method=PropagationMethod.LINEARISED,
+    )
 
 
 def write_fit(response: PredictImpact.Response | PredictTumbling.Response, fit: FitQuality | None) -> None:
@@ -100,6 +162,17 @@ def write_fit(response: PredictImpact.Response | PredictTumbling.Response, fit: 
         response.fit_count = fit.count
         response.fit_position_residual = fit.position_residual
         response.fit_orientation_residual = fit.orientation_residual
+
+
+def read_fit(response: PredictImpact.Response | PredictTumbling.Response) -> FitQuality | None:
+    """Return the fit that a response's state came from; None: no fit."""
+    if response.fit_count == 0:
+        return None
+    return FitQuality(
+        count=response.fit_count,
+        position_residual=response.fit_position_residual,
+        orientation_residual=response.fit_orientation_residual,
+    )
 
 
 def poinsot_to_msg(
@@ -126,6 +199,43 @@ def poinsot_to_msg(
         msg.polhode = flat(curves.polhode_B)
         msg.herpolhode = flat(curves.herpolhode_W)
     return msg
+
+
+def poinsot_from_msg(msg: PoinsotMsg) -> Poinsot | None:
+    """Return Poinsot's picture of a motion; None: a torque acts."""
+    if msg.regime == msg.UNKNOWN:
+        return None
+    moments = np.array(msg.principal_moments)
+    return Poinsot(
+        regime=Regime(msg.regime),
+        rotational_energy=msg.rotational_energy,
+        L_W=np.array(msg.angular_momentum),
+        invariable_plane_distance=msg.invariable_plane_distance,
+        polhode_period=msg.polhode_period,
+        precession_per_period=msg.precession_per_period,
+        principal_moments=moments,
+        principal_axes_B=rows(msg.principal_axes),
+        ellipsoid_semi_axes=semi_axes(msg.rotational_energy, moments),
+        sensitivity=msg.sensitivity,
+    )
+
+
+def flips_from_msg(msg: PoinsotMsg) -> Flips | None:
+    """Return the next flips of the middle axis, which may be none; None: a torque acts."""
+    if msg.regime == msg.UNKNOWN:
+        return None
+    return Flips(seconds=np.array(msg.flip_times), deviations=np.array(msg.flip_time_deviations))
+
+
+def curves_from_msg(msg: PoinsotMsg) -> RollingCurves | None:
+    """Return polhode and herpolhode; None: they were not told."""
+    if len(msg.polhode) == 0:
+        return None
+    return RollingCurves(
+        seconds=np.array(msg.curve_times),
+        polhode_B=rows(msg.polhode),
+        herpolhode_W=rows(msg.herpolhode),
+    )
 
 
 def torque_acts() -> PoinsotMsg:

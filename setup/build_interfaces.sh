@@ -28,6 +28,12 @@ run() {
     fi
 }
 
+show_progress() { # how far ninja is; sleep must not keep the terminal or pipe open when this shell is gone
+    while sleep "${PROGRESS_PERIOD_S:-10}" >/dev/null 2>&1; do
+        sed -n 's/^\[\([0-9]*\)\/\([0-9]*\)\] .*/  step \1 of \2/p' "$log" | tail -n 1
+    done
+}
+
 # 3.21: the property that lists a folder's imported targets (cmake/wheel_paths.cmake).
 cmake=$(program cmake 3.21 'cmake>=3.28,<4')
 ninja=$(program ninja 1.10 'ninja>=1.11')
@@ -35,6 +41,9 @@ ninja=$(program ninja 1.10 'ninja>=1.11')
 echo "Building contact_dynamics_interfaces (about half a minute)."
 mkdir -p "$build"
 : >"$log"
+show_progress &
+heart=$!
+trap 'kill "$heart" 2>/dev/null || true' EXIT
 export AMENT_PREFIX_PATH="$venv" CMAKE_PREFIX_PATH="$venv"
 run "$cmake" -G Ninja -S "$source" -B "$build" \
     -DCMAKE_MAKE_PROGRAM="$ninja" \

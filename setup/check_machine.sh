@@ -30,6 +30,13 @@ compiles() { # compiler, language
     return $result
 }
 
+# Python.h includes others, which may be elsewhere: only a compiler tells whether all of them are there.
+has_headers() {
+    folder=$(ask_python 'import sysconfig; print(sysconfig.get_path("include"))')
+    [ -e "$folder/Python.h" ] || return 1
+    ! compiles "${CC:-cc}" c || echo '#include <Python.h>' | "${CC:-cc}" "-I$folder" -fsyntax-only -x c - >/dev/null 2>&1
+}
+
 if [ "$(uname -s)-$(uname -m)" != Linux-x86_64 ]; then
     refuse "This is $(uname -s) on $(uname -m). The wheels of ROS 2 Jazzy exist for x86-64 Linux only:
     here, use an installed ROS 2 Jazzy with colcon, or a container."
@@ -41,9 +48,8 @@ if version=$(ask_python 'import sys; print("%d.%d" % sys.version_info[:2])'); th
             if ! ask_python 'import ensurepip, venv'; then
                 lacks "Python $version has no venv module that works." "python$version-venv" "python3-pip"
             fi
-            header='import os, sysconfig as s; raise SystemExit(not os.path.exists(s.get_path("include") + "/Python.h"))'
-            if ! ask_python "$header"; then
-                lacks "The header files of Python $version are missing." "python$version-dev" "python$version-devel"
+            if ! has_headers; then
+                lacks "The header files of Python $version are missing, or some of them." "python$version-dev" "python$version-devel"
             fi
             supported='import platform as p, sys, sysconfig as s
 version = [int(part) for part in p.libc_ver()[1].split(".")[:2]] if p.libc_ver()[0] == "glibc" else [0]

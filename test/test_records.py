@@ -65,7 +65,16 @@ def test_a_print_has_a_line_a_field() -> None:
     lines = str(Outer()).splitlines()
     assert lines[0] == "Outer"
     assert any(line.split() == ["name", "'brick'"] for line in lines)
-    assert any(line.strip() == "[1] Inner" for line in lines)
+    assert "    [1] Inner(colour=RED, long=0.333333)" in lines
+
+
+def test_a_long_value_in_a_list_has_a_line_a_field() -> None:
+    @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+    class Sets(Record):
+        all_of_them: tuple[Outer, ...] = (Outer(),)
+
+    assert "  [0] Outer" in str(Sets())
+    assert "      name     'brick'" in str(Sets())
 
 
 def test_functions_and_private_fields_are_not_shown() -> None:
@@ -73,6 +82,7 @@ def test_functions_and_private_fields_are_not_shown() -> None:
     class Hidden(Record):
         _inside: int = 1
         law: object = math.sin
+        series: float = field(default=1.0, repr=False)
         shown: int = 2
 
     assert Hidden().to_dict() == {"shown": 2}

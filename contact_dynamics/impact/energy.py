@@ -6,14 +6,20 @@ energies of the bodies give it too, but their difference has lost the digits of 
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
+from contact_dynamics.records import Record
 from contact_dynamics.tolerances import ENERGY_TOLERANCE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import numpy as np
+    from numpy.typing import NDArray
+
     from contact_dynamics.numerics.elementwise import Real
+    from contact_dynamics.validation import FloatArray
 
 
 def energy_change(impulse: Sequence[Real], before: Sequence[Real], after: Sequence[Real]) -> Real:
@@ -31,6 +37,27 @@ def law_created(impulse: Sequence[Real], before: Sequence[Real], after: Sequence
     """Return whether an impulse, as in `energy_change`, gave energy: a bool, or an array of them."""
     sizes = [abs(v) + abs(w) for v, w in zip(before, after, strict=True)]
     return created(energy_change(impulse, before, after), _inner([abs(i) for i in impulse], sizes))
+
+
+class ManyEnergies(Record):
+    """The energies of many impacts, for results that know what happened at their contacts."""
+
+    __slots__ = ()
+
+    @property
+    def energy_changes(self) -> FloatArray:
+        """Return the changes of kinetic energy, (N,), J."""
+        return energy_change(*self._at_contacts())
+
+    @property
+    def creates_energy(self) -> NDArray[np.bool_]:
+        """Return which of them the law gave energy, (N,), beyond rounding. Only Newton's can."""
+        found: NDArray[np.bool_] = law_created(*self._at_contacts())
+        return found
+
+    @abstractmethod
+    def _at_contacts(self) -> tuple[list[FloatArray], ...]:
+        """Return impulses, velocities before and afterwards, each by components, (N,)."""
 
 
 def created(change: Real, exchanged: Real) -> Any:

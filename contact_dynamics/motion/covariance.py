@@ -124,13 +124,16 @@ def covariance_along(
     probes = _probes(motion, seconds)
     if method is PropagationMethod.LINEARISED:
         everywhere = _linearised(motion, start, np.concatenate([seconds, probes]))
-        covariances, on_the_way = everywhere[: len(seconds)], _deviations(everywhere[len(seconds) :])
+        covariances, on_the_way = (
+            everywhere[: len(seconds)],
+            orientation_deviations(everywhere[len(seconds) :]),
+        )
     else:
         if samples < FEWEST_SAMPLES:
             raise InvalidFieldError("samples", samples, f"at least {FEWEST_SAMPLES}")
         covariances = _sampled(motion, start, seconds, draws=_draws(start, samples, seed))
-        on_the_way = _deviations(_linearised(motion, start, probes))
-    deviations = _deviations(covariances)
+        on_the_way = orientation_deviations(_linearised(motion, start, probes))
+    deviations = orientation_deviations(covariances)
     return CarriedCovariance(
         seconds=seconds,
         covariances=covariances,
@@ -211,8 +214,11 @@ def _probes(motion: FreeMotion | ForcedMotion, seconds: FloatArray) -> FloatArra
     return np.concatenate([np.linspace(0.0, end, PROBES) for end in ends])
 
 
-def _deviations(covariances: FloatArray) -> FloatArray:
-    """Return the largest standard deviations of orientation, (n,), rad; inf where no double holds them."""
+def orientation_deviations(covariances: FloatArray) -> FloatArray:
+    """Return the largest standard deviations of orientation, (n,), rad, of covariances, (n, 12, 12).
+
+    Infinite where no double holds them.
+    """
     finite = np.isfinite(covariances).all(axis=(1, 2))
     deviations = np.full(len(covariances), math.inf)
     variances = np.linalg.eigvalsh(covariances[finite, 3:6, 3:6])[:, 2]

@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left, bisect_right
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
@@ -80,9 +80,9 @@ class ForcedMotion(Record):
     wrench: ConstantWrench
     drag: Drag
     wrench_of: WrenchFunction | None
-    law: _Law
-    ahead: _Steps
-    back: _Steps
+    law: _Law = field(repr=False)
+    ahead: _Steps = field(repr=False)
+    back: _Steps = field(repr=False)
 
     @property
     def rotates_freely(self) -> bool:

@@ -16,7 +16,7 @@ import time
 import traceback
 import warnings
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.clock import Clock, ClockType
@@ -31,24 +31,18 @@ from contact_dynamics.nodes.parameters import (
     read_server_parameters,
     refuse_unknown_parameters,
 )
-from contact_dynamics.nodes.pictured_answers import (
-    IMPACT,
-    TUMBLING,
-    body_name_of,
-    show_error,
-    show_impact,
-    show_tumbling,
-)
-from contact_dynamics.nodes.pictured_contact_modes import CONTACT_MODE, show_contact_modes
 from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.recording import BagReader, DamagedLogWarning
-from contact_dynamics.validation import check_array
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import DEFAULT_PORT, OpenRecording, Sinks, ViewerMode, raise_errors
+from contact_dynamics.viewing.words import CONTACT_MODE, IMPACT, TUMBLING
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from msg_adapters.contact_mode import contact_mode_answer_from_msg
+from msg_adapters.impact import impact_answer_from_msg
 from msg_adapters.stamps import stamp_ns_from_msg
+from msg_adapters.tumbling import tumbling_answer_from_msg
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -60,7 +54,7 @@ if TYPE_CHECKING:
 NODE_NAME: Final = "contact_dynamics_visualizer"
 
 EVENT_QOS: Final = QoSProfile(depth=10_000)
-"""Queue depth of the service events. It equals the server's, so that a burst of questions is drawn in full."""
+"""Queue depth of the service events. It equals the server's, so that a burst of questions is all drawn."""
 
 DRAW_PERIOD_S: Final = 0.05
 """States are drawn in batches, because a batch costs what a single state does."""
@@ -72,11 +66,28 @@ LOGGED_AT_ONCE: Final = 1000
 """Messages of a log between two drawings of their states."""
 
 _POLL_S: Final = 0.02
-_ORIGIN: Final = check_array("origin", (0.0, 0.0, 0.0), (3,))
-_ANSWERS: Final = (
-    (PredictTumbling, "predict_tumbling", TUMBLING, show_tumbling),
-    (PredictImpact, "predict_impact", IMPACT, show_impact),
-    (PredictContactMode, "predict_contact_mode", CONTACT_MODE, show_contact_modes),
+
+
+class _Shown(NamedTuple):
+    """A service whose answers are drawn."""
+
+    service_type: Any
+    name: str  # below the server's
+    kind: str  # of its answers, in words
+    from_msg: Callable[..., Any]  # makes an answer of a response
+    show: Callable[..., None]  # draws an answer
+
+
+_SHOWN: Final = (
+    _Shown(PredictTumbling, "predict_tumbling", TUMBLING, tumbling_answer_from_msg, Picture.show_tumbling),
+    _Shown(PredictImpact, "predict_impact", IMPACT, impact_answer_from_msg, Picture.show_impact),
+    _Shown(
+        PredictContactMode,
+        "predict_contact_mode",
+        CONTACT_MODE,
+        contact_mode_answer_from_msg,
+        Picture.show_contact_modes,
+    ),
 )
 
 
@@ -108,7 +119,7 @@ class Visualizer(Node):
         self._picture = Picture(self._recording.stream, self._world, surface_side=surface_side)
         self._states = _WaitingStates()
         self._receivers: dict[str, Callable[[bytes], None]] = {}  # by topic, for what was logged
-        events = [self._listen(type_, f"{server}/{name}", kind, show) for type_, name, kind, show in _ANSWERS]
+        events = [self._listen(shown, f"{server}/{shown.name}") for shown in _SHOWN]
         if not self.log_path:
             self._wait_for_server(server, events, server_wait)
         for topics in parameters.topics:
@@ -167,25 +178,31 @@ class Visualizer(Node):
                 return
             time.sleep(_POLL_S)
 
-    def _listen(self, service_type: Any, service: str, kind: str, show: Callable[..., None]) -> Subscription:
+    def _listen(self, shown: _Shown, service: str) -> Subscription:
         def receive(event: Any) -> None:
             if event.info.event_type == ServiceEventInfo.RESPONSE_SENT and event.response:
-                self._guarded(service, lambda: self._show(kind, event, show))
+                self._guarded(service, lambda: self._show(shown, event))
 
-        event_type = service_type.Event
+        event_type = shown.service_type.Event
         subscription = self.create_subscription(event_type, f"{service}/_service_event", receive, EVENT_QOS)
         self._receivers[subscription.topic_name] = lambda data: receive(deserialize_message(data, event_type))
         return subscription
 
-    def _show(self, kind: str, event: Any, show: Callable[..., None]) -> None:
+    def _show(self, shown: _Shown, event: Any) -> None:
         response = event.response[0]
         self.draw_states()
         now_ns = self._picture.newest_stamp_ns() or stamp_ns_from_msg(event.info.stamp)
         if response.status != response.OK:
-            show_error(self._picture, kind, response, now_ns=now_ns)
+            refused = f"refused ({response.status}): {response.message}"
+            self._picture.tell(shown.kind, refused, stamp_ns=now_ns, is_error=True)
             return
-        offsets = [body.p_FB_F for body in self._world.bodies if body.name == body_name_of(response)]
-        show(self._picture, response, p_FB_F=offsets[0] if offsets else _ORIGIN, now_ns=now_ns)
+        shown.show(
+            self._picture,
+            shown.from_msg(response, world=self._world),
+            now_ns=now_ns,
+            remark=response.message,
+            computation_time=response.computation_time,
+        )
 
     def _guarded(self, kind: str, draw: Callable[[], None]) -> None:
         try:

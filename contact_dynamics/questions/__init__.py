@@ -1,17 +1,19 @@
 """Questions as Python objects: what is asked, what is known when it is asked, and what the answer says.
 
-A service's request becomes one of these questions, and its answer becomes the response; a notebook, a test or
-a replayed log asks the same question without ROS. Each of the three files has a question, an answer and a
-function ``answer(question, knowledge)``:
+State a `TumblingQuestion`, an `ImpactQuestion` or a `ContactModeQuestion`, and `ask` it (`asking`). A
+service's request becomes one of these, and its answer becomes the response; a notebook, a test or a log asks
+the same question without ROS.
 
-- `tumbling`: where will a free body be (lectures 24, 25)?
-- `impact`: which velocities follow an impact (lecture 27)?
-- `contact_modes`: which contacts separate, slide or stay (lecture 26)?
-
-What they share: `knowledge` (the world, published states, defaults), `subject` (which body, in which state),
-`sample_times` (when), `which_impact`, `problem` (in a plane or in space), `touching` (which contacts).
+Each kind has a file with its question, its answer and a function ``answer``: `tumbling` (where will a free
+body be: lectures 24, 25), `impact` (which velocities follow: lecture 27; the question stands in
+`which_impact`), `contact_modes` (which contacts separate, slide or stay: lecture 26). They share `knowledge`
+(the world, defaults, and in a `state_store` what was published), `subject` (which body, in which state),
+`sample_times` (when), `touching` (which contacts) and `problem` (in a plane or in space). Answers tell every
+impact alike (`resolved_impact`), modes of a plane in world axes (`lifted_modes`) and back (`planar_view`),
+and what follows an inconsistency (`settled_impact`).
 """
 
+from contact_dynamics.questions.asking import ask
 from contact_dynamics.questions.contact_modes import ContactModeAnswer, ContactModeQuestion
 from contact_dynamics.questions.impact import ImpactAnswer, StruckBody
 from contact_dynamics.questions.knowledge import Defaults, Knowledge
@@ -58,4 +60,9 @@ __all__ = [
     "UncertainState",
     "UntilContact",
     "UntilPlane",
+    "ask",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -49,7 +49,7 @@ from contact_dynamics.questions.subject import NEWEST, StateSource, subject_of
 from contact_dynamics.questions.touching import contacts_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.validation import FloatArray, check_array
+from contact_dynamics.validation import FloatArray, check_array, check_choice
 from contact_dynamics.world import Body
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ class ContactModeQuestion(Record):
         want_impact: Whether to resolve the impact that settles an inconsistency or an approach.
 
     Raises:
-        InvalidFieldError: a number is out of its range or not finite.
+        InvalidFieldError: a number is out of its range or not finite, or the problem is none.
     """
 
     body: Body | str
@@ -135,7 +135,8 @@ class ContactModeQuestion(Record):
             """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
-        """Check what has no type of its own."""
+        """Check what has no type of its own, and the choice."""
+        check_choice("problem", self.problem, Problem)
         object.__setattr__(self, "force_W", check_array("force_W", self.force_W, (3,)))
         object.__setattr__(self, "torque_W", check_array("torque_W", self.torque_W, (3,)))
         if self.gravity_W is not None:

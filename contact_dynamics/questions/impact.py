@@ -267,7 +267,7 @@ def _of_two(
 def _problem(question: ImpactQuestion, strike: Strike, knowledge: Knowledge) -> PlanarProblem:
     """Return the problem in its plane of motion; refuse contacts beside it that have no mirror image."""
     problem = planar_problem_of(
-        strike.before.body,
+        strike.subject.body.mass_properties,
         strike.state,
         strike.contacts,
         plane=question.plane,

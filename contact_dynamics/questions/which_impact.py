@@ -16,6 +16,7 @@ from contact_dynamics.questions.subject import NEWEST, StateSource, Subject, sub
 from contact_dynamics.questions.touching import check_has_shape, contacts_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.validation import check_choice
 from contact_dynamics.world import Body
 
 
@@ -69,7 +70,7 @@ class ImpactQuestion(Record):
         distance_tolerance: m, >= 0. A body with a smaller gap touches. None: the default.
 
     Raises:
-        InvalidFieldError: a number is negative or not finite.
+        InvalidFieldError: a number is negative or not finite, or a choice is no member of its enumeration.
     """
 
     body: Body | str
@@ -89,7 +90,11 @@ class ImpactQuestion(Record):
     distance_tolerance: float | None = None
 
     def __post_init__(self) -> None:
-        """Check the numbers."""
+        """Check the numbers and the choices."""
+        check_choice("problem", self.problem, Problem)
+        check_choice("restitution_law", self.restitution_law, RestitutionLaw)
+        if not isinstance(self.several_contacts_law, InTime):
+            check_choice("several_contacts_law", self.several_contacts_law, SeveralContactsLaw)
         for name in ("horizon", "out_of_plane_tolerance", "velocity_tolerance", "distance_tolerance"):
             object.__setattr__(self, name, check_optional(name, getattr(self, name)))
 

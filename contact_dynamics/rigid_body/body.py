@@ -1,7 +1,7 @@
 """A rigid body: its mass properties, its state, and what follows from the two (Mason, lectures 24 and 25).
 
-Frames: W is the world. B is the body's frame, with its origin at the centre of mass. If a body's published
-frame has its origin elsewhere, `msg_adapters` converts its messages.
+Frames: W is the world. B is the body's frame, with its origin at the centre of mass. If a published frame has
+its origin elsewhere, `published_frame` converts.
 """
 
 from __future__ import annotations
@@ -159,10 +159,7 @@ def rotational_energy(body: MassProperties, state: BodyState) -> float:
 
 
 def _check_inertia(field: str, value: FloatArray) -> FloatArray:
-    inertia = check_array(field, value, (3, 3))
-    scale = float(np.abs(inertia).max())
-    if float(np.abs(inertia - inertia.T).max()) > SYMMETRY_TOLERANCE * scale:
-        raise InvalidFieldError(field, inertia.tolist(), "a symmetric matrix")
+    inertia = check_symmetric(field, value)
     moments = np.linalg.eigvalsh(inertia)
     if moments[0] <= 0.0:
         raise InvalidFieldError(field, f"principal moments {moments.tolist()}", "a positive definite matrix")
@@ -171,3 +168,11 @@ def _check_inertia(field: str, value: FloatArray) -> FloatArray:
             field, f"principal moments {moments.tolist()}", "moments that a body can have (I1 + I2 >= I3)"
         )
     return inertia
+
+
+def check_symmetric(field: str, value: ArrayLike) -> FloatArray:
+    """Return a (3, 3) matrix, or raise `InvalidFieldError` where it is not symmetric."""
+    matrix = check_array(field, value, (3, 3))
+    if float(np.abs(matrix - matrix.T).max()) > SYMMETRY_TOLERANCE * float(np.abs(matrix).max()):
+        raise InvalidFieldError(field, matrix.tolist(), "a symmetric matrix")
+    return matrix

@@ -65,6 +65,13 @@ def origins_of_published_frame(p_WB_W: FloatArray, q_WB: FloatArray, p_FB_F: Flo
     return p_WB_W - rotated(q_WB, p_FB_F)
 
 
+def centers_of_mass(p_WF_W: FloatArray, q_WB: FloatArray, p_FB_F: FloatArray) -> FloatArray:
+    """Return the positions of B, (n, 3), m, world, from those of F's origin and quaternions, (n, 4)."""
+    if not p_FB_F.any():
+        return p_WF_W
+    return p_WF_W + rotated(q_WB, p_FB_F)
+
+
 def velocity_of_published_frame(state: BodyState, p_FB_F: FloatArray) -> FloatArray:
     """Return the velocity of F's origin, (3,), m/s, world axes."""
     return state.velocity_of_point(origin_of_published_frame(state, p_FB_F))

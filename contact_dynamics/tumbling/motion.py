@@ -15,7 +15,7 @@ says how much.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -126,14 +126,14 @@ class FreeMotion(Record):
     body: MassProperties
     state: BodyState
     gravity_W: FloatArray
-    frame: PrincipalFrame[Decimal]
-    rotation: Rotation
-    form: AttitudeForm
-    q_WL: Quaternion
-    q_PB: Quaternion
-    w_along: float
-    w_across: tuple[float, float]
-    farthest: float
+    frame: PrincipalFrame[Decimal] = field(repr=False)
+    rotation: Rotation = field(repr=False)
+    form: AttitudeForm = field(repr=False)
+    q_WL: Quaternion = field(repr=False)
+    q_PB: Quaternion = field(repr=False)
+    w_along: float = field(repr=False)
+    w_across: tuple[float, float] = field(repr=False)
+    farthest: float = field(repr=False)
     regime: Regime
 
     def sample(self, seconds: float) -> Sample:
@@ -289,9 +289,9 @@ def check_extent(body: MassProperties, state: BodyState, gravity_W: FloatArray) 
         "angular_velocity": state.w_WB_W,
         "gravity": gravity_W,
     }
-    for field, values in numbers.items():
+    for name, values in numbers.items():
         if max(map(abs, values.ravel().tolist())) > LARGEST_NUMBER:  # NumPy's calls would cost more
-            check_magnitude(field, values)
+            check_magnitude(name, values)
     if min(body.I_B.diagonal().tolist()) * LARGEST_NUMBER < 1.0:
         raise InvalidFieldError(
             "inertia", body.I_B.diagonal().tolist(), f"moments of at least {1.0 / LARGEST_NUMBER:g} kg m^2"

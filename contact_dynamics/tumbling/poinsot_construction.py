@@ -67,6 +67,12 @@ class Poinsot(Record):
     ellipsoid_semi_axes: FloatArray
     sensitivity: float
 
+    @property
+    def I_B(self) -> FloatArray:
+        """Return the inertia, (3, 3), kg m^2, about the centre of mass, body axes."""
+        inertia: FloatArray = self.principal_axes_B * self.principal_moments @ self.principal_axes_B.T
+        return inertia
+
 
 def poinsot(motion: FreeMotion) -> Poinsot:
     """Return Poinsot's picture of a free motion."""
@@ -84,9 +90,15 @@ def poinsot(motion: FreeMotion) -> Poinsot:
         precession_per_period=_precession(rotation) * period if math.isfinite(period) else math.nan,
         principal_moments=axes.moments,
         principal_axes_B=axes.R_BP,
-        ellipsoid_semi_axes=np.sqrt(twice_energy / axes.moments),
+        ellipsoid_semi_axes=semi_axes(0.5 * twice_energy, axes.moments),
         sensitivity=sensitivity(motion),
     )
+
+
+def semi_axes(rotational_energy: float, principal_moments: FloatArray) -> FloatArray:
+    """Return the semi-axes of the energy ellipsoid, (3,), rad/s, from T, J, and the moments, kg m^2."""
+    axes: FloatArray = np.sqrt(2.0 * rotational_energy / principal_moments)
+    return axes
 
 
 def polhode_period(rotation: Rotation) -> float:

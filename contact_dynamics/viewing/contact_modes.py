@@ -6,20 +6,20 @@ and acceleration. The viewer shows the first; the others are switched on by the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.questions.planar_view import beyond, sliding_directions
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import contacts_entity
 from contact_dynamics.viewing.impact import friction_cones
 from contact_dynamics.viewing.trajectory import outline
 
 if TYPE_CHECKING:
-    from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.contact_modes import SpatialMode
+    from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.viewing.shape import Shape
 
 FORCE_LENGTH: Final = 0.6
@@ -36,47 +36,14 @@ _POINT_SIZE: Final = 0.035  # likewise
 _ARROW_WIDTH: Final = 0.01  # likewise
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class DrawnMode:
-    """One consistent mode, in world axes.
+def draw_contact_modes(recording: rr.RecordingStream, shape: Shape, answer: ContactModeAnswer) -> None:
+    """Draw an answer about contact modes in the scene, at the recording's current time.
 
-    Attributes:
-        mode: One letter a contact.
-        forces_W: (n, 3), N, on the body.
-        sliding_W: (n, 3), unit direction in which each contact slides; zero: it does not.
-        acceleration_W: (3,), m/s^2, of the centre of mass.
+    ``shape`` is that of the body.
     """
-
-    mode: str
-    forces_W: FloatArray
-    sliding_W: FloatArray
-    acceleration_W: FloatArray
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ContactModesPicture:
-    """What the picture of an answer about contact modes is made of.
-
-    Attributes:
-        p_WB_W: (3,), m, centre of mass, world.
-        q_WB: (4,), unit quaternion x, y, z, w.
-        contacts: n contacts.
-        modes: Every consistent mode.
-    """
-
-    p_WB_W: FloatArray
-    q_WB: FloatArray
-    contacts: ContactSet
-    modes: tuple[DrawnMode, ...]
-
-
-def draw_contact_modes(
-    recording: rr.RecordingStream, body_name: str, shape: Shape, picture: ContactModesPicture
-) -> None:
-    """Draw an answer about contact modes in the scene, at the recording's current time."""
-    path, size = contacts_entity(body_name), shape.size
-    contacts = picture.contacts
-    letters = letters_of_contacts(tuple(mode.mode for mode in picture.modes), len(contacts))
+    path, size = contacts_entity(answer.body_name), shape.size
+    contacts = answer.contacts
+    letters = letters_of_contacts(tuple(mode.mode for mode in answer.modes), len(contacts))
     colors = np.array([color_of_letters(text) for text in letters], dtype=np.uint8).reshape(-1, 4)
     points = rr.Points3D(
         contacts.p_WC_W, colors=colors, radii=_POINT_SIZE * size, labels=letters, show_labels=True
@@ -86,13 +53,13 @@ def draw_contact_modes(
         contacts.p_WC_W, contacts.normals_W, contacts.frictions, height=_CONE_HEIGHT * size
     )
     recording.log(f"{path}/cones", rr.Clear(recursive=False) if cones is None else cones)
-    edges = list(outline(shape, picture.p_WB_W, picture.q_WB))
+    edges = list(outline(shape, answer.state.p_WB_W, answer.state.q_WB))
     body = rr.LineStrips3D(edges, colors=palette.translucent(palette.NORMAL, 0.6), radii=_OUTLINE_WIDTH)
     recording.log(f"{path}/body", body)
     for i, name in enumerate(mode_names()):
         mode_path = f"{path}/{name}"
-        if i < len(picture.modes):
-            _draw_mode(recording, mode_path, picture.modes[i], picture, size=size)
+        if i < len(answer.modes):
+            _draw_mode(recording, mode_path, answer.modes[i], answer, size=size)
         else:
             recording.log(mode_path, rr.Clear(recursive=True))
 
@@ -103,34 +70,36 @@ def mode_names() -> list[str]:
 
 
 def _draw_mode(
-    recording: rr.RecordingStream, path: str, mode: DrawnMode, picture: ContactModesPicture, *, size: float
+    recording: rr.RecordingStream, path: str, mode: SpatialMode, answer: ContactModeAnswer, *, size: float
 ) -> None:
-    points = picture.contacts.p_WC_W
+    points, forces_W = answer.contacts.p_WC_W, mode.contact_forces_W
     colors = np.array([color_of_letters(letter) for letter in mode.mode], dtype=np.uint8).reshape(-1, 4)
-    magnitudes = np.linalg.norm(mode.forces_W, axis=1)
+    magnitudes = np.linalg.norm(forces_W, axis=1)
     pressed = magnitudes > 0.0
     scale = FORCE_LENGTH * size / float(magnitudes.max(initial=0.0)) if pressed.any() else 0.0
     forces = rr.Arrows3D(
         origins=points[pressed],
-        vectors=mode.forces_W[pressed] * scale,
+        vectors=forces_W[pressed] * scale,
         colors=colors[pressed],
         radii=_ARROW_WIDTH * size,
         labels=[f"{magnitude:.3g} N" for magnitude in magnitudes[pressed].tolist()],
         show_labels=False,  # four of them hide the body; the viewer shows one where the mouse is
     )
     recording.log(f"{path}/forces", forces)
-    slides = mode.sliding_W.any(axis=1)
+    sliding_W = sliding_directions(answer, mode)
+    slides = sliding_W.any(axis=1)
     directions = rr.Arrows3D(
         origins=points[slides],
-        vectors=mode.sliding_W[slides] * (_SLIDING_LENGTH * size),
+        vectors=sliding_W[slides] * (_SLIDING_LENGTH * size),
         colors=palette.SLIDE,
         radii=0.5 * _ARROW_WIDTH * size,
     )
     recording.log(f"{path}/sliding", directions)
-    amount = float(np.linalg.norm(mode.acceleration_W))
-    vectors = [mode.acceleration_W / amount * (_ACCELERATION_LENGTH * size)] if amount > 0.0 else []
+    (acceleration_W,) = beyond(mode.acceleration_W[None], answer.acceleration_tolerance)
+    amount = float(np.linalg.norm(acceleration_W))
+    vectors = [acceleration_W / amount * (_ACCELERATION_LENGTH * size)] if amount > 0.0 else []
     acceleration = rr.Arrows3D(
-        origins=[picture.p_WB_W] * len(vectors),
+        origins=[answer.state.p_WB_W] * len(vectors),
         vectors=vectors,
         colors=palette.PREDICTED,
         radii=_ARROW_WIDTH * size,

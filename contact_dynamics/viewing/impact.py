@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.questions.impact import ImpactAnswer
+    from contact_dynamics.questions.resolved_impact import SequenceStrike
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.shape import Shape
 
@@ -45,77 +45,6 @@ _CONE_FACETS: Final = 32
 _ARROW_WIDTH: Final = 0.016  # relative to the size of the body
 _POINT_SIZE: Final = 0.02  # likewise
 _OUTLINE_WIDTH: Final = -1.2  # negative: points of the screen
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class DrawnStrike:
-    """One strike of a sequence in time.
-
-    Attributes:
-        seconds: s after the first.
-        contact: Index into the contacts.
-        p_WC_W: (3,), m, where the contact is then, world.
-        impulse_W: (3,), N s, on the body, world axes.
-        p_WB_W: (3,), m, centre of mass then, world.
-        q_WB: (4,), unit quaternion x, y, z, w.
-    """
-
-    seconds: float
-    contact: int
-    p_WC_W: FloatArray
-    impulse_W: FloatArray
-    p_WB_W: FloatArray
-    q_WB: FloatArray
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class OtherBody:
-    """A second moving body that is struck.
-
-    Attributes:
-        state: Just before.
-        v_after_W: (3,), m/s, of its centre of mass just after, world axes.
-    """
-
-    name: str
-    state: BodyState
-    v_after_W: FloatArray
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ImpactPicture:
-    """What an impact's picture is made of; impulses act on the body.
-
-    Attributes:
-        state: Just before.
-        v_after_W: (3,), m/s, of the centre of mass just after, world axes.
-        contacts: n contacts.
-        impulses_W: (n, 3), N s, world axes.
-        path_W: (k, 3), N s, vertices of the accumulated impulse, world axes.
-        path_events: (k,), what each vertex is, as `contact_dynamics.impact.PathEvent`.
-        path_contacts: (k,), contact that each vertex belongs to.
-        plane_normal_W: (3,), unit, plane of motion, world axes; none in space.
-        other: The body that is struck; none: the world.
-        strikes: In the order of time; empty: all at once.
-    """
-
-    state: BodyState
-    v_after_W: FloatArray
-    contacts: ContactSet
-    impulses_W: FloatArray
-    path_W: FloatArray
-    path_events: tuple[int, ...]
-    path_contacts: tuple[int, ...]
-    plane_normal_W: FloatArray | None
-    other: OtherBody | None = None
-    strikes: tuple[DrawnStrike, ...] = ()
-
-    @property
-    def main_contact(self) -> int:
-        """Return the contact with the largest impulse; of a sequence in time the one that strikes first."""
-        if self.strikes:
-            return self.strikes[0].contact
-        return int(np.linalg.norm(self.impulses_W, axis=1).argmax())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -165,19 +94,26 @@ class _Arrows:
 
 def draw_impact(
     recording: rr.RecordingStream,
-    body_name: str,
     shape: Shape,
-    picture: ImpactPicture,
+    answer: ImpactAnswer,
     *,
     other_shape: Shape | None = None,
 ) -> None:
-    """Draw an impact in the scene, at the recording's current time."""
-    path, size = impact_entity(body_name), shape.size
-    struck, points, impulses_W = _struck(picture)
+    """Draw an impact in the scene, at the recording's current time.
+
+    Args:
+        recording: To draw into.
+        shape: The shape of the body.
+        answer: The impact.
+        other_shape: The shape of the body that is struck. If it is None, only its velocities are drawn.
+    """
+    path, size = impact_entity(answer.body_name), shape.size
+    impact, other = answer.impact, answer.other
+    struck, points, impulses_W = _struck(answer)
     impulses = _Arrows(origins=points, vectors=impulses_W, unit="N s", colors=(palette.IMPACT,) * len(points))
-    moving = [(picture.state.p_WB_W, picture.state.v_WB_W, picture.v_after_W)]
-    if picture.other is not None:
-        moving.append((picture.other.state.p_WB_W, picture.other.state.v_WB_W, picture.other.v_after_W))
+    moving = [(answer.state.p_WB_W, answer.state.v_WB_W, impact.state.v_WB_W)]
+    if other is not None and impact.other_state is not None:
+        moving.append((other.state.p_WB_W, other.state.v_WB_W, impact.other_state.v_WB_W))
     velocities = _Arrows(
         origins=np.array([p_W for p_W, _, _ in moving for _ in range(2)]),
         vectors=np.array([v_W for _, *both in moving for v_W in both]),
@@ -185,56 +121,56 @@ def draw_impact(
         colors=(palette.BEFORE_IMPACT, palette.AFTER_IMPACT) * len(moving),
     )
     recording.log(f"{path}/impulse", impulses.drawn(size))
-    main = main_strikes(picture.strikes)
-    recording.log(f"{path}/impulse_label", _impulse_labels(picture, impulses, main, size=size))
+    main = main_strikes(impact.strikes)
+    recording.log(f"{path}/impulse_label", _impulse_labels(impact.strikes, impulses, main, size=size))
     recording.log(f"{path}/velocity", velocities.drawn(size))
     recording.log(f"{path}/velocity_label", velocities.labels(velocities.tips(size)))
-    paths = _paths(picture, scale=impulses.scale(size)) if not picture.strikes else []
+    paths = _paths(answer, scale=impulses.scale(size)) if not impact.strikes else []
     strips = rr.LineStrips3D(paths, colors=palette.IMPACT, radii=2.0 * _OUTLINE_WIDTH)
     recording.log(f"{path}/impulse_path", strips)
     height = CONE_HEIGHT * size
     width = 0.5 * _ARROW_WIDTH * size
     once = [struck.index(contact) for contact in dict.fromkeys(struck)]
     points = points[once]
-    normals = picture.contacts.normals_W[struck][once]
-    frictions = picture.contacts.frictions[struck][once]
+    normals = answer.contacts.normals_W[struck][once]
+    frictions = answer.contacts.frictions[struck][once]
     arrows = rr.Arrows3D(origins=points, vectors=normals * height, colors=palette.NORMAL, radii=width)
     recording.log(f"{path}/normal", arrows)
     spheres = rr.Points3D(points, radii=_POINT_SIZE * size, colors=palette.IMPACT)
     recording.log(f"{path}/point", spheres)
     cones = friction_cones(points, normals, frictions, height=height)
     recording.log(f"{path}/cone", rr.Clear(recursive=False) if cones is None else cones)
-    poses = [(shape, picture.state.p_WB_W, picture.state.q_WB)]
-    poses += [(shape, picture.strikes[i].p_WB_W, picture.strikes[i].q_WB) for i in main]
-    if picture.other is not None and other_shape is not None:
-        poses.append((other_shape, picture.other.state.p_WB_W, picture.other.state.q_WB))
-    edges = [edge for drawn, p_WB_W, q_WB in poses for edge in outline(drawn, p_WB_W, q_WB)]
+    bodies = [(shape, answer.state), *((shape, impact.strikes[i].state_before) for i in main)]
+    if other is not None and other_shape is not None:
+        bodies.append((other_shape, other.state))
+    edges = [edge for drawn, state in bodies for edge in outline(drawn, state.p_WB_W, state.q_WB)]
     body = rr.LineStrips3D(edges, colors=palette.translucent(palette.IMPACT, 0.7), radii=_OUTLINE_WIDTH)
     recording.log(f"{path}/body", body)
 
 
-def main_strikes(strikes: Sequence[DrawnStrike]) -> list[int]:
+def main_strikes(strikes: Sequence[SequenceStrike]) -> list[int]:
     """Return the indices of the strikes with the largest impulses, in the order of time."""
     sizes = [float(np.linalg.norm(strike.impulse_W)) for strike in strikes]
     return sorted(sorted(range(len(strikes)), key=lambda i: -sizes[i])[:MOST_STRIKES])
 
 
-def _struck(picture: ImpactPicture) -> tuple[list[int], FloatArray, FloatArray]:
+def _struck(answer: ImpactAnswer) -> tuple[list[int], FloatArray, FloatArray]:
     """Return what is struck: contacts, points and impulses, (n, 3) each, in world axes."""
-    if picture.strikes:
+    strikes, impulses_W = answer.impact.strikes, answer.impact.impulses_W
+    if strikes:
         return (
-            [strike.contact for strike in picture.strikes],
-            np.array([strike.p_WC_W for strike in picture.strikes]),
-            np.array([strike.impulse_W for strike in picture.strikes]),
+            [strike.contact for strike in strikes],
+            np.array([strike.p_WC_W for strike in strikes]),
+            np.array([strike.impulse_W for strike in strikes]),
         )
-    struck = np.flatnonzero(np.linalg.norm(picture.impulses_W, axis=1) > 0.0).tolist()
-    return struck, picture.contacts.p_WC_W[struck], picture.impulses_W[struck]
+    struck = np.flatnonzero(np.linalg.norm(impulses_W, axis=1) > 0.0).tolist()
+    return struck, answer.contacts.p_WC_W[struck], impulses_W[struck]
 
 
 def _impulse_labels(
-    picture: ImpactPicture, impulses: _Arrows, main: list[int], *, size: float
+    strikes: Sequence[SequenceStrike], impulses: _Arrows, main: list[int], *, size: float
 ) -> rr.Points3D:
-    if not picture.strikes:
+    if not strikes:
         return impulses.labels(impulses.origins)
     labelled = replace(
         impulses,
@@ -242,15 +178,15 @@ def _impulse_labels(
         vectors=impulses.vectors[main],
         colors=(palette.IMPACT,) * len(main),
     )
-    numbers = [f"{i + 1}. at {1e3 * picture.strikes[i].seconds:.1f} ms:" for i in main]
+    numbers = [f"{i + 1}. at {1e3 * strikes[i].seconds:.1f} ms:" for i in main]
     return labelled.labels(impulses.tips(size)[main], before=numbers)
 
 
-def _paths(picture: ImpactPicture, *, scale: float) -> list[FloatArray]:
+def _paths(answer: ImpactAnswer, *, scale: float) -> list[FloatArray]:
     """Return the path of the accumulated impulse of each contact, (k, 3), m, world."""
-    owners = np.array(picture.path_contacts, dtype=np.int64)
+    owners = np.array(answer.impact.path_contacts, dtype=np.int64)
     return [
-        picture.contacts.p_WC_W[contact] + scale * picture.path_W[owners == contact]
+        answer.contacts.p_WC_W[contact] + scale * answer.impact.path_W[owners == contact]
         for contact in np.unique(owners).tolist()
     ]
 

@@ -34,9 +34,10 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from contact_dynamics.plane.types import Vector2
+    from contact_dynamics.questions.impact import ImpactAnswer
+    from contact_dynamics.questions.resolved_impact import ResolvedImpact
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.viewing.impact import ImpactPicture
 
 MARGIN: Final = 1.2
 """How far cone and lines go beyond the path."""
@@ -96,35 +97,36 @@ class _ContactMotion(NamedTuple):
 def draw_impulse_space(
     recording: rr.RecordingStream,
     mass_properties: MassProperties | None,
-    picture: ImpactPicture,
+    answer: ImpactAnswer,
     *,
     other: MassProperties | None = None,
     entity: str = IMPULSE_SPACE,
 ) -> None:
-    """Draw the impulse path of the picture's main contact, at the recording's current time.
+    """Draw the impulse path of an impact's main contact, at the recording's current time.
 
     Without the mass properties of all that moves the sticking and compression lines are left out; ``other``
     are those of the body that is struck. ``entity``, a name without slashes, is where to draw.
     """
-    contact = picture.main_contact
-    axes_W = contact_axes(picture, contact)
-    chosen = [i for i, owner in enumerate(picture.path_contacts) if owner == contact]
-    path = picture.path_W[chosen] @ axes_W.T
+    impact = answer.impact
+    contact = main_contact(impact)
+    axes_W = contact_axes(answer, contact)
+    chosen = [i for i, owner in enumerate(impact.path_contacts) if owner == contact]
+    path = impact.path_W[chosen] @ axes_W.T
     extent = MARGIN * float(np.abs(path).max(initial=0.0)) or 1.0
-    _draw_background(recording, entity, float(picture.contacts.frictions[contact]), extent)
+    _draw_background(recording, entity, float(answer.contacts.frictions[contact]), extent)
     # Labels of the path stand on its side of the normal, the names of the lines on the other.
     side = -1.0 if len(path) > 0 and path[-1, 0] < 0.0 else 1.0
     _draw_names(recording, entity, -side * _NAMES * extent, extent)
-    events = [(i, picture.path_events[i]) for i in chosen if picture.path_events[i] in _EVENTS]
+    events = [(i, impact.path_events[i]) for i in chosen if impact.path_events[i] in _EVENTS]
     ends = [k for k, (_, event) in enumerate(events) if event == PathEvent.RESTITUTION_ENDS]
     events = events[: ends[0] + 1] if ends else events  # the lines are those of the first strike
     sticking: list[Line] = []
     compression: list[Line] = []
-    if mass_properties is not None and (picture.other is None or other is not None):
+    if mass_properties is not None and (answer.other is None or other is not None):
         before = chosen[0] if chosen else 0
-        motion = _contact_motion(mass_properties, picture, contact, axes_W, other=other, before=before)
-        sticking = [motion.sticking_line(in_space=picture.plane_normal_W is None)]
-        compressed_W = [picture.path_W[i] for i, event in events if event == PathEvent.COMPRESSION_ENDS]
+        motion = _contact_motion(mass_properties, answer, contact, axes_W, other=other, before=before)
+        sticking = [motion.sticking_line(in_space=answer.plane is None)]
+        compressed_W = [impact.path_W[i] for i, event in events if event == PathEvent.COMPRESSION_ENDS]
         aside = [float(np.cross(*axes_W) @ p_W) for p_W in compressed_W]
         compression = [motion.compression_line(aside=s) for s in aside or [0.0]]
     for (name, color), lines in zip(_NAMED, (sticking, compression), strict=False):
@@ -132,9 +134,9 @@ def draw_impulse_space(
             recording, [entity, name], [part for line in lines for part in line_in_box(line, extent)], color
         )
     _strips(recording, [entity, "path"], [path], palette.IMPACT, width=_PATH_WIDTH)
-    points = picture.path_W[[i for i, _ in events]] @ axes_W.T
+    points = impact.path_W[[i for i, _ in events]] @ axes_W.T
     texts = [
-        f"{_EVENTS[PathEvent(event)]}: {t:.3g}, {n:.3g} N s"
+        f"{_EVENTS[event]}: {t:.3g}, {n:.3g} N s"
         for (_, event), (t, n) in zip(events, points.tolist(), strict=True)
     ]
     shown = rr.Points2D(_on_screen(points), colors=palette.IMPACT, radii=_POINT_SIZE)
@@ -144,18 +146,25 @@ def draw_impulse_space(
     recording.log([entity, "event labels"], labels)
 
 
-def contact_axes(picture: ImpactPicture, contact: int) -> FloatArray:
+def main_contact(impact: ResolvedImpact) -> int:
+    """Return the contact with the largest impulse; of strikes in time the one that strikes first."""
+    if impact.strikes:
+        return impact.strikes[0].contact
+    return int(np.linalg.norm(impact.impulses_W, axis=1).argmax())
+
+
+def contact_axes(answer: ImpactAnswer, contact: int) -> FloatArray:
     """Return the axes of the picture, tangent and normal, (2, 3), unit, world axes.
 
     In the plane of motion the tangent is the normal turned by -90 degrees. In space it points to where the
     tangential impulse does, or where there is none, against the sliding.
     """
-    normal_W = picture.contacts.normals_W[contact]
-    if picture.plane_normal_W is not None:
-        candidates = [np.cross(normal_W, picture.plane_normal_W)]
+    normal_W = answer.contacts.normals_W[contact]
+    if answer.plane is not None:
+        candidates = [np.cross(normal_W, answer.plane.normal_W)]
     else:
-        slip_W = picture.state.velocity_of_point(picture.contacts.p_WC_W[contact])
-        candidates = [picture.impulses_W[contact], -slip_W]
+        slip_W = answer.state.velocity_of_point(answer.contacts.p_WC_W[contact])
+        candidates = [answer.impact.impulses_W[contact], -slip_W]
     for vector_W in (*candidates, tangents(normal_W)[0]):
         tangent_W = across(vector_W, normal_W)
         length = float(np.linalg.norm(tangent_W))
@@ -188,7 +197,7 @@ def line_in_box(line: Line, extent: float) -> FloatArray:
 
 def _contact_motion(
     mass_properties: MassProperties,
-    picture: ImpactPicture,
+    answer: ImpactAnswer,
     contact: int,
     axes_W: FloatArray,
     *,
@@ -196,15 +205,16 @@ def _contact_motion(
     before: int,
 ) -> _ContactMotion:
     """Return how a contact moves once the contacts before a vertex of the path have struck."""
-    p_WC_W = picture.contacts.p_WC_W[contact]
+    state, impact = answer.state, answer.impact
+    p_WC_W = answer.contacts.p_WC_W[contact]
     struck_W = dict(
-        zip(picture.path_contacts[:before], picture.path_W[:before], strict=True)
+        zip(impact.path_contacts[:before], impact.path_W[:before], strict=True)
     )  # the last of each
-    pushes = [(picture.contacts.p_WC_W[i], impulse_W) for i, impulse_W in struck_W.items()]
-    velocity_W = _velocity_of_point(mass_properties, picture.state, p_WC_W, pushes)
-    response_W = contact_inverse_inertia(mass_properties, picture.state, p_WC_W - picture.state.p_WB_W)
-    if picture.other is not None and other is not None:
-        struck = picture.other.state
+    pushes = [(answer.contacts.p_WC_W[i], impulse_W) for i, impulse_W in struck_W.items()]
+    velocity_W = _velocity_of_point(mass_properties, state, p_WC_W, pushes)
+    response_W = contact_inverse_inertia(mass_properties, state, p_WC_W - state.p_WB_W)
+    if answer.other is not None and other is not None:
+        struck = answer.other.state
         pushes = [(p_W, -impulse_W) for p_W, impulse_W in pushes]
         velocity_W = velocity_W - _velocity_of_point(other, struck, p_WC_W, pushes)
         response_W = response_W + contact_inverse_inertia(other, struck, p_WC_W - struck.p_WB_W)

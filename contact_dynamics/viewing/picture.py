@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import rerun as rr
 
-from contact_dynamics.constants import to_ns
+from contact_dynamics.constants import ns_after, to_ns
 from contact_dynamics.shapes.convex import NO_SHAPE
+from contact_dynamics.tumbling.regime import Regime
 from contact_dynamics.viewing.blueprint import WINDOW_S, Eye, eye_on, make_blueprint
 from contact_dynamics.viewing.contact_modes import draw_contact_modes
 from contact_dynamics.viewing.entities import (
@@ -36,20 +37,27 @@ from contact_dynamics.viewing.poinsot import (
 from contact_dynamics.viewing.scene import draw_axes, draw_body, draw_obstacle, draw_surface
 from contact_dynamics.viewing.shape import Shape, drawn_shape
 from contact_dynamics.viewing.trajectory import draw_trajectory
+from contact_dynamics.viewing.words import (
+    CONTACT_MODE,
+    IMPACT,
+    TUMBLING,
+    contact_modes_in_words,
+    impact_in_words,
+    tumbling_in_words,
+)
 from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from contact_dynamics.questions.contact_modes import ContactModeAnswer
+    from contact_dynamics.questions.impact import ImpactAnswer
+    from contact_dynamics.questions.tumbling import TumblingAnswer
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.tumbling import Trajectory
+    from contact_dynamics.tumbling.poinsot_construction import Poinsot
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.viewing.contact_modes import ContactModesPicture
-    from contact_dynamics.viewing.impact import ImpactPicture
-    from contact_dynamics.viewing.planar_modes import PlanarModesPicture
-    from contact_dynamics.viewing.poinsot import PoinsotPicture
-    from contact_dynamics.viewing.trajectory import PositionUncertainty
-    from contact_dynamics.world import Body, World
+    from contact_dynamics.world import World
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -59,7 +67,10 @@ class _Prediction:
 
 
 class Picture:
-    """Draws into a recording. Times are stamps in ns; an unknown body is drawn without shape."""
+    """Draws states and answers into a recording; an unknown body is drawn without shape.
+
+    Answers may come from a live server, from its log, or from a question asked in Python.
+    """
 
     def __init__(self, recording: rr.RecordingStream, world: World, *, surface_side: float) -> None:
         """Draw the surfaces, as squares of ``surface_side``, m, and the bodies."""
@@ -72,7 +83,7 @@ class Picture:
         self._answers: dict[str, str] = {}
         self._told_ns: int | None = None  # stamp of the last answer
         self._map: DrawnMap | None = None
-        self._rolling: dict[str, PoinsotPicture] = {}  # of the bodies whose flight still goes on
+        self._rolling: dict[str, Poinsot] = {}  # of the bodies whose flight still goes on
         self._framed = False
         self._eye: Eye | None = None
         self._diagrams: set[str] = set()  # those that have been drawn
@@ -106,62 +117,90 @@ class Picture:
         while self._recent[-1][0] - self._recent[0][0] > to_ns(WINDOW_S):
             self._recent.popleft()
 
-    def show_trajectory(
+    def show_tumbling(
         self,
-        body_name: str,
-        trajectory: Trajectory,
+        answer: TumblingAnswer,
         *,
-        stamp_ns: int,
-        uncertainty: PositionUncertainty | None = None,
+        now_ns: int = 0,
+        remark: str = "",
+        computation_time: float | None = None,
     ) -> None:
-        """Draw where the body was predicted to be from a stamp on, and how surely."""
+        """Draw where a body was predicted to be, how surely, and Poinsot's picture where it has curves.
+
+        Args:
+            answer: What to show.
+            now_ns: ns, the time where the answer's state has no stamp.
+            remark: What else to say of it.
+            computation_time: s, how long the answer took. None: not known.
+        """
+        stamp_ns = answer.state.stamp_ns or now_ns
+        name, trajectory, rotation = answer.body_name, answer.trajectory, answer.poinsot
         set_time(self._recording, stamp_ns)
-        shape = self._shape(body_name)
-        draw_trajectory(self._recording, body_name, shape, trajectory, uncertainty=uncertainty)
-        self._predictions[body_name] = _Prediction(begin_ns=stamp_ns, trajectory=trajectory)
+        draw_trajectory(self._recording, name, self._shape(name), trajectory, covariance=answer.covariance)
+        self._predictions[name] = _Prediction(begin_ns=stamp_ns, trajectory=trajectory)
         if len(trajectory) > 0 and not self._framed:
             self._framed = True
             self._look_at(trajectory.p_WB_W)  # later ones leave the view to whoever looks
+        if rotation is not None and answer.curves is not None and rotation.regime is not Regime.AT_REST:
+            draw_poinsot(self._recording, name, rotation, answer.curves)
+            draw_rolling(self._recording, name, [replace(answer.state, stamp_ns=stamp_ns)])
+            self._rolling[name] = rotation
+            self._bring_up(POINSOT)
+        words = tumbling_in_words(answer)
+        self._tell_answer(TUMBLING, name, words, remark, computation_time, stamp_ns=stamp_ns)
 
-    def show_poinsot(self, picture: PoinsotPicture, *, state: BodyState, body_name: str) -> None:
-        """Draw Poinsot's picture of the rotation that a state began; later ones of the flight roll it on."""
-        set_time(self._recording, state.stamp_ns)
-        draw_poinsot(self._recording, body_name, picture)
-        draw_rolling(self._recording, body_name, [state])
-        self._rolling[body_name] = picture
-        self._bring_up(POINSOT)
+    def show_impact(
+        self,
+        answer: ImpactAnswer,
+        *,
+        now_ns: int = 0,
+        remark: str = "",
+        computation_time: float | None = None,
+    ) -> None:
+        """Draw an impact in the scene and in impulse space, at the time of the state it was predicted from.
 
-    def show_impact(self, body_name: str, impact: ImpactPicture, *, stamp_ns: int) -> None:
-        """Draw a predicted impact in the scene and in impulse space."""
+        Arguments are those of `show_tumbling`.
+        """
+        stamp_ns, name, other = answer.state.stamp_ns, answer.body_name, answer.other
+        stamp_ns = ns_after(stamp_ns, -answer.seconds_to_contact) if stamp_ns else now_ns
         set_time(self._recording, stamp_ns)
-        other = self._shape(impact.other.name) if impact.other is not None and impact.other.name else None
-        draw_impact(self._recording, body_name, self._shape(body_name), impact, other_shape=other)
-        if len(impact.path_W) > 0:
+        other_shape = self._shape(other.name) if other is not None and other.name else None
+        draw_impact(self._recording, self._shape(name), answer, other_shape=other_shape)
+        if len(answer.impact.path_W) > 0:
             draw_impulse_space(
                 self._recording,
-                self._mass_properties(body_name),
-                impact,
-                other=self._mass_properties(impact.other.name) if impact.other else None,
+                self._mass_properties(name),
+                answer,
+                other=self._mass_properties(other.name) if other is not None else None,
             )
             self._bring_up(IMPULSE_SPACE)
+        words = impact_in_words(answer)
+        self._tell_answer(IMPACT, name, words, remark, computation_time, stamp_ns=stamp_ns)
 
-    def show_contact_modes(self, body_name: str, modes: ContactModesPicture, *, stamp_ns: int) -> None:
-        """Draw an answer about contact modes."""
-        set_time(self._recording, stamp_ns)
-        draw_contact_modes(self._recording, body_name, self._shape(body_name), modes)
-
-    def show_planar_modes(
-        self, body_name: str, modes: PlanarModesPicture, *, axes_B: FloatArray, stamp_ns: int
+    def show_contact_modes(
+        self,
+        answer: ContactModeAnswer,
+        *,
+        now_ns: int = 0,
+        remark: str = "",
+        computation_time: float | None = None,
     ) -> None:
-        """Draw a planar answer about contact modes in 2D, seen along two axes, (2, 3), unit, body axes."""
-        set_time(self._recording, stamp_ns)
-        draw_planar_modes(self._recording, modes, outline=silhouette(self._shape(body_name), axes_B))
-        self._map = draw_planar_map(self._recording, modes, self._map)
-        self._bring_up(PLANAR_MODES, *([MODE_MAP] if modes.sets else []))
+        """Draw an answer about contact modes in the scene, and where it has a plane of motion in 2D.
 
-    def body(self, body_name: str) -> Body | None:
-        """Return a body of the world; None: it is not known."""
-        return next((body for body in self._world.bodies if body.name == body_name), None)
+        Arguments are those of `show_tumbling`.
+        """
+        stamp_ns, name, plane = answer.state.stamp_ns or now_ns, answer.body_name, answer.plane
+        set_time(self._recording, stamp_ns)
+        shape = self._shape(name)
+        draw_contact_modes(self._recording, shape, answer)
+        if plane is not None:
+            outline = silhouette(shape, plane.axes_W @ answer.state.R_WB)
+            draw_planar_modes(self._recording, answer, plane, outline=outline)
+            body = self._mass_properties(name)
+            self._map = draw_planar_map(self._recording, answer, plane, self._map, body=body)
+            self._bring_up(PLANAR_MODES, *([MODE_MAP] if answer.wrench_sets else []))
+        words = contact_modes_in_words(answer)
+        self._tell_answer(CONTACT_MODE, name, words, remark, computation_time, stamp_ns=stamp_ns)
 
     def tell(self, kind: str, text: str, *, stamp_ns: int, is_error: bool = False) -> None:
         """Write an answer in words: to the log of all, and as the newest one of its kind."""
@@ -203,9 +242,24 @@ class Picture:
             clear_poinsot(self._recording, body_name)
             del self._rolling[body_name]
 
+    def _tell_answer(
+        self,
+        kind: str,
+        body_name: str,
+        words: list[str],
+        remark: str,
+        computation_time: float | None,
+        *,
+        stamp_ns: int,
+    ) -> None:
+        said = [*words, remark] if remark else words
+        took = "" if computation_time is None else f" ({computation_time * 1e3:.2g} ms)"
+        self.tell(kind, f"{body_name or 'a body'} {'; '.join(said)}{took}", stamp_ns=stamp_ns)
+
     def _mass_properties(self, body_name: str) -> MassProperties | None:
-        body = self.body(body_name)
-        return None if body is None else body.mass_properties
+        """Return those of a body of the world; None: it is not known."""
+        known = (body.mass_properties for body in self._world.bodies if body.name == body_name)
+        return next(known, None)
 
     def _shape(self, body_name: str) -> Shape:
         if body_name not in self._shapes:

@@ -11,7 +11,6 @@ flight's any more.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves
     from contact_dynamics.validation import FloatArray
 
 SAME_MOMENTUM: Final = 0.2
@@ -44,36 +44,7 @@ _PARALLELS: Final = 7
 _ARROW_WIDTH: Final = 0.02  # relative to the largest semi-axis
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PoinsotPicture:
-    """What Poinsot's picture is made of.
-
-    Attributes:
-        semi_axes: (3,), rad/s, > 0, of the ellipsoid, along the principal axes.
-        principal_axes_B: (3, 3), columns, body axes.
-        L_W: (3,), kg m^2/s, not zero, angular momentum, world axes.
-        distance: rad/s, of the invariable plane from the centre.
-        polhode_B: (n, 3), rad/s, body axes.
-        herpolhode_W: (n, 3), rad/s, world axes.
-    """
-
-    semi_axes: FloatArray
-    principal_axes_B: FloatArray
-    L_W: FloatArray
-    distance: float
-    polhode_B: FloatArray
-    herpolhode_W: FloatArray
-
-    @property
-    def I_B(self) -> FloatArray:
-        """Return the inertia, (3, 3), kg m^2, about the centre of mass, body axes."""
-        # The plane's distance is 2 T / |L|, and each semi-axis is sqrt(2 T / moment).
-        moments = self.distance * np.linalg.norm(self.L_W) / self.semi_axes**2
-        inertia: FloatArray = self.principal_axes_B * moments @ self.principal_axes_B.T
-        return inertia
-
-
-def count_of_flight(picture: PoinsotPicture, states: Sequence[BodyState]) -> int:
+def count_of_flight(picture: Poinsot, states: Sequence[BodyState]) -> int:
     """Return how many states, from the first on, have the flight's angular momentum."""
     allowed = SAME_MOMENTUM * float(np.linalg.norm(picture.L_W))
     for i, state in enumerate(states):
@@ -84,23 +55,28 @@ def count_of_flight(picture: PoinsotPicture, states: Sequence[BodyState]) -> int
     return len(states)
 
 
-def draw_poinsot(recording: rr.RecordingStream, body_name: str, picture: PoinsotPicture) -> None:
-    """Draw ellipsoid, plane and curves, at the recording's current time; `draw_rolling` turns it."""
+def draw_poinsot(
+    recording: rr.RecordingStream, body_name: str, picture: Poinsot, curves: RollingCurves
+) -> None:
+    """Draw ellipsoid, plane and curves, at the recording's current time; `draw_rolling` turns it.
+
+    The body must rotate: at rest there is no plane.
+    """
     path = poinsot_entity(body_name)
-    unit = float(picture.semi_axes.max())
+    unit = float(picture.ellipsoid_semi_axes.max())
     down_W = picture.L_W / np.linalg.norm(picture.L_W)
     u_W, v_W = tangents(-down_W)
     axes = np.array([u_W, v_W, -down_W])
     recording.log(path, rr.Transform3D(mat3x3=axes / unit))
-    net = [strip @ picture.principal_axes_B.T for strip in ellipsoid_net(picture.semi_axes)]
+    net = [strip @ picture.principal_axes_B.T for strip in ellipsoid_net(picture.ellipsoid_semi_axes)]
     ellipsoid = rr.LineStrips3D(net, colors=palette.translucent(palette.MEASURED, 0.45), radii=_GRID_WIDTH)
     recording.log(f"{path}/body/ellipsoid", ellipsoid)
-    polhode = rr.LineStrips3D([picture.polhode_B], colors=palette.POLHODE, radii=_CURVE_WIDTH)
+    polhode = rr.LineStrips3D([curves.polhode_B], colors=palette.POLHODE, radii=_CURVE_WIDTH)
     recording.log(f"{path}/body/polhode", polhode)
-    herpolhode = rr.LineStrips3D([picture.herpolhode_W], colors=palette.HERPOLHODE, radii=_CURVE_WIDTH)
+    herpolhode = rr.LineStrips3D([curves.herpolhode_W], colors=palette.HERPOLHODE, radii=_CURVE_WIDTH)
     recording.log(f"{path}/herpolhode", herpolhode)
-    foot_W = (1.0 + _BELOW) * picture.distance * down_W
-    reach = float(np.linalg.norm(picture.herpolhode_W - foot_W, axis=1).max(initial=0.0))
+    foot_W = (1.0 + _BELOW) * picture.invariable_plane_distance * down_W
+    reach = float(np.linalg.norm(curves.herpolhode_W - foot_W, axis=1).max(initial=0.0))
     half = _PLANE_MARGIN * max(reach, 0.5 * unit)
     places = np.linspace(-half, half, _GRID + 1).tolist()
     lines = [

@@ -6,7 +6,6 @@ it holds the centre of mass in three of four cases. White: not to be relied on a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -18,6 +17,7 @@ from contact_dynamics.viewing.entities import predicted_entity
 from contact_dynamics.viewing.scene import solid
 
 if TYPE_CHECKING:
+    from contact_dynamics.motion.covariance import CarriedCovariance
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.shape import Shape
@@ -44,28 +44,18 @@ _OUTLINE_WIDTH: Final = -0.8
 _END_WIDTH: Final = -1.5
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PositionUncertainty:
-    """How uncertain the centre of mass is at each sample of a trajectory.
-
-    Attributes:
-        covariances_W: (n, 3, 3), m^2, world axes.
-        trusted: (n,), whether each can be relied on.
-    """
-
-    covariances_W: FloatArray
-    trusted: tuple[bool, ...]
-
-
 def draw_trajectory(
     recording: rr.RecordingStream,
     body_name: str,
     shape: Shape,
     trajectory: Trajectory,
     *,
-    uncertainty: PositionUncertainty | None = None,
+    covariance: CarriedCovariance | None = None,
 ) -> None:
-    """Draw a trajectory at the recording's current time; one without samples clears what was drawn before."""
+    """Draw a trajectory at the recording's current time; one without samples clears what was drawn before.
+
+    ``covariance`` is that of the state at the trajectory's samples. None: it is not known.
+    """
     path = predicted_entity(body_name)
     if len(trajectory) == 0:
         recording.log(path, rr.Clear(recursive=True))
@@ -82,7 +72,7 @@ def draw_trajectory(
     edges = [edge for edges in outlines for edge in edges]
     color = palette.translucent(palette.PREDICTED, 0.45)
     recording.log(f"{path}/outlines", rr.LineStrips3D(edges, colors=color, radii=_OUTLINE_WIDTH))
-    ellipsoids = _ellipsoids(trajectory, uncertainty, [*chosen.tolist(), last])
+    ellipsoids = _ellipsoids(trajectory, covariance, [*chosen.tolist(), last])
     recording.log(f"{path}/uncertainty", ellipsoids or rr.Clear(recursive=False))
     p_WB_W, q_WB = trajectory.p_WB_W[last], trajectory.q_WB[last]
     moves_away = travelled > NEARBY * shape.size
@@ -95,21 +85,22 @@ def draw_trajectory(
 
 
 def _ellipsoids(
-    trajectory: Trajectory, uncertainty: PositionUncertainty | None, samples: list[int]
+    trajectory: Trajectory, carried: CarriedCovariance | None, samples: list[int]
 ) -> rr.Ellipsoids3D | None:
-    if uncertainty is None:
+    if carried is None:
         return None
     from scipy.spatial.transform import Rotation
 
-    known = [i for i in samples if np.isfinite(uncertainty.covariances_W[i]).all()]
-    variances, axes_W = np.linalg.eigh(uncertainty.covariances_W[known])
+    positions_W = carried.covariances[:, :3, :3]
+    known = [i for i in samples if np.isfinite(positions_W[i]).all()]
+    variances, axes_W = np.linalg.eigh(positions_W[known])
     right_handed = axes_W * np.linalg.det(axes_W)[:, None, None]
     turns = Rotation.from_matrix(right_handed).as_quat() if known else []
     return rr.Ellipsoids3D(
         centers=trajectory.p_WB_W[known],
         half_sizes=DEVIATIONS * np.sqrt(np.maximum(variances, 0.0)),
         quaternions=[rr.Quaternion(xyzw=turn) for turn in turns],
-        colors=[palette.PREDICTED if uncertainty.trusted[i] else palette.UNDECIDED for i in known],
+        colors=[palette.PREDICTED if carried.trusted[i] else palette.UNDECIDED for i in known],
         line_radii=_OUTLINE_WIDTH,
         fill_mode=rr.components.FillMode.MajorWireframe,
     )

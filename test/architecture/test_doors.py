@@ -23,6 +23,7 @@ CHAPTERS = (
     "landing",
     "contact_modes",
     "impact",
+    "questions",
 )
 MOST_ON_THE_FIRST_PAGE = 30
 

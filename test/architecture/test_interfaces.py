@@ -10,6 +10,8 @@ import pytest
 
 from contact_dynamics.contact_modes.result import ModeVerdict, Refusal
 from contact_dynamics.impact import ImpactOutcome, PathEvent, RestitutionLaw, SequenceEnd
+from contact_dynamics.motion.integrated import Method
+from contact_dynamics.questions import EventKind, Problem
 from contact_dynamics_interfaces.msg import Impact, Poinsot
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 
@@ -62,6 +64,10 @@ def constants(message: type, names: list[str]) -> dict[str, int]:
         (PathEvent, Impact),
         (SequenceEnd, Impact),
         (RestitutionLaw, PredictImpact.Request),
+        (Problem, PredictImpact.Request),
+        (Problem, PredictContactMode.Request),
+        (EventKind, PredictTumbling.Response),
+        (Method, PredictTumbling.Response),
         (ModeVerdict, PredictContactMode.Response),
         (Refusal, PredictContactMode.Response),
     ],

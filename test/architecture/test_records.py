@@ -9,7 +9,7 @@ import re
 
 import pytest
 
-from architecture.test_chapters import INSIDE, PHYSICS, chapter_of, module_of
+from architecture.test_chapters import INSIDE, WITHOUT_ROS, chapter_of, module_of
 from contact_dynamics.records import Record
 
 
@@ -17,7 +17,7 @@ def records() -> list[type[Record]]:
     """Every public value of the physics and of the questions."""
     found = []
     for path in INSIDE:
-        if chapter_of(module_of(path)) not in {*PHYSICS, "questions"}:
+        if chapter_of(module_of(path)) not in WITHOUT_ROS:
             continue
         module = importlib.import_module(module_of(path))
         for name, owner in vars(module).items():

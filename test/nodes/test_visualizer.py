@@ -62,6 +62,7 @@ SERVICES = {
     "predict_impact": PredictImpact,
     "predict_contact_mode": PredictContactMode,
 }
+SPATIAL = PredictContactMode.Request.SPATIAL
 PATIENCE = 300  # spins of up to 0.1 s
 
 
@@ -177,7 +178,7 @@ def tumbling_answer(stamp_ns: int = STAMP_NS) -> PredictTumbling.Response:
         event_point=Point(x=0.6, y=0.0, z=0.0),
         event_velocity=Vector3(x=3.0, y=0.0, z=-4.0),
         event_surface="floor",
-        poinsot=Poinsot(regime=Poinsot.ABOUT_MAJOR_AXIS),
+        poinsot=Poinsot(regime=Poinsot.ABOUT_MAJOR_AXIS, principal_moments=[0.01, 0.04, 0.0625]),
         computation_time=0.0012,
     )
 
@@ -209,6 +210,7 @@ def test_a_struck_body_and_strikes_in_sequence_are_told(bench: Bench) -> None:
     answer.impact.strike_impulses = [0.0, 0.0, 0.4, 0.0, 0.0, 0.2]
     answer.impact.strike_body_positions = [0.5, 0.0, 1.0] * 2
     answer.impact.strike_body_orientations = TURNED * 2
+    answer.impact.strike_velocities_before = answer.impact.strike_velocities_after = [0.0] * 12
     answer.impact.sequence_end = Impact.STAYS
     bench.answer("predict_impact", answer)
     drawn = bench.drawn()
@@ -295,7 +297,7 @@ def test_flips_and_how_probable_outcomes_are_is_told(bench: Bench) -> None:
     answer.poinsot.flip_times, answer.poinsot.flip_time_deviations = [0.4, 1.25], [0.01, float("nan")]
     bench.answer("predict_tumbling", answer)
     struck = impact_answer(two_contacts())
-    struck.impact.outcome_probabilities = [0.0, 0.25, 0.7, 0.0, 0.0, 0.0, 0.0, 0.0]
+    struck.impact.outcome_probabilities = [0.0, 0.25, 0.7, 0.0, 0.0, 0.0, 0.0]
     struck.impact.miss_probability = 0.05
     bench.answer("predict_impact", struck)
     text = str(bench.drawn().values["/answers/log", "TextLog:text"])
@@ -316,14 +318,16 @@ def test_an_impact_is_drawn_when_it_was_asked_for(bench: Bench) -> None:
     assert "0.75 J lost" in text
 
 
-def contact_mode_answer(**fields: Any) -> PredictContactMode.Response:
+def contact_mode_answer(problem: int = SPATIAL, **fields: Any) -> PredictContactMode.Response:
     modes = [
         ContactMode(
             mode=mode,
             contact_forces=[0.0, 0.0, 2.0, 0.0, 0.0, 2.0],
             contact_accelerations=[0.0] * 6,
+            tangential_directions=[0.0] * 6 if problem == SPATIAL else [],
             forces_unique=mode == "fl",
             margin=0.25,
+            margin_length=0.05,
             margin_modes=["ff"],
         )
         for mode in ("fl", "ff")
@@ -332,9 +336,13 @@ def contact_mode_answer(**fields: Any) -> PredictContactMode.Response:
         verdict=PredictContactMode.Response.INDETERMINATE,
         modes=modes,
         refused_modes=["ss"],
+        refusals=[PredictContactMode.Response.NO_SOLUTION],
+        refused_contacts=[-1],
+        refusal_amounts=[1.0],
         contact_velocities=[0.0] * 6,
         state=body_state(),
         contacts=two_contacts(),
+        problem=problem,
         **fields,
     )
 
@@ -355,7 +363,7 @@ def test_the_impact_that_settles_a_case_is_told_with_what_follows(bench: Bench) 
     answer = contact_mode_answer(approaching_contacts=[1], impact=[impact_answer(two_contacts()).impact])
     answer.verdict, answer.modes = answer.IMPACT, []
     answer.contact_velocities = [0.0, 0.0, 0.0, 0.0, 0.0, -0.5]
-    answer.modes_after_impact = [ContactMode(mode="fs")]
+    answer.modes_after_impact = [ContactMode(mode="fs", forces_unique=True)]
     bench.answer("predict_contact_mode", answer)
     text = bench.drawn().last("/answers/newest", "TextDocument:text")[0]
     assert "contact 2 approaches with 0.5 m/s" in text
@@ -364,7 +372,7 @@ def test_the_impact_that_settles_a_case_is_told_with_what_follows(bench: Bench) 
 
 
 def test_a_planar_answer_is_drawn_in_its_plane_with_the_map(bench: Bench) -> None:
-    answer = contact_mode_answer(problem=PredictContactMode.Request.PLANAR, plane_normal=Vector3(y=-1.0))
+    answer = contact_mode_answer(PredictContactMode.Request.PLANAR, plane_normal=Vector3(y=-1.0))
     rho = 0.05
     for mode, sign in (("ff", 1.0), ("ss", -1.0)):  # all wrenches below, all above
         a = [0.0, 0.0, 0.6 * sign, 0.0, -0.8 * sign / rho, 0.0, 0.0]

@@ -61,6 +61,16 @@ def test_a_python_that_does_not_serve_is_refused(tmp_path: Path, pretence: str, 
     assert "Nothing was installed" in answer.stderr
 
 
+def test_headers_of_which_some_are_missing_are_named(tmp_path: Path) -> None:
+    (tmp_path / "Python.h").write_text('#include "elsewhere/pyconfig.h"\n', encoding="utf-8")
+    answer = check(
+        pretender(tmp_path, "python", f"import sysconfig; sysconfig.get_path = lambda name: '{tmp_path}'")
+    )
+    assert answer.returncode == 1
+    assert "header files" in answer.stderr
+    assert "-dev" in answer.stderr
+
+
 def test_what_a_shim_says_is_shown(tmp_path: Path) -> None:
     shim = script(tmp_path / "python3.12", "echo 'pyenv: python3.12: command not found' >&2; exit 127")
     answer = check(shim)

@@ -5,17 +5,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from contact_dynamics.contact_modes import SpatialMode
+from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.contact_modes import (
     MOST_MODES,
-    ContactModesPicture,
-    DrawnMode,
     color_of_letters,
     draw_contact_modes,
     letters_of_contacts,
     mode_names,
 )
 from contact_dynamics.viewing.shape import convex_shape
+from viewing.answers import contact_mode_answer
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -50,18 +52,25 @@ def test_every_letter_has_a_colour_and_a_doubtful_contact_its_own() -> None:
     assert color_of_letters("l|f") == color_of_letters("?") == palette.UNDECIDED
 
 
-def mode_of(mode: str, forces: FloatArray, *, slides: FloatArray | None = None) -> DrawnMode:
-    return DrawnMode(
+AT_REST = BodyState(
+    p_WB_W=np.array([0.0, 0.0, 0.1]),
+    q_WB=np.array([0.0, 0.0, 0.0, 1.0]),
+    v_WB_W=np.zeros(3),
+    w_WB_W=np.zeros(3),
+)
+
+
+def mode_of(mode: str, forces: FloatArray, *, slides: FloatArray | None = None) -> SpatialMode:
+    return SpatialMode(
         mode=mode,
-        forces_W=forces,
-        sliding_W=np.zeros_like(forces) if slides is None else slides,
         acceleration_W=np.array([0.0, 0.0, -2.0]),
-    )
-
-
-def picture_of(contacts: ContactSet, *modes: DrawnMode) -> ContactModesPicture:
-    return ContactModesPicture(
-        p_WB_W=np.array([0.0, 0.0, 0.1]), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), contacts=contacts, modes=modes
+        angular_acceleration_W=np.zeros(3),
+        contact_forces_W=forces,
+        contact_accelerations_W=np.zeros_like(forces),
+        tangential_directions_W=np.zeros_like(forces) if slides is None else slides,
+        misdirection=0.0,
+        forces_unique=True,
+        motion_unique=True,
     )
 
 
@@ -70,8 +79,8 @@ def test_points_carry_letters_and_forces_their_direction(
 ) -> None:
     forces = np.array([[0.0, 0.0, 0.0], [-0.3, 0.0, 0.4]])
     slides = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
-    picture = picture_of(two_contacts, mode_of("sr", forces, slides=slides))
-    draw_contact_modes(recording, "brick", convex_shape(body.vertices_B), picture)
+    answer = contact_mode_answer(AT_REST, two_contacts, mode_of("sr", forces, slides=slides))
+    draw_contact_modes(recording, convex_shape(body.vertices_B), answer)
     drawn = read()
     assert drawn.last(f"{CONTACTS}/points", "Points3D:labels") == ["s", "r"]
     colors = [color.to_bytes(4, "big") for color in drawn.last(f"{CONTACTS}/points", "Points3D:colors")]
@@ -92,7 +101,8 @@ def test_each_mode_is_an_entity_of_its_own(
 ) -> None:
     up = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
     many = [mode_of("ff", up * (i + 1)) for i in range(MOST_MODES + 2)]
-    draw_contact_modes(recording, "brick", convex_shape(body.vertices_B), picture_of(two_contacts, *many))
+    answer = contact_mode_answer(AT_REST, two_contacts, *many)
+    draw_contact_modes(recording, convex_shape(body.vertices_B), answer)
     drawn = read()
     forces = [f"{CONTACTS}/{name}/forces" for name in mode_names()]
     assert [drawn.last(path, "Arrows3D:labels")[0] for path in forces] == [
@@ -109,7 +119,20 @@ def test_each_mode_is_an_entity_of_its_own(
 def test_no_consistent_mode_is_drawn_as_a_question(
     recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, two_contacts: ContactSet
 ) -> None:
-    draw_contact_modes(recording, "brick", convex_shape(body.vertices_B), picture_of(two_contacts))
+    draw_contact_modes(recording, convex_shape(body.vertices_B), contact_mode_answer(AT_REST, two_contacts))
     drawn = read()
     assert drawn.last(f"{CONTACTS}/points", "Points3D:labels") == ["?", "?"]
     assert drawn.last(f"{CONTACTS}/mode_1", "Clear:is_recursive") == [True]
+
+
+def test_in_a_plane_the_letters_say_which_way_a_contact_slides(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, two_contacts: ContactSet
+) -> None:
+    """Seen from -y, x is to the right: r slides along it, l against it."""
+    plane = PlaneOfMotion(normal_W=np.array([0.0, -1.0, 0.0]))
+    mode = mode_of("lr", np.zeros((2, 3)), slides=np.zeros((0, 3)))
+    answer = contact_mode_answer(AT_REST, two_contacts, mode, plane=plane)
+    draw_contact_modes(recording, convex_shape(body.vertices_B), answer)
+    slides = read().array(f"{CONTACTS}/mode_1/sliding", "Arrows3D:vectors")
+    directions = slides / np.linalg.norm(slides, axis=1, keepdims=True)
+    np.testing.assert_allclose(directions, [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]], atol=1e-6)

@@ -7,15 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from contact_dynamics.viewing.impact import (
-    DrawnStrike,
-    ImpactPicture,
-    OtherBody,
-    draw_impact,
-    friction_cones,
-    main_strikes,
-)
+from contact_dynamics.impact import ImpactOutcome, PathEvent
+from contact_dynamics.questions import SequenceStrike, StruckBody
+from contact_dynamics.viewing.impact import draw_impact, friction_cones, main_strikes
+from contact_dynamics.viewing.impulse_space import main_contact
 from contact_dynamics.viewing.shape import convex_shape
+from viewing.answers import impact_answer, of_two
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,6 +20,7 @@ if TYPE_CHECKING:
     import rerun as rr
 
     from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.questions import ImpactAnswer
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body
@@ -31,16 +29,15 @@ if TYPE_CHECKING:
 IMPACT = "/world/impact/brick"
 
 
-def picture_of(state: BodyState, contacts: ContactSet, impulses: FloatArray) -> ImpactPicture:
-    return ImpactPicture(
-        state=state,
-        v_after_W=np.array([0.25, 0.1, 0.5]),
-        contacts=contacts,
+def answer_of(state: BodyState, contacts: ContactSet, impulses: FloatArray) -> ImpactAnswer:
+    return impact_answer(
+        state,
+        contacts,
         impulses_W=impulses,
         path_W=np.array([[0.0, 0.0, 0.0], impulses[1]]),
-        path_events=(0, 3),
+        path_events=(PathEvent.START, PathEvent.RESTITUTION_ENDS),
         path_contacts=(1, 1),
-        plane_normal_W=None,
+        v_after_W=(0.25, 0.1, 0.5),
     )
 
 
@@ -52,7 +49,7 @@ def test_arrows_point_along_what_they_stand_for_and_say_how_much(
     two_contacts: ContactSet,
 ) -> None:
     impulses = np.array([[0.0, 0.0, 0.0], [0.3, 0.0, 0.4]])
-    draw_impact(recording, "brick", convex_shape(body.vertices_B), picture_of(state, two_contacts, impulses))
+    draw_impact(recording, convex_shape(body.vertices_B), answer_of(state, two_contacts, impulses))
     drawn = read()
     assert drawn.last(f"{IMPACT}/impulse_label", "Points3D:labels") == ["0.5 N s"]
     arrow = drawn.array(f"{IMPACT}/impulse", "Arrows3D:vectors")
@@ -75,8 +72,8 @@ def test_an_impact_without_impulse_is_drawn(
     state: BodyState,
     two_contacts: ContactSet,
 ) -> None:
-    picture = picture_of(state, two_contacts, np.zeros((2, 3)))
-    draw_impact(recording, "brick", convex_shape(body.vertices_B), picture)
+    answer = answer_of(state, two_contacts, np.zeros((2, 3)))
+    draw_impact(recording, convex_shape(body.vertices_B), answer)
     drawn = read()
     assert drawn.last(f"{IMPACT}/impulse", "Arrows3D:vectors") == []
     assert drawn.last(f"{IMPACT}/cone", "Clear:is_recursive") == [False]
@@ -90,7 +87,7 @@ def test_the_path_of_the_impulse_rises_from_its_contact_to_the_arrows_tip(
     two_contacts: ContactSet,
 ) -> None:
     impulses = np.array([[0.0, 0.0, 0.0], [0.3, 0.0, 0.4]])
-    draw_impact(recording, "brick", convex_shape(body.vertices_B), picture_of(state, two_contacts, impulses))
+    draw_impact(recording, convex_shape(body.vertices_B), answer_of(state, two_contacts, impulses))
     drawn = read()
     (path,) = drawn.array(f"{IMPACT}/impulse_path", "LineStrips3D:strips")
     np.testing.assert_allclose(path[0], [-0.1, 0.0, 0.0], atol=1e-7)
@@ -106,11 +103,12 @@ def test_a_body_that_is_struck_is_drawn_with_its_velocities(
     two_contacts: ContactSet,
 ) -> None:
     struck = replace(state, p_WB_W=np.array([2.0, 0.0, 0.0]), v_WB_W=np.array([0.0, 0.0, 1.0]))
-    other = OtherBody(name="bat", state=struck, v_after_W=np.array([0.0, 0.0, 0.5]))
+    other = StruckBody(name="bat", p_FB_F=np.zeros(3), state=struck)
+    after = replace(struck, v_WB_W=np.array([0.0, 0.0, 0.5]))
     impulses = np.array([[0.0, 0.0, 0.0], [0.3, 0.0, 0.4]])
-    picture = replace(picture_of(state, two_contacts, impulses), other=other)
+    answer = of_two(answer_of(state, two_contacts, impulses), other, other_after=after)
     shape = convex_shape(body.vertices_B)
-    draw_impact(recording, "brick", shape, picture, other_shape=shape)
+    draw_impact(recording, shape, answer, other_shape=shape)
     drawn = read()
     assert drawn.last(f"{IMPACT}/velocity_label", "Points3D:labels")[2:] == ["1 m/s", "0.5 m/s"]
     np.testing.assert_allclose(
@@ -130,21 +128,23 @@ def test_of_strikes_in_sequence_the_largest_are_numbered(
 ) -> None:
     sizes = [0.2, 0.01, 0.15, 0.1, 0.3, 0.02, 0.05]
     strikes = tuple(
-        DrawnStrike(
+        SequenceStrike(
             seconds=0.004 * i,
             contact=(i + 1) % 2,
+            outcome=ImpactOutcome.SLIDES,
             p_WC_W=two_contacts.p_WC_W[(i + 1) % 2],
             impulse_W=np.array([0.0, 0.0, size]),
-            p_WB_W=state.p_WB_W + np.array([0.0, 0.0, 0.01 * i]),
-            q_WB=state.q_WB,
+            state_before=replace(state, p_WB_W=state.p_WB_W + np.array([0.0, 0.0, 0.01 * i])),
+            state_after=state,
         )
         for i, size in enumerate(sizes)
     )
     assert main_strikes(strikes) == [0, 2, 3, 4, 6]
-    picture = replace(picture_of(state, two_contacts, np.tile([0.0, 0.0, 0.2], (2, 1))), strikes=strikes)
-    assert picture.main_contact == 1
+    at_once = answer_of(state, two_contacts, np.tile([0.0, 0.0, 0.2], (2, 1)))
+    answer = replace(at_once, impact=replace(at_once.impact, strikes=strikes))
+    assert main_contact(answer.impact) == 1
     shape = convex_shape(body.vertices_B)
-    draw_impact(recording, "brick", shape, picture)
+    draw_impact(recording, shape, answer)
     drawn = read()
     assert drawn.last(f"{IMPACT}/impulse_label", "Points3D:labels") == [
         "1. at 0.0 ms: 0.2 N s",

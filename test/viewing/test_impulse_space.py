@@ -15,18 +15,27 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from contact_dynamics.contact.contact import Contact, ContactSet
-from contact_dynamics.impact.law import ImpactOutcome
+from contact_dynamics.impact.law import ImpactOutcome, PathEvent
 from contact_dynamics.impact.several.orders import several_impact
 from contact_dynamics.impact.spatial.one_contact import spatial_impact, spatial_pair_impact
+from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions import ImpactAnswer, StruckBody
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.viewing.impact import ImpactPicture, OtherBody
-from contact_dynamics.viewing.impulse_space import Line, contact_axes, draw_impulse_space, line_in_box
+from contact_dynamics.viewing.impulse_space import (
+    Line,
+    contact_axes,
+    draw_impulse_space,
+    line_in_box,
+    main_contact,
+)
 from contact_dynamics.viewing.measured import set_time
+from viewing.answers import impact_answer, of_two
 from viewing.drawn import STAMP_NS, read_drawn
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from contact_dynamics.impact import SpatialImpact
     from viewing.drawn import Drawn
 
 MU = math.tan(math.radians(30.0))
@@ -36,21 +45,20 @@ ENDS = (0.1372549, 0.3333333)
 DIGITS = 1e-6  # the lecture's numbers have seven, the picture is float32
 
 # Seen from -y, the plane of motion has x to the right and z up.
-PLANE_NORMAL = np.array([0.0, -1.0, 0.0])
+PLANE = PlaneOfMotion(normal_W=np.array([0.0, -1.0, 0.0]))
 ROD = MassProperties(mass=1.0, I_B=np.eye(3))
 
 
-def sliding_rod(*, in_plane: bool = True) -> ImpactPicture:
+def sliding_rod(*, in_plane: bool = True) -> ImpactAnswer:
     path = np.array([[t, 0.0, n] for t, n in ((0.0, 0.0), STICKS, COMPRESSED, ENDS)])
-    return ImpactPicture(
-        state=BodyState(
+    return impact_answer(
+        BodyState(
             p_WB_W=np.array([1.0, 0.0, 4.0]),
             q_WB=np.array([0.0, 0.0, 0.0, 1.0]),
             v_WB_W=np.array([-1.0, 0.0, 0.0]),
             w_WB_W=np.zeros(3),
         ),
-        v_after_W=np.array([-0.8627451, 0.0, 0.3333333]),
-        contacts=ContactSet(
+        ContactSet(
             p_WC_W=np.zeros((1, 3)),
             normals_W=np.array([[0.0, 0.0, 1.0]]),
             frictions=np.array([MU]),
@@ -58,10 +66,28 @@ def sliding_rod(*, in_plane: bool = True) -> ImpactPicture:
         ),
         impulses_W=path[-1:],
         path_W=path,
-        path_events=(0, 1, 2, 3),
+        path_events=(
+            PathEvent.START,
+            PathEvent.SLIDING_STOPS,
+            PathEvent.COMPRESSION_ENDS,
+            PathEvent.RESTITUTION_ENDS,
+        ),
         path_contacts=(0, 0, 0, 0),
-        plane_normal_W=PLANE_NORMAL if in_plane else None,
+        v_after_W=(-0.8627451, 0.0, 0.3333333),
+        plane=PLANE if in_plane else None,
     )
+
+
+def of_one(answer: ImpactAnswer, impact: SpatialImpact) -> ImpactAnswer:
+    """The answer with the path of another impact at its one contact."""
+    resolved = replace(
+        answer.impact,
+        impulses_W=impact.impulse_W[None],
+        path_W=impact.path_W,
+        path_events=impact.path_events,
+        path_contacts=(0,) * len(impact.path_W),
+    )
+    return replace(answer, impact=resolved)
 
 
 def on_paper(points: object) -> np.ndarray:
@@ -118,28 +144,19 @@ def test_every_dot_of_a_path_that_swerves_lies_on_the_line_that_names_it(
     )
     up = np.array([0.0, 0.0, 1.0])
     assume(state.velocity_of_point(np.zeros(3))[2] < -0.05)
-    impact = spatial_impact(
-        body, state, Contact(p_WC_W=np.zeros(3), normal_W=up, friction=friction, restitution=restitution)
-    )
-    picture = replace(
-        sliding_rod(in_plane=False),
-        state=state,
-        impulses_W=impact.impulse_W[None],
-        path_W=impact.path_W,
-        path_events=tuple(int(event) for event in impact.path_events),
-        path_contacts=(0,) * len(impact.path_W),
-    )
-    check_dots(body, picture)
+    struck = Contact(p_WC_W=np.zeros(3), normal_W=up, friction=friction, restitution=restitution)
+    impact = spatial_impact(body, state, struck)
+    check_dots(body, of_one(replace(sliding_rod(in_plane=False), state=state), impact))
 
 
-def check_dots(body: MassProperties, picture: ImpactPicture) -> None:
+def check_dots(body: MassProperties, answer: ImpactAnswer) -> None:
     """Each dot lies on the line that names it, within a thousandth of the picture's width."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "drawn.rrd"
         stream = rr.RecordingStream("test")
         stream.save(path)
         set_time(stream, STAMP_NS)
-        draw_impulse_space(stream, body, picture)
+        draw_impulse_space(stream, body, answer)
         stream.disconnect()
         drawn = read_drawn(path)
     extent = np.abs(drawn.last("/impulse_space/axes", "LineStrips2D:strips")[0]).max()
@@ -171,18 +188,16 @@ def test_a_contact_that_strikes_after_another_has_its_dots_on_its_lines() -> Non
     impact = several_impact(body, state, contacts)
     strikes = impact.strikes[:2]
     assert impact.order[:2] == (0, 1)
-    picture = ImpactPicture(
-        state=state,
-        v_after_W=impact.state.v_WB_W,
-        contacts=contacts,
+    answer = impact_answer(
+        state,
+        contacts,
         impulses_W=np.array([strike.impulse_W for _, strike in strikes]),
         path_W=np.concatenate([strike.path_W for _, strike in strikes]),
-        path_events=tuple(int(event) for _, strike in strikes for event in strike.path_events),
+        path_events=tuple(event for _, strike in strikes for event in strike.path_events),
         path_contacts=tuple(contact for contact, strike in strikes for _ in strike.path_events),
-        plane_normal_W=None,
     )
-    assert picture.main_contact == 1
-    check_dots(body, picture)
+    assert main_contact(answer.impact) == 1
+    check_dots(body, answer)
 
 
 def test_without_mass_properties_the_lines_are_left_out(
@@ -214,16 +229,10 @@ def test_between_two_bodies_the_lines_are_those_of_their_relative_motion(
         Contact(p_WC_W=np.zeros(3), normal_W=np.array([0.0, 0.0, 1.0]), friction=2.0, restitution=0.5),
     )
     assert impact.outcome is ImpactOutcome.STICKS_IN_COMPRESSION
-    picture = replace(
-        rod,
-        contacts=replace(rod.contacts, frictions=np.array([2.0])),
-        impulses_W=impact.impulse_W[None],
-        path_W=impact.path_W,
-        path_events=tuple(int(event) for event in impact.path_events),
-        path_contacts=(0,) * len(impact.path_W),
-        other=OtherBody(name="bat", state=bat_state, v_after_W=np.zeros(3)),
-    )
-    draw_impulse_space(recording, ROD, picture, other=bat)
+    struck = StruckBody(name="bat", p_FB_F=np.zeros(3), state=bat_state)
+    sticking_rod = replace(rod, contacts=replace(rod.contacts, frictions=np.array([2.0])))
+    answer = of_two(of_one(sticking_rod, impact), struck, other_after=bat_state)
+    draw_impulse_space(recording, ROD, answer, other=bat)
     drawn = read()
     (sticking,) = on_paper(drawn.last(r"/impulse_space/sticking\ line", "LineStrips2D:strips"))
     (compression,) = on_paper(drawn.last(r"/impulse_space/compression\ line", "LineStrips2D:strips"))
@@ -238,9 +247,8 @@ def test_without_the_struck_bodys_mass_the_lines_are_left_out(
     recording: rr.RecordingStream, read: Callable[[], Drawn]
 ) -> None:
     rod = sliding_rod()
-    draw_impulse_space(
-        recording, ROD, replace(rod, other=OtherBody(name="", state=rod.state, v_after_W=np.zeros(3)))
-    )
+    other = StruckBody(name="", p_FB_F=np.zeros(3), state=rod.state)
+    draw_impulse_space(recording, ROD, of_two(rod, other, other_after=rod.state))
     assert read().last(r"/impulse_space/sticking\ line", "LineStrips2D:strips") == []
 
 

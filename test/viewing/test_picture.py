@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from contact_dynamics.impact import PathEvent
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.viewing.contact_modes import ContactModesPicture
-from contact_dynamics.viewing.impact import ImpactPicture
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.world import World
+from viewing.answers import contact_mode_answer, impact_answer, tumbling_answer
 from viewing.drawn import STAMP_NS
 
 if TYPE_CHECKING:
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import rerun as rr
 
     from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.questions import ImpactAnswer
     from contact_dynamics.tumbling import Trajectory
     from viewing.drawn import Drawn
 
@@ -30,16 +31,17 @@ def moved(state: BodyState, stamp_ns: int) -> BodyState:
     )
 
 
-def an_impact(state: BodyState, contacts: ContactSet) -> ImpactPicture:
-    return ImpactPicture(
-        state=state,
-        v_after_W=np.zeros(3),
-        contacts=contacts,
+def an_impact(
+    state: BodyState, contacts: ContactSet, *, stamp_ns: int = STAMP_NS, name: str = "brick"
+) -> ImpactAnswer:
+    return impact_answer(
+        moved(state, stamp_ns),
+        contacts,
         impulses_W=np.array([[0.0, 0.0, 0.4], [0.0, 0.0, 0.0]]),
         path_W=np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.4]]),
-        path_events=(0, 3),
+        path_events=(PathEvent.START, PathEvent.RESTITUTION_ENDS),
         path_contacts=(0, 0),
-        plane_normal_W=None,
+        body_name=name,
     )
 
 
@@ -54,12 +56,9 @@ def test_each_answer_appears_at_its_stamp(
 ) -> None:
     picture = Picture(recording, world, surface_side=2.0)
     picture.add_states("brick", [state])
-    picture.show_trajectory("brick", trajectory, stamp_ns=STAMP_NS)
-    picture.show_impact("brick", an_impact(state, two_contacts), stamp_ns=STAMP_NS + 1)
-    modes = ContactModesPicture(
-        p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), contacts=two_contacts, modes=()
-    )
-    picture.show_contact_modes("brick", modes, stamp_ns=STAMP_NS + 2)
+    picture.show_tumbling(tumbling_answer(state, trajectory))
+    picture.show_impact(an_impact(state, two_contacts, stamp_ns=STAMP_NS + 1))
+    picture.show_contact_modes(contact_mode_answer(moved(state, STAMP_NS + 2), two_contacts))
     drawn = read()
     assert drawn.stamps("/world/predicted/brick/path", "LineStrips3D:strips") == [STAMP_NS]
     assert drawn.stamps("/world/impact/brick/impulse", "Arrows3D:vectors") == [STAMP_NS + 1]
@@ -76,7 +75,7 @@ def test_measured_states_after_a_prediction_stand_beside_it(
 ) -> None:
     picture = Picture(recording, world, surface_side=2.0)
     picture.add_states("brick", [state])
-    picture.show_trajectory("brick", trajectory, stamp_ns=STAMP_NS)
+    picture.show_tumbling(tumbling_answer(state, trajectory))
     picture.add_states("brick", [moved(state, LATER_NS)])
     drawn = read()
     assert drawn.stamps("/height/brick/measured", "Scalars:scalars") == [STAMP_NS, LATER_NS]
@@ -85,11 +84,15 @@ def test_measured_states_after_a_prediction_stand_beside_it(
 
 
 def test_the_first_trajectory_is_looked_at_with_the_ground_below_it_and_later_ones_are_not(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], world: World, trajectory: Trajectory
+    recording: rr.RecordingStream,
+    read: Callable[[], Drawn],
+    world: World,
+    state: BodyState,
+    trajectory: Trajectory,
 ) -> None:
     picture = Picture(recording, world, surface_side=0.5)
     for offset in (0, 1, 2):
-        picture.show_trajectory("brick", trajectory, stamp_ns=STAMP_NS + offset)
+        picture.show_tumbling(tumbling_answer(moved(state, STAMP_NS + offset), trajectory))
     drawn = read()
     assert drawn.blueprints == 2  # without, then with the trajectory
     patch = drawn.array("/world/surfaces/floor/patch", "Mesh3D:vertex_positions")
@@ -107,7 +110,7 @@ def test_a_diagram_gets_its_tab_when_it_is_first_drawn(
 ) -> None:
     picture = Picture(recording, world, surface_side=0.5)
     for _ in range(3):
-        picture.show_impact("brick", an_impact(state, two_contacts), stamp_ns=STAMP_NS)
+        picture.show_impact(an_impact(state, two_contacts))
     assert read().blueprints == 2  # without, then with impulse space
 
 
@@ -162,8 +165,8 @@ def test_a_body_that_is_not_of_the_world_is_drawn_too(
 ) -> None:
     picture = Picture(recording, world, surface_side=2.0)
     picture.add_states(name, [state])
-    picture.show_trajectory(name, trajectory, stamp_ns=STAMP_NS)
-    picture.show_impact(name, an_impact(state, two_contacts), stamp_ns=STAMP_NS)
+    picture.show_tumbling(tumbling_answer(state, trajectory, body_name=name))
+    picture.show_impact(an_impact(state, two_contacts, name=name))
     escaped = {"": "unnamed", "somebody": "somebody", "arm/tool 1": r"arm\/tool\ 1"}[name]
     drawn = read()
     assert f"/world/bodies/{escaped}" in drawn.entities

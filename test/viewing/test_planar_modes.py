@@ -5,76 +5,79 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pytest
 
-from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes, mode_margins, wrench_sets
-from contact_dynamics.nodes.pictured_contact_modes import applied_wrench
-from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
-from contact_dynamics.viewing.planar_modes import (
-    MOST_SETS,
-    PlanarModesPicture,
-    draw_planar_map,
-    draw_planar_modes,
-    silhouette,
-)
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions import ContactModeQuestion, Problem
+from contact_dynamics.questions.contact_modes import answer
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.viewing.planar_modes import MOST_SETS, draw_planar_map, draw_planar_modes, silhouette
 from contact_dynamics.viewing.shape import convex_shape
-from contact_dynamics.world import box_vertices
+from contact_dynamics.world import Body, box_vertices
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     import rerun as rr
 
+    from contact_dynamics.questions import ContactModeAnswer
     from viewing.drawn import Drawn
 
-ROD = PlanarBody(mass=1.0, inertia=1.0)
-TIP = PlanarContact(
-    r=(-4.0 * math.cos(math.radians(75.0)), -4.0 * math.sin(math.radians(75.0))),
-    normal=(0.0, 1.0),
-    friction=math.tan(math.radians(30.0)),
-)
-AT_REST = PlanarVelocity(v=(0.0, 0.0), w=0.0)
-ALONG = PlanarWrench(f=(-1.0, 0.0))
+ROD = MassProperties(mass=1.0, I_B=np.eye(3))
+TIP = np.array([-4.0 * math.cos(math.radians(75.0)), 0.0, -4.0 * math.sin(math.radians(75.0))])
+FRICTION = math.tan(math.radians(30.0))
+PLANE = PlaneOfMotion(normal_W=np.array([0.0, -1.0, 0.0]))  # x to the right, z up
+ALONG = (-1.0, 0.0, 0.0)
+DOWN = (0.0, 0.0, -1.0)
 
 
-def picture_of(*, applied: PlanarWrench, velocity: PlanarVelocity) -> PlanarModesPicture:
-    answer = contact_modes(PlanarContactProblem(body=ROD, velocity=velocity, contacts=[TIP], wrench=applied))
-    margins = mode_margins(PlanarContactProblem(body=ROD, velocity=velocity, contacts=[TIP], wrench=applied))
-    return PlanarModesPicture(
-        contacts=(TIP,),
-        modes=answer.modes,
-        margins=tuple(f"({margin.margin:.2f} N)" for margin in margins),
-        verdict="no consistent mode",
-        sets=wrench_sets(
-            PlanarContactProblem(
-                body=ROD, velocity=velocity, contacts=[TIP], wrench=PlanarWrench(f=(0.0, 0.0))
-            )
-        ),
-        length=ROD.radius_of_gyration,
-        applied=applied,
-        change=margins[0].change if margins else None,
+def answer_of(
+    *,
+    force: tuple[float, float, float],
+    speed: float = 0.0,
+    tip: np.ndarray = TIP,
+    friction: float = FRICTION,
+) -> ContactModeAnswer:
+    """What the lecture's rod does in its plane, with margins and the map."""
+    state = BodyState(
+        p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=(speed, 0.0, 0.0), w_WB_W=np.zeros(3)
     )
+    contacts = ContactSet(
+        p_WC_W=tip[None], normals_W=[[0.0, 0.0, 1.0]], frictions=[friction], restitutions=[0.0]
+    )
+    question = ContactModeQuestion(
+        body=Body(name="rod", mass_properties=ROD),
+        state=state,
+        contacts=contacts,
+        force_W=force,
+        gravity_W=np.zeros(3),
+        problem=Problem.PLANAR,
+        plane=PLANE,
+        want_margins=True,
+        want_wrenches=True,
+    )
+    return answer(question)
 
 
 def test_the_modes_of_the_indeterminate_rod_stand_side_by_side(
     recording: rr.RecordingStream, read: Callable[[], Drawn]
 ) -> None:
-    picture = picture_of(applied=ALONG, velocity=AT_REST)
-    draw_planar_modes(recording, picture, outline=np.array([TIP.r, (-TIP.r[0], -TIP.r[1])]))
+    found = answer_of(force=ALONG)
+    draw_planar_modes(recording, found, PLANE, outline=np.array([TIP[[0, 2]], -TIP[[0, 2]]]))
     drawn = read()
-    titles = [drawn.last(f"/planar_modes/mode_{i}/title", "Points2D:labels")[0][0] for i in (1, 2)]
-    assert sorted(titles) == ["f", "l"]
+    titles = [drawn.last(f"/planar_modes/mode_{i}/title", "Points2D:labels")[0] for i in (1, 2)]
+    assert sorted(title[0] for title in titles) == ["f", "l"]
+    assert all(title[1:3] == " (" and " N from " in title for title in titles)
     places = [drawn.array(f"/planar_modes/mode_{i}/contacts", "Points2D:positions")[0] for i in (1, 2)]
-    assert places[1][0] - places[0][0] > 2.0 * abs(TIP.r[0]) + 1.0
+    assert places[1][0] - places[0][0] > 2.0 * abs(TIP[0]) + 1.0
     assert places[1][1] == places[0][1]
     assert drawn.last("/planar_modes/mode_3", "Clear:is_recursive") == [True]
 
 
 def test_the_inconsistent_rod_says_so(recording: rr.RecordingStream, read: Callable[[], Drawn]) -> None:
-    falling = PlanarWrench(f=(0.0, -9.81))
-    picture = picture_of(applied=falling, velocity=PlanarVelocity(v=(-1.0, 0.0), w=0.0))
-    draw_planar_modes(recording, picture, outline=np.zeros((0, 2)))
-    draw_planar_map(recording, picture, None)
+    found = answer_of(force=(0.0, 0.0, -9.81), speed=-1.0)
+    draw_planar_modes(recording, found, PLANE, outline=np.zeros((0, 2)))
+    draw_planar_map(recording, found, PLANE, None, body=ROD)
     drawn = read()
     assert drawn.last("/planar_modes/mode_1/title", "Points2D:labels") == ["no consistent mode"]
     assert drawn.last("/planar_modes/mode_2", "Clear:is_recursive") == [True]
@@ -84,52 +87,37 @@ def test_the_inconsistent_rod_says_so(recording: rr.RecordingStream, read: Calla
 def test_a_map_that_looks_as_before_is_not_drawn_again(
     recording: rr.RecordingStream, read: Callable[[], Drawn]
 ) -> None:
-    picture = picture_of(applied=ALONG, velocity=AT_REST)
-    turned = replace(TIP, r=(TIP.r[0] * 1.001, TIP.r[1]))
-    nearly = replace(
-        picture,
-        sets=wrench_sets(
-            PlanarContactProblem(body=ROD, contacts=[turned], wrench=PlanarWrench(f=(0.0, 0.0)))
-        ),
-        applied=PlanarWrench(f=(0.0, -1.0)),
-    )
-    far = replace(
-        picture,
-        sets=wrench_sets(
-            PlanarContactProblem(
-                body=ROD, contacts=[replace(TIP, friction=0.9)], wrench=PlanarWrench(f=(0.0, 0.0))
-            )
-        ),
-    )
-    drawn_map = draw_planar_map(recording, picture, None)
-    assert draw_planar_map(recording, nearly, drawn_map) is drawn_map
-    other = draw_planar_map(recording, far, drawn_map)
+    found = answer_of(force=ALONG)
+    nearly = answer_of(force=DOWN, tip=TIP * (1.001, 1.0, 1.0))
+    drawn_map = draw_planar_map(recording, found, PLANE, None, body=ROD)
+    assert draw_planar_map(recording, nearly, PLANE, drawn_map, body=ROD) is drawn_map
+    other = draw_planar_map(recording, answer_of(force=ALONG, friction=0.9), PLANE, drawn_map, body=ROD)
     assert other is not drawn_map
-    assert draw_planar_map(recording, replace(picture, sets=()), other) is other
+    assert draw_planar_map(recording, replace(found, wrench_sets=None), PLANE, other, body=ROD) is other
     drawn = read()
     assert len(drawn.values["/mode_map/regions", "Image:buffer"]) == 2
     assert len(drawn.values["/mode_map/applied", "Points2D:positions"]) == 3
 
 
+def test_of_a_body_that_is_not_known_the_applied_wrench_is_not_drawn(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    draw_planar_map(recording, answer_of(force=ALONG), PLANE, None)
+    drawn = read()
+    assert ("/mode_map/regions", "Image:buffer") in drawn.values
+    assert drawn.last("/mode_map/applied", "Clear:is_recursive") == [True]
+
+
 def test_a_map_of_too_many_modes_is_left_out(
     recording: rr.RecordingStream, read: Callable[[], Drawn]
 ) -> None:
-    picture = picture_of(applied=ALONG, velocity=AT_REST)
-    many = replace(picture, sets=picture.sets[:1] * (MOST_SETS + 1))
-    assert draw_planar_map(recording, many, None) is None
+    found = answer_of(force=ALONG)
+    assert found.wrench_sets is not None
+    many = replace(found, wrench_sets=found.wrench_sets[:1] * (MOST_SETS + 1))
+    assert draw_planar_map(recording, many, PLANE, None) is None
     drawn = read()
     assert drawn.last("/mode_map", "Clear:is_recursive") == [True]
     assert "/mode_map/regions" not in drawn.entities
-
-
-@pytest.mark.parametrize("applied", [ALONG, PlanarWrench(f=(0.3, -2.0), moment=0.4)])
-def test_the_applied_wrench_follows_from_a_mode(applied: PlanarWrench) -> None:
-    for mode in contact_modes(
-        PlanarContactProblem(body=ROD, velocity=AT_REST, contacts=[TIP], wrench=applied)
-    ).modes:
-        found = applied_wrench(mode, [TIP], mass=ROD.mass, inertia=ROD.inertia)
-        assert found.f == pytest.approx(applied.f, abs=1e-12)
-        assert found.moment == pytest.approx(applied.moment, abs=1e-12)
 
 
 def test_a_silhouette_is_the_hull_as_seen() -> None:

@@ -11,12 +11,12 @@ from contact_dynamics.tumbling import free_motion
 from contact_dynamics.tumbling.poinsot_construction import poinsot, rolling_curves
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.poinsot import (
-    PoinsotPicture,
     count_of_flight,
     draw_poinsot,
     draw_rolling,
     ellipsoid_net,
 )
+from viewing.answers import tumbling_answer
 from viewing.drawn import read_drawn
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     import rerun as rr
 
+    from contact_dynamics.questions import TumblingAnswer
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.tumbling import FreeMotion
     from contact_dynamics.world import Body, World
@@ -33,16 +34,13 @@ if TYPE_CHECKING:
 PATH = "/poinsot/brick"
 
 
-def picture_of(motion: FreeMotion) -> PoinsotPicture:
-    constants = poinsot(motion)
-    curves = rolling_curves(motion, 50)
-    return PoinsotPicture(
-        semi_axes=constants.ellipsoid_semi_axes,
-        principal_axes_B=constants.principal_axes_B,
-        L_W=constants.L_W,
-        distance=constants.invariable_plane_distance,
-        polhode_B=curves.polhode_B,
-        herpolhode_W=curves.herpolhode_W,
+def answer_of(motion: FreeMotion) -> TumblingAnswer:
+    """The motion for 0.1 s, with the curves of its rotation."""
+    return tumbling_answer(
+        motion.state,
+        motion.at([0.0, 0.1]),
+        poinsot=poinsot(motion),
+        curves=rolling_curves(motion, 50),
     )
 
 
@@ -58,9 +56,8 @@ def test_the_ellipsoid_touches_the_plane_where_the_angular_velocity_ends(
     motion = free_motion(body.mass_properties, state, gravity_W=(0.0, 0.0, 0.0))
     constants = poinsot(motion)
     curves = rolling_curves(motion, 50)
-    picture = picture_of(motion)
     states = [motion.state_at(seconds) for seconds in curves.seconds.tolist()]
-    draw_poinsot(recording, "brick", picture)
+    draw_poinsot(recording, "brick", constants, curves)
     draw_rolling(recording, "brick", sorted(states, key=lambda state: state.stamp_ns))
     draw_rolling(recording, "brick", [])
     drawn = read()
@@ -81,11 +78,6 @@ def test_the_ellipsoid_touches_the_plane_where_the_angular_velocity_ends(
     assert view[2] @ rates[0] == pytest.approx(view[2] @ rates[-1], abs=1e-6)
 
 
-def test_the_picture_knows_the_inertia(body: Body, state: BodyState) -> None:
-    picture = picture_of(free_motion(body.mass_properties, state))
-    np.testing.assert_allclose(picture.I_B, body.mass_properties.I_B, rtol=1e-9, atol=1e-15)
-
-
 def flight_with_an_impact(body: Body, state: BodyState) -> tuple[list[BodyState], list[BodyState]]:
     """Twenty states of a flight, and twenty after something struck it."""
     times = np.linspace(0.0, 0.2, 21)[1:].tolist()
@@ -96,7 +88,7 @@ def flight_with_an_impact(body: Body, state: BodyState) -> tuple[list[BodyState]
 
 
 def test_states_belong_to_a_flight_until_its_angular_momentum_is_gone(body: Body, state: BodyState) -> None:
-    picture = picture_of(free_motion(body.mass_properties, state))
+    picture = poinsot(free_motion(body.mass_properties, state))
     before, after = flight_with_an_impact(body, state)
     noisy = [replace(one, w_WB_W=1.05 * one.w_WB_W) for one in before]
     assert count_of_flight(picture, noisy) == len(noisy)
@@ -111,12 +103,11 @@ def test_an_impact_takes_the_ellipsoid_away_until_the_next_prediction(
     before, after = flight_with_an_impact(body, state)
     picture = Picture(recording, world, surface_side=2.0)
     picture.add_states("brick", [state])
-    picture.show_poinsot(picture_of(free_motion(body.mass_properties, state)), state=state, body_name="brick")
+    picture.show_tumbling(answer_of(free_motion(body.mass_properties, state)))
     picture.add_states("brick", before[:10])
     picture.add_states("brick", before[10:] + after[:5])
     picture.add_states("brick", after[5:10])
-    again = picture_of(free_motion(body.mass_properties, after[9]))
-    picture.show_poinsot(again, state=after[9], body_name="brick")
+    picture.show_tumbling(answer_of(free_motion(body.mass_properties, after[9])))
     picture.add_states("brick", after[10:])
     recording.disconnect()
     drawn = read_drawn(tmp_path / "drawn.rrd")

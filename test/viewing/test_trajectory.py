@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from contact_dynamics.motion.covariance import CarriedCovariance, PropagationMethod, orientation_deviations
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.viewing import palette
@@ -14,7 +15,6 @@ from contact_dynamics.viewing.trajectory import (
     DEVIATIONS,
     MOST_OUTLINES,
     MOST_PATH_POINTS,
-    PositionUncertainty,
     draw_trajectory,
 )
 
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     import rerun as rr
 
     from contact_dynamics.tumbling import Trajectory
+    from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body
     from viewing.drawn import Drawn
 
@@ -53,18 +54,27 @@ def test_path_outlines_and_end_are_those_of_the_trajectory(
         np.testing.assert_allclose(distances, 0.0, atol=1e-6)
 
 
+def carried_along(trajectory: Trajectory, covariances: FloatArray, trusted: np.ndarray) -> CarriedCovariance:
+    return CarriedCovariance(
+        seconds=trajectory.seconds,
+        covariances=covariances,
+        orientation_deviations=orientation_deviations(covariances),
+        trusted=trusted,
+        method=PropagationMethod.LINEARISED,
+    )
+
+
 def test_ellipsoids_have_two_deviations_along_the_axes_of_the_covariance(
     recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, trajectory: Trajectory
 ) -> None:
     axes = Rotation.from_rotvec([0.3, -0.5, 0.8]).as_matrix()
     deviations = np.array([0.01, 0.02, 0.05])
     covariance = axes @ np.diag(deviations**2) @ axes.T
-    covariances = (
-        np.tile(covariance, (len(trajectory), 1, 1)) * np.linspace(0.0, 1.0, len(trajectory))[:, None, None]
-    )
-    trusted = (True,) * (len(trajectory) - 1) + (False,)
-    uncertainty = PositionUncertainty(covariances_W=covariances, trusted=trusted)
-    draw_trajectory(recording, "brick", convex_shape(body.vertices_B), trajectory, uncertainty=uncertainty)
+    growing = np.zeros((len(trajectory), 12, 12))
+    growing[:, :3, :3] = covariance * np.linspace(0.0, 1.0, len(trajectory))[:, None, None]
+    trusted = np.array([True] * (len(trajectory) - 1) + [False])
+    carried = carried_along(trajectory, growing, trusted)
+    draw_trajectory(recording, "brick", convex_shape(body.vertices_B), trajectory, covariance=carried)
     drawn = read()
     path = f"{PREDICTED}/uncertainty"
     np.testing.assert_allclose(
@@ -85,10 +95,9 @@ def test_ellipsoids_have_two_deviations_along_the_axes_of_the_covariance(
 def test_what_no_double_holds_is_not_drawn(
     recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, trajectory: Trajectory
 ) -> None:
-    unknown = PositionUncertainty(
-        covariances_W=np.full((len(trajectory), 3, 3), np.nan), trusted=(False,) * len(trajectory)
-    )
-    draw_trajectory(recording, "brick", convex_shape(body.vertices_B), trajectory, uncertainty=unknown)
+    n = len(trajectory)
+    unknown = carried_along(trajectory, np.full((n, 12, 12), np.nan), np.zeros(n, dtype=bool))
+    draw_trajectory(recording, "brick", convex_shape(body.vertices_B), trajectory, covariance=unknown)
     assert read().last(f"{PREDICTED}/uncertainty", "Ellipsoids3D:centers") == []
 
 

@@ -22,7 +22,7 @@ from contact_dynamics.plane.types import PlanarWrench
 from contact_dynamics.records import Record
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Sequence
 
     from contact_dynamics.contact_modes.planar.enumeration import Cell
     from contact_dynamics.contact_modes.planar.problem import PlanarCase, PlanarContactProblem
@@ -76,6 +76,17 @@ class PlanarWrenchSet(Record):
         Infinite: every wrench does; < 0: outside (then a lower bound of the distance).
         """
         return min((side.depth(wrench, length) for side in self.half_spaces), default=math.inf)
+
+
+def length_of(sets: Sequence[PlanarWrenchSet]) -> float:
+    """Return the radius of gyration, m, of the body that sets were made for; 1 where no torque bounds them.
+
+    It is the length with which the half-spaces have unit size, see `WrenchHalfSpace`.
+    """
+    normals = [side.a for one in sets for side in one.half_spaces]
+    a = max(normals, key=lambda row: abs(row[2]), default=(0.0, 0.0, 0.0))
+    left = 1.0 - a[0] * a[0] - a[1] * a[1]
+    return math.sqrt(left) / abs(a[2]) if a[2] != 0.0 and left > 0.0 else 1.0
 
 
 def planar_wrench_sets(

@@ -20,10 +20,8 @@ import numpy as np
 from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
 from contact_dynamics.contact_modes.spatial.answer import evidenced, spatial_contact_modes
 from contact_dynamics.contact_modes.spatial.margins_of_sliding import union_margin
-from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
-from contact_dynamics.contact_modes.spatial.statics import MOST_EDGES
+from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of_few_edges, spatial_case
 from contact_dynamics.contact_modes.spatial.wrenches import Way, supports, wrench_generators
-from contact_dynamics.errors import TooLargeError
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import BEYOND_MARGIN, ROW_TOLERANCE
 from contact_dynamics.validation import check_positive
@@ -83,10 +81,7 @@ def spatial_mode_margins(
     if not isinstance(case, SpatialCase):
         return ()
 
-    search = search_of(case, friction_facets)
-    edges = sum(len(pyramid.edges) for pyramid in search.pyramids)
-    if edges > MOST_EDGES:
-        raise TooLargeError("contacts", f"{edges} edges of friction pyramids", f"at most {MOST_EDGES}")
+    search = search_of_few_edges(case, friction_facets)
     metric = np.array([1.0, 1.0, 1.0, length, length, length])
     present = None if answer is None or not problem.sharpen else tuple(one.mode for one in answer.modes)
     margins = []

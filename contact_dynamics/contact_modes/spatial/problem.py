@@ -29,6 +29,9 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
 
+MOST_EDGES: Final = 128
+"""Most edges of all friction pyramids together: a cone of so many in R^6 has thousands of facets."""
+
 MOST_DYNAMIC_CONTACTS: Final = 32
 """Longest list of touching contacts accepted: a tenth of a second, two where many modes are consistent."""
 
@@ -185,6 +188,19 @@ def spatial_case(problem: SpatialContactProblem) -> SpatialCase | tuple[int, ...
         rolling_W=velocity_accelerations(contacts, sliding, w),
     )
     return SpatialCase(motion, contacts, sliding, touching)
+
+
+def search_of_few_edges(case: SpatialCase, facets: int) -> Search:
+    """Return `search_of`, for what goes through all edges of all friction pyramids.
+
+    Raises:
+        TooLargeError: these are more than `MOST_EDGES`.
+    """
+    search = search_of(case, facets)
+    edges = sum(len(pyramid.edges) for pyramid in search.pyramids)
+    if edges > MOST_EDGES:
+        raise TooLargeError("contacts", f"{edges} edges of friction pyramids", f"at most {MOST_EDGES}")
+    return search
 
 
 def search_of(case: SpatialCase, facets: int) -> Search:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
 from contact_dynamics.contact_modes.spatial.cone import cone_of
+from contact_dynamics.contact_modes.spatial.problem import MOST_EDGES
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, ROW_TOLERANCE
 from contact_dynamics.validation import check_positive
@@ -26,9 +27,6 @@ from contact_dynamics.validation import check_positive
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.validation import FloatArray
-
-MOST_EDGES: Final = 128
-"""Most edges of all friction pyramids together: a cone of so many in R^6 has thousands of facets."""
 
 
 def spatial_statics(problem: SpatialContactProblem, *, margin_length: float | None = None) -> BodyStatics:

@@ -23,8 +23,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, SPATIAL_LETTERS, check_modes
-from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
-from contact_dynamics.contact_modes.spatial.statics import MOST_EDGES
+from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of_few_edges, spatial_case
 from contact_dynamics.contact_modes.spatial.ways_of_sliding import sliding_range, ways_of
 from contact_dynamics.contact_modes.spatial.wrenches import distinct, supports, wrench_generators
 from contact_dynamics.errors import TooLargeError
@@ -101,7 +100,7 @@ def spatial_wrench_sets(
         InvalidFieldError: modes that are not strings of s, f and c.
         UndecidedError: contacts so nearly the same that rounding decides the sets.
         TooLargeError: as for `spatial_contact_modes`; more than `MOST_WRENCH_SETS` sets, more than
-            `spatial.statics.MOST_EDGES` edges of all pyramids, or too many ways of sliding
+            `spatial.problem.MOST_EDGES` edges of all pyramids, or too many ways of sliding
             (`ways_of_sliding.MOST_MEETINGS`).
 
     Source: lecture 26, "Force dual for dynamic contact problem"; Huang, Cheng and Mason 2020 for the ways.
@@ -111,10 +110,7 @@ def spatial_wrench_sets(
     case = spatial_case(problem)
     if not isinstance(case, SpatialCase):
         return ()
-    search = search_of(case, friction_facets)
-    edges = sum(len(pyramid.edges) for pyramid in search.pyramids)
-    if edges > MOST_EDGES:
-        raise TooLargeError("contacts", f"{edges} edges of friction pyramids", f"at most {MOST_EDGES}")
+    search = search_of_few_edges(case, friction_facets)
     every = [(_letters(case, ways), ways) for ways in ways_of(search)]
     wanted = sorted(one for one in every if modes is None or one[0] in modes)
     if len(wanted) > MOST_WRENCH_SETS:

@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import SeparatingContactError
-from contact_dynamics.impact.energy import energy_change, law_created
+from contact_dynamics.impact.energy import ManyEnergies
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
-from contact_dynamics.records import Record
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_choice, check_not_negative
 from contact_dynamics.validation_batches import (
@@ -49,7 +48,7 @@ _OUTCOMES: Final = np.array(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class PlanarImpacts(Record):
+class PlanarImpacts(ManyEnergies):
     """The answers to N planar impacts; row i belongs to case i. Meanings as in `PlanarImpact`.
 
     Attributes:
@@ -71,17 +70,6 @@ class PlanarImpacts(Record):
     compressions_C: FloatArray
     velocities_before_C: FloatArray
     velocities_after_C: FloatArray
-
-    @property
-    def energy_changes(self) -> FloatArray:
-        """Return the changes of kinetic energy, (N,), J."""
-        return energy_change(*self._at_contacts())
-
-    @property
-    def creates_energy(self) -> NDArray[np.bool_]:
-        """Return which of them the law gave energy, (N,), beyond rounding. Only Newton's can."""
-        created: NDArray[np.bool_] = law_created(*self._at_contacts())
-        return created
 
     def _at_contacts(self) -> tuple[list[FloatArray], ...]:
         return list(self.impulses_C.T), list(self.velocities_before_C.T), list(self.velocities_after_C.T)

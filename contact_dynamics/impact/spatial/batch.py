@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from contact_dynamics.errors import SeparatingContactError
-from contact_dynamics.impact.energy import energy_change, law_created
+from contact_dynamics.impact.energy import ManyEnergies
 from contact_dynamics.impact.law import RestitutionLaw, check_law_rows
 from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
 from contact_dynamics.impact.spatial.batch_paths import trace_all
@@ -111,7 +111,7 @@ class StrikingBodies(Record):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class SpatialImpacts(Record):
+class SpatialImpacts(ManyEnergies):
     """The answers to N impacts in space; row i belongs to case i. Meanings as in `SpatialImpact`.
 
     Attributes:
@@ -137,17 +137,6 @@ class SpatialImpacts(Record):
     velocities_after_W: FloatArray
     other_v_WB_W: FloatArray | None = None
     other_w_WB_W: FloatArray | None = None
-
-    @property
-    def energy_changes(self) -> FloatArray:
-        """Return the changes of kinetic energy, (N,), J."""
-        return energy_change(*self._at_contacts())
-
-    @property
-    def creates_energy(self) -> NDArray[np.bool_]:
-        """Return which of them the law gave energy, (N,), beyond rounding. Only Newton's can."""
-        created: NDArray[np.bool_] = law_created(*self._at_contacts())
-        return created
 
     def _at_contacts(self) -> tuple[list[FloatArray], ...]:
         return list(self.impulses_W.T), list(self.velocities_before_W.T), list(self.velocities_after_W.T)

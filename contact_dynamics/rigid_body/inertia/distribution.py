@@ -16,9 +16,9 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.records import Record
-from contact_dynamics.rigid_body.body import MassProperties
+from contact_dynamics.rigid_body.body import MassProperties, check_symmetric
 from contact_dynamics.rotations.one import rotation_matrix
-from contact_dynamics.tolerances import SUM_ROUNDING, SYMMETRY_TOLERANCE, TRIANGLE_TOLERANCE
+from contact_dynamics.tolerances import SUM_ROUNDING, TRIANGLE_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_positive, check_unit
 
 if TYPE_CHECKING:
@@ -175,10 +175,7 @@ def _symmetric(matrix: FloatArray) -> FloatArray:
 
 def _check_inertia(field: str, value: ArrayLike) -> FloatArray:
     """Return the matrix if a mass can have it. I1 + I2 >= I3 >= I2 also makes every moment >= 0."""
-    inertia = check_array(field, value, (3, 3))
-    scale = float(np.abs(inertia).max())
-    if float(np.abs(inertia - inertia.T).max()) > SYMMETRY_TOLERANCE * scale:
-        raise InvalidFieldError(field, inertia.tolist(), "a symmetric matrix")
+    inertia = check_symmetric(field, value)
     moments = np.linalg.eigvalsh(inertia)
     if moments[0] + moments[1] < moments[2] - TRIANGLE_TOLERANCE * abs(moments[2]):
         raise InvalidFieldError(

@@ -1,0 +1,47 @@
+"""The one call for any question."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, overload
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.questions import contact_modes, impact, tumbling
+from contact_dynamics.questions.contact_modes import ContactModeQuestion
+from contact_dynamics.questions.tumbling import TumblingQuestion
+from contact_dynamics.questions.which_impact import ImpactQuestion
+
+if TYPE_CHECKING:
+    from contact_dynamics.questions.contact_modes import ContactModeAnswer
+    from contact_dynamics.questions.impact import ImpactAnswer
+    from contact_dynamics.questions.knowledge import Knowledge
+    from contact_dynamics.questions.tumbling import TumblingAnswer
+
+
+@overload
+def ask(question: TumblingQuestion, knowledge: Knowledge | None = None) -> TumblingAnswer: ...
+@overload
+def ask(question: ImpactQuestion, knowledge: Knowledge | None = None) -> ImpactAnswer: ...
+@overload
+def ask(question: ContactModeQuestion, knowledge: Knowledge | None = None) -> ContactModeAnswer: ...
+def ask(
+    question: TumblingQuestion | ImpactQuestion | ContactModeQuestion, knowledge: Knowledge | None = None
+) -> TumblingAnswer | ImpactAnswer | ContactModeAnswer:
+    """Answer a question, as the service of its kind does.
+
+    Args:
+        question: What is asked.
+        knowledge: What is known: bodies by name, surfaces, published states, defaults. None: nothing, so that
+            the question says all there is to know.
+
+    Raises:
+        ContactDynamicsError: something is asked for that is not known, not allowed or not supported; the
+            message says what.
+    """
+    if isinstance(question, TumblingQuestion):
+        return tumbling.answer(question, knowledge)
+    if isinstance(question, ImpactQuestion):
+        return impact.answer(question, knowledge)
+    if isinstance(question, ContactModeQuestion):
+        return contact_modes.answer(question, knowledge)
+    allowed = "a TumblingQuestion, an ImpactQuestion or a ContactModeQuestion"
+    raise InvalidFieldError("question", type(question).__name__, allowed)

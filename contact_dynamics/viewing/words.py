@@ -1,0 +1,190 @@
+"""What answers say in words, beside what is drawn of them: regimes, outcomes, verdicts, certainties."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.contact_modes import Certainty, ModeVerdict
+from contact_dynamics.impact import ImpactOutcome, SequenceEnd
+from contact_dynamics.tumbling.regime import Regime
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact_modes import BodyStatics, SpatialModeMargin
+    from contact_dynamics.questions.contact_modes import ContactModeAnswer
+    from contact_dynamics.questions.impact import ImpactAnswer
+    from contact_dynamics.questions.resolved_impact import ResolvedImpact
+    from contact_dynamics.questions.settled_impact import SettledImpact
+    from contact_dynamics.questions.tumbling import TumblingAnswer
+    from contact_dynamics.tumbling.flips import Flips
+    from contact_dynamics.validation import FloatArray
+
+TUMBLING: Final = "Tumbling"
+IMPACT: Final = "Impact"
+CONTACT_MODE: Final = "Contact mode"
+"""The kinds of answers, as they are told."""
+
+MOST_LISTED: Final = 8
+"""More refused modes than this are counted, not listed."""
+
+REGIMES: Final = {
+    Regime.UNKNOWN: "a torque acts",
+    Regime.AT_REST: "it does not rotate",
+    Regime.SPHERICAL: "its moments are equal: it spins steadily",
+    Regime.PRINCIPAL_AXIS: "it spins steadily about a principal axis",
+    Regime.AXISYMMETRIC: "it precesses steadily",
+    Regime.ABOUT_MINOR_AXIS: "it tumbles about its minor axis",
+    Regime.ABOUT_MAJOR_AXIS: "it tumbles about its major axis",
+    Regime.SEPARATRIX: "it turns over once, on the separatrix",
+}
+"""What kind of rotation a body makes."""
+
+OUTCOMES: Final = {outcome: outcome.name.replace("_", " ").lower() for outcome in ImpactOutcome}
+"""What a contact does in an impact."""
+
+SEQUENCE_ENDS: Final = {
+    SequenceEnd.NOTHING_STRIKES: "it flies",
+    SequenceEnd.STAYS: "a contact stays",
+    SequenceEnd.CHATTERS: "it chatters to rest at a contact",
+    SequenceEnd.MOST_STRIKES: "the bound on their number was reached",
+    SequenceEnd.WINDOW_ENDED: "the window ended",
+}
+"""What follows the last of several strikes in time."""
+
+VERDICTS: Final = {
+    ModeVerdict.UNIQUE: "has one consistent mode",
+    ModeVerdict.INDETERMINATE: "has several consistent modes, and mechanics does not choose",
+    ModeVerdict.INCONSISTENT: "has no consistent mode: an impact without approach",
+    ModeVerdict.IMPACT: "approaches: no mode before the impact is resolved",
+}
+"""What mechanics says about a contact set."""
+
+CERTAINTIES: Final = {Certainty.NO: "no", Certainty.POSSIBLE: "possible", Certainty.CERTAIN: "certain"}
+"""Answers to static questions."""
+
+
+def tumbling_in_words(answer: TumblingAnswer) -> list[str]:
+    """Return how far the motion goes, what ends it, and what kind of rotation it is."""
+    event, seconds = answer.event, answer.trajectory.seconds
+    if event is None:
+        end = f"has {len(seconds)} samples"
+        if len(seconds) > 0:
+            end += f" from {seconds[0]:.4g} to {seconds[-1]:.4g} s"
+    else:
+        where, speed = event.surface or "the plane", np.linalg.norm(event.velocity_W)
+        end = (
+            f"reaches {where} in {event.seconds:.4g} s at ({_numbers(event.point_W)}) m with {speed:.3g} m/s"
+        )
+    regime = Regime.UNKNOWN if answer.poinsot is None else answer.poinsot.regime
+    return [end, REGIMES[regime], *_flips_in_words(answer.flips)]
+
+
+def impact_in_words(answer: ImpactAnswer) -> list[str]:
+    """Return what the impact does to the velocities, with which impulse, and what it costs."""
+    impact, other = answer.impact, answer.other
+    words = [
+        f"strikes in {answer.seconds_to_contact:.4g} s: {outcome_in_words(impact.outcome)}",
+        f"velocity ({_numbers(answer.state.v_WB_W)}) becomes ({_numbers(impact.state.v_WB_W)}) m/s",
+        f"impulse {np.linalg.norm(impact.impulses_W.sum(axis=0)):.3g} N s",
+    ]
+    if not impact.strikes:  # between strikes in time gravity works too
+        words.append(f"{impact.kinetic_energy_before - impact.kinetic_energy_after:.3g} J lost")
+    if other is not None and impact.other_state is not None:
+        after = _numbers(impact.other_state.v_WB_W)
+        words.append(f"that of {other.name or 'the other body'} becomes ({after}) m/s")
+    words += _probabilities_in_words(impact)
+    if impact.strikes and impact.end is not None:
+        count, last = len(impact.strikes), 1e3 * impact.strikes[-1].seconds
+        words.append(f"{count} strikes within {last:.3g} ms; then {SEQUENCE_ENDS[impact.end]}")
+    if impact.creates_energy:
+        words.append("the law creates energy: do not trust this answer")
+    return words
+
+
+def contact_modes_in_words(answer: ContactModeAnswer) -> list[str]:
+    """Return the verdict with every mode, what is refused, and what else was asked for."""
+    margins = [""] * len(answer.modes)
+    if answer.margins is not None:
+        margins = [margin_in_words(margin) for margin in answer.margins]
+    modes = [f"{mode.mode} {margin}".strip() for mode, margin in zip(answer.modes, margins, strict=True)]
+    words = [_verdict_in_words(answer.verdict, modes)]
+    shared = [mode.mode for mode in answer.modes if not mode.forces_unique]
+    if shared:
+        words.append(f"the contact forces of {', '.join(shared)} are one choice of many")
+    speeds = np.linalg.norm(answer.contact_velocities_W, axis=1)
+    words += [f"contact {i + 1} approaches with {speeds[i]:.3g} m/s" for i in answer.approaching]
+    refused = [refused.mode for refused in answer.refused]
+    if refused:
+        more = f" and {len(refused) - MOST_LISTED} more" if len(refused) > MOST_LISTED else ""
+        words.append(f"refused: {', '.join(refused[:MOST_LISTED])}{more}")
+    return [*words, *_statics_in_words(answer.statics), *_settled_in_words(answer.settled)]
+
+
+def outcome_in_words(outcome: ImpactOutcome | None) -> str:
+    """Return what a contact does in an impact; None: the law does not tell."""
+    return "several at once" if outcome is None else OUTCOMES[outcome]
+
+
+def margin_in_words(margin: SpatialModeMargin) -> str:
+    """Return how far a mode's wrench is from another mode; nothing where that is not known."""
+    if math.isnan(margin.margin):
+        return ""
+    if math.isinf(margin.margin):
+        return "(under every wrench)"
+    beyond = " or ".join(margin.modes_beyond) or "no mode"
+    return f"({margin.margin:.3g} N from {beyond})"
+
+
+def _verdict_in_words(verdict: ModeVerdict, modes: list[str]) -> str:
+    return f"{VERDICTS[verdict]}: {', '.join(modes)}" if modes else VERDICTS[verdict]
+
+
+def _flips_in_words(flips: Flips | None) -> list[str]:
+    """Return when a body that spins near its middle axis turns over next, with its deviation if told."""
+    if flips is None or len(flips.seconds) == 0:
+        return []
+    words = [
+        f"{seconds:.3g} s" + ("" if math.isnan(deviation) else f" (±{deviation:.2g} s)")
+        for seconds, deviation in zip(flips.seconds.tolist(), flips.deviations.tolist(), strict=True)
+    ]
+    return [f"its middle axis turns over after {', '.join(words)}"]
+
+
+def _probabilities_in_words(impact: ResolvedImpact) -> list[str]:
+    """Return how probable each outcome is, the most probable first, where that was told."""
+    if impact.outcome_probabilities is None:
+        return []
+    named = [
+        (share, OUTCOMES[ImpactOutcome(i)])
+        for i, share in enumerate(impact.outcome_probabilities.tolist())
+        if share > 0.0
+    ]
+    if impact.miss_probability > 0.0:
+        named.append((impact.miss_probability, "separates"))
+    named.sort(reverse=True)
+    return [f"outcomes: {', '.join(f'{words} {100.0 * share:.2g} %' for share, words in named)}"]
+
+
+def _statics_in_words(statics: BodyStatics | None) -> list[str]:
+    if statics is None:
+        return []
+    wedged = "possible" if statics.wedged else "no"
+    equilibrium, jammed = CERTAINTIES[statics.equilibrium], CERTAINTIES[statics.jammed]
+    return [f"equilibrium {equilibrium}, jammed {jammed}, wedged {wedged}"]
+
+
+def _settled_in_words(settled: SettledImpact | None) -> list[str]:
+    if settled is None:
+        return []
+    outcome, after = outcome_in_words(settled.impact.outcome), _numbers(settled.impact.state.v_WB_W)
+    return [
+        f"an impact settles it: {outcome}; velocity becomes ({after}) m/s",
+        f"then it {_verdict_in_words(settled.verdict, [mode.mode for mode in settled.modes])}",
+    ]
+
+
+def _numbers(vector: FloatArray) -> str:
+    """Return numbers in words, what is below a millionth as 0."""
+    return ", ".join(f"{round(number, 6) + 0.0:.3g}" for number in vector.tolist())

@@ -1,0 +1,215 @@
+"""Questions to requests of the three services: what `questions` reads, written.
+
+A request says zero where a question leaves a number out. What no request can say, such as a number that is
+zero itself or gravity of one's own, raises `NotSupportedError`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.motion.forces import WrenchAxes
+from contact_dynamics.questions.sample_times import AtStamps, AtTimes, UntilContact, UntilPlane
+from contact_dynamics.questions.subject import PublishedState
+from contact_dynamics.questions.which_impact import InTime
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from msg_adapters.body_state import known_state_to_msg
+from msg_adapters.contacts import contacts_to_msg
+from msg_adapters.geometry import mass_properties_to_msg, point_to_msg, vector_to_msg, wrench_to_msg
+from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
+
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    from geometry_msgs.msg import Inertia
+
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.questions.contact_modes import ContactModeQuestion
+    from contact_dynamics.questions.sample_times import Sampling
+    from contact_dynamics.questions.subject import StateSource
+    from contact_dynamics.questions.tumbling import TumblingQuestion
+    from contact_dynamics.questions.which_impact import ImpactQuestion
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import Body, World
+
+    Request: TypeAlias = PredictContactMode.Request | PredictImpact.Request | PredictTumbling.Request
+    ContactRequest: TypeAlias = PredictContactMode.Request | PredictImpact.Request
+    GravityRequest: TypeAlias = PredictContactMode.Request | PredictTumbling.Request
+
+
+def tumbling_question_to_msg(
+    question: TumblingQuestion, *, world: World, world_frame: str
+) -> PredictTumbling.Request:
+    """Return the request of a question about tumbling.
+
+    Args:
+        question: The question.
+        world: The bodies that the server knows by name.
+        world_frame: The frame of its world.
+
+    Raises:
+        UnknownBodyError: the question names a body that the world does not have.
+        NotSupportedError: no request says it.
+    """
+    msg = PredictTumbling.Request()
+    _write_subject(msg, question.body, question.state, world, world_frame)
+    if isinstance(question.state, PublishedState):
+        msg.fit_window = question.state.fit_window
+    _write_sampling(msg, question.sampling)
+    _write_gravity(msg, question.gravity_W)
+    msg.applied_wrench = wrench_to_msg(question.wrench.force, question.wrench.torque)
+    msg.wrench_in_body_axes = question.wrench.axes is WrenchAxes.BODY
+    msg.linear_drag, msg.quadratic_drag = question.drag.linear, question.drag.quadratic
+    msg.linear_angular_drag = question.drag.linear_angular
+    msg.quadratic_angular_drag = question.drag.quadratic_angular
+    msg.want_covariance = question.want_covariance
+    msg.curve_points = question.curve_points
+    return msg
+
+
+def impact_question_to_msg(
+    question: ImpactQuestion, *, world: World, world_frame: str
+) -> PredictImpact.Request:
+    """Return the request of a question about an impact, as `tumbling_question_to_msg`."""
+    msg = PredictImpact.Request()
+    _write_subject(msg, question.body, question.state, world, world_frame)
+    if isinstance(question.state, PublishedState):
+        msg.fit_window = question.state.fit_window
+    if question.other is not None:
+        _write_other(msg, question.other, question.other_state, world, world_frame)
+    _write_contacts(msg, question.contacts)
+    msg.horizon = _or_zero("horizon", question.horizon)
+    msg.restitution_law = int(question.restitution_law)
+    law = question.several_contacts_law
+    if isinstance(law, InTime):
+        msg.several_contacts_law = msg.SEQUENTIAL_IN_TIME
+        msg.strike_window = _or_zero("strike_window", law.strike_window)
+        msg.most_strikes = law.most_strikes or 0
+        msg.hold_step = law.hold_step or 0.0
+    else:
+        msg.several_contacts_law = int(law)
+    msg.want_orders = question.want_orders
+    msg.want_covariance = question.want_covariance
+    _write_problem(msg, question)
+    return msg
+
+
+def contact_mode_question_to_msg(
+    question: ContactModeQuestion, *, world: World, world_frame: str
+) -> PredictContactMode.Request:
+    """Return the request of a question about contact modes, as `tumbling_question_to_msg`."""
+    msg = PredictContactMode.Request()
+    _write_subject(msg, question.body, question.state, world, world_frame)
+    if isinstance(question.state, PublishedState) and question.state.fit_window > 0.0:
+        message = f"fit_window: found {question.state.fit_window:g}, allowed about contact modes is 0"
+        raise NotSupportedError(message)
+    _write_contacts(msg, question.contacts)
+    msg.applied_wrench = wrench_to_msg(question.force_W, question.torque_W)
+    _write_gravity(msg, question.gravity_W)
+    _write_problem(msg, question)
+    msg.friction_facets = question.friction_facets
+    msg.margin_length = _or_zero("margin_length", question.margin_length)
+    msg.want_margins = question.want_margins
+    msg.want_wrenches = question.want_wrenches
+    msg.want_statics = question.want_statics
+    msg.want_impact = question.want_impact
+    return msg
+
+
+def _write_subject(
+    msg: Request, body: Body | str, source: StateSource, world: World, world_frame: str
+) -> None:
+    """Write which body a request is about, and where its state comes from."""
+    body = world.body(body) if isinstance(body, str) else body
+    msg.body_name = body.name
+    inertia = _inertia(body, world)
+    if inertia is not None:
+        msg.inertia = inertia
+    if isinstance(source, PublishedState):
+        msg.state_source = msg.STATE_PUBLISHED
+        msg.stamp = stamp_to_msg(source.stamp_ns or 0)
+        return
+    msg.state_source = msg.STATE_EXPLICIT
+    known_state_to_msg(
+        source, body_name=body.name, world_frame=world_frame, p_FB_F=body.p_FB_F, into=msg.state
+    )
+
+
+def _write_other(
+    msg: PredictImpact.Request, body: Body | str, source: StateSource, world: World, world_frame: str
+) -> None:
+    """Write the second body of an impact."""
+    body = world.body(body) if isinstance(body, str) else body
+    msg.other_body_name = body.name
+    inertia = _inertia(body, world)
+    if inertia is not None:
+        msg.other_inertia = inertia
+    if not isinstance(source, PublishedState):
+        state = known_state_to_msg(source, body_name=body.name, world_frame=world_frame, p_FB_F=body.p_FB_F)
+        msg.other_state = [state]
+    elif (source.stamp_ns or 0) != stamp_ns_from_msg(msg.stamp) or source.fit_window > 0.0:
+        message = "other_state: found a published one, allowed is that of the request's stamp, without a fit"
+        raise NotSupportedError(message)
+
+
+def _inertia(body: Body, world: World) -> Inertia | None:
+    """Return a body's mass, where it is not as the world knows it; None: it is."""
+    named = [known for known in world.bodies if known.name == body.name]
+    if body in named:
+        return None
+    if not named and (body.name or not body.shape.is_empty):
+        message = (
+            f"body: found {body.name!r}, which the world does not know; allowed is one without name and shape"
+        )
+        raise NotSupportedError(message)
+    return mass_properties_to_msg(body.mass_properties, body.p_FB_F)
+
+
+def _write_contacts(msg: ContactRequest, contacts: ContactSet | None) -> None:
+    msg.contact_source = msg.CONTACTS_FROM_GEOMETRY if contacts is None else msg.CONTACTS_EXPLICIT
+    if contacts is not None:
+        contacts_to_msg(contacts, into=msg.contacts)
+
+
+def _write_gravity(msg: GravityRequest, gravity_W: FloatArray | None) -> None:
+    if gravity_W is not None and gravity_W.any():
+        message = f"gravity_W: found {gravity_W.tolist()}, allowed is the server's, or zero"
+        raise NotSupportedError(message)
+    msg.gravity = msg.GRAVITY_AS_CONFIGURED if gravity_W is None else msg.GRAVITY_NONE
+
+
+def _write_sampling(msg: PredictTumbling.Request, sampling: Sampling) -> None:
+    if isinstance(sampling, AtTimes):
+        msg.sampling, msg.times = msg.AT_TIMES, sampling.times.tolist()
+        return
+    if isinstance(sampling, AtStamps):
+        msg.sampling, msg.stamps_ns = msg.AT_STAMPS, list(sampling.stamps_ns)
+        return
+    msg.sampling = msg.AT_RATE
+    if isinstance(sampling, UntilContact):
+        msg.sampling = msg.UNTIL_CONTACT
+    elif isinstance(sampling, UntilPlane):
+        msg.sampling = msg.UNTIL_PLANE
+        msg.plane_point = point_to_msg(sampling.plane_point)
+        msg.plane_normal = vector_to_msg(sampling.plane_normal)
+        msg.body_point = point_to_msg(sampling.body_point)
+    msg.rate, msg.duration = _or_zero("rate", sampling.rate), _or_zero("duration", sampling.duration)
+
+
+def _write_problem(msg: ContactRequest, question: ContactModeQuestion | ImpactQuestion) -> None:
+    """Write whether a question is about a plane, about which, and the tolerances."""
+    msg.problem = int(question.problem)
+    if question.plane is not None:
+        msg.plane_normal = vector_to_msg(question.plane.normal_W)
+    msg.out_of_plane_tolerance = _or_zero("out_of_plane_tolerance", question.out_of_plane_tolerance)
+    msg.velocity_tolerance = _or_zero("velocity_tolerance", question.velocity_tolerance)
+    msg.distance_tolerance = _or_zero("distance_tolerance", question.distance_tolerance)
+
+
+def _or_zero(field: str, value: float | None) -> float:
+    """Return a number as a request has it: zero where the question says nothing."""
+    if value == 0.0:
+        message = f"{field}: found 0, which requests take as left out; allowed is a number > 0, or None"
+        raise NotSupportedError(message)
+    return 0.0 if value is None else value

@@ -1,0 +1,50 @@
+"""From every consistent mode the wrench that was applied comes back."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact_modes import SpatialContactProblem, contact_modes
+from contact_dynamics.contact_modes.spatial.applied_wrench import applied_wrench
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+
+BODY = MassProperties(mass=0.7, I_B=np.diag([0.02, 0.05, 0.06]))
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_applied_wrench_follows_from_each_mode(seed: int) -> None:
+    """Of a turned body that spins, at up to three contacts that leave or stay."""
+    random = np.random.default_rng(seed)
+    q = random.normal(size=4)
+    state = BodyState(
+        p_WB_W=random.normal(size=3),
+        q_WB=q / np.linalg.norm(q),
+        v_WB_W=np.zeros(3),
+        w_WB_W=random.normal(size=3) * (0.0 if seed % 2 else 3.0),
+    )
+    arms = random.uniform(-0.2, 0.2, size=(1 + seed % 3, 3)) - (0.0, 0.0, 0.2)
+    points = state.p_WB_W + arms
+    contacts = ContactSet(
+        p_WC_W=points, normals_W=np.tile([0.0, 0.0, 1.0], (len(arms), 1)), frictions=0.5, restitutions=0.0
+    )
+    approach = min(0.0, float(state.velocity_of_point(points)[:, 2].min()))
+    state = BodyState(
+        p_WB_W=state.p_WB_W,
+        q_WB=state.q_WB,
+        v_WB_W=np.array([0.0, 0.0, -approach]),
+        w_WB_W=state.w_WB_W,
+    )
+    force_W, torque_W = random.normal(size=3) - (0.0, 0.0, 5.0), 0.1 * random.normal(size=3)
+    problem = SpatialContactProblem(
+        body=BODY, state=state, contacts=contacts, force_W=force_W, torque_W=torque_W
+    )
+    found = contact_modes(problem)
+    assert found.modes
+    for mode in found.modes:
+        wrench_W = applied_wrench(BODY, state, contacts, mode)
+        size = math.hypot(*force_W) + float(np.abs(mode.contact_forces_W).sum())
+        np.testing.assert_allclose(wrench_W, [*force_W, *torque_W], atol=1e-9 * size)

@@ -1,0 +1,573 @@
+"""Random values of all that travels in messages, and whether two of them are the same."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import Any, TypeVar
+
+import numpy as np
+from hypothesis import assume
+from hypothesis import strategies as st
+
+from contact_dynamics.constants import ns_after
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.curvature import alike
+from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict, Refusal, RefusedMode
+from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
+from contact_dynamics.contact_modes.spatial.result import SpatialMode
+from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
+from contact_dynamics.impact import (
+    ImpactOutcome,
+    PathEvent,
+    RestitutionLaw,
+    SequenceEnd,
+    SeveralContactsLaw,
+)
+from contact_dynamics.motion.covariance import CarriedCovariance, PropagationMethod, orientation_deviations
+from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.motion.integrated import Method
+from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions import (
+    AtRate,
+    AtStamps,
+    AtTimes,
+    ContactModeAnswer,
+    ContactModeQuestion,
+    Event,
+    EventKind,
+    FitQuality,
+    ImpactAnswer,
+    ImpactQuestion,
+    InTime,
+    Problem,
+    PublishedState,
+    ResolvedImpact,
+    SequenceStrike,
+    SettledImpact,
+    StruckBody,
+    TumblingAnswer,
+    TumblingQuestion,
+    UncertainState,
+    UntilContact,
+    UntilPlane,
+)
+from contact_dynamics.questions.subject import NEWEST, changed_body
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.tumbling import Flips, Poinsot, Regime, RollingCurves, Trajectory
+from contact_dynamics.tumbling.poinsot_construction import semi_axes
+from contact_dynamics.world import Body, World, box_vertices
+
+T = TypeVar("T")
+
+NO_OFFSET = np.zeros(3)
+BRICK = Body(
+    name="brick",
+    mass_properties=MassProperties(mass=0.4, I_B=np.diag([3.5e-4, 8.3e-4, 1.02e-3])),
+    vertices_B=box_vertices((0.15, 0.09, 0.05)),
+)
+BAT = Body(name="bat", mass_properties=MassProperties(mass=0.9, I_B=0.01 * np.eye(3)))
+WORLD = World(bodies=(BRICK, BAT))
+NAMES = ("", "brick")
+
+
+def same(one: Any, other: Any, *, rounding: float = 0.0) -> bool:
+    """Whether two values, domain types or messages, agree in every field; NaN is NaN.
+
+    Numbers may differ by ``rounding``.
+    """
+    if isinstance(one, float) and isinstance(other, float):
+        return bool(np.isclose(one, other, rtol=0.0, atol=rounding, equal_nan=True))
+    if isinstance(one, np.ndarray):
+        return one.shape == other.shape and bool(
+            np.isclose(one, other, rtol=0.0, atol=rounding, equal_nan=True).all()
+        )
+    if hasattr(one, "get_fields_and_field_types"):
+        names = list(one.get_fields_and_field_types())
+    elif dataclasses.is_dataclass(one):
+        names = [field.name for field in dataclasses.fields(one)]
+    elif isinstance(one, str | bytes) or not hasattr(one, "__len__"):
+        return type(one) is type(other) and bool(one == other)
+    else:  # a list, a tuple or an array.array
+        return len(one) == len(other) and all(
+            same(a, b, rounding=rounding) for a, b in zip(one, other, strict=True)
+        )
+    return type(one) is type(other) and all(
+        same(getattr(one, name), getattr(other, name), rounding=rounding) for name in names
+    )
+
+
+numbers = st.floats(-1e3, 1e3)
+odd_numbers = st.one_of(numbers, st.sampled_from([math.nan, math.inf]))
+positive = st.floats(1e-3, 1e3)
+flags = st.booleans()
+texts = st.sampled_from(["", "floor", "wall 2", "ü"])
+indices = st.integers(0, 9)
+
+
+def arrays(*shape: int, of: st.SearchStrategy[float] = numbers) -> st.SearchStrategy[np.ndarray]:
+    """Arrays of a shape; all but a few numbers of a large one are from a generator."""
+    count = math.prod(shape)
+    if count > 36:
+        return st.integers(0, 2**31).map(lambda seed: np.random.default_rng(seed).normal(size=shape))
+    return st.lists(of, min_size=count, max_size=count).map(
+        lambda values: np.array(values, dtype=np.float64).reshape(shape)
+    )
+
+
+def tuples_of(values: st.SearchStrategy[T], count: int) -> st.SearchStrategy[tuple[T, ...]]:
+    """So many values."""
+    return st.lists(values, min_size=count, max_size=count).map(tuple)
+
+
+def some(values: st.SearchStrategy[T]) -> st.SearchStrategy[T | None]:
+    """A value or none."""
+    return st.one_of(st.none(), values)
+
+
+@st.composite
+def unit_vectors(draw: st.DrawFn, length: int = 3) -> np.ndarray:
+    """Unit vectors that stay as they are when they are scaled to length 1 once more."""
+    vector = draw(arrays(length, of=st.floats(-1.0, 1.0)))
+    for _ in range(3):
+        size = math.sqrt(np.einsum("i,i->", vector, vector))
+        assume(size > 0.1)
+        vector = vector / size
+    again = vector / np.sqrt(np.einsum("ij,ij->i", vector[None], vector[None]))
+    assume(np.array_equal(again, vector))
+    return vector
+
+
+states = st.builds(
+    BodyState,
+    p_WB_W=arrays(3),
+    q_WB=unit_vectors(4),
+    v_WB_W=arrays(3),
+    w_WB_W=arrays(3),
+    stamp_ns=st.integers(0, 2**31 * 10**9 - 1),
+)
+
+
+@st.composite
+def known_states(draw: st.DrawFn) -> BodyState | UncertainState:
+    """States with a covariance and without."""
+    state = draw(states)
+    if draw(flags):
+        return state
+    root = draw(arrays(12, 12))
+    return UncertainState(state=state, covariance=root @ root.T)
+
+
+@st.composite
+def contact_sets(draw: st.DrawFn, count: int | None = None) -> ContactSet:
+    """Up to three contacts, with names and curvatures or without."""
+    n = draw(st.integers(0, 3)) if count is None else count
+    curved = n > 0 and draw(flags)
+    normals = draw(tuples_of(unit_vectors(), n))
+    return ContactSet(
+        p_WC_W=draw(arrays(n, 3)),
+        normals_W=np.array(normals).reshape(-1, 3),
+        frictions=draw(arrays(n, of=st.floats(0.0, 5.0))),
+        restitutions=draw(arrays(n, of=st.floats(0.0, 1.0))),
+        surfaces=draw(tuples_of(texts, n)) if draw(flags) else (),
+        body_curvatures=alike(n, draw(positive)) if curved else None,
+        surface_curvatures=alike(n, draw(positive)) if curved else None,
+    )
+
+
+@st.composite
+def trajectories(draw: st.DrawFn, count: int | None = None) -> Trajectory:
+    """Up to three samples."""
+    n = draw(st.integers(0, 3)) if count is None else count
+    return Trajectory(
+        seconds=draw(arrays(n)),
+        p_WB_W=draw(arrays(n, 3)),
+        q_WB=np.array(draw(tuples_of(unit_vectors(4), n))).reshape(-1, 4),
+        v_WB_W=draw(arrays(n, 3)),
+        w_WB_W=draw(arrays(n, 3)),
+    )
+
+
+@st.composite
+def carried(draw: st.DrawFn, seconds: np.ndarray) -> CarriedCovariance:
+    """The covariances of a trajectory's samples; NaN where no double holds them."""
+    covariances = draw(arrays(len(seconds), 12, 12))
+    if draw(flags):
+        covariances[-1] = math.nan
+    return CarriedCovariance(
+        seconds=seconds,
+        covariances=covariances,
+        orientation_deviations=orientation_deviations(covariances),
+        trusted=np.array(draw(tuples_of(flags, len(seconds)))),
+        method=PropagationMethod.LINEARISED,
+    )
+
+
+@st.composite
+def rotations(draw: st.DrawFn) -> tuple[Poinsot, Flips, RollingCurves | None]:
+    """Poinsot's picture, with any number of flips, with curves and without."""
+    energy, moments = draw(positive), draw(arrays(3, of=positive))
+    flips, points = draw(st.integers(0, 3)), draw(st.integers(0, 3))
+    picture = Poinsot(
+        regime=draw(st.sampled_from([regime for regime in Regime if regime is not Regime.UNKNOWN])),
+        rotational_energy=energy,
+        L_W=draw(arrays(3)),
+        invariable_plane_distance=draw(odd_numbers),
+        polhode_period=draw(odd_numbers),
+        precession_per_period=draw(odd_numbers),
+        principal_moments=moments,
+        principal_axes_B=draw(arrays(3, 3)),
+        ellipsoid_semi_axes=semi_axes(energy, moments),
+        sensitivity=draw(odd_numbers),
+    )
+    curves = RollingCurves(
+        seconds=draw(arrays(points)),
+        polhode_B=draw(arrays(points, 3)),
+        herpolhode_W=draw(arrays(points, 3)),
+    )
+    told = Flips(seconds=draw(arrays(flips)), deviations=draw(arrays(flips, of=odd_numbers)))
+    return picture, told, curves if points else None
+
+
+fits = st.builds(
+    FitQuality, count=st.integers(1, 1000), position_residual=positive, orientation_residual=positive
+)
+events = st.builds(
+    Event,
+    kind=st.sampled_from(EventKind),
+    seconds=numbers,
+    point_W=arrays(3),
+    velocity_W=arrays(3),
+    surface=texts,
+)
+
+
+@st.composite
+def tumbling_answers(draw: st.DrawFn, p_FB_F: np.ndarray = NO_OFFSET) -> TumblingAnswer:
+    """With and without samples, covariance, event, fit and torque."""
+    trajectory = draw(trajectories())
+    picture, flips, curves = draw(rotations()) if draw(flags) else (None, None, None)
+    has_covariance = len(trajectory) > 0 and draw(flags)
+    return TumblingAnswer(
+        body_name=draw(st.sampled_from(NAMES)) if not p_FB_F.any() else "brick",
+        p_FB_F=p_FB_F,
+        state=draw(states),
+        fit=draw(some(fits)),
+        trajectory=trajectory,
+        covariance=draw(carried(trajectory.seconds)) if has_covariance else None,
+        method=draw(st.sampled_from(Method)),
+        event=draw(some(events)),
+        poinsot=picture,
+        flips=flips,
+        curves=curves,
+    )
+
+
+@st.composite
+def strikes_in_time(draw: st.DrawFn, last_ns: int) -> tuple[SequenceStrike, ...]:
+    """One to three strikes, the last of them at that stamp."""
+    seconds = sorted(draw(st.lists(st.floats(0.0, 0.05), min_size=1, max_size=3)))
+    strikes = []
+    for each in seconds:
+        stamp_ns = ns_after(last_ns, each - seconds[-1])
+        before = dataclasses.replace(draw(states), stamp_ns=stamp_ns)
+        after = dataclasses.replace(before, v_WB_W=draw(arrays(3)), w_WB_W=draw(arrays(3)))
+        strikes.append(
+            SequenceStrike(
+                seconds=each,
+                contact=draw(indices),
+                outcome=draw(st.sampled_from(ImpactOutcome)),
+                p_WC_W=draw(arrays(3)),
+                impulse_W=draw(arrays(3)),
+                state_before=before,
+                state_after=after,
+            )
+        )
+    return tuple(strikes)
+
+
+@st.composite
+def resolved_impacts(
+    draw: st.DrawFn, count: int = 2, *, other: bool = False, in_time: bool | None = None
+) -> ResolvedImpact:
+    """At so many contacts, by all laws, with and without all that is asked for besides."""
+    state = dataclasses.replace(draw(states), stamp_ns=draw(st.integers(10**9, 10**18)))
+    strikes = draw(strikes_in_time(state.stamp_ns)) if (draw(flags) if in_time is None else in_time) else ()
+    law = SeveralContactsLaw.SEQUENTIAL if strikes else draw(st.sampled_from(SeveralContactsLaw))
+    orders = draw(st.lists(st.lists(indices, min_size=1, max_size=3).map(tuple), max_size=2).map(tuple))
+    told, k = draw(flags), draw(st.integers(0, 3))
+    staying = draw(st.lists(indices, max_size=2).map(tuple)) if strikes else ()
+    probabilities = draw(some(arrays(len(ImpactOutcome), of=st.floats(0.0, 1.0))))
+    return ResolvedImpact(
+        restitution_law=draw(st.sampled_from(RestitutionLaw)),
+        several_contacts_law=law,
+        outcome=draw(some(st.sampled_from(ImpactOutcome))),
+        jams=draw(flags),
+        converged=draw(flags),
+        state=state,
+        other_state=draw(states) if other else None,
+        impulses_W=draw(arrays(count, 3)),
+        compression_impulses_W=draw(arrays(count if told else 0, 3)),
+        velocities_before_W=draw(arrays(count, 3)),
+        velocities_after_W=draw(arrays(count, 3)),
+        path_W=draw(arrays(k, 3)),
+        path_events=draw(tuples_of(st.sampled_from(PathEvent), k)),
+        path_contacts=draw(tuples_of(indices, k)),
+        kinetic_energy_before=draw(positive),
+        kinetic_energy_after=draw(positive),
+        creates_energy=draw(flags),
+        orders=orders,
+        order_velocities_W=draw(arrays(len(orders), 6)),
+        covariance=draw(some(arrays(12, 12))),
+        outcome_probabilities=probabilities,
+        miss_probability=0.0 if probabilities is None else draw(st.floats(0.0, 1.0)),
+        strikes=strikes,
+        end=draw(st.sampled_from(SequenceEnd)) if strikes else None,
+        staying=staying,
+        limit_seconds=draw(positive) if staying else None,
+    )
+
+
+planes = some(st.builds(PlaneOfMotion, normal_W=unit_vectors()))
+
+
+@st.composite
+def impact_answers(draw: st.DrawFn, p_FB_F: np.ndarray = NO_OFFSET) -> ImpactAnswer:
+    """With one body and with two, in a plane and in space."""
+    contacts = draw(contact_sets())
+    name = draw(st.sampled_from(NAMES)) if not p_FB_F.any() else "brick"
+    struck = draw(some(st.builds(StruckBody, name=st.just(name), p_FB_F=st.just(p_FB_F), state=states)))
+    plane = draw(planes)
+    return ImpactAnswer(
+        body_name=name,
+        p_FB_F=p_FB_F,
+        state=draw(states),
+        fit=draw(some(fits)),
+        other=struck,
+        seconds_to_contact=draw(positive),
+        contacts=contacts,
+        impact=draw(resolved_impacts(len(contacts), other=struck is not None)),
+        problem=Problem.SPATIAL if plane is None else Problem.PLANAR,
+        plane=plane,
+        out_of_plane=draw(positive),
+        velocity_tolerance=draw(positive),
+        distance_tolerance=draw(positive),
+    )
+
+
+@st.composite
+def modes_of(draw: st.DrawFn, count: int) -> SpatialMode:
+    """A mode of so many contacts, with sliding directions and without."""
+    return SpatialMode(
+        mode="".join(draw(tuples_of(st.sampled_from("slrfc"), count))),
+        acceleration_W=draw(arrays(3)),
+        angular_acceleration_W=draw(arrays(3)),
+        contact_forces_W=draw(arrays(count, 3)),
+        contact_accelerations_W=draw(arrays(count, 3)),
+        tangential_directions_W=draw(arrays(count if draw(flags) else 0, 3)),
+        misdirection=draw(positive),
+        forces_unique=draw(flags),
+        motion_unique=draw(flags),
+    )
+
+
+def margins_of(mode: str) -> st.SearchStrategy[SpatialModeMargin]:
+    """Finite, infinite and unknown ones."""
+    return st.builds(
+        SpatialModeMargin,
+        mode=st.just(mode),
+        margin=odd_numbers,
+        length=positive,
+        change_W=arrays(6),
+        verdict_beyond=st.sampled_from(ModeVerdict),
+        modes_beyond=st.lists(texts, max_size=2).map(tuple),
+    )
+
+
+@st.composite
+def modes_and_margins(draw: st.DrawFn) -> tuple[SpatialMode, SpatialModeMargin | None]:
+    """A mode of up to three contacts."""
+    mode = draw(modes_of(draw(st.integers(0, 3))))
+    return mode, draw(some(margins_of(mode.mode)))
+
+
+@st.composite
+def wrench_sets(draw: st.DrawFn, mode: str = "sf") -> SpatialWrenchSet:
+    """With any number of vertices, generators and half-spaces; in space and in a plane."""
+    v, g, h = (draw(st.integers(0, 3)) for _ in range(3))
+    sliding = len(mode) if draw(flags) else 0
+    return SpatialWrenchSet(
+        mode=mode,
+        sliding_from_W=draw(arrays(sliding, 3)),
+        sliding_to_W=draw(arrays(sliding, 3)),
+        vertices=draw(arrays(v, 6)),
+        generators=draw(arrays(g, 6)),
+        half_spaces=draw(arrays(h, 7)),
+    )
+
+
+static_answers = st.builds(
+    BodyStatics,
+    equilibrium=st.sampled_from(Certainty),
+    jammed=st.sampled_from(Certainty),
+    wedged=flags,
+    stable_disturbance=odd_numbers,
+    margin_length=st.just(math.nan),  # no message tells it
+)
+refused_modes = st.builds(
+    RefusedMode,
+    mode=texts,
+    refusal=st.sampled_from(Refusal),
+    contact=st.integers(-1, 9),
+    amount=numbers,
+)
+
+
+@st.composite
+def settled_impacts(draw: st.DrawFn, count: int) -> SettledImpact:
+    """An impact at one instant, and modes after it."""
+    return SettledImpact(
+        impact=draw(resolved_impacts(count, in_time=False)),
+        verdict=draw(st.sampled_from(ModeVerdict)),
+        modes=draw(st.lists(modes_of(count), max_size=2).map(tuple)),
+    )
+
+
+@st.composite
+def contact_mode_answers(draw: st.DrawFn, p_FB_F: np.ndarray = NO_OFFSET) -> ContactModeAnswer:
+    """With no mode and several, and with all that can be asked for besides or not."""
+    contacts = draw(contact_sets())
+    n, plane = len(contacts), draw(planes)
+    modes = draw(st.lists(modes_of(n), max_size=2).map(tuple))
+    margins = tuple(draw(margins_of(mode.mode)) for mode in modes) if draw(flags) else ()
+    sets = draw(st.lists(wrench_sets(), max_size=2).map(tuple))
+    return ContactModeAnswer(
+        body_name=draw(st.sampled_from(NAMES)) if not p_FB_F.any() else "brick",
+        p_FB_F=p_FB_F,
+        state=draw(states),
+        contacts=contacts,
+        verdict=draw(st.sampled_from(ModeVerdict)),
+        modes=modes,
+        margins=margins or None,
+        approaching=draw(st.lists(indices, max_size=2).map(tuple)),
+        contact_velocities_W=draw(arrays(n, 3)),
+        refused=draw(st.lists(refused_modes, max_size=2).map(tuple)),
+        kinematic_modes=draw(st.lists(texts, max_size=2).map(tuple)),
+        wrench_sets=sets or None,
+        statics=draw(some(static_answers)),
+        settled=draw(some(settled_impacts(n))),
+        problem=Problem.SPATIAL if plane is None else Problem.PLANAR,
+        plane=plane,
+        out_of_plane=draw(odd_numbers),
+        out_of_plane_reason=draw(texts),
+        velocity_tolerance=draw(positive),
+        acceleration_tolerance=draw(odd_numbers),
+        distance_tolerance=draw(positive),
+        friction_facets=draw(indices),
+        wrench_facets=draw(indices),
+    )
+
+
+@st.composite
+def bodies(draw: st.DrawFn) -> Body:
+    """Known ones, known ones of another mass, and unknown ones without name and shape."""
+    known = draw(st.sampled_from([BRICK, BAT]))
+    mass_properties = MassProperties(mass=draw(positive), I_B=draw(positive) * np.eye(3))
+    described = Body(name="", mass_properties=mass_properties)
+    return draw(st.sampled_from([known, changed_body(known, mass_properties, NO_OFFSET), described]))
+
+
+published = st.builds(
+    PublishedState, stamp_ns=some(st.integers(1, 10**18)), fit_window=st.one_of(st.just(0.0), positive)
+)
+sampled = st.one_of(
+    st.builds(AtTimes, times=st.lists(st.floats(0.0, 9.0), max_size=3).map(sorted)),
+    st.builds(AtStamps, stamps_ns=st.lists(st.integers(0, 10**18), max_size=3).map(sorted)),
+    st.builds(AtRate, rate=some(positive), duration=some(positive)),
+    st.builds(UntilContact, rate=some(positive), duration=some(positive)),
+    st.builds(
+        UntilPlane,
+        rate=some(positive),
+        duration=some(positive),
+        plane_point=arrays(3),
+        plane_normal=unit_vectors(),
+        body_point=arrays(3),
+    ),
+)
+gravities = st.sampled_from([None, np.zeros(3)])
+
+
+@st.composite
+def tumbling_questions(draw: st.DrawFn) -> TumblingQuestion:
+    """From all sources of states, at all kinds of times, with and without forces."""
+    return TumblingQuestion(
+        body=draw(bodies()),
+        state=draw(st.one_of(published, known_states())),
+        sampling=draw(sampled),
+        gravity_W=draw(gravities),
+        wrench=ConstantWrench(
+            force=draw(arrays(3, of=positive)),
+            torque=draw(arrays(3)),
+            axes=draw(st.sampled_from(WrenchAxes)),
+        ),
+        drag=draw(st.builds(Drag, linear=positive, quadratic_angular=positive)),
+        want_covariance=draw(flags),
+        curve_points=draw(indices),
+    )
+
+
+@st.composite
+def impact_questions(draw: st.DrawFn) -> ImpactQuestion:
+    """Of one body and of two, by all laws; what plays no part is left out."""
+    problem, contacts = draw(st.sampled_from(Problem)), draw(some(contact_sets()))
+    is_planar, state = problem is Problem.PLANAR, draw(st.one_of(published, known_states()))
+    other = draw(some(bodies()))
+    other_state = draw(known_states()) if other is not None else NEWEST
+    in_time = st.builds(
+        InTime, strike_window=some(positive), most_strikes=some(indices), hold_step=some(positive)
+    )
+    return ImpactQuestion(
+        body=draw(bodies()),
+        state=state,
+        other=other,
+        other_state=other_state,
+        contacts=contacts,
+        horizon=draw(some(positive)) if contacts is None else None,
+        restitution_law=draw(st.sampled_from(RestitutionLaw)),
+        several_contacts_law=draw(st.one_of(st.sampled_from(SeveralContactsLaw), in_time)),
+        want_orders=draw(flags),
+        want_covariance=draw(flags),
+        problem=problem,
+        plane=draw(planes) if is_planar else None,
+        out_of_plane_tolerance=draw(some(positive)) if is_planar else None,
+        velocity_tolerance=draw(some(positive)),
+        distance_tolerance=draw(some(positive)),
+    )
+
+
+@st.composite
+def contact_mode_questions(draw: st.DrawFn) -> ContactModeQuestion:
+    """With all that can be asked for or not; what plays no part is left out."""
+    problem = draw(st.sampled_from(Problem))
+    may_be_planar = problem is not Problem.SPATIAL
+    margins, statics = draw(flags), draw(flags)
+    newest = st.builds(PublishedState, stamp_ns=some(st.integers(1, 10**18)))
+    return ContactModeQuestion(
+        body=draw(bodies()),
+        state=draw(st.one_of(newest, known_states())),
+        contacts=draw(some(contact_sets())),
+        force_W=draw(arrays(3)),
+        torque_W=draw(arrays(3)),
+        gravity_W=draw(gravities),
+        problem=problem,
+        plane=draw(planes) if may_be_planar else None,
+        out_of_plane_tolerance=draw(some(positive)) if may_be_planar else None,
+        velocity_tolerance=draw(some(positive)),
+        distance_tolerance=draw(some(positive)),
+        friction_facets=draw(st.sampled_from([0, 3, 8, 32])),
+        margin_length=draw(some(positive)) if margins or statics else None,
+        want_margins=margins,
+        want_wrenches=draw(flags),
+        want_statics=statics,
+        want_impact=draw(flags),
+    )

@@ -1,0 +1,212 @@
+"""Requests become questions: zero is left out, what is not asked about is not read, errors name the field."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact_dynamics.errors import (
+    FrameMismatchError,
+    InvalidFieldError,
+    NotSupportedError,
+    TooLargeError,
+    UnknownBodyError,
+)
+from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
+from contact_dynamics.motion.forces import NO_WRENCH, WrenchAxes
+from contact_dynamics.questions import (
+    AtRate,
+    AtStamps,
+    AtTimes,
+    InTime,
+    Problem,
+    PublishedState,
+    UncertainState,
+    UntilContact,
+    UntilPlane,
+)
+from contact_dynamics.questions.subject import NEWEST
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from msg_adapters.questions import (
+    contact_mode_question_from_msg,
+    impact_question_from_msg,
+    tumbling_question_from_msg,
+)
+from questions.known_world import CUBE, WORLD
+
+FROM_MSG = {
+    PredictTumbling: tumbling_question_from_msg,
+    PredictImpact: impact_question_from_msg,
+    PredictContactMode: contact_mode_question_from_msg,
+}
+
+
+def read(request: Any) -> Any:
+    """Return the question of a request."""
+    (from_msg,) = (found for service, found in FROM_MSG.items() if isinstance(request, service.Request))
+    return from_msg(request, world=WORLD, world_frame="world")
+
+
+@pytest.mark.parametrize("service", FROM_MSG)
+def test_a_request_that_only_names_a_body_leaves_all_else_to_what_is_known(service: Any) -> None:
+    question = read(service.Request(body_name="cube"))
+    assert question.body is CUBE
+    assert question.state is NEWEST
+    for name in ("contacts", "horizon", "plane", "gravity_W", "velocity_tolerance", "distance_tolerance"):
+        assert getattr(question, name, None) is None
+
+
+def test_published_states_are_named_by_stamp_and_window() -> None:
+    request = PredictTumbling.Request(body_name="cube", fit_window=0.25)
+    request.stamp.sec = 3
+    assert read(request).state == PublishedState(stamp_ns=3_000_000_000, fit_window=0.25)
+
+
+def explicit(service: Any) -> Any:
+    """Return a request of a service with a state of its own."""
+    return service.Request(body_name="cube", state_source=service.Request.STATE_EXPLICIT)
+
+
+def test_an_explicit_state_may_be_uncertain() -> None:
+    request = explicit(PredictTumbling)
+    assert isinstance(read(request).state, BodyState)
+    request.state.covariance = np.eye(12).ravel().tolist()
+    state = read(request).state
+    assert isinstance(state, UncertainState)
+    np.testing.assert_array_equal(state.covariance, np.eye(12))
+
+
+def test_an_inertia_makes_another_body_of_the_known_one() -> None:
+    request = explicit(PredictTumbling)
+    request.inertia.m = request.inertia.ixx = request.inertia.iyy = request.inertia.izz = 1.0
+    request.inertia.com.x = 0.05
+    question = read(request)
+    assert question.body.name == "cube"
+    assert question.body.mass_properties.mass == 1.0
+    np.testing.assert_allclose(question.body.vertices_B[:, 0], CUBE.vertices_B[:, 0] - 0.05, atol=1e-16)
+    np.testing.assert_allclose(question.state.p_WB_W, [0.05, 0.0, 0.0], atol=1e-16)
+    assert read(request).body is question.body  # who sends an inertia sends it with every request
+
+
+@pytest.mark.parametrize(
+    ("sampling", "kind"), [(0, AtTimes), (1, AtStamps), (2, AtRate), (3, UntilContact), (4, UntilPlane)]
+)
+def test_samplings(sampling: int, kind: type) -> None:
+    request = PredictTumbling.Request(body_name="cube", sampling=sampling, rate=0.0, duration=1.5)
+    request.plane_normal.z = 1.0
+    question = read(request)
+    assert type(question.sampling) is kind
+    if isinstance(question.sampling, AtRate):
+        assert (question.sampling.rate, question.sampling.duration) == (None, 1.5)
+
+
+def test_forces() -> None:
+    request = PredictTumbling.Request(body_name="cube", gravity=PredictTumbling.Request.GRAVITY_NONE)
+    request.quadratic_drag = 0.5
+    question = read(request)
+    assert question.wrench is NO_WRENCH
+    np.testing.assert_array_equal(question.gravity_W, np.zeros(3))
+    assert question.drag.quadratic == 0.5
+    request.applied_wrench.torque.x = 2.0
+    request.wrench_in_body_axes = True
+    wrench = read(request).wrench
+    assert wrench.axes is WrenchAxes.BODY
+    np.testing.assert_array_equal(wrench.torque, [2.0, 0.0, 0.0])
+
+
+def test_laws() -> None:
+    request = PredictImpact.Request(body_name="cube", restitution_law=2, several_contacts_law=1)
+    question = read(request)
+    assert question.restitution_law is RestitutionLaw.ENERGETIC
+    assert question.several_contacts_law is SeveralContactsLaw.SIMULTANEOUS
+    request = PredictImpact.Request(body_name="cube", several_contacts_law=2, hold_step=0.001)
+    assert read(request).several_contacts_law == InTime(hold_step=0.001)
+
+
+def test_a_second_body_is_there_where_anything_is_said_of_it() -> None:
+    assert read(PredictImpact.Request(body_name="cube")).other is None
+    request = PredictImpact.Request(body_name="cube", other_body_name="cube")
+    request.stamp.nanosec = 7
+    question = read(request)
+    assert question.other is CUBE
+    assert question.other_state == PublishedState(stamp_ns=7)
+
+
+def test_what_is_not_asked_about_is_not_read() -> None:
+    """A plane in space, a horizon with contacts, a length without margins: whatever stands there."""
+    impact = PredictImpact.Request(body_name="cube", contact_source=1, horizon=math.nan)
+    impact.plane_normal.z = impact.out_of_plane_tolerance = -7.0
+    question = read(impact)
+    assert (question.horizon, question.plane, question.out_of_plane_tolerance) == (None, None, None)
+    modes = PredictContactMode.Request(body_name="cube", problem=2, margin_length=-1.0)
+    modes.plane_normal.z = 2.0
+    question = read(modes)
+    assert (question.problem, question.plane, question.margin_length) == (Problem.SPATIAL, None, None)
+    assert read(PredictTumbling.Request(body_name="cube", rate=-1.0)).sampling.times.shape == (0,)
+
+
+def put(path: str, value: Any) -> Callable[[Any], None]:
+    """Return what sets a field of a request, given as a dotted path."""
+
+    def change(request: Any) -> None:
+        *parents, name = path.split(".")
+        for parent in parents:
+            request = getattr(request, parent)
+        setattr(request, name, value)
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("service", "path", "value", "error", "words"),
+    [
+        (PredictTumbling, "state_source", 7, InvalidFieldError, "state_source: found 7"),
+        (PredictTumbling, "body_name", "dog", UnknownBodyError, "found 'dog'"),
+        (PredictTumbling, "body_name", "", InvalidFieldError, "body_name: found nothing"),
+        (PredictTumbling, "body_name", "x" * 300, TooLargeError, "body_name: found 300 characters"),
+        (PredictTumbling, "fit_window", 0.1, InvalidFieldError, "fit_window: found 0.1, allowed is 0 for"),
+        (PredictTumbling, "state.header.frame_id", "map", FrameMismatchError, "found 'map'"),
+        (PredictTumbling, "sampling", 9, InvalidFieldError, r"sampling: found 9, allowed is AT_TIMES \(0\)"),
+        (PredictTumbling, "gravity", 9, InvalidFieldError, "gravity: found 9"),
+        (
+            PredictTumbling,
+            "applied_wrench.force.x",
+            math.nan,
+            InvalidFieldError,
+            r"applied_wrench\.force",
+        ),
+        (
+            PredictContactMode,
+            "applied_wrench.torque.x",
+            math.inf,
+            InvalidFieldError,
+            r"applied_wrench\.torque",
+        ),
+        (PredictContactMode, "contact_source", 9, InvalidFieldError, "contact_source: found 9"),
+        (PredictContactMode, "problem", 9, InvalidFieldError, "problem: found 9"),
+        (PredictContactMode, "friction_facets", 2, InvalidFieldError, "friction_facets: found 2"),
+        (PredictImpact, "restitution_law", 9, InvalidFieldError, "restitution_law: found 9"),
+        (PredictImpact, "several_contacts_law", 9, InvalidFieldError, "several_contacts_law: found 9"),
+        (PredictImpact, "other_inertia.m", -1.0, InvalidFieldError, "mass: found -1"),
+        (PredictImpact, "velocity_tolerance", -1.0, InvalidFieldError, "velocity_tolerance: found -1"),
+    ],
+)
+def test_an_error_names_the_field_of_the_request(
+    service: Any, path: str, value: Any, error: type[Exception], words: str
+) -> None:
+    request = explicit(service)
+    put(path, value)(request)
+    with pytest.raises(error, match=words):
+        read(request)
+
+
+def test_moving_surfaces_are_not_supported() -> None:
+    request = PredictContactMode.Request(body_name="cube", contact_source=1)
+    request.contacts.surface_velocities = [1.0, 0.0, 0.0]
+    with pytest.raises(NotSupportedError, match="surface_velocities"):
+        read(request)

@@ -1,0 +1,250 @@
+"""Whatever travels in a message comes back as it was: each message and service has a pair of adapters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from architecture.test_interfaces import FILES
+from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.questions import ContactModeQuestion, ImpactQuestion, PublishedState
+from contact_dynamics.questions.subject import NEWEST
+from contact_dynamics.world import Body, World
+from contact_dynamics_interfaces.msg import Poinsot as PoinsotMsg
+from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
+from message_values import (
+    BRICK,
+    NO_OFFSET,
+    WORLD,
+    carried,
+    contact_mode_answers,
+    contact_mode_questions,
+    contact_sets,
+    impact_answers,
+    impact_questions,
+    known_states,
+    modes_and_margins,
+    resolved_impacts,
+    rotations,
+    same,
+    trajectories,
+    tumbling_answers,
+    tumbling_questions,
+    wrench_sets,
+)
+from msg_adapters.body_state import known_state_from_msg, known_state_to_msg
+from msg_adapters.contact_mode import (
+    contact_mode_answer_from_msg,
+    contact_mode_answer_to_msg,
+    margin_from_msg,
+    mode_from_msg,
+    mode_to_msg,
+    wrench_set_from_msg,
+    wrench_set_to_msg,
+)
+from msg_adapters.contacts import contacts_from_msg, contacts_to_msg
+from msg_adapters.impact import (
+    impact_answer_from_msg,
+    impact_answer_to_msg,
+    resolved_impact_from_msg,
+    resolved_impact_to_msg,
+)
+from msg_adapters.questions import (
+    contact_mode_question_from_msg,
+    impact_question_from_msg,
+    tumbling_question_from_msg,
+)
+from msg_adapters.requests import (
+    contact_mode_question_to_msg,
+    impact_question_to_msg,
+    tumbling_question_to_msg,
+)
+from msg_adapters.tumbling import (
+    curves_from_msg,
+    flips_from_msg,
+    poinsot_from_msg,
+    poinsot_to_msg,
+    read_covariances,
+    trajectory_from_msg,
+    trajectory_to_msg,
+    tumbling_answer_from_msg,
+    tumbling_answer_to_msg,
+    write_covariances,
+)
+
+CENTER = np.array([0.02, -0.01, 0.005])  # m, of mass, in the body's frame
+ROUNDING = 1e-12  # m, of positions up to 1 km that go through the published frame and back
+FRAME: dict[str, Any] = {"world_frame": "map"}
+BODY: dict[str, Any] = {**FRAME, "p_FB_F": NO_OFFSET}
+NOWHERE = World()
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Adapters there and back, and what to send through them."""
+
+    values: st.SearchStrategy[Any]
+    to_msg: Callable[[Any], Any]
+    from_msg: Callable[[Any], Any]
+
+
+@st.composite
+def _trajectories(draw: st.DrawFn) -> Any:
+    trajectory = draw(trajectories())
+    return trajectory, draw(carried(trajectory.seconds)) if len(trajectory) and draw(st.booleans()) else None
+
+
+def _trajectory_to_msg(value: Any) -> TrajectoryMsg:
+    msg = trajectory_to_msg(value[0], stamp_ns=7, **BODY)
+    if value[1] is not None:
+        write_covariances(msg, value[1])
+    return msg
+
+
+def _poinsot_from_msg(msg: PoinsotMsg) -> Any:
+    return poinsot_from_msg(msg), flips_from_msg(msg), curves_from_msg(msg)
+
+
+PAIRS = {
+    "BodyState": Pair(
+        known_states(),
+        lambda value: known_state_to_msg(value, body_name="brick", **BODY),
+        lambda msg: known_state_from_msg(msg, **BODY),
+    ),
+    "ContactMode": Pair(
+        modes_and_margins(),
+        lambda value: mode_to_msg(*value),
+        lambda msg: (mode_from_msg(msg), margin_from_msg(msg)),
+    ),
+    "ContactSet": Pair(contact_sets(), contacts_to_msg, contacts_from_msg),
+    "Impact": Pair(
+        resolved_impacts(),
+        lambda value: resolved_impact_to_msg(value, body_name="brick", **BODY),
+        lambda msg: resolved_impact_from_msg(msg, p_FB_F=NO_OFFSET),
+    ),
+    "ModeWrenches": Pair(wrench_sets(), wrench_set_to_msg, wrench_set_from_msg),
+    "Poinsot": Pair(rotations(), lambda value: poinsot_to_msg(*value), _poinsot_from_msg),
+    "Trajectory": Pair(
+        _trajectories(),
+        _trajectory_to_msg,
+        lambda msg: (trajectory_from_msg(msg, p_FB_F=NO_OFFSET), read_covariances(msg)),
+    ),
+    "PredictContactMode.Request": Pair(
+        contact_mode_questions(),
+        lambda value: contact_mode_question_to_msg(value, world=WORLD, **FRAME),
+        lambda msg: contact_mode_question_from_msg(msg, world=WORLD, **FRAME),
+    ),
+    "PredictImpact.Request": Pair(
+        impact_questions(),
+        lambda value: impact_question_to_msg(value, world=WORLD, **FRAME),
+        lambda msg: impact_question_from_msg(msg, world=WORLD, **FRAME),
+    ),
+    "PredictTumbling.Request": Pair(
+        tumbling_questions(),
+        lambda value: tumbling_question_to_msg(value, world=WORLD, **FRAME),
+        lambda msg: tumbling_question_from_msg(msg, world=WORLD, **FRAME),
+    ),
+    "PredictContactMode.Response": Pair(
+        contact_mode_answers(),
+        lambda value: contact_mode_answer_to_msg(value, **FRAME),
+        lambda msg: contact_mode_answer_from_msg(msg, world=NOWHERE),
+    ),
+    "PredictImpact.Response": Pair(
+        impact_answers(),
+        lambda value: impact_answer_to_msg(value, **FRAME),
+        lambda msg: impact_answer_from_msg(msg, world=NOWHERE),
+    ),
+    "PredictTumbling.Response": Pair(
+        tumbling_answers(),
+        lambda value: tumbling_answer_to_msg(value, **FRAME),
+        lambda msg: tumbling_answer_from_msg(msg, world=NOWHERE),
+    ),
+}
+
+
+def test_each_interface_has_a_pair() -> None:
+    assert set(PAIRS) == {
+        name
+        for path in FILES
+        for name in (
+            [path.stem] if path.suffix == ".msg" else [f"{path.stem}.Request", f"{path.stem}.Response"]
+        )
+    }
+
+
+@pytest.mark.parametrize("name", PAIRS)
+@settings(suppress_health_check=[HealthCheck.too_slow], deadline=None, max_examples=40)
+@given(data=st.data())
+def test_a_value_comes_back_and_goes_again_as_it_was(name: str, data: st.DataObject) -> None:
+    """Every field, to the last bit, of the value and of the message."""
+    pair = PAIRS[name]
+    value = data.draw(pair.values)
+    msg = pair.to_msg(value)
+    back = pair.from_msg(msg)
+    assert same(back, value)
+    assert same(pair.to_msg(back), msg)
+
+
+@pytest.mark.parametrize(
+    "name", ["PredictContactMode.Response", "PredictImpact.Response", "PredictTumbling.Response"]
+)
+@settings(suppress_health_check=[HealthCheck.too_slow], deadline=None, max_examples=40)
+@given(data=st.data())
+def test_answers_find_the_centre_of_mass_in_the_world(name: str, data: st.DataObject) -> None:
+    """The message has the published frame: positions come back to rounding, all else as it was."""
+    values, answer_to_msg, answer_from_msg = {
+        "PredictContactMode.Response": (
+            contact_mode_answers,
+            contact_mode_answer_to_msg,
+            contact_mode_answer_from_msg,
+        ),
+        "PredictImpact.Response": (impact_answers, impact_answer_to_msg, impact_answer_from_msg),
+        "PredictTumbling.Response": (tumbling_answers, tumbling_answer_to_msg, tumbling_answer_from_msg),
+    }[name]
+    world = World(bodies=(Body(name="brick", mass_properties=BRICK.mass_properties, p_FB_F=CENTER),))
+    answer = data.draw(values(CENTER))
+    back = answer_from_msg(answer_to_msg(answer, **FRAME), world=world)
+    assert same(back, answer, rounding=ROUNDING)
+
+
+def test_messages_check_their_fields() -> None:
+    """Without ROS_PYTHON_CHECK_FIELDS a wrong type would travel through the tests above unseen."""
+    with pytest.raises(AssertionError):
+        PoinsotMsg(regime="tumbles")
+
+
+def brick(**fields: Any) -> ContactModeQuestion:
+    return ContactModeQuestion(**{"body": "brick", **fields})
+
+
+@pytest.mark.parametrize(
+    ("question", "words"),
+    [
+        (brick(velocity_tolerance=0.0), "velocity_tolerance: found 0, which requests take as left out"),
+        (brick(gravity_W=[0.0, 0.0, -1.6]), "gravity_W: found .*, allowed is the server's, or zero"),
+        (
+            brick(state=PublishedState(fit_window=0.1)),
+            "fit_window: found 0.1, allowed about contact modes is 0",
+        ),
+        (brick(body=replace(BRICK, name="cup")), "body: found 'cup', which the world does not know"),
+    ],
+)
+def test_what_no_request_can_say_is_refused(question: ContactModeQuestion, words: str) -> None:
+    with pytest.raises(NotSupportedError, match=words):
+        contact_mode_question_to_msg(question, world=WORLD, world_frame="world")
+
+
+def test_a_published_state_of_the_second_body_has_the_requests_stamp() -> None:
+    question = ImpactQuestion(body="brick", other="bat")
+    msg = impact_question_to_msg(question, world=WORLD, world_frame="world")
+    assert msg.other_body_name == "bat"
+    assert impact_question_from_msg(msg, world=WORLD, world_frame="world").other_state is NEWEST
+    earlier = replace(question, other_state=PublishedState(stamp_ns=5))
+    with pytest.raises(NotSupportedError, match="allowed is that of the request's stamp"):
+        impact_question_to_msg(earlier, world=WORLD, world_frame="world")

@@ -1,0 +1,147 @@
+"""Questions about contact modes, asked in Python: a block on a floor that is pushed, pulled and dropped."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact_modes import Certainty, ModeVerdict
+from contact_dynamics.errors import InvalidFieldError, NoContactError, OutOfPlaneError, TooLargeError
+from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions import ContactModeQuestion, Problem
+from contact_dynamics.questions.contact_modes import answer
+from questions.known_world import CUBE, FRICTION, GRAVITY, KNOWLEDGE, MASS, RESTING, SIDE, below, state
+
+ROUNDING = 1e-12  # a few operations on numbers of order 1 to 10
+HALF = 0.5 * SIDE
+WEIGHT = MASS * GRAVITY
+HOLDS = FRICTION * WEIGHT  # N, what friction takes of a push
+AT_REST = ContactModeQuestion(body="cube", state=RESTING)
+FROM_THE_SIDE = PlaneOfMotion(normal_W=[0, -1, 0])
+
+
+def test_a_body_a_state_and_contacts_are_enough() -> None:
+    """One foot straight below the centre carries the weight."""
+    found = answer(ContactModeQuestion(body=CUBE, state=state(), contacts=below()))
+    assert (found.verdict, [mode.mode for mode in found.modes]) == (ModeVerdict.UNIQUE, ["f"])
+    np.testing.assert_allclose(found.modes[0].contact_forces_W, [[0, 0, WEIGHT]], rtol=0.0, atol=ROUNDING)
+    assert found.problem is Problem.PLANAR
+    assert (found.margins, found.wrench_sets, found.statics, found.settled) == (None, None, None, None)
+    assert set(found.kinematic_modes) == {"s", "l", "r", "f"}
+
+
+def test_contacts_are_found_from_the_shape() -> None:
+    found = answer(AT_REST, KNOWLEDGE)
+    assert found.contacts.surfaces == ("floor",) * 4
+    np.testing.assert_allclose(found.contacts.frictions, FRICTION)
+    assert [mode.mode for mode in found.modes] == ["ffff"]
+    forces = found.modes[0].contact_forces_W
+    np.testing.assert_allclose(forces.sum(axis=0), [0, 0, WEIGHT], rtol=0.0, atol=1e-9)
+    with pytest.raises(NoContactError, match="no point of 'cube' is within"):
+        answer(replace(AT_REST, state=state()), KNOWLEDGE)
+
+
+@pytest.mark.parametrize("problem", [Problem.PLANAR, Problem.SPATIAL])
+def test_a_push_beyond_friction_makes_it_slide(problem: Problem) -> None:
+    """In the plane of motion it slides right, in space along x, with (F - mu m g) / m."""
+    push = 1.5 * HOLDS
+    question = replace(AT_REST, force_W=np.array([push, 0.0, 0.0]), problem=problem)
+    found = answer(replace(question, plane=FROM_THE_SIDE), KNOWLEDGE)
+    (mode,) = found.modes
+    np.testing.assert_allclose(mode.acceleration_W, [(push - HOLDS) / MASS, 0, 0], rtol=0.0, atol=1e-9)
+    if problem is Problem.PLANAR:
+        assert mode.mode == "rrrr"
+        assert mode.tangential_directions_W.shape == (0, 3)
+    else:
+        assert mode.mode == "cccc"
+        np.testing.assert_allclose(mode.tangential_directions_W, [[1, 0, 0]] * 4, rtol=0.0, atol=1e-9)
+
+
+def test_the_margin_is_what_is_left_of_friction() -> None:
+    """In the plane, by the shortest way in the metric; along the push alone it would be mu m g - F."""
+    push = 0.25 * HOLDS
+    found = answer(
+        replace(AT_REST, force_W=np.array([push, 0.0, 0.0]), plane=FROM_THE_SIDE, want_margins=True),
+        KNOWLEDGE,
+    )
+    assert found.margins is not None
+    (margin,) = found.margins
+    along = HOLDS - push
+    assert margin.margin == pytest.approx(along / math.hypot(1.0, FRICTION), rel=1e-9)
+    assert margin.change_W[0] > 0.0
+    assert margin.modes_beyond == ("rrrr",)
+    assert {refused.mode for refused in found.refused} < set(found.kinematic_modes)
+
+
+def test_statics_and_wrenches() -> None:
+    found = answer(replace(AT_REST, plane=FROM_THE_SIDE, want_statics=True, want_wrenches=True), KNOWLEDGE)
+    assert found.statics is not None
+    assert found.statics.equilibrium is Certainty.CERTAIN
+    assert not found.statics.wedged
+    assert found.wrench_sets is not None
+    assert {one.mode for one in found.wrench_sets} == set(found.kinematic_modes)
+    wrench = np.array([0, 0, -WEIGHT, 0, 0, 0])
+    holds = {one.mode: one.depth(wrench, HALF) for one in found.wrench_sets}
+    assert holds["ffff"] > 0.0
+    assert holds["ssss"] < 0.0
+    in_space = answer(
+        ContactModeQuestion(
+            body=CUBE, state=state(), contacts=below(), problem=Problem.SPATIAL, want_wrenches=True
+        )
+    )
+    assert (in_space.wrench_facets, in_space.friction_facets) == (4, 8)
+    assert in_space.wrench_sets
+
+
+@pytest.mark.parametrize("problem", [Problem.PLANAR, Problem.SPATIAL])
+def test_a_foot_that_approaches_is_settled_by_an_impact(problem: Problem) -> None:
+    """The impulse m v stops the fall without restitution, and then the foot carries the weight."""
+    question = ContactModeQuestion(
+        body=CUBE,
+        state=state(v=(0.0, 0.0, -1.0)),
+        contacts=below(restitution=0.0),
+        problem=problem,
+        want_impact=True,
+    )
+    found = answer(question)
+    assert (found.verdict, found.approaching, found.modes) == (ModeVerdict.IMPACT, (0,), ())
+    np.testing.assert_allclose(found.contact_velocities_W, [[0, 0, -1.0]], rtol=0.0, atol=ROUNDING)
+    assert found.settled is not None
+    np.testing.assert_allclose(found.settled.impact.impulses_W, [[0, 0, MASS]], rtol=0.0, atol=1e-9)
+    assert [mode.mode for mode in found.settled.modes] == ["f"]
+    assert found.settled.verdict is ModeVerdict.UNIQUE
+
+
+def test_automatic_says_why_it_went_to_space() -> None:
+    pushed = replace(AT_REST, force_W=np.array([1.0, 2.0, 0.0]), torque_W=np.array([0.0, 0.0, 0.1]))
+    found = answer(pushed, KNOWLEDGE)
+    assert found.problem is Problem.SPATIAL
+    assert "out of the plane" in found.out_of_plane_reason
+    assert math.isnan(found.out_of_plane)
+    with pytest.raises(OutOfPlaneError, match="out of the plane"):
+        answer(replace(pushed, problem=Problem.PLANAR), KNOWLEDGE)
+
+
+def test_numbers_without_sense_are_refused() -> None:
+    with pytest.raises(InvalidFieldError, match="force_W"):
+        ContactModeQuestion(body=CUBE, force_W=[math.nan, 0, 0])
+    with pytest.raises(InvalidFieldError, match=r"problem: found 1, allowed is Problem\.AUTOMATIC"):
+        ContactModeQuestion(body=CUBE, problem=1)  # type: ignore[arg-type]
+    with pytest.raises(InvalidFieldError, match="friction_facets: found 2"):
+        ContactModeQuestion(body=CUBE, friction_facets=2)
+    for name in ("margin_length", "velocity_tolerance", "distance_tolerance", "out_of_plane_tolerance"):
+        with pytest.raises(InvalidFieldError, match=f"{name}: found -1"):
+            ContactModeQuestion(body=CUBE, **{name: -1.0})  # type: ignore[arg-type]
+    n = 1001
+    many = ContactSet(
+        p_WC_W=np.zeros((n, 3)),
+        normals_W=np.tile([0.0, 0.0, 1.0], (n, 1)),
+        frictions=np.zeros(n),
+        restitutions=np.zeros(n),
+    )
+    with pytest.raises(TooLargeError, match="contacts: found 1001 contacts"):
+        answer(ContactModeQuestion(body=CUBE, state=state(), contacts=many))

@@ -1,0 +1,227 @@
+"""Questions about impacts, asked in Python, beside what momentum and the laws of restitution say."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.errors import (
+    InvalidFieldError,
+    NoContactError,
+    NotSupportedError,
+    OutOfPlaneError,
+    SeparatingContactError,
+)
+from contact_dynamics.impact import ImpactOutcome, RestitutionLaw, SequenceEnd, SeveralContactsLaw
+from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions import (
+    ImpactQuestion,
+    InTime,
+    Knowledge,
+    Problem,
+    UncertainState,
+)
+from contact_dynamics.questions.impact import answer
+from questions.known_world import (
+    CUBE,
+    FRICTION,
+    GRAVITY,
+    KNOWLEDGE,
+    MASS,
+    MOMENT,
+    RESTITUTION,
+    SIDE,
+    below,
+    state,
+)
+
+ROUNDING = 1e-12  # a few operations on numbers of order 1 to 10
+HALF = 0.5 * SIDE
+SLIDING = state(v=(5.0, 0.0, -1.0))  # fast enough to slide throughout
+TWO_FEET = ContactSet(
+    p_WC_W=[[-HALF, 0, 1 - HALF], [HALF, 0, 1 - HALF]],
+    normals_W=[[0, 0, 1]] * 2,
+    frictions=[0, 0],
+    restitutions=[0, 0],
+)
+
+
+def test_a_body_a_state_and_contacts_are_enough() -> None:
+    """Straight below the centre the normal impulse is m (1 + e) v, and friction is mu times it."""
+    found = answer(ImpactQuestion(body=CUBE, state=SLIDING, contacts=below()))
+    normal = MASS * (1.0 + RESTITUTION)
+    expected = [-FRICTION * normal, 0.0, normal]
+    np.testing.assert_allclose(found.impact.impulses_W, [expected], rtol=0.0, atol=ROUNDING)
+    assert found.impact.outcome is ImpactOutcome.SLIDES
+    np.testing.assert_allclose(
+        found.impact.state.v_WB_W,
+        [5.0 - FRICTION * normal / MASS, 0.0, RESTITUTION],
+        rtol=0.0,
+        atol=ROUNDING,
+    )
+    spin = FRICTION * normal * HALF / MOMENT
+    np.testing.assert_allclose(found.impact.state.w_WB_W, [0.0, spin, 0.0], rtol=0.0, atol=1e-11)
+    before = 0.5 * MASS * 26.0
+    assert found.impact.kinetic_energy_before == pytest.approx(before, rel=1e-14)
+    after = 0.5 * MASS * (found.impact.state.v_WB_W @ found.impact.state.v_WB_W) + 0.5 * MOMENT * spin**2
+    assert found.impact.kinetic_energy_after == pytest.approx(after, rel=1e-12)
+    assert not found.impact.creates_energy
+    assert (found.problem, found.plane, found.other, found.seconds_to_contact) == (
+        Problem.SPATIAL,
+        None,
+        None,
+        0.0,
+    )
+
+
+def test_the_plane_says_what_space_says() -> None:
+    question = ImpactQuestion(body=CUBE, state=SLIDING, contacts=below())
+    space = answer(question).impact
+    found = answer(replace(question, problem=Problem.PLANAR))
+    assert found.plane is not None
+    assert abs(found.plane.normal_W[1]) == pytest.approx(1.0)
+    for name in ("impulses_W", "compression_impulses_W", "velocities_before_W", "velocities_after_W"):
+        np.testing.assert_allclose(getattr(found.impact, name), getattr(space, name), rtol=0.0, atol=1e-11)
+    np.testing.assert_allclose(found.impact.state.w_WB_W, space.state.w_WB_W, rtol=0.0, atol=1e-11)
+    np.testing.assert_allclose(found.impact.path_W[-1], space.path_W[-1], rtol=0.0, atol=1e-11)
+    assert found.impact.path_events[0] is space.path_events[0]
+    assert found.impact.kinetic_energy_after == pytest.approx(space.kinetic_energy_after, rel=1e-12)
+
+
+def test_a_body_in_flight_lands_first() -> None:
+    found = answer(ImpactQuestion(body="cube", state=state(), horizon=1.0), KNOWLEDGE)
+    seconds = math.sqrt(2.0 * (1.0 - HALF) / GRAVITY)
+    assert found.seconds_to_contact == pytest.approx(seconds, abs=ROUNDING)
+    assert found.state.v_WB_W[2] == pytest.approx(-GRAVITY * seconds, abs=1e-11)
+    assert found.contacts.surfaces == ("floor",) * 4
+    assert found.impact.outcome is not None
+    with pytest.raises(NoContactError, match=r"touches no surface within the horizon of 0\.1 s"):
+        answer(ImpactQuestion(body="cube", state=state(), horizon=0.1), KNOWLEDGE)
+
+
+def test_equal_bodies_without_friction_exchange_their_velocities() -> None:
+    """Head on, with e = 1."""
+    found = answer(
+        ImpactQuestion(
+            body=CUBE,
+            state=state(v=(0.0, 0.0, -2.0)),
+            other=CUBE,
+            other_state=state(1.0 - SIDE, v=(0.0, 0.0, 1.0)),
+            contacts=below(friction=0.0, restitution=1.0),
+        )
+    )
+    assert found.other is not None
+    assert found.impact.other_state is not None
+    assert found.impact.state.v_WB_W[2] == pytest.approx(1.0, abs=ROUNDING)
+    assert found.impact.other_state.v_WB_W[2] == pytest.approx(-2.0, abs=ROUNDING)
+    assert found.other.state.v_WB_W[2] == 1.0
+    assert found.impact.kinetic_energy_after == pytest.approx(found.impact.kinetic_energy_before, rel=1e-13)
+
+
+def test_two_feet_at_once_or_in_turn() -> None:
+    """Without restitution and friction both feet stop the fall together; in turn each order has an answer."""
+    question = ImpactQuestion(body=CUBE, state=state(v=(0.0, 0.0, -1.0)), contacts=TWO_FEET)
+    at_once = replace(question, several_contacts_law=SeveralContactsLaw.SIMULTANEOUS)
+    found = answer(at_once).impact
+    np.testing.assert_allclose(found.impulses_W[:, 2], [0.5 * MASS, 0.5 * MASS], rtol=0.0, atol=1e-9)
+    assert (found.outcome, len(found.path_W), len(found.compression_impulses_W)) == (None, 0, 0)
+    in_turn = answer(replace(question, want_orders=True)).impact
+    assert in_turn.outcome is not None
+    assert in_turn.path_W.shape == (len(in_turn.path_events), 3)
+    assert {order[0] for order in in_turn.orders} == {0, 1}
+    assert in_turn.order_velocities_W.shape == (len(in_turn.orders), 6)
+    assert in_turn.impulses_W[:, 2].sum() == pytest.approx(MASS, abs=1e-6)
+
+
+def test_strikes_in_time_begin_at_the_first() -> None:
+    """A plate that lands on one edge rocks over to the other within milliseconds."""
+    tilted = state(v=(0.0, 0.0, -1.0), w=(0.0, 0.4, 0.0))
+    law = InTime(strike_window=0.05, most_strikes=20)
+    found = answer(ImpactQuestion(body="cube", state=tilted, several_contacts_law=law), KNOWLEDGE)
+    strikes = found.impact.strikes
+    assert len(strikes) > 1
+    assert strikes[0].seconds == 0.0
+    assert list(np.diff([strike.seconds for strike in strikes]) >= 0.0) == [True] * (len(strikes) - 1)
+    np.testing.assert_array_equal(strikes[0].state_before.p_WB_W, found.state.p_WB_W)
+    np.testing.assert_array_equal(strikes[-1].state_after.v_WB_W, found.impact.state.v_WB_W)
+    total = sum(strike.impulse_W for strike in strikes)
+    np.testing.assert_allclose(found.impact.impulses_W.sum(axis=0), total, rtol=0.0, atol=ROUNDING)
+    assert found.impact.end in SequenceEnd
+    assert {strike.contact for strike in strikes} <= set(range(len(found.contacts)))
+
+
+def test_an_uncertain_state_has_a_chance_of_each_outcome() -> None:
+    covariance = np.diag([1e-8] * 6 + [1e-2] * 3 + [1e-4] * 3)
+    uncertain = UncertainState(state=SLIDING, covariance=covariance)
+    found = answer(ImpactQuestion(body=CUBE, state=uncertain, contacts=below(), want_covariance=True)).impact
+    assert found.outcome_probabilities is not None
+    assert found.outcome_probabilities.sum() + found.miss_probability == pytest.approx(1.0, abs=1e-9)
+    assert found.outcome_probabilities[ImpactOutcome.SLIDES] > 0.9
+    assert found.covariance is not None
+    assert found.covariance[8, 8] == pytest.approx(RESTITUTION**2 * 1e-2, rel=0.1)  # v_n becomes -e v_n
+
+
+@pytest.mark.parametrize("law", list(RestitutionLaw))
+def test_the_law_of_restitution_is_the_one_asked_for(law: RestitutionLaw) -> None:
+    """Straight below the centre, sliding throughout, all three are one."""
+    found = answer(ImpactQuestion(body=CUBE, state=SLIDING, contacts=below(), restitution_law=law)).impact
+    assert found.restitution_law is law
+    assert found.state.v_WB_W[2] == pytest.approx(RESTITUTION, abs=ROUNDING)
+
+
+@pytest.mark.parametrize(
+    ("change", "error", "words"),
+    [
+        ({"state": state(v=(0.0, 0.0, 1.0))}, SeparatingContactError, "v_n = 1 m/s"),
+        ({"contacts": below().subset([])}, NoContactError, "contacts: found none"),
+        (
+            {"other": CUBE, "other_state": SLIDING, "want_orders": True},
+            NotSupportedError,
+            "found a second body",
+        ),
+        ({"other": CUBE, "other_state": SLIDING, "contacts": None}, NotSupportedError, "for two bodies"),
+        (
+            {"several_contacts_law": InTime(), "problem": Problem.PLANAR},
+            NotSupportedError,
+            "allowed with SEQUENTIAL_IN_TIME is SPATIAL",
+        ),
+        ({"want_covariance": True}, InvalidFieldError, r"state\.covariance: found none"),
+        (
+            {
+                "problem": Problem.PLANAR,
+                "plane": PlaneOfMotion(normal_W=[0, -1, 0]),
+                "state": state(v=(0.0, 0.5, -1.0)),
+            },
+            OutOfPlaneError,
+            "state: found 0.5 m/s out of the plane",
+        ),
+        (
+            {"several_contacts_law": InTime(strike_window=1e-6), "state": state(v=(0.0, 0.0, 1.0))},
+            SeparatingContactError,
+            "none that strikes",
+        ),
+    ],
+)
+def test_what_cannot_be_answered_is_named(
+    change: dict[str, object], error: type[Exception], words: str
+) -> None:
+    question = replace(ImpactQuestion(body=CUBE, state=SLIDING, contacts=below()), **change)  # type: ignore[arg-type]
+    with pytest.raises(error, match=words):
+        answer(question, Knowledge())
+
+
+def test_numbers_without_sense_are_refused() -> None:
+    for name in ("horizon", "out_of_plane_tolerance", "velocity_tolerance", "distance_tolerance"):
+        with pytest.raises(InvalidFieldError, match=f"{name}: found -1"):
+            ImpactQuestion(body=CUBE, **{name: -1.0})  # type: ignore[arg-type]
+    for name in ("problem", "restitution_law", "several_contacts_law"):
+        with pytest.raises(InvalidFieldError, match=f"{name}: found 'newton', allowed is"):
+            ImpactQuestion(body=CUBE, **{name: "newton"})  # type: ignore[arg-type]
+    for name in ("strike_window", "hold_step"):
+        with pytest.raises(InvalidFieldError, match=f"{name}: found nan"):
+            InTime(**{name: math.nan})  # type: ignore[arg-type]
+    assert InTime(strike_window=0.0, most_strikes=0, hold_step=0.0) == InTime()

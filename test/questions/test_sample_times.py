@@ -1,0 +1,42 @@
+"""When a trajectory is sampled: what is refused when a question is made."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import pytest
+
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.questions import AtRate, AtStamps, AtTimes, UntilContact, UntilPlane
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: AtTimes(times=[0.0, 0.2, 0.1]), r"times\[2\]: found 0.1 s before times\[1\]"),
+        (lambda: AtTimes(times=[-0.1]), r"times\[0\]: found -0.1"),
+        (lambda: AtTimes(times=[0.0, math.nan]), r"times\[1\]: found nan"),
+        (lambda: AtStamps(stamps_ns=[2_000_000_000, 0]), r"stamps_ns\[1\]: found 2 s before stamps_ns\[0\]"),
+        (lambda: AtRate(rate=-1.0), "rate: found -1.0"),
+        (lambda: UntilContact(duration=math.nan), "duration: found nan"),
+        (
+            lambda: UntilPlane(plane_point=[0, 0, 0], plane_normal=[0, 0, 2], body_point=[0, 0, 0]),
+            r"plane_normal: found \[0.0, 0.0, 2.0\] of norm 2",
+        ),
+    ],
+)
+def test_times_without_sense_are_refused(make: Callable[[], object], words: str) -> None:
+    with pytest.raises(InvalidFieldError, match=words):
+        make()
+
+
+@pytest.mark.parametrize("make", [lambda n: AtTimes(times=range(n)), lambda n: AtStamps(stamps_ns=range(n))])
+def test_too_many_samples_are_refused(make: Callable[[int], object]) -> None:
+    make(20_000)
+    with pytest.raises(TooLargeError, match="found 20001 samples"):
+        make(20_001)
+
+
+def test_a_rate_of_zero_is_the_default() -> None:
+    assert AtRate(rate=0.0, duration=0.0) == AtRate(duration=0.0)

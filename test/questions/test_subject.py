@@ -1,0 +1,119 @@
+"""Which body and state a question is about: said, published, fitted, or with another mass."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contact_dynamics.errors import InvalidFieldError, NoStateError, StaleStateError, UnknownBodyError
+from contact_dynamics.questions import (
+    AtTimes,
+    Defaults,
+    Knowledge,
+    PublishedState,
+    StateStore,
+    TumblingQuestion,
+    UncertainState,
+    tumbling,
+)
+from contact_dynamics.questions.subject import changed_body, subject_of
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.rotations.many import matrices_of
+from contact_dynamics.world import Body
+from questions.known_world import CUBE, GRAVITY, WORLD, state
+
+MS = 1_000_000  # ns
+V0 = 2.0  # m/s
+
+
+def rising(stamp_ns: int) -> BodyState:
+    """Return the cube, tossed upwards at stamp 0, turning about z."""
+    t = 1e-9 * stamp_ns
+    return BodyState(
+        p_WB_W=[0.0, 0.0, 1.0 + V0 * t - 0.5 * GRAVITY * t * t],
+        q_WB=[0.0, 0.0, np.sin(1.5 * t), np.cos(1.5 * t)],
+        v_WB_W=[0.0, 0.0, V0 - GRAVITY * t],
+        w_WB_W=[0.0, 0.0, 3.0],
+        stamp_ns=stamp_ns,
+    )
+
+
+def watching(*stamps_ns: int, now_ns: int | None = None) -> Knowledge:
+    """Return what is known after states of the cube were published."""
+    states = StateStore(history=10.0, timeout=0.5)
+    for stamp_ns in stamps_ns:
+        states.add("cube", rising(stamp_ns))
+    return Knowledge(world=WORLD, states=states, now_ns=None if now_ns is None else lambda: now_ns)
+
+
+def test_the_newest_state_is_taken_unless_another_is_asked_for() -> None:
+    known = watching(0, 10 * MS, 20 * MS)
+    assert subject_of("cube", PublishedState(), known).state.stamp_ns == 20 * MS
+    assert subject_of("cube", PublishedState(stamp_ns=15 * MS), known).state.stamp_ns == 10 * MS
+    assert subject_of(CUBE, PublishedState(stamp_ns=0), known).state.stamp_ns == 0
+
+
+def test_an_old_state_is_refused_only_by_a_clock() -> None:
+    late = 600 * MS
+    with pytest.raises(StaleStateError, match=r"0\.600 s old, allowed is at most 0\.5 s"):
+        subject_of("cube", PublishedState(), watching(0, now_ns=late))
+    assert subject_of("cube", PublishedState(), watching(0, now_ns=late - 200 * MS)).state.stamp_ns == 0
+    assert subject_of("cube", PublishedState(), watching(0)).state.stamp_ns == 0
+
+
+def test_a_fit_finds_the_toss_that_was_published() -> None:
+    """To exact states: the toss itself, from all states of the window and no others."""
+    known = watching(*range(0, 200 * MS, 10 * MS))
+    question = TumblingQuestion(
+        body="cube", state=PublishedState(fit_window=0.1), sampling=AtTimes(times=[0.0])
+    )
+    found = tumbling.answer(question, known)
+    assert found.fit is not None
+    assert found.fit.count == 11
+    assert found.fit.position_residual < 1e-12
+    np.testing.assert_allclose(found.state.v_WB_W, rising(190 * MS).v_WB_W, rtol=0.0, atol=1e-10)
+    subject = subject_of("cube", PublishedState(fit_window=0.1), known)
+    assert subject.covariance is not None
+    assert subject.covariance.shape == (12, 12)
+
+
+def test_a_load_moves_the_centre_of_mass_and_leaves_the_body_where_it_is() -> None:
+    """Its frame stays, so that the new centre is beside the old one, and moves with the body's turning."""
+    offset = np.array([0.05, 0.0, 0.0])
+    loaded = changed_body(CUBE, MassProperties(mass=3.0, I_B=0.1 * np.eye(3)), offset)
+    assert loaded.name == "cube"
+    np.testing.assert_allclose(loaded.vertices_B + offset, CUBE.vertices_B, rtol=0.0, atol=1e-15)
+    then = rising(20 * MS)
+    found = subject_of(loaded, PublishedState(), watching(20 * MS)).state
+    lever = matrices_of(then.q_WB[None])[0] @ offset
+    np.testing.assert_allclose(found.p_WB_W, then.p_WB_W + lever, rtol=0.0, atol=1e-15)
+    expected = then.v_WB_W + np.cross(then.w_WB_W, lever)
+    np.testing.assert_allclose(found.v_WB_W, expected, rtol=0.0, atol=1e-15)
+
+
+def test_a_state_that_is_said_needs_no_knowledge() -> None:
+    nothing = Knowledge()
+    assert subject_of(CUBE, state(), nothing).covariance is None
+    uncertain = UncertainState(state=state(), covariance=np.eye(12))
+    np.testing.assert_array_equal(subject_of(CUBE, uncertain, nothing).covariance, np.eye(12))
+
+
+def test_what_is_not_known_is_named() -> None:
+    known = watching()
+    with pytest.raises(NoStateError, match="state of 'cube': none was published yet"):
+        subject_of("cube", PublishedState(), known)
+    with pytest.raises(UnknownBodyError, match="found 'dog', allowed are the configured bodies: 'cube'"):
+        subject_of("dog", state(), known)
+    with pytest.raises(InvalidFieldError, match="body_name: found nothing"):
+        subject_of(Body(name="", mass_properties=CUBE.mass_properties), PublishedState(), known)
+
+
+def test_constructors_refuse_what_makes_no_sense() -> None:
+    with pytest.raises(InvalidFieldError, match="fit_window: found -1"):
+        PublishedState(fit_window=-1.0)
+    with pytest.raises(InvalidFieldError, match=r"state\.covariance: found variances"):
+        UncertainState(state=state(), covariance=-np.eye(12))
+    with pytest.raises(InvalidFieldError, match="horizon: found -1"):
+        Defaults(horizon=-1.0)
+    with pytest.raises(InvalidFieldError, match="rate: found 0"):
+        Defaults(rate=0.0)

@@ -1,0 +1,175 @@
+"""Questions about tumbling, asked in Python, beside the parabola and steady spin."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from contact_dynamics.errors import (
+    InvalidFieldError,
+    NoContactError,
+    TooLargeError,
+    UnknownBodyError,
+)
+from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.motion.integrated import Method
+from contact_dynamics.questions import (
+    AtRate,
+    AtStamps,
+    AtTimes,
+    EventKind,
+    TumblingQuestion,
+    UncertainState,
+    UntilContact,
+    UntilPlane,
+)
+from contact_dynamics.questions.tumbling import MOST_CURVE_POINTS, answer
+from contact_dynamics.tumbling import Regime
+from questions.known_world import CUBE, GRAVITY, KNOWLEDGE, MASS, MOMENT, SIDE, state
+
+ROUNDING = 1e-12  # a few operations on numbers of order 1 to 10
+TOSSED = state(v=(1.0, -0.5, 2.0), w=(0.0, 0.0, 3.0), stamp_ns=5_000_000_000)
+
+
+def test_a_body_and_a_state_are_enough() -> None:
+    """Without knowledge: on the parabola, turning steadily, at 100 Hz for 2 s."""
+    found = answer(TumblingQuestion(body=CUBE, state=TOSSED))
+    t = found.trajectory.seconds
+    np.testing.assert_allclose(t, np.arange(201) / 100.0, rtol=0.0, atol=ROUNDING)
+    fallen = 1.0 + 2.0 * t - 0.5 * GRAVITY * t * t
+    np.testing.assert_allclose(found.trajectory.p_WB_W[:, 2], fallen, rtol=0.0, atol=2e-11)
+    half = 0.5 * 3.0 * t
+    turned = np.column_stack([0 * t, 0 * t, np.sin(half), np.cos(half)])
+    np.testing.assert_allclose(found.trajectory.q_WB, turned, rtol=0.0, atol=ROUNDING)
+    assert found.method is Method.CLOSED_FORM
+    assert found.poinsot is not None
+    assert found.poinsot.regime is Regime.SPHERICAL
+    assert found.poinsot.rotational_energy == pytest.approx(0.5 * MOMENT * 9.0)
+    assert (found.event, found.covariance, found.fit, found.curves) == (None, None, None, None)
+    assert (found.body_name, found.state) == ("cube", TOSSED)
+
+
+def test_stamps_reach_into_the_past() -> None:
+    found = answer(
+        TumblingQuestion(body=CUBE, state=TOSSED, sampling=AtStamps(stamps_ns=[4_900_000_000, 5_000_000_000]))
+    )
+    np.testing.assert_array_equal(found.trajectory.seconds, [-0.1, 0.0])
+    before = 1.0 - 0.2 - 0.5 * GRAVITY * 0.01
+    assert found.trajectory.p_WB_W[0, 2] == pytest.approx(before, abs=ROUNDING)
+
+
+def test_gravity_of_its_own() -> None:
+    found = answer(
+        TumblingQuestion(body=CUBE, state=TOSSED, gravity_W=[0, 0, 0], sampling=AtTimes(times=[1.0]))
+    )
+    np.testing.assert_allclose(found.trajectory.p_WB_W, [[1.0, -0.5, 3.0]], rtol=0.0, atol=ROUNDING)
+
+
+def test_it_ends_where_a_corner_meets_the_floor() -> None:
+    """The lower face of a cube that does not turn falls by what its centre is above half a side."""
+    question = TumblingQuestion(body="cube", state=state(), sampling=UntilContact(rate=10.0, duration=1.0))
+    found = answer(question, KNOWLEDGE)
+    seconds = math.sqrt(2.0 * (1.0 - 0.5 * SIDE) / GRAVITY)
+    assert found.event is not None
+    assert (found.event.kind, found.event.surface) == (EventKind.CONTACT, "floor")
+    assert found.event.seconds == pytest.approx(seconds, abs=ROUNDING)
+    assert found.event.velocity_W[2] == pytest.approx(-GRAVITY * seconds, abs=1e-11)
+    assert found.trajectory.seconds[-1] == found.event.seconds
+
+
+def test_it_ends_where_a_point_reaches_a_plane() -> None:
+    sampling = UntilPlane(
+        plane_point=[0, 0, 0.5], plane_normal=[0, 0, 1], body_point=[0, 0, -0.5 * SIDE], duration=1.0
+    )
+    found = answer(TumblingQuestion(body=CUBE, state=state(), sampling=sampling))
+    assert found.event is not None
+    assert (found.event.kind, found.event.surface) == (EventKind.PLANE_REACHED, "")
+    assert found.event.seconds == pytest.approx(math.sqrt(2.0 * 0.4 / GRAVITY), abs=ROUNDING)
+
+
+def test_a_torque_spins_it_up_and_leaves_no_poinsot() -> None:
+    """About a fixed axis in the body the angular velocity grows by N t / I."""
+    torque = 0.01
+    question = TumblingQuestion(
+        body=CUBE,
+        state=TOSSED,
+        wrench=ConstantWrench(torque=[0, 0, torque], axes=WrenchAxes.BODY),
+        sampling=AtTimes(times=[0.5]),
+        curve_points=5,
+    )
+    found = answer(question)
+    assert found.method is Method.INTEGRATED
+    assert (found.poinsot, found.flips, found.curves) == (None, None, None)
+    assert found.trajectory.w_WB_W[0, 2] == pytest.approx(3.0 + 0.5 * torque / MOMENT, abs=1e-10)
+
+
+def test_linear_drag_slows_it_down() -> None:
+    """Without gravity v(t) = v0 exp(-k t / m)."""
+    k = 0.3
+    question = TumblingQuestion(
+        body=CUBE,
+        state=TOSSED,
+        gravity_W=[0, 0, 0],
+        drag=Drag(linear=k),
+        sampling=AtTimes(times=[1.0]),
+    )
+    found = answer(question)
+    expected = TOSSED.v_WB_W * math.exp(-k / MASS)
+    np.testing.assert_allclose(found.trajectory.v_WB_W[0], expected, rtol=0.0, atol=1e-11)
+    assert found.poinsot is not None  # nothing turns it
+
+
+def test_a_covariance_grows_with_the_square_of_time() -> None:
+    """Position: var(p) + t^2 var(v), where the two are independent."""
+    covariance = np.diag([1e-6] * 3 + [1e-8] * 3 + [4e-4] * 3 + [1e-8] * 3)
+    question = TumblingQuestion(
+        body=CUBE,
+        state=UncertainState(state=TOSSED, covariance=covariance),
+        sampling=AtTimes(times=[0.0, 0.5]),
+        want_covariance=True,
+    )
+    found = answer(question)
+    assert found.covariance is not None
+    assert found.covariance.covariances[1, 0, 0] == pytest.approx(1e-6 + 0.25 * 4e-4, rel=1e-9)
+    assert found.covariance.trusted.all()
+    with pytest.raises(InvalidFieldError, match=r"state\.covariance: found none"):
+        answer(TumblingQuestion(body=CUBE, state=TOSSED, want_covariance=True))
+
+
+def test_curves_have_as_many_points_as_asked_for() -> None:
+    found = answer(TumblingQuestion(body=CUBE, state=TOSSED, curve_points=4))
+    assert found.curves is not None
+    assert found.curves.polhode_B.shape == (4, 3)
+    with pytest.raises(TooLargeError, match="curve_points: found 10001"):
+        TumblingQuestion(body=CUBE, curve_points=MOST_CURVE_POINTS + 1)
+
+
+@pytest.mark.parametrize(
+    ("question", "error", "words"),
+    [
+        (TumblingQuestion(body="dog", state=TOSSED), UnknownBodyError, "found 'dog'"),
+        (
+            TumblingQuestion(
+                body=CUBE, state=TOSSED, drag=Drag(linear=1.0), sampling=AtRate(duration=1000.0)
+            ),
+            InvalidFieldError,
+            "turns of the body ahead, allowed is at most 100 under torque or drag",
+        ),
+        (
+            TumblingQuestion(body=CUBE, state=TOSSED, sampling=AtRate(rate=1e6)),
+            TooLargeError,
+            "rate . duration: found 2000000 samples",
+        ),
+    ],
+)
+def test_what_is_not_allowed_is_named(question: TumblingQuestion, error: type[Exception], words: str) -> None:
+    with pytest.raises(error, match=words):
+        answer(question)
+
+
+def test_a_body_without_a_shape_meets_no_surface() -> None:
+    bare = CUBE.__class__(name="bare", mass_properties=CUBE.mass_properties)
+    with pytest.raises(NoContactError, match="has no shape"):
+        answer(TumblingQuestion(body=bare, state=TOSSED, sampling=UntilContact()))
