@@ -1,4 +1,8 @@
-"""No text in the sources begins with "Of" or "Likewise", which says nothing without the text before it."""
+"""How texts in the sources begin, and what they name.
+
+No text begins with "Of" or "Likewise", which says nothing without the text before it. What a docstring or a
+comment of the package names in backticks exists.
+"""
 
 from __future__ import annotations
 
@@ -24,6 +28,9 @@ COMMENTED = sorted(
     )
     for path in ROOT.glob(pattern)
 )
+INTERFACES = sorted((ROOT / "contact_dynamics_interfaces").glob("*/*.[ms]*"))
+PACKAGE = [path for path in PYTHON if "contact_dynamics" in path.relative_to(ROOT).parts[:1]]
+NAMED = re.compile(r"(?<!`)`([A-Za-z_]\w*(?:\.\w+)*)`(?!`)")
 DANGLING = re.compile(r"(Of|Likewise)\b")
 FIELD = re.compile(r"^\s+\w+: (.*)$", re.MULTILINE)
 """An entry of an `Attributes` or `Args` section."""
@@ -81,3 +88,30 @@ def test_a_dangling_word_is_seen(source: str) -> None:
 
 def test_words_that_only_begin_alike_and_later_lines_are_fine() -> None:
     assert not any(DANGLING.match(text) for text in texts_of_python("# Offsets are\n# Of use.\n"))
+
+
+def is_text(node: ast.AST) -> bool:
+    """Whether a statement is a docstring, of whatever it may be."""
+    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+
+
+@pytest.fixture(scope="module")
+def names() -> set[str]:
+    """All names and all words of strings in the code, without its docstrings and comments, and its files."""
+    found = {word for path in INTERFACES for word in re.findall(r"\w+", path.read_text(encoding="utf-8"))}
+    for path in PYTHON:
+        source = path.read_text(encoding="utf-8")
+        texts = {node.lineno for node in ast.walk(ast.parse(source)) if is_text(node)}
+        found |= {part.partition(".")[0] for part in path.parts}
+        for token in tokenize.generate_tokens(io.StringIO(source).readline):
+            if token.type == tokenize.NAME:
+                found.add(token.string)
+            elif token.type == tokenize.STRING and token.start[0] not in texts:
+                found.update(re.findall(r"\w+", token.string))
+    return found
+
+
+@pytest.mark.parametrize("path", PACKAGE, ids=lambda path: str(path.relative_to(ROOT)))
+def test_what_a_text_names_exists(path: Path, names: set[str]) -> None:
+    texts = " ".join(texts_of_python(path.read_text(encoding="utf-8")))
+    assert [name for name in NAMED.findall(texts) if not names.issuperset(name.split("."))] == []
