@@ -1,6 +1,6 @@
 """Nonlinear least squares by Gauss's and Newton's method, with steps that are halved until they help.
 
-SciPy's ``least_squares`` finds the same, and the tests compare the two. It is not used here for three reasons.
+SciPy's ``least_squares`` finds the same, and the tests compare both. It is not used here for three reasons.
 An attitude is moved by a new rotation vector in each round, and SciPy's would have to start anew for
 that. The rounds here end where the change is negligible in the measured quantities. And its import takes
 tenths of a second, in the middle of the first question with a window of states.
