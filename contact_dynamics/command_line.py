@@ -51,6 +51,12 @@ VERBS: Final = {
         (*_ROS, "rerun"),
         "show bodies, contacts and predictions in rerun, live or to a file",
     ),
+    "replay": Verb(
+        "contact_dynamics.replay.run",
+        "contact_dynamics.replay.arguments:replay_parser",
+        (),
+        "ask the questions of a log again and compare the answers",
+    ),
     "toss_publisher": Verb(
         "contact_dynamics.demo.toss_publisher",
         "contact_dynamics.demo.arguments:toss_publisher_parser",

@@ -10,7 +10,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.recording.cdr_stamp import EventType, event_info
@@ -19,6 +19,18 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 _MOST_OPEN: Final = 10_000  # calls whose events may still come; an event that got lost leaves its call open
+
+
+class EventTimes(NamedTuple):
+    """When that which an event tells of happened, ns since the epoch.
+
+    Attributes:
+        log_time_ns: By this machine's clock.
+        publish_time_ns: By the node's clock: the present time of the question. None: as the event says.
+    """
+
+    log_time_ns: int
+    publish_time_ns: int | None = None
 
 
 @dataclass(slots=True, kw_only=True)
@@ -37,16 +49,18 @@ class CallTimes:
         self._unclaimed: deque[_Call] = deque(maxlen=_MOST_OPEN)  # no event told of the request yet
         self._answered: dict[tuple[bytes, int], _Call] = {}  # no event told of the answer yet
 
-    def begin(self) -> None:
-        """Note that a request has come."""
-        self._unclaimed.append(_Call(node_clock_ns=self._node_clock_ns(), received_ns=time.time_ns()))
+    def begin(self) -> int:
+        """Note that a request has come; return the time of the node's clock, ns."""
+        call = _Call(node_clock_ns=self._node_clock_ns(), received_ns=time.time_ns())
+        self._unclaimed.append(call)
+        return call.node_clock_ns
 
     def end(self) -> None:
         """Note that the answer to it leaves."""
         self._unclaimed[-1].sent_ns = time.time_ns()
 
-    def log_time_ns(self, event: bytes) -> int:
-        """Return when that which an event tells of happened, ns since the epoch by this machine's clock.
+    def of_event(self, event: bytes) -> EventTimes:
+        """Return when that which an event tells of happened.
 
         That is now for an event of a client, which tells of what happened elsewhere, and for bytes that are
         no event.
@@ -54,7 +68,7 @@ class CallTimes:
         try:
             info = event_info(event)
         except InvalidFieldError:
-            return time.time_ns()
+            return EventTimes(time.time_ns())
         key = (info.client_gid, info.sequence_number)
         if info.event_type is EventType.REQUEST_RECEIVED:
             while self._unclaimed:
@@ -63,7 +77,7 @@ class CallTimes:
                     self._answered[key] = call
                     while len(self._answered) > _MOST_OPEN:
                         del self._answered[next(iter(self._answered))]
-                    return call.received_ns
+                    return EventTimes(call.received_ns, max(0, call.node_clock_ns))  # MCAP has no time before
         elif info.event_type is EventType.RESPONSE_SENT and key in self._answered:
-            return self._answered.pop(key).sent_ns
-        return time.time_ns()
+            return EventTimes(self._answered.pop(key).sent_ns)
+        return EventTimes(time.time_ns())

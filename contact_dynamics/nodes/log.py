@@ -44,11 +44,16 @@ class Log:
         if self._writer is not None:
             self._recorder = Recorder(self._writer, on_problem=self._on_problem)
 
-    def record(self, topic: str, data: bytes, *, log_time_ns: int | None = None) -> None:
-        """Record a message as received at that time, ns since the epoch by this machine's clock, or now."""
+    def record(
+        self, topic: str, data: bytes, *, log_time_ns: int | None = None, publish_time_ns: int | None = None
+    ) -> None:
+        """Record a message as received at that time, ns since the epoch by this machine's clock, or now.
+
+        Without a ``publish_time_ns``, that is the stamp that the message begins with.
+        """
         if self._recorder is not None:
             when_ns = time.time_ns() if log_time_ns is None else log_time_ns
-            self._recorder.record(topic, data, log_time_ns=when_ns)
+            self._recorder.record(topic, data, log_time_ns=when_ns, publish_time_ns=publish_time_ns)
 
     def close(self) -> str:
         """Finish the file; return in words where it is and how complete."""

@@ -1,17 +1,15 @@
 """The server's parameters: each declared once, with its description and range, and read into domain types.
 
 The commented file `config/server.yaml` is what a user edits; a test holds the two together.
+
+This file imports no ROS. The values come from a `ParameterSource`: a node (`node_parameters`), or the log of
+a run that is over (`run_record`).
 """
 
 from __future__ import annotations
 
-import difflib
-import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, TypeVar
-
-from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
-from rclpy.parameter import Parameter
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
@@ -23,17 +21,39 @@ from contact_dynamics.validation import check_array, check_positive
 from contact_dynamics.world import Body, Surface, World
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
-    from rclpy.node import Node
+    from collections.abc import Callable
 
 T = TypeVar("T")
-
-_OF_ROS: Final = re.compile(r"use_sim_time|start_type_description_service|qos_overrides\..*")
 
 
 class ConfigurationError(ContactDynamicsError):
     """A parameter is missing or not allowed; the message names it."""
+
+
+class ParameterSource(Protocol):
+    """Where parameters have their values from."""
+
+    def value(
+        self, name: str, default: Any, description: str, bounds: tuple[float, float] | None = None
+    ) -> Any:
+        """Return a parameter's value, which has the type of the default.
+
+        Args:
+            name: the parameter's.
+            default: its value where none is given; a type, `float` or `list`, makes it mandatory.
+            description: what it is, for a person.
+            bounds: least and greatest value.
+
+        Raises:
+            ConfigurationError: none is given, or one of another type or out of bounds.
+        """
+
+    def resolved_topic(self, name: str, topic: str) -> str:
+        """Return the full name of the topic that a parameter names.
+
+        Raises:
+            ConfigurationError: it is no topic's name.
+        """
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,14 +94,14 @@ class ServerParameters:
     log_directory: str
 
 
-def read_server_parameters(node: Node) -> ServerParameters:
-    """Declare and read every parameter.
+def read_server_parameters(source: ParameterSource) -> ServerParameters:
+    """Read every parameter.
 
     Raises:
         ConfigurationError: a parameter is missing, has another type, or a value that is not allowed; it is
         named.
     """
-    reader = _Reader(node)
+    reader = _Reader(source)
     body_names = reader.names("bodies", "Names of the bodies that questions can name.")
     surface_names = reader.names("surfaces", "Names of the flats and obstacles of the world.")
     bodies = [_read_body(reader, name) for name in body_names]
@@ -146,42 +166,12 @@ def _read_defaults(reader: _Reader) -> Defaults:
     )
 
 
-def refuse_unknown_parameters(node: Node, *, also_known: Iterable[str] = ()) -> None:
-    """Refuse what a file or the command line sets and the node has not declared; ROS would ignore it.
-
-    Args:
-        node: with all of its own parameters declared.
-        also_known: parameters of another node that reads the same file.
-
-    Raises:
-        ConfigurationError: each such parameter is named, with the nearest one that there is.
-    """
-    # rclpy has no public way to ask what was given and not declared.
-    known = {*node._parameters, *also_known}  # noqa: SLF001
-    given = sorted(name for name in node._parameter_overrides if not _OF_ROS.fullmatch(name))  # noqa: SLF001
-    unknown = [name for name in given if name not in known]
-    if unknown:
-        raise ConfigurationError("\n".join(_unknown(name, known, node) for name in unknown))
-
-
-def _unknown(name: str, known: set[str], node: Node) -> str:
-    kind, _, rest = name.partition(".")
-    listing = {"body": "bodies", "surface": "surfaces"}.get(kind)
-    if listing and rest:
-        own_name = rest.rpartition(".")[0] or rest
-        listed = [each for each in node.get_parameter(listing).value if each]
-        if own_name not in listed:
-            return f"{name}: found {kind} {own_name!r}, allowed is one that {listing} lists: {listed}"
-    nearest = difflib.get_close_matches(name, known, n=1, cutoff=0.0)
-    return f"{name}: there is no such parameter; the nearest is {nearest[0]}"
-
-
 def _read_body(reader: _Reader, name: str) -> tuple[Body, StateTopics]:
     key = f"body.{name}"
-    mass = reader.read(f"{key}.mass", Parameter.Type.DOUBLE, "Mass, kg.")
+    mass = reader.read(f"{key}.mass", float, "Mass, kg.")
     inertia = reader.read(
         f"{key}.inertia",
-        Parameter.Type.DOUBLE_ARRAY,
+        list,
         "Angular inertia about the centre of mass, kg m^2, in the axes of the body's frame: "
         "ixx, iyy, izz, ixy, ixz, iyz. [0.0]: of a mass that fills the shape evenly.",
     )
@@ -272,11 +262,9 @@ def _read_surface(reader: _Reader, name: str) -> Surface | Obstacle:
         ),
         pose_names=("point", "orientation"),
     )
-    friction = reader.read(
-        f"{key}.friction", Parameter.Type.DOUBLE, "Coulomb's friction coefficient with any body, >= 0."
-    )
+    friction = reader.read(f"{key}.friction", float, "Coulomb's friction coefficient with any body, >= 0.")
     restitution = reader.read(
-        f"{key}.restitution", Parameter.Type.DOUBLE, "Coefficient of restitution with any body, 0 to 1."
+        f"{key}.restitution", float, "Coefficient of restitution with any body, 0 to 1."
     )
 
     def build() -> Surface | Obstacle:
@@ -295,27 +283,12 @@ def _read_surface(reader: _Reader, name: str) -> Surface | Obstacle:
 
 
 class _Reader:
-    """Declares parameters and returns their values; whatever is wrong becomes a `ConfigurationError`."""
+    """Reads parameters from a source; whatever is wrong becomes a `ConfigurationError`."""
 
-    def __init__(self, node: Node) -> None:
-        self._node = node
+    def __init__(self, source: ParameterSource) -> None:
+        self._source = source
+        self.read = source.value
         self._topics: dict[str, str] = {}  # resolved name, and the parameter that it comes from
-
-    def read(
-        self, name: str, default: Any, description: str, bounds: tuple[float, float] | None = None
-    ) -> Any:
-        """Return a read-only parameter's value; a `Parameter.Type` as the default makes it mandatory."""
-        ranges = [FloatingPointRange(from_value=bounds[0], to_value=bounds[1])] if bounds else []
-        descriptor = ParameterDescriptor(description=description, read_only=True, floating_point_range=ranges)
-        try:
-            value = self._node.declare_parameter(name, default, descriptor).value
-        except Exception as error:  # noqa: BLE001  rclpy raises several unrelated types for a wrong type or range
-            message = f"{name}: {error} ({description})"
-            raise ConfigurationError(message) from None
-        if value is None:
-            message = f"{name}: found nothing, needed is: {description}"
-            raise ConfigurationError(message)
-        return value
 
     def names(self, name: str, description: str) -> list[str]:
         """Return the names that a list has; empty ones, which stand for none, are left out."""
@@ -330,11 +303,7 @@ class _Reader:
         topic: str = self.read(name, "", description)
         if not topic:
             return topic
-        try:
-            resolved = self._node.resolve_topic_name(topic)
-        except RuntimeError as error:
-            message = f"{name}: found {topic!r}, allowed is a topic's name ({error})"
-            raise ConfigurationError(message) from None
+        resolved = self._source.resolved_topic(name, topic)
         if resolved in self._topics:
             message = (
                 f"{name}: found {topic!r}, allowed is another topic than that of {self._topics[resolved]}"

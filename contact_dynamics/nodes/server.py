@@ -7,10 +7,8 @@ publishes.
 
 from __future__ import annotations
 
-import platform
 import time
 import traceback
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 from nav_msgs.msg import Path
@@ -25,7 +23,9 @@ from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes.arguments import VISUALIZER_PARAMETERS, server_parser
 from contact_dynamics.nodes.call_times import CallTimes
 from contact_dynamics.nodes.log import Log
-from contact_dynamics.nodes.parameters import read_server_parameters, refuse_unknown_parameters
+from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_unknown_parameters
+from contact_dynamics.nodes.parameters import read_server_parameters
+from contact_dynamics.nodes.run_record import NODE_NAME, run_record
 from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.services import SERVICES
 from contact_dynamics.nodes.state_subscriptions import STATE_QOS, subscribe_to_states
@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     from contact_dynamics.nodes.services import Request, Service
     from msg_adapters.status import Response
 
-NODE_NAME = "contact_dynamics"
 SERVICE_QOS = QoSProfile(depth=1000)
 """Queue depth of the services. With the usual 10, replies get lost when several clients ask at once."""
 
@@ -64,23 +63,25 @@ class Server(Node):
             ConfigurationError: a parameter is missing, unknown or not allowed.
         """
         super().__init__(NODE_NAME, **node_options)
-        parameters = read_server_parameters(self)
+        source = NodeParameters(self)
+        parameters = read_server_parameters(source)
         # One file may configure both nodes.
         refuse_unknown_parameters(self, also_known=VISUALIZER_PARAMETERS)
         states = StateStore(history=parameters.state_history, timeout=parameters.state_timeout)
         # A simulation or a log that is played again: without this its new states would count as old ones.
         set_back = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
         self._jumps = self.get_clock().create_jump_callback(set_back, post_callback=lambda _: states.clear())
+        self._asked_ns = 0  # when the present question came, by the node's clock
         self._knowledge = Knowledge(
             world=parameters.world,
             states=states,
             defaults=parameters.defaults,
-            now_ns=lambda: self.get_clock().now().nanoseconds,
+            now_ns=lambda: self._asked_ns,
         )
         self._world_frame = parameters.world_frame
         self._log = Log(
             parameters.log_directory if parameters.log else None,
-            run=self._run_description(),
+            run=self._run_description(source.topics),
             on_problem=self.get_logger().error,
         )
         for topics in parameters.topics:
@@ -112,7 +113,7 @@ class Server(Node):
         times = CallTimes(lambda: self.get_clock().now().nanoseconds)
 
         def handle(request: Request, response: Response) -> Response:
-            times.begin()
+            self._asked_ns = times.begin()
             start = time.perf_counter()
             try:
                 served.serve(request, response, self._knowledge, world_frame=self._world_frame)
@@ -130,7 +131,10 @@ class Server(Node):
             return response
 
         def record(data: bytes) -> None:
-            self._log.record(events, data, log_time_ns=times.log_time_ns(data))
+            happened = times.of_event(data)
+            self._log.record(
+                events, data, log_time_ns=happened.log_time_ns, publish_time_ns=happened.publish_time_ns
+            )
 
         service = self.create_service(service_type, f"~/{served.name}", handle, qos_profile=SERVICE_QOS)
         service.configure_introspection(self.get_clock(), EVENT_QOS, ServiceIntrospectionState.CONTENTS)
@@ -154,15 +158,10 @@ class Server(Node):
         if self._path.get_subscription_count() > 0:
             self._path.publish(path_from_trajectory(response.trajectory))
 
-    def _run_description(self) -> dict[str, str]:
-        """Return every parameter, and the versions that the last bits of an answer depend on."""
-        versions = {
-            "python": platform.python_version(),
-            "numpy": version("numpy"),
-            "scipy": version("scipy"),
-        }
-        names = sorted(self._parameters)
-        return {**versions, **{name: str(self._parameters[name].value) for name in names}}
+    def _run_description(self, topics: dict[str, str]) -> dict[str, str]:
+        """Return all that an answer depends on besides the states; ``topics`` has their full names."""
+        parameters = {name: self._parameters[name].value for name in sorted(self._parameters)}
+        return run_record(parameters, topics)
 
 
 def main(arguments: list[str]) -> int:

@@ -8,16 +8,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from geometry_msgs.msg import PoseStamped, TwistStamped
-from nav_msgs.msg import Odometry
 from rclpy.qos import QoSProfile
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.serialization import deserialize_message
 
 from contact_dynamics.errors import ContactDynamicsError
-from msg_adapters.odometry import body_state_from_odometry
-from msg_adapters.pose_twist import body_state_from_pose_twist
-from msg_adapters.stamps import stamp_ns_from_msg
+from contact_dynamics.nodes.state_sources import state_sources
+from contact_dynamics.recording.decoding import message_class
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,7 +29,6 @@ if TYPE_CHECKING:
 STATE_QOS = QoSProfile(depth=1000)
 """Reliable, and deep: a second of states at 1 kHz may wait for a stalled process, and the log loses none."""
 
-_MOST_UNPAIRED = 100
 _WARN_EVERY_S = 5.0
 
 
@@ -71,48 +67,6 @@ def subscribe_to_states(
         return resolved
 
     types: dict[str, str] = {}
-    if topics.odometry:
-        resolved = subscribe(
-            Odometry,
-            topics.odometry,
-            lambda msg: body_state_from_odometry(msg, world_frame=world_frame, p_FB_F=p_FB_F),
-        )
-        types[resolved] = "nav_msgs/msg/Odometry"
-    if topics.pose:
-        pair = _Pairing(
-            lambda pose, twist: body_state_from_pose_twist(
-                pose, twist, world_frame=world_frame, body_frame=topics.frame, p_FB_F=p_FB_F
-            )
-        )
-        types[subscribe(PoseStamped, topics.pose, pair.pose)] = "geometry_msgs/msg/PoseStamped"
-        types[subscribe(TwistStamped, topics.twist, pair.twist)] = "geometry_msgs/msg/TwistStamped"
+    for source in state_sources(topics, world_frame=world_frame, p_FB_F=p_FB_F):
+        types[subscribe(message_class(source.type_name), source.topic, source.state_from)] = source.type_name
     return types
-
-
-class _Pairing:
-    """Joins the pose and the twist of one stamp, whichever comes first."""
-
-    def __init__(self, join: Callable[[PoseStamped, TwistStamped], BodyState]) -> None:
-        self._join = join
-        self._poses: dict[int, PoseStamped] = {}
-        self._twists: dict[int, TwistStamped] = {}
-
-    def pose(self, msg: PoseStamped) -> BodyState | None:
-        twist = self._partner(msg, self._poses, self._twists)
-        return None if twist is None else self._join(msg, twist)
-
-    def twist(self, msg: TwistStamped) -> BodyState | None:
-        pose = self._partner(msg, self._twists, self._poses)
-        return None if pose is None else self._join(pose, msg)
-
-    @staticmethod
-    def _partner(msg: Any, mine: dict[int, Any], others: dict[int, Any]) -> Any:
-        stamp_ns = stamp_ns_from_msg(msg.header.stamp)
-        partner = others.pop(stamp_ns, None)
-        if partner is None:
-            mine[stamp_ns] = msg
-            if (
-                len(mine) > _MOST_UNPAIRED
-            ):  # one of the two topics is silent: what waits longest waits in vain
-                del mine[next(iter(mine))]
-        return partner

@@ -26,11 +26,8 @@ from rclpy.serialization import deserialize_message
 from service_msgs.msg import ServiceEventInfo
 
 from contact_dynamics.nodes.arguments import visualizer_parser
-from contact_dynamics.nodes.parameters import (
-    ConfigurationError,
-    read_server_parameters,
-    refuse_unknown_parameters,
-)
+from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_unknown_parameters
+from contact_dynamics.nodes.parameters import ConfigurationError, read_server_parameters
 from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
 from contact_dynamics.questions.state_store import StateStore
@@ -111,7 +108,7 @@ class Visualizer(Node):
         raise_errors()
         self._strict = strict
         self._told: set[str] = set()
-        parameters = read_server_parameters(self)
+        parameters = read_server_parameters(NodeParameters(self))
         self._world = parameters.world
         server, surface_side, self.log_path, self._sinks = _read_own_parameters(self)
         refuse_unknown_parameters(self)

@@ -1,11 +1,13 @@
 """The log: every state received and every request and response, in MCAP as rosbag2 of Jazzy lays it out.
 
-`BagWriter` writes a log from one thread, and `Recorder` writes it beside a server. `BagReader`,
-`service_calls` and `decode` read it.
+`BagWriter` writes a log from one thread, and `Recorder` writes it beside a server. `BagReader` and
+`service_calls` read it. `decode` makes messages with the classes of ROS, and `decode_without_ros` makes them
+from the definitions in the log.
 """
 
 from contact_dynamics.recording.bag_reader import BagReader, LoggedMessage
 from contact_dynamics.recording.bag_writer import BagWriter
+from contact_dynamics.recording.cdr import decode_without_ros
 from contact_dynamics.recording.decoding import decode
 from contact_dynamics.recording.errors import DamagedLogWarning, LogExistsError, LogFailedError, NotALogError
 from contact_dynamics.recording.mcap_walk import Loss
@@ -28,5 +30,6 @@ __all__ = [
     "RecorderStatus",
     "ServiceCall",
     "decode",
+    "decode_without_ros",
     "service_calls",
 ]

@@ -13,7 +13,7 @@ from __future__ import annotations
 import re
 import warnings
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -44,6 +44,7 @@ class LoggedMessage:
         data: The serialised message (CDR).
         log_time_ns: When the message was received, ns since the epoch.
         publish_time_ns: When its source made it, ns since the epoch.
+        definition: The text of its type in the log, in MCAP's ros2msg form; empty if it has another form.
     """
 
     topic: str
@@ -51,6 +52,7 @@ class LoggedMessage:
     data: bytes
     log_time_ns: int
     publish_time_ns: int
+    definition: str = field(default="", repr=False)
 
 
 class BagReader:
@@ -95,7 +97,7 @@ class BagReader:
                 undefined = 0
                 for record in walk.records():
                     if isinstance(record, Message):
-                        channel = definitions.topic_and_type(record.channel_id)
+                        channel = definitions.channel(record.channel_id)
                         if channel is None:
                             undefined += 1
                         elif topics is None or channel[0] in topics:
@@ -105,11 +107,29 @@ class BagReader:
                                 data=record.data,
                                 log_time_ns=record.log_time,
                                 publish_time_ns=record.publish_time,
+                                definition=channel[2],
                             )
                     else:
                         definitions.add(record)
                 if undefined:
                     walk.lose_undefined(undefined)
+
+    def definitions(self) -> dict[str, str]:
+        """Return the text of each type that the log describes before its first message or at its end.
+
+        Texts in another form than MCAP's ros2msg are left out.
+        """
+        self.losses = []
+        schemas: list[Schema] = []
+        for path in self.paths:
+            with self._walk(path) as walk:
+                for record in walk.records():
+                    if isinstance(record, Message):
+                        break
+                    if isinstance(record, Schema):
+                        schemas.append(record)
+                schemas += (walk.summary or Summary()).schemas.values()
+        return {schema.name: text for schema in schemas if (text := _ros2msg(schema))}
 
     def run(self) -> dict[str, str]:
         """Return the writer's record of its run. It is empty if the record is missing or damaged."""
@@ -145,7 +165,7 @@ class _Definitions:
         self._walk = walk
         self._schemas: dict[int, Schema] = {}
         self._channels: dict[int, Channel] = {}
-        self._known: dict[int, tuple[str, str] | None] = {}
+        self._known: dict[int, tuple[str, str, str] | None] = {}
 
     def add(self, record: WalkedRecord) -> None:
         """Keep a record if it is a definition."""
@@ -155,22 +175,28 @@ class _Definitions:
             self._channels[record.id] = record
             self._known.pop(record.id, None)
 
-    def topic_and_type(self, channel_id: int) -> tuple[str, str] | None:
-        """Return a channel's topic and its type, which may be empty, or None if nothing defines it."""
+    def channel(self, channel_id: int) -> tuple[str, str, str] | None:
+        """Return topic, type and its text, which may both be empty, or None if the channel is not defined."""
         if channel_id not in self._known:
             self._known[channel_id] = self._find(channel_id)
         return self._known[channel_id]
 
-    def _find(self, channel_id: int) -> tuple[str, str] | None:
+    def _find(self, channel_id: int) -> tuple[str, str, str] | None:
         channel = self._channels.get(channel_id) or self._summary.channels.get(channel_id)
         if channel is None or channel.schema_id == 0:
-            return None if channel is None else (channel.topic, "")
+            return None if channel is None else (channel.topic, "", "")
         schema = self._schemas.get(channel.schema_id) or self._summary.schemas.get(channel.schema_id)
-        return None if schema is None else (channel.topic, schema.name)
+        if schema is None:
+            return None
+        return channel.topic, schema.name, _ros2msg(schema)
 
     @property
     def _summary(self) -> Summary:
         return self._walk.summary or Summary()
+
+
+def _ros2msg(schema: Schema) -> str:
+    return schema.data.decode(errors="replace") if schema.encoding == "ros2msg" else ""
 
 
 def _described(path: Path, losses: list[Loss]) -> str:

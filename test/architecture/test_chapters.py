@@ -42,6 +42,7 @@ CHAPTERS = (
     "viewing",
     "measured",
     "nodes",
+    "replay",
     "demo",
     "command_line",
     "__main__",

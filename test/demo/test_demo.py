@@ -27,6 +27,7 @@ from contact_dynamics.measured.events import measure_events
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING, read_toss
 from contact_dynamics.measured.recorded_toss import Toss
 from contact_dynamics.recording import BagReader, service_calls
+from contact_dynamics.replay.verify import verify_log
 
 ROOT = Path(__file__).parents[2]
 BESIDE = ROOT.parent / "shared" / "data" / "cube_tosses" / "tosses.npz"
@@ -238,6 +239,13 @@ def test_the_log_has_every_answer_of_the_table(run: Run) -> None:
             list(landing.trajectory.positions)[-3:] == pytest.approx(position, abs=5e-4)
             for landing in landings
         )
+
+
+def test_its_log_asked_again_gives_every_answer_to_the_bit(run: Run) -> None:
+    found = verify_log(run.paths[0])
+    assert found.others == []
+    asked = {name.rpartition("/")[2] for name, tally in found.services.items() if tally.equal > 0}
+    assert asked == {"predict_tumbling", "predict_impact", "predict_contact_mode"}
 
 
 def test_the_brick_lands_and_leaves_as_predicted(brick: Run) -> None:

@@ -42,10 +42,10 @@ def test_each_event_has_the_time_of_its_call_whoever_asks() -> None:
     for _ in asked:
         calls.answer()
     for number, (gid, sequence) in enumerate(asked):
-        came = calls.times.log_time_ns(event(EventType.REQUEST_RECEIVED, number + 1, gid, sequence))
+        came = calls.times.of_event(event(EventType.REQUEST_RECEIVED, number + 1, gid, sequence)).log_time_ns
         assert calls.began[number][0] <= came <= calls.began[number][1]
     for number, (gid, sequence) in reversed(list(enumerate(asked))):
-        left = calls.times.log_time_ns(event(EventType.RESPONSE_SENT, number + 1, gid, sequence))
+        left = calls.times.of_event(event(EventType.RESPONSE_SENT, number + 1, gid, sequence)).log_time_ns
         assert calls.ended[number][0] <= left <= calls.ended[number][1]
 
 
@@ -53,9 +53,9 @@ def test_events_that_got_lost_shift_no_other() -> None:
     calls = Calls()
     for _ in range(4):
         calls.answer()
-    came = calls.times.log_time_ns(event(EventType.REQUEST_RECEIVED, 3, GID_A, 3))
+    came = calls.times.of_event(event(EventType.REQUEST_RECEIVED, 3, GID_A, 3)).log_time_ns
     assert calls.began[2][0] <= came <= calls.began[2][1]
-    came = calls.times.log_time_ns(event(EventType.REQUEST_RECEIVED, 4, GID_A, 4))
+    came = calls.times.of_event(event(EventType.REQUEST_RECEIVED, 4, GID_A, 4)).log_time_ns
     assert calls.began[3][0] <= came <= calls.began[3][1]
 
 
@@ -74,6 +74,6 @@ def test_other_events_are_of_now_and_take_no_calls_time(other: bytes) -> None:
     calls = Calls()
     calls.answer()
     before_ns = time.time_ns()
-    assert before_ns <= calls.times.log_time_ns(other) <= time.time_ns()
-    came = calls.times.log_time_ns(event(EventType.REQUEST_RECEIVED, 1, GID_A, 1))
+    assert before_ns <= calls.times.of_event(other).log_time_ns <= time.time_ns()
+    came = calls.times.of_event(event(EventType.REQUEST_RECEIVED, 1, GID_A, 1)).log_time_ns
     assert calls.began[0][0] <= came <= calls.began[0][1]

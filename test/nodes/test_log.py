@@ -29,6 +29,7 @@ from rclpy.duration import Duration
 from rosbags.highlevel import AnyReader
 
 from contact_dynamics.recording import BagReader, decode, service_calls
+from contact_dynamics.replay.verify import verify_log
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg
 from running_server import PATIENCE_S, ROOT, SERVICES, Client, process
@@ -241,12 +242,20 @@ def test_the_run_record_has_every_parameter(session: Session) -> None:
     run = BagReader(session.folder).run()
     (node,) = yaml.safe_load((ROOT / "config" / "server.yaml").read_text(encoding="utf-8")).values()
     configured = {**node["ros__parameters"], "log_directory": str(session.folder.parent)}
-    assert {name: run.get(name) for name in configured} == {
-        name: str(value) for name, value in configured.items()
-    }
+    parameters = json.loads(run["parameters"])
+    assert {name: parameters.get(name) for name in configured} == configured
+    assert json.loads(run["state_topics"]) == {"body.brick.odometry_topic": STATES_TOPIC}
     assert run["version"]
     versions = {"python": platform.python_version(), "numpy": np.__version__, "scipy": scipy.__version__}
     assert {name: run[name] for name in versions} == versions
+
+
+def test_asked_again_every_answer_is_equal_to_the_bit(session: Session) -> None:
+    found = verify_log(session.folder)
+    assert found.others == []
+    assert [tally.equal for tally in found.services.values()] == [
+        len(calls) for calls in session.asked.values()
+    ]
 
 
 def test_metadata_counts_what_is_in_the_file(session: Session) -> None:

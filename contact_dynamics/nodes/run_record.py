@@ -1,0 +1,111 @@
+"""How a run was configured, as text in its log: written by the server, and read back without ROS.
+
+`PARAMETERS` and `TOPICS` are JSON, so that a number, a text and a list stay what they are, to the last bit.
+Logs before 0.1.0 have each parameter under its own name instead, as Python prints it.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import platform
+import re
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any, Final
+
+from contact_dynamics.nodes.parameters import ConfigurationError
+from contact_dynamics.version import version_of_this_package
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+PARAMETERS: Final = "parameters"
+"""The key of all parameters of the node: a JSON object, by name."""
+
+TOPICS: Final = "state_topics"
+"""The key of the full names of the topics of states: a JSON object, by the parameter that names each."""
+
+NODE_NAME: Final = "contact_dynamics"
+
+_ARRAY: Final = re.compile(r"array\('\w', (\[.*\])\)", re.DOTALL)
+
+
+def versions_here() -> dict[str, str]:
+    """Return the versions that the last bits of an answer depend on."""
+    libraries = {name: version(name) for name in ("numpy", "scipy")}
+    return {"version": version_of_this_package(), "python": platform.python_version(), **libraries}
+
+
+def run_record(parameters: Mapping[str, Any], topics: Mapping[str, str]) -> dict[str, str]:
+    """Return what the log says of a run; the package's version is added by the log itself."""
+    plain = {name: _plain(value) for name, value in parameters.items()}
+    versions = {name: text for name, text in versions_here().items() if name != "version"}
+    return {**versions, PARAMETERS: json.dumps(plain), TOPICS: json.dumps(dict(topics))}
+
+
+class LoggedParameters:
+    """The record of a run as the source of its parameters: a `ParameterSource`."""
+
+    def __init__(self, run: Mapping[str, str]) -> None:
+        """Read from what `run_record` or an older server wrote.
+
+        Raises:
+            ConfigurationError: the record is not what a server writes.
+        """
+        self._texts = run
+        self._values: dict[str, Any] | None = None
+        self._topics: dict[str, str] = {}
+        try:
+            if PARAMETERS in run:
+                self._values = dict(json.loads(run[PARAMETERS]))
+                self._topics = dict(json.loads(run.get(TOPICS, "{}")))
+        except (ValueError, TypeError) as error:
+            message = f"the log's record of its run cannot be read: {error}"
+            raise ConfigurationError(message) from None
+
+    def value(
+        self,
+        name: str,
+        default: Any,
+        description: str,
+        bounds: tuple[float, float] | None = None,  # noqa: ARG002  the server judged them
+    ) -> Any:
+        """Return a parameter's value, or the default of one that was not there yet; see `ParameterSource`."""
+        if self._values is not None:
+            found = self._values.get(name)
+        else:
+            found = _from_text(name, self._texts[name], default) if name in self._texts else None
+        if found is None and not isinstance(default, type):
+            return default
+        wanted = default if isinstance(default, type) else type(default)
+        if not isinstance(found, wanted):
+            message = f"{name}: found {found!r} in the log, needed is: {description}"
+            raise ConfigurationError(message)
+        return found
+
+    def resolved_topic(self, name: str, topic: str) -> str:
+        """Return the full name under which a topic was logged; see `ParameterSource`."""
+        if name in self._topics:
+            return self._topics[name]
+        if topic.startswith("~"):
+            return f"/{NODE_NAME}{topic[1:]}"
+        return topic if topic.startswith("/") else f"/{topic}"
+
+
+def _plain(value: Any) -> Any:
+    return value if isinstance(value, (bool, int, float, str, type(None))) else list(value)
+
+
+def _from_text(name: str, text: str, default: Any) -> Any:
+    """Return a value that ``str`` printed, of the type of the default."""
+    kind = default if isinstance(default, type) else type(default)
+    if kind is str:
+        return text
+    try:
+        if kind is float:
+            return float(text)
+        array = _ARRAY.fullmatch(text)
+        return ast.literal_eval(array[1] if array else text)
+    except (ValueError, SyntaxError):
+        message = f"{name}: found {text!r} in the log, which is no {kind.__name__}"
+        raise ConfigurationError(message) from None

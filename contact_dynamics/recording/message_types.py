@@ -1,0 +1,178 @@
+"""Message types as a log describes them: classes made of their texts, which need no ROS.
+
+A log holds the full text of each type (`definitions`). Here the text becomes a class with the fields, the
+defaults and the constants of the type. What reads a message of ROS can read one of these.
+
+Not covered: texts in another form than MCAP's ros2msg; wide strings.
+"""
+
+from __future__ import annotations
+
+import re
+from array import array
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, ClassVar, Final
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
+
+PRIMITIVES: Final = {
+    "bool": "?", "byte": "B", "char": "B", "int8": "b", "uint8": "B", "int16": "h", "uint16": "H",
+    "int32": "i", "uint32": "I", "int64": "q", "uint64": "Q", "float32": "f", "float64": "d",
+}  # fmt: skip
+"""The types of one number, and what the `struct` module calls each."""
+
+_HEADING: Final = re.compile(r"^=+\r?\nMSG: (\S+)\r?$", re.MULTILINE)
+_LINE: Final = re.compile(
+    r"(?P<type>[A-Za-z][\w/]*)(?:<=\d+)?(?P<array>\[(?:<=)?(?P<count>\d*)\])?\s+(?P<name>\w+)\s*(?P<rest>.*)"
+)
+_BOUNDED: Final = "<="
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Field:
+    """A field of a message.
+
+    Attributes:
+        type_name: A key of `PRIMITIVES`, "string", or "package/Name".
+        is_array: Whether it holds several.
+        count: How many, where that is fixed. None: as many as the message says.
+        default: As the type's text gives it. None: not given.
+    """
+
+    name: str
+    type_name: str
+    is_array: bool = False
+    count: int | None = None
+    default: Any = None
+
+
+class Message:
+    """A message of a type that a log describes.
+
+    Attributes:
+        FIELDS: The fields of the type.
+        TYPES: The types of the messages that it is built of, by "package/Name".
+    """
+
+    FIELDS: ClassVar[tuple[Field, ...]] = ()
+    TYPES: ClassVar[dict[str, type[Message]]] = {}
+
+    def __init__(self, **values: Any) -> None:
+        """Give each field its value, or its default."""
+        for field in self.FIELDS:
+            setattr(self, field.name, values[field.name] if field.name in values else self.empty(field))
+
+    @classmethod
+    def empty(cls, field: Field) -> Any:
+        """Return the default of a field."""
+        if field.is_array:
+            return cls._empty_array(field)
+        if field.type_name in cls.TYPES:
+            return cls.TYPES[field.type_name]()
+        if field.default is not None:
+            return field.default
+        return "" if field.type_name == "string" else PYTHON_TYPES[field.type_name]()
+
+    @classmethod
+    def _empty_array(cls, field: Field) -> Any:
+        code = PRIMITIVES.get(field.type_name)
+        if field.default is not None:
+            return list(field.default)
+        if code is None or code == "?":
+            one = Field(name=field.name, type_name=field.type_name)
+            return [cls.empty(one) for _ in range(field.count or 0)]
+        return array(code) if field.count is None else np.zeros(field.count, dtype=code)
+
+
+PYTHON_TYPES: Final = {
+    name: {"?": bool, "f": float, "d": float}.get(code, int) for name, code in PRIMITIVES.items()
+}
+"""What Python calls a number of each of `PRIMITIVES`."""
+
+
+@lru_cache(maxsize=256)
+def message_types(type_name: str, definition: str) -> dict[str, type[Message]]:
+    """Return the classes of a type and of all that it is built of, by "package/Name".
+
+    Args:
+        type_name: "package/msg/Name", or "package/srv/Name_Event".
+        definition: Its text in MCAP's ros2msg form, as `LoggedMessage.definition` has it.
+
+    Raises:
+        InvalidFieldError: a line of the text is none of a message's, or it leaves out a type that it names.
+    """
+    package, _, name = type_name.partition("/")[0], "", type_name.rpartition("/")[2]
+    first, *others = _HEADING.split(definition)
+    texts = {f"{package}/{name}": first, **dict(zip(others[::2], others[1::2], strict=True))}
+    types: dict[str, type[Message]] = {}
+    for full_name, text in texts.items():
+        types[full_name] = _class(full_name, text, types)
+    for full_name, made in types.items():
+        for field in made.FIELDS:
+            if field.type_name not in {*types, *PRIMITIVES, "string"}:
+                raise InvalidFieldError(
+                    "definition",
+                    f"{full_name}.{field.name} of the type {field.type_name}",
+                    "types it defines",
+                )
+    return types
+
+
+def _class(full_name: str, text: str, types: dict[str, type[Message]]) -> type[Message]:
+    package, _, name = full_name.rpartition("/")
+    fields: list[Field] = []
+    constants: dict[str, Any] = {}
+    for number, line in enumerate(text.splitlines(), start=1):
+        stripped = line.strip()
+        if not stripped or stripped.startswith("#"):
+            continue
+        match = _LINE.fullmatch(stripped)
+        if match is None:
+            raise InvalidFieldError(
+                "definition", f"{full_name}, line {number}: {line!r}", "a type and a name"
+            )
+        rest = match["rest"]
+        if rest.startswith("=") and not match["array"]:
+            constants[match["name"]] = _value(rest[1:].strip(), match["type"])
+            continue
+        rest = rest.partition("#")[0].strip() if not rest.startswith(("'", '"')) else rest
+        bounded = _BOUNDED in (match["array"] or "")
+        fields.append(
+            Field(
+                name=match["name"],
+                type_name=_full(match["type"], package),
+                is_array=match["array"] is not None,
+                count=int(match["count"]) if match["count"] and not bounded else None,
+                default=_default(rest, match["type"], is_array=match["array"] is not None) if rest else None,
+            )
+        )
+    return type(name, (Message,), {"FIELDS": tuple(fields), "TYPES": types, **constants})
+
+
+def _full(type_name: str, package: str) -> str:
+    if type_name in PRIMITIVES or type_name in {"string", "wstring"} or "/" in type_name:
+        return type_name.replace("/msg/", "/")
+    return "std_msgs/Header" if type_name == "Header" else f"{package}/{type_name}"
+
+
+def _default(text: str, type_name: str, *, is_array: bool) -> Any:
+    if not is_array:
+        return _value(text, type_name)
+    return [_value(each.strip(), type_name) for each in text.strip("[]").split(",") if each.strip()]
+
+
+def _value(text: str, type_name: str) -> Any:
+    """Return a constant or a default; what follows a number is a comment."""
+    if type_name in {"string", "wstring"}:
+        quoted = re.match(r"""(["'])(.*)\1""", text)
+        return quoted[2] if quoted else text
+    word = text.partition("#")[0].strip()
+    if type_name == "bool":
+        return word.lower() in {"true", "1"}
+    try:
+        return float(word) if PYTHON_TYPES.get(type_name) is float else int(word, 0)
+    except ValueError:
+        raise InvalidFieldError("definition", f"{text!r} for a {type_name}", "a number") from None

@@ -1,0 +1,102 @@
+"""The server once more, without ROS: its configuration, the states that it knew, its answers.
+
+It is made of what the server is made of: the same reading of parameters, of states and of requests, the same
+answers, the same writing of responses.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.nodes.parameters import read_server_parameters
+from contact_dynamics.nodes.run_record import LoggedParameters
+from contact_dynamics.nodes.services import SERVICES
+from contact_dynamics.nodes.state_sources import state_sources
+from contact_dynamics.questions.knowledge import Knowledge
+from contact_dynamics.questions.state_store import StateStore
+from contact_dynamics.recording.cdr import decode_without_ros
+from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
+from msg_adapters.status import report_error
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from contact_dynamics.recording.bag_reader import LoggedMessage
+    from contact_dynamics.rigid_body.body import BodyState
+
+CLOCK: Final = "/clock"
+
+
+class ServerAgain:
+    """Answers as the server of a log did, from what it was configured with and had received."""
+
+    def __init__(self, run: Mapping[str, str]) -> None:
+        """Take the configuration from the log's record of its run.
+
+        Raises:
+            ConfigurationError: the record lacks a parameter, or has one that is not allowed.
+        """
+        parameters = read_server_parameters(LoggedParameters(run))
+        logged = LoggedParameters(run)
+        self._asked_ns = 0
+        self._clock_ns = 0
+        self._states = StateStore(history=parameters.state_history, timeout=parameters.state_timeout)
+        self._world_frame = parameters.world_frame
+        self._knowledge = Knowledge(
+            world=parameters.world,
+            states=self._states,
+            defaults=parameters.defaults,
+            now_ns=lambda: self._asked_ns,
+        )
+        self._sources: dict[str, tuple[str, Callable[[Any], BodyState | None]]] = {}
+        for topics in parameters.topics:
+            p_FB_F = parameters.world.body(topics.body_name).p_FB_F
+            for source in state_sources(topics, world_frame=parameters.world_frame, p_FB_F=p_FB_F):
+                topic = logged.resolved_topic(source.parameter, source.topic)
+                self._sources[topic] = (topics.body_name, source.state_from)
+
+    @property
+    def topics(self) -> frozenset[str]:
+        """The topics that answers depend on."""
+        return frozenset({*self._sources, CLOCK})
+
+    def receive(self, message: LoggedMessage) -> None:
+        """Take a message about a body, or a tick of the simulated time; ignore what the server ignored."""
+        if message.topic == CLOCK:
+            self._tick(leading_stamp_ns(message.data))
+            return
+        body_name, state_from = self._sources[message.topic]
+        try:
+            state = state_from(decode_without_ros(message))
+        except ContactDynamicsError:
+            return
+        if state is not None:
+            self._states.add(body_name, state)
+
+    def answer(
+        self, service_type: str, request: object, make_response: Callable[[], Any], *, asked_ns: int
+    ) -> Any:
+        """Return the response to a request.
+
+        Args:
+            service_type: "package/srv/Name".
+            request: as it was logged.
+            make_response: returns an empty one.
+            asked_ns: when the request came, by the clock of the states.
+        """
+        self._asked_ns = asked_ns
+        name = service_type.rpartition("/")[2]
+        service = next(service for service in SERVICES if service.type_name == name)
+        response = make_response()
+        try:
+            service.serve(request, response, self._knowledge, world_frame=self._world_frame)
+        except Exception as error:  # noqa: BLE001  the server reports a fault of its own too, and goes on
+            response = make_response()
+            report_error(response, error)
+        return response
+
+    def _tick(self, clock_ns: int) -> None:
+        if clock_ns < self._clock_ns:  # the server forgets all states when its clock is set back
+            self._states.clear()
+        self._clock_ns = clock_ns

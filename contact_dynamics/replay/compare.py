@@ -1,0 +1,98 @@
+"""Two responses side by side, field by field."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from contact_dynamics.recording.message_types import PRIMITIVES, PYTHON_TYPES, Field, Message
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+MEASURED: Final = frozenset({"computation_time"})
+"""Fields of a response that tell how the answer was made, not what it is."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Difference:
+    """One field that is not the same.
+
+    Attributes:
+        field: Its path within the response, as in "modes[2].margin".
+        logged: Its value in the log.
+        recomputed: Its value today.
+        size: The difference of the two, in parts of the larger one or of 1, whichever is more. Infinite
+            where they are not numbers, not as many, or one of them is not finite.
+    """
+
+    field: str
+    logged: object
+    recomputed: object
+    size: float
+
+
+def differences(logged: Message, recomputed: object, *, path: str = "") -> Iterator[Difference]:
+    """Yield each field of a logged message that another message has otherwise, to the bit."""
+    for field in logged.FIELDS:
+        if not path and field.name in MEASURED:
+            continue
+        name = f"{path}.{field.name}" if path else field.name
+        ours = getattr(logged, field.name)
+        if not hasattr(recomputed, field.name):
+            yield Difference(field=name, logged=ours, recomputed="no such field", size=math.inf)
+            continue
+        theirs = getattr(recomputed, field.name)
+        if not field.is_array:
+            yield from _of_one(field, name, ours, theirs)
+        elif field.type_name in PRIMITIVES:
+            yield from _of_numbers(field, name, ours, theirs)
+        elif len(ours) != len(theirs):
+            yield _of_lengths(name, len(ours), len(theirs))
+        else:
+            for index, (one, other) in enumerate(zip(ours, theirs, strict=True)):
+                yield from _of_one(field, f"{name}[{index}]", one, other)
+
+
+def _of_one(field: Field, name: str, ours: Any, theirs: Any) -> Iterator[Difference]:
+    if field.type_name in PRIMITIVES:
+        yield from _of_numbers(field, name, [ours], [theirs], is_array=False)
+    elif field.type_name == "string":
+        if ours != theirs:
+            yield Difference(field=name, logged=ours, recomputed=theirs, size=math.inf)
+    else:
+        yield from differences(ours, theirs, path=name)
+
+
+def _of_numbers(
+    field: Field, name: str, ours: Any, theirs: Any, *, is_array: bool = True
+) -> Iterator[Difference]:
+    if len(ours) != len(theirs):
+        yield _of_lengths(name, len(ours), len(theirs))
+        return
+    code = PRIMITIVES[field.type_name]
+    one, other = np.array(ours, dtype=code), np.array(theirs, dtype=code)
+    if one.tobytes() == other.tobytes():
+        return
+    to_python = PYTHON_TYPES[field.type_name]
+    for index in range(len(one)):
+        x, y = to_python(one[index]), to_python(other[index])
+        if one[index].tobytes() == other[index].tobytes() or (math.isnan(x) and math.isnan(y)):
+            continue
+        where = f"{name}[{index}]" if is_array else name
+        size = _size(x, y) if to_python is float else math.inf
+        yield Difference(field=where, logged=x, recomputed=y, size=size)
+
+
+def _of_lengths(name: str, ours: int, theirs: int) -> Difference:
+    return Difference(field=f"number of {name}", logged=ours, recomputed=theirs, size=math.inf)
+
+
+def _size(x: float, y: float) -> float:
+    """Return how far two numbers are apart, in parts of the larger one or of 1."""
+    if not (math.isfinite(x) and math.isfinite(y)):
+        return math.inf
+    return abs(x - y) / max(1.0, abs(x), abs(y))

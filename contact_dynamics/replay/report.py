@@ -1,0 +1,81 @@
+"""What came of a log, as text for a terminal."""
+
+from __future__ import annotations
+
+from datetime import datetime, timezone
+from typing import TYPE_CHECKING, Final
+
+from contact_dynamics.constants import NS_PER_S
+
+if TYPE_CHECKING:
+    from contact_dynamics.replay.verify import OtherAnswer, Verification
+
+_LONGEST_VALUE: Final = 120  # characters; messages that an answer carries can be pages
+
+
+def report(found: Verification) -> str:
+    """Return the table of a log, what differs first, and what could not be read."""
+    lines = [str(found.path)]
+    changed = [
+        f"{name} {text} (here {found.versions_now[name]})"
+        for name, text in found.versions.items()
+        if found.versions_now[name] != text
+    ]
+    if changed:
+        lines.append(f"  written with {', '.join(changed)}: the last bits may differ (see --tolerance)")
+    lines += _table(found)
+    for other in found.others:
+        lines += _other(other)
+    untold = sum(tally.different for tally in found.services.values()) - len(found.others)
+    if untold > 0:
+        lines.append(f"  and {untold} questions more with other answers")
+    lines += _gaps(found)
+    return "\n".join(lines)
+
+
+def _table(found: Verification) -> list[str]:
+    if not found.services:
+        return ["  no questions"]
+    within = f"within {found.tolerance:g}" if found.tolerance > 0.0 else ""
+    heads = ["questions", "equal to the bit", *([within] if within else []), "different"]
+    width = max(len(name) for name in found.services)
+    lines = [f"  {'service':{width}}  {'  '.join(heads)}"]
+    for name, tally in found.services.items():
+        counts = [tally.questions, tally.equal, *([tally.within] if within else []), tally.different]
+        cells = "  ".join(f"{count:>{len(head)}}" for count, head in zip(counts, heads, strict=True))
+        lines.append(f"  {name:{width}}  {cells}")
+    return lines
+
+
+def _other(other: OtherAnswer) -> list[str]:
+    when = datetime.fromtimestamp(other.asked_ns // NS_PER_S, timezone.utc)
+    stamp = f"{when:%Y-%m-%d %H:%M:%S}.{other.asked_ns % NS_PER_S:09d} UTC"
+    fields = [
+        f"    {each.field}: logged {_short(each.logged)}, recomputed {_short(each.recomputed)}"
+        for each in other.differences
+    ]
+    return [
+        f"  {other.service}, question {other.number}, asked {stamp} (log_time {other.asked_ns}):",
+        *fields,
+    ]
+
+
+def _gaps(found: Verification) -> list[str]:
+    lines = []
+    unanswered = sum(tally.unanswered for tally in found.services.values())
+    unreadable = sum(tally.unreadable for tally in found.services.values())
+    if unanswered:
+        lines.append(f"  {unanswered} questions have no answer in the log and were not asked")
+    if unreadable:
+        lines.append(f"  {unreadable} calls could not be read; the first: {found.unreadable}")
+    if found.damage is not None:
+        lines.append(f"  {found.damage}")
+        lines.append(
+            "  what was read is compared above; an answer can differ where a state that it used is lost"
+        )
+    return lines
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= _LONGEST_VALUE else f"{text[:_LONGEST_VALUE]}..."

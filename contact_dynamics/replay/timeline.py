@@ -1,0 +1,53 @@
+"""The questions of a log in the order in which they came, each after the states that were known by then.
+
+The log has states in the order in which they came, and events behind what came while the answer was made. So
+the file is read twice at once: one reading finds the calls, the other follows with the states, up to the
+``log_time`` of each request. Whatever the length of the log, one call and one message are in memory.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from contact_dynamics.recording.definitions import EVENT_SUFFIX
+from contact_dynamics.recording.service_calls import EVENT_TOPIC_SUFFIX, ServiceCall, service_calls
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+
+    from contact_dynamics.recording.bag_reader import BagReader, LoggedMessage
+
+INTERFACES: Final = "contact_dynamics_interfaces/srv/"
+
+
+def in_order(
+    calls_from: BagReader, states_from: BagReader, topics: Collection[str]
+) -> Iterator[LoggedMessage | ServiceCall]:
+    """Yield the messages of some topics, and between them each call where its request came.
+
+    Args:
+        calls_from: reads the calls of this package's services.
+        states_from: reads the same log once more.
+        topics: what the answers depend on.
+    """
+    states = states_from.messages(topics)
+    state = next(states, None)
+    for call in service_calls(_events(calls_from)):
+        if call.request_event is not None:
+            while state is not None and state.log_time_ns <= call.request_event.log_time_ns:
+                yield state
+                state = next(states, None)
+        yield call
+
+
+def is_event_of_ours(message: LoggedMessage) -> bool:
+    """Tell whether a message is an event of a service of this package."""
+    return (
+        message.topic.endswith(EVENT_TOPIC_SUFFIX)
+        and message.type_name.startswith(INTERFACES)
+        and message.type_name.endswith(EVENT_SUFFIX)
+    )
+
+
+def _events(log: BagReader) -> Iterator[LoggedMessage]:
+    return (message for message in log.messages() if is_event_of_ours(message))

@@ -1,0 +1,225 @@
+"""Asks today's code every logged question, with the states that were logged, and compares the answers."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.nodes.run_record import PARAMETERS, versions_here
+from contact_dynamics.recording.bag_reader import BagReader, LoggedMessage
+from contact_dynamics.recording.cdr import decode_without_ros
+from contact_dynamics.recording.definitions import EVENT_SUFFIX
+from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
+from contact_dynamics.recording.service_calls import ServiceCall
+from contact_dynamics.replay.compare import Difference, differences
+from contact_dynamics.replay.stand_ins import stand_in
+from contact_dynamics.replay.timeline import INTERFACES, in_order
+from contact_dynamics.validation import check_not_negative
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+    from pathlib import Path
+
+    from contact_dynamics.recording.message_types import Message
+    from contact_dynamics.replay.again import ServerAgain
+
+MOST_TOLD: Final = 10
+"""Number of questions with other answers whose differences are kept."""
+
+MOST_FIELDS_TOLD: Final = 5
+"""Number of different fields of one answer that are kept."""
+
+
+@dataclass(slots=True, kw_only=True)
+class ServiceTally:
+    """How the questions to one service came out.
+
+    Attributes:
+        questions: How many were asked again.
+        equal: Answered as in the log to the last bit.
+        within: Answered otherwise, by no more than the tolerance.
+        different: Answered otherwise, by more.
+        unanswered: Questions that the log has no answer to.
+        unreadable: Calls whose question is missing, or that cannot be decoded.
+    """
+
+    questions: int = 0
+    equal: int = 0
+    within: int = 0
+    different: int = 0
+    unanswered: int = 0
+    unreadable: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OtherAnswer:
+    """A question that is answered otherwise today.
+
+    Attributes:
+        service: With its leading slash.
+        number: Number of the question among those to this service, from 1.
+        asked_ns: When it came, ns since the epoch by the machine's clock: the ``log_time`` of its event.
+        differences: The first fields that differ.
+    """
+
+    service: str
+    number: int
+    asked_ns: int
+    differences: tuple[Difference, ...]
+
+
+@dataclass(slots=True, kw_only=True)
+class Verification:
+    """What came of one log.
+
+    Attributes:
+        path: The log.
+        tolerance: What a number may differ by, in parts of the larger one or of 1.
+        versions: Versions of what wrote the log, by name.
+        versions_now: Versions of what answered again, by name.
+        services: Tallies by the service's name.
+        others: The first questions that are answered otherwise.
+        unreadable: Why a call could not be read: the first reason.
+        damage: What of the log could not be read, or None if all was whole.
+    """
+
+    path: Path
+    tolerance: float
+    versions: dict[str, str]
+    versions_now: dict[str, str]
+    services: dict[str, ServiceTally] = field(default_factory=dict)
+    others: list[OtherAnswer] = field(default_factory=list)
+    unreadable: str | None = None
+    damage: str | None = None
+
+    @property
+    def agrees(self) -> bool:
+        """Whether every question that could be read is answered as in the log, within the tolerance."""
+        return not any(tally.different or tally.unreadable for tally in self.services.values())
+
+
+def verify_log(
+    path: Path, *, tolerance: float = 0.0, on_progress: Callable[[int, int], object] | None = None
+) -> Verification:
+    """Ask every question of a log again and compare the answers field by field.
+
+    Fields that tell how an answer was made (`compare.MEASURED`) are left out.
+
+    Args:
+        path: a log of the server: its folder, or an ``.mcap`` file.
+        tolerance: >= 0. What a number may differ by, in parts of the larger one or of 1, whichever is more.
+            Zero: nothing, to the last bit.
+        on_progress: told again and again how many states were taken and how many questions asked.
+
+    Raises:
+        NotALogError: it is no log, or none of the server.
+        ConfigurationError: its record of the run lacks a parameter, or has one that is not allowed.
+        NotSupportedError: without ROS, another log in this process described a message otherwise.
+    """
+    check_not_negative("tolerance", tolerance)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DamagedLogWarning)  # told in the result
+        run, server = _server_of(path)
+        found = Verification(
+            path=path,
+            tolerance=tolerance,
+            versions={name: run[name] for name in versions_here() if name in run},
+            versions_now=versions_here(),
+        )
+        log, again = BagReader(path), BagReader(path)
+        states = questions = 0
+        for each in in_order(log, again, server.topics):
+            if isinstance(each, ServiceCall):
+                questions += 1
+                _ask(each, server, found)
+            else:
+                states += 1
+                server.receive(each)
+            if on_progress is not None:
+                on_progress(states, questions)
+        found.damage = log.damage
+    return found
+
+
+def _server_of(path: Path) -> tuple[dict[str, str], ServerAgain]:
+    """Return the record of a log's run, and a server that is configured by it."""
+    log = BagReader(path)
+    definitions = log.definitions()
+    events = [name for name in definitions if name.startswith(INTERFACES) and name.endswith(EVENT_SUFFIX)]
+    if not events:
+        known = ", ".join(sorted(definitions)) or "none"
+        raise NotALogError(f"{path}: not a log of the server: no service of it in the log's types ({known})")
+    run = log.run()
+    if PARAMETERS not in run and "world_frame" not in run:
+        damage = f" ({log.damage})" if log.damage else ""
+        raise NotALogError(
+            f"{path}: not a log of the server: no record of how its run was configured{damage}"
+        )
+    stand_in(definitions.items())
+    from contact_dynamics.replay.again import ServerAgain  # here, for it imports what now stands in for ROS
+
+    return run, ServerAgain(run)
+
+
+def _ask(call: ServiceCall, server: ServerAgain, found: Verification) -> None:
+    """Ask one question again and note how the answers compare."""
+    tally = found.services.setdefault(call.service, ServiceTally())
+    if call.response_event is None:
+        tally.unanswered += 1
+        return
+    if call.request_event is None:
+        _unreadable(found, tally, "the log has an answer whose question it has not")
+        return
+    try:
+        request, _ = _contents(call.request_event, "request")
+        logged, make_response = _contents(call.response_event, "response")
+    except InvalidFieldError as error:
+        _unreadable(found, tally, str(error))
+        return
+    tally.questions += 1
+    # The time of the node's clock when the question came: its present.
+    asked_ns = call.request_event.publish_time_ns
+    recomputed = server.answer(call.service_type, request, make_response, asked_ns=asked_ns)
+    same, told = _beyond(differences(logged, recomputed), found.tolerance)
+    if told:
+        tally.different += 1
+        if len(found.others) < MOST_TOLD:
+            other = OtherAnswer(
+                service=call.service,
+                number=tally.questions,
+                asked_ns=call.request_event.log_time_ns,
+                differences=told,
+            )
+            found.others.append(other)
+    elif same:
+        tally.equal += 1
+    else:
+        tally.within += 1
+
+
+def _beyond(found: Iterable[Difference], tolerance: float) -> tuple[bool, tuple[Difference, ...]]:
+    """Return whether there is no difference at all, and the first ones that the tolerance does not allow."""
+    same = True
+    told: list[Difference] = []
+    for difference in found:
+        same = False
+        if tolerance == 0.0 or difference.size > tolerance:
+            told.append(difference)
+            if len(told) == MOST_FIELDS_TOLD:
+                break
+    return same, tuple(told)
+
+
+def _contents(event: LoggedMessage, part: str) -> tuple[Message, type[Message]]:
+    """Return the request or the response that an event carries, and its type."""
+    contents: list[Message] = getattr(decode_without_ros(event), part)
+    if not contents:
+        raise InvalidFieldError(event.topic, f"an event without its {part}", "introspection with contents")
+    return contents[0], type(contents[0])
+
+
+def _unreadable(found: Verification, tally: ServiceTally, reason: str) -> None:
+    tally.unreadable += 1
+    found.unreadable = found.unreadable or reason

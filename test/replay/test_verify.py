@@ -1,0 +1,315 @@
+"""Logs of a real server, asked again: all is as it was, and what was changed is found and named.
+
+`without_ros` runs the command in a process in which nothing of ROS can be imported.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from geometry_msgs.msg import PoseStamped, TwistStamped
+from mcap.reader import make_reader
+from nav_msgs.msg import Odometry
+
+from contact_dynamics.recording import BagReader, BagWriter, LoggedMessage, NotALogError, service_calls
+from contact_dynamics.replay.run import main
+from contact_dynamics.replay.verify import Verification, verify_log
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from running_server import ROOT, server_and_client
+
+ROUNDS = 8
+BLOCKED = """
+import sys
+class NoRos:
+    def find_spec(self, name, path=None, target=None):
+        first = name.partition(".")[0]
+        if first in {"rclpy", "rpyutils", "ament_index_python"} or first.endswith(("_msgs", "_interfaces")):
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+sys.meta_path.insert(0, NoRos())
+from contact_dynamics.command_line import main
+sys.exit(main(sys.argv[1:]))
+"""
+"""The command line where no module of ROS can be found."""
+
+
+def without_ros(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    """Run `contact-dynamics replay` in such a process."""
+    return subprocess.run(
+        [sys.executable, "-c", BLOCKED, "replay", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "AMENT_PREFIX_PATH": ""},
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Asked:
+    """A log, and how many questions each service was asked."""
+
+    log: Path
+    counts: dict[str, int]
+
+
+def odometry(stamp: Any, number: int) -> Odometry:
+    """A state of the brick in the air, tumbling."""
+    msg = Odometry(child_frame_id="brick")
+    msg.header.frame_id, msg.header.stamp = "world", stamp
+    msg.pose.pose.position.x, msg.pose.pose.position.z = 0.1 * number, 1.0 + 0.01 * number
+    half = 0.05 * number
+    msg.pose.pose.orientation.x, msg.pose.pose.orientation.w = math.sin(half), math.cos(half)
+    msg.twist.twist.linear.x, msg.twist.twist.angular.y = 0.3 * number, 1.0 + number
+    return msg
+
+
+def questions(number: int) -> list[Any]:
+    """What depends on the newest states, and what depends on the question alone; some are refused."""
+    until = PredictTumbling.Request(body_name="brick", sampling=PredictTumbling.Request.UNTIL_CONTACT)
+    fitted = PredictTumbling.Request(body_name="brick", fit_window=0.2, want_covariance=True)
+    standing = PredictContactMode.Request(
+        state_source=PredictContactMode.Request.STATE_EXPLICIT, body_name="brick", want_margins=True
+    )
+    standing.state.pose.position.z = 0.025
+    standing.applied_wrench.force.x = 0.2 * number
+    return [
+        until,
+        fitted,
+        PredictImpact.Request(body_name="brick"),
+        standing,
+        PredictImpact.Request(body_name=f"cat {number}"),
+        PredictTumbling.Request(body_name="ball", duration=math.nan if number % 2 else 0.1),
+    ]
+
+
+def configured(folder: Path) -> Path:
+    """The commented configuration, with a ball whose pose and twist are published apart."""
+    text = (ROOT / "config" / "server.yaml").read_text(encoding="utf-8")
+    assert "bodies: [brick]" in text
+    ball = (
+        "    body.ball.mass: 0.2\n    body.ball.inertia: [0.0]\n    body.ball.sphere: [0.04]\n"
+        "    body.ball.pose_topic: ball/pose\n    body.ball.twist_topic: ball/twist\n"
+    )
+    file = folder / "server.yaml"
+    text = text.replace("bodies: [brick]", "bodies: [brick, ball]")
+    file.write_text(f"{text.rstrip()}\n\n{ball}", encoding="utf-8")
+    return file
+
+
+@pytest.fixture(scope="module")
+def asked(tmp_path_factory: pytest.TempPathFactory) -> Asked:
+    """A session in which states and questions alternate, and one comes when the states are too old."""
+    folder = tmp_path_factory.mktemp("asked")
+    counts: dict[str, int] = {}
+    with server_and_client(folder / "logs", params_file=configured(folder)) as client:
+        publishers = {
+            "odometry": client.publisher(Odometry, "/brick/odometry"),
+            "pose": client.publisher(PoseStamped, "/ball/pose"),
+            "twist": client.publisher(TwistStamped, "/ball/twist"),
+        }
+
+        def publish(number: int) -> None:
+            stamp = client.node.get_clock().now().to_msg()
+            publishers["odometry"].publish(odometry(stamp, number))
+            pose, twist = PoseStamped(), TwistStamped()
+            for msg in (pose, twist):
+                msg.header.frame_id, msg.header.stamp = "world", stamp
+            pose.pose.position.z, twist.twist.linear.y = 1.0 + 0.1 * number, 0.5
+            publishers["twist"].publish(twist)
+            publishers["pose"].publish(pose)
+
+        def ask(request: Any) -> Any:
+            name = type(request).__name__.removesuffix("_Request")
+            counts[name] = counts.get(name, 0) + 1
+            return client.ask(request)
+
+        for number in range(ROUNDS):
+            for step in range(4):
+                publish(4 * number + step)
+            for request in questions(number):
+                ask(request)
+        time.sleep(1.5)
+        stale = ask(PredictImpact.Request(body_name="brick"))
+        assert stale.status == PredictImpact.Response.STALE_STATE
+    (log,) = (folder / "logs").iterdir()
+    return Asked(log=log, counts=counts)
+
+
+def copied(asked: Asked, folder: Path, *, run: Callable[[dict[str, str]], dict[str, str]] = dict) -> Path:
+    """A copy of a log, with another record of its run."""
+    reader = BagReader(asked.log)
+    with BagWriter(folder / "copy", run=run(reader.run())) as writer:
+        messages = list(reader.messages())
+        for topic, type_name in sorted({(message.topic, message.type_name) for message in messages}):
+            writer.add_topic(topic, type_name)
+        for message in messages:
+            writer.write(
+                message.topic,
+                message.data,
+                log_time_ns=message.log_time_ns,
+                publish_time_ns=message.publish_time_ns,
+            )
+    return folder / "copy"
+
+
+def changed(parameter: str, value: object) -> Callable[[dict[str, str]], dict[str, str]]:
+    """What changes one parameter in the record of a run."""
+
+    def change(run: dict[str, str]) -> dict[str, str]:
+        parameters = json.loads(run["parameters"])
+        assert parameters[parameter] != value
+        return {**run, "parameters": json.dumps({**parameters, parameter: value})}
+
+    return change
+
+
+def as_text(run: dict[str, str]) -> dict[str, str]:
+    """The record as servers wrote it before it had types: each parameter as Python prints it."""
+    others = {key: text for key, text in run.items() if key not in {"parameters", "state_topics"}}
+    return {**others, **{name: str(value) for name, value in json.loads(run["parameters"]).items()}}
+
+
+def assert_all_equal(found: Verification, asked: Asked) -> None:
+    """Every question was asked again and answered as in the log."""
+    told = [(other.service, other.number, other.differences) for other in found.others]
+    assert told == []
+    assert found.agrees
+    assert {name.rpartition("/")[2]: tally.equal for name, tally in found.services.items()} == {
+        "predict_tumbling": asked.counts["PredictTumbling"],
+        "predict_impact": asked.counts["PredictImpact"],
+        "predict_contact_mode": asked.counts["PredictContactMode"],
+    }
+    assert found.damage is None
+
+
+def test_every_answer_is_equal_to_the_bit(asked: Asked) -> None:
+    assert_all_equal(verify_log(asked.log), asked)
+
+
+def test_it_needs_no_ros(asked: Asked) -> None:
+    done = without_ros(asked.log)
+    assert done.returncode == 0, done.stdout + done.stderr
+    rows = [line.split() for line in done.stdout.splitlines() if "/predict_" in line]
+    assert sum(int(row[1]) for row in rows) == sum(asked.counts.values())
+    assert all(row[1] == row[2] and row[3] == "0" for row in rows)
+
+
+@pytest.mark.slow
+def test_in_an_environment_with_the_library_alone(asked: Asked, tmp_path: Path) -> None:
+    environment = tmp_path / "environment"
+    subprocess.run([sys.executable, "-m", "venv", environment], check=True)
+    pip = [environment / "bin" / "pip", "install", "--quiet", "--disable-pip-version-check", ROOT]
+    subprocess.run(pip, check=True, cwd=tmp_path)
+    outside = {
+        key: value for key, value in os.environ.items() if key not in {"PYTHONPATH", "AMENT_PREFIX_PATH"}
+    }
+    command = [environment / "bin" / "contact-dynamics", "replay", asked.log]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=outside, cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert sum(int(line.split()[2]) for line in done.stdout.splitlines() if "/predict_" in line) == sum(
+        asked.counts.values()
+    )
+
+
+def test_a_record_without_types_is_read_too(asked: Asked, tmp_path: Path) -> None:
+    assert_all_equal(verify_log(copied(asked, tmp_path, run=as_text)), asked)
+
+
+def test_a_changed_constant_is_found_with_question_and_field(
+    asked: Asked, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log = copied(asked, tmp_path, run=changed("surface.floor.friction", 0.41))
+    found = verify_log(log)
+    assert not found.agrees
+    assert found.services["/contact_dynamics/predict_tumbling"].different == 0
+    other = next(other for other in found.others if other.service.endswith("predict_contact_mode"))
+    request_times = {
+        call.request_event.log_time_ns
+        for call in service_calls(BagReader(log).messages())
+        if call.request_event
+    }
+    assert other.asked_ns in request_times
+    assert main([str(log)]) == 1
+    printed = capsys.readouterr().out
+    assert f"question {other.number}, asked" in printed
+    for each in other.differences:
+        assert each.field.startswith("modes[0].")
+        assert f"{each.field}: logged {each.logged!r}, recomputed {each.recomputed!r}" in printed
+
+
+def test_a_difference_within_the_tolerance_is_counted_apart(asked: Asked, tmp_path: Path) -> None:
+    friction = json.loads(BagReader(asked.log).run()["parameters"])["surface.floor.friction"]
+    log = copied(asked, tmp_path, run=changed("surface.floor.friction", friction * (1.0 + 1e-13)))
+    tally = verify_log(log, tolerance=1e-6).services["/contact_dynamics/predict_contact_mode"]
+    assert tally.different == 0
+    assert tally.within > 0
+    assert verify_log(log).services["/contact_dynamics/predict_contact_mode"].different == tally.within
+
+
+def test_other_versions_are_told(asked: Asked, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = copied(asked, tmp_path, run=lambda run: {**run, "numpy": "1.26.0"})
+    assert main([str(log)]) == 0
+    assert "numpy 1.26.0 (here " in capsys.readouterr().out
+
+
+def test_a_truncated_log_is_asked_as_far_as_it_goes(
+    asked: Asked, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (whole,) = asked.log.glob("*.mcap")
+    cut = tmp_path / "cut.mcap"
+    with whole.open("rb") as stream:
+        summary = make_reader(stream).get_summary()
+    assert summary is not None
+    middle = summary.chunk_indexes[len(summary.chunk_indexes) // 2]
+    cut.write_bytes(whole.read_bytes()[: middle.chunk_start_offset + middle.chunk_length // 2])
+    found = verify_log(cut)
+    assert found.agrees
+    assert found.damage is not None
+    questions_left = sum(tally.equal for tally in found.services.values())
+    assert 0 < questions_left < sum(asked.counts.values())
+    assert main([str(cut)]) == 0
+    assert "is damaged or was cut short" in capsys.readouterr().out
+
+
+def test_a_log_of_another_kind_is_refused_by_name(
+    asked: Asked, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with BagWriter(tmp_path / "other", run={"body": "cube"}) as writer:
+        writer.add_topic("/pose", "geometry_msgs/msg/PoseStamped")
+    with pytest.raises(NotALogError, match=r"other: not a log of the server.*geometry_msgs/msg/PoseStamped"):
+        verify_log(tmp_path / "other")
+    without_run = copied(asked, tmp_path, run=lambda _run: {})
+    with pytest.raises(NotALogError, match="no record of how its run was configured"):
+        verify_log(without_run)
+    assert main([str(tmp_path / "none"), str(asked.log)]) == 2
+    printed = capsys.readouterr()
+    assert "none: no MCAP file here" in printed.err
+    assert "predict_tumbling" in printed.out  # the others are asked all the same
+
+
+def test_questions_without_an_answer_are_told(asked: Asked, tmp_path: Path) -> None:
+    reader = BagReader(asked.log)
+    messages: list[LoggedMessage] = list(reader.messages())
+    *_, last = (index for index, message in enumerate(messages) if message.topic.endswith("/_service_event"))
+    with BagWriter(tmp_path / "short", run=reader.run()) as writer:
+        for topic, type_name in sorted({(message.topic, message.type_name) for message in messages}):
+            writer.add_topic(topic, type_name)
+        for message in messages[:last]:
+            writer.write(
+                message.topic,
+                message.data,
+                log_time_ns=message.log_time_ns,
+                publish_time_ns=message.publish_time_ns,
+            )
+    found = verify_log(tmp_path / "short")
+    assert found.agrees
+    assert sum(tally.unanswered for tally in found.services.values()) == 1
