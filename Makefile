@@ -1,4 +1,4 @@
-# One command per job; each makes the environment that it needs first, and a second call finds it made.
+# There is one command for each job. It first makes the environment that it needs, if that is not there yet.
 
 SHELL := /bin/sh
 VENV := .venv
@@ -10,10 +10,10 @@ ifneq ($(words $(VENV)),1)
 $(error VENV: found '$(VENV)', allowed is a folder without spaces in its name)
 endif
 
-# A ROS or a Python environment that the calling shell has sourced stays out of this one.
+# A ROS or a Python environment that the calling shell has sourced must not affect this one.
 unexport AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH LD_LIBRARY_PATH RMW_IMPLEMENTATION
 unexport PYTHONHOME PYTHONPATH VIRTUAL_ENV
-# Set by the ROS wheels when they have started Python anew with their libraries; inherited, they would not do it again.
+# The ROS wheels set this when they have restarted Python with their libraries. If it were inherited, they would not restart.
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
 # A user-wide `pip install --user` as the default does not work inside a virtual environment.
 export PIP_USER := 0
@@ -64,7 +64,7 @@ venv: setup
 clean: ## remove what make made: the environment, the tools' caches, the demo's output
 	@setup/clean.sh $(VENV)
 
-# Each file in $(MADE) says that a step is done; its prerequisites say what makes the step due again.
+# Each file in $(MADE) says that a step is done. Its prerequisites are what makes the step necessary again.
 
 $(MADE)/python: FORCE
 	@setup/make_venv.sh $(VENV) $(if $(filter-out undefined,$(origin PYTHON)),"$(PYTHON)")
@@ -76,14 +76,14 @@ $(MADE)/wheels: $(RUN) requirements/constraints.txt $(MADE)/python
 	@touch $@
 
 INTERFACES := contact_dynamics_interfaces
-# The folders themselves count too: their time changes when a file goes.
+# The folders themselves are listed too, because their time changes when a file is removed.
 $(MADE)/interfaces: $(addprefix $(INTERFACES)/,CMakeLists.txt package.xml msg srv) $(wildcard $(INTERFACES)/*/*.msg $(INTERFACES)/*/*.srv) \
                     cmake/wheel_paths.cmake setup/build_interfaces.sh $(MADE)/wheels
 	@setup/build_interfaces.sh $(VENV)
 	@touch $@
 
-# Installed in place, so a change of the sources is seen at once.  pip leaves out the data files of such an install:
-# they are linked to where ROS looks for them, one by one, because `ros2 launch` does not follow a linked folder.
+# The package is installed in place, so a change of the sources works at once. pip leaves out its data files then, so they
+# are linked to where ROS looks for them. They are linked one by one, because `ros2 launch` does not follow a linked folder.
 SHARE := $(VENV)/share/contact_dynamics
 INDEX := $(VENV)/share/ament_index/resource_index/packages
 $(MADE)/package: setup.py package.xml pyproject.toml Makefile $(wildcard config launch config/*.yaml launch/*.launch.py) $(MADE)/wheels

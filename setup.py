@@ -1,6 +1,6 @@
 """Packaging for pip and for colcon.
 
-The version and what describes the package stand once, in package.xml; the dependencies, in requirements/.
+package.xml has the version and the description of the package, and requirements/ has the dependencies.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def requirements(kind: str) -> list[str]:
 
 
 def files(pattern: str) -> list[str]:
-    """The paths that match, relative to this file, which is how setuptools wants data files."""
+    """The paths that match, relative to this file, as setuptools needs them for data files."""
     return sorted(str(path.relative_to(HERE)) for path in HERE.glob(pattern))
 
 

@@ -1,1 +1,1 @@
-"""Speed and accuracy, with peers beside us: `python -m benchmarks`."""
+"""The benchmarks measure speed and accuracy, and run peers beside us: `python -m benchmarks`."""

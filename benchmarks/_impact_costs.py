@@ -1,4 +1,4 @@
-"""What an impact costs, in the plane, in space, in batches and for several contacts, beside iterative peers.
+"""The cost of an impact, in the plane, in space, in batches and for several contacts, beside iterative peers.
 
 Costs are processor time of this thread, so that a busy machine matters less.
 """
@@ -101,7 +101,7 @@ def _planar(law: RestitutionLaw) -> float:
 def _gauss_seidel() -> float:
     """Return the microseconds of the peer: Newton's law at the end of one step, by sweeps in plain Python.
 
-    It iterates the normal and the tangential impulse in turn; what it finds is not Routh's answer.
+    It iterates the normal and the tangential impulse in turn. Its result is not Routh's answer.
     """
     a, b, c, _ = inverse_inertia(1.0, 1.0, -1.0, -4.0)
 

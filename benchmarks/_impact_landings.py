@@ -1,8 +1,8 @@
 """How well each law predicts measured landings of a cube on several corners, some milliseconds apart.
 
-From the same recordings as `_impact_tosses`: pairs of flights with up to `MOST_BETWEEN` frames between them
-in which more than one corner can have struck. Each law takes the state before, at the end of the first
-flight, and says the velocities at the beginning of the second:
+The recordings are those of `_impact_tosses`. The benchmark takes pairs of flights with up to `MOST_BETWEEN`
+frames between them, in which more than one corner can have struck. Each law takes the state at the end of the
+first flight, and predicts the velocities at the beginning of the second:
 
 * one strike: the corner that lands first, and free flight from there on;
 * at once: all corners that are then within `ALONE` of the floor, one after the other at that instant;
@@ -46,16 +46,16 @@ if TYPE_CHECKING:
 Prediction: TypeAlias = "Callable[[MeasuredLanding, float, float], FloatArray]"
 
 MOST_BETWEEN: Final = 6
-"""Frames, 40 ms: longer stretches without flight are mostly sliding or rocking."""
+"""Number of frames, 40 ms. Longer stretches without flight are mostly sliding or rocking."""
 
 ALONE: Final = 0.01
 """m. A corner strikes alone if the next one is at least this much higher."""
 
 HOLD_STEP: Final = 1e-3
-"""s."""
+"""Step over corners that stay, s."""
 
 FITTED: Final = 4
-"""Every so many-th of the landings for fitting is used, for the time that it takes."""
+"""One of this many landings is used for fitting, since all would take too long."""
 
 GRAVITY_W: Final = np.array([0.0, 0.0, -GRAVITY])
 
@@ -85,7 +85,7 @@ def measured_landings(path: Path, count: int) -> list[MeasuredLanding]:
 
 
 def _landing(toss: Toss, index: int, before: slice, after: slice) -> MeasuredLanding | None:
-    """Return what two flights say of the strikes between them; None where it was one strike, or too much."""
+    """Return the landing between two flights, or None if it was a single strike or took too long."""
     between = after.start - before.stop
     # The frames next to the strikes can hold a part of them.
     stop, start = before.stop - 1, after.start + 1
@@ -188,7 +188,7 @@ def _predictions(
 
 
 def _by_engine(body: MassProperties, centre: FloatArray) -> Prediction | None:
-    """Return a prediction by MuJoCo, stepped to the second flight; None: not installed."""
+    """Return a prediction by MuJoCo, stepped to the second flight, or None if it is not installed."""
     cube = engine(body, centre)
     if cube is None:
         return None

@@ -1,14 +1,14 @@
 """How well each law predicts the velocity after measured impacts of a cube, beside "no impact" and MuJoCo.
 
 The recordings are the published cube tosses (`measured.cube_tosses`); the environment variable CUBE_TOSSES
-names their `tosses.npz`. Strikes of a single corner are cut out of them with the states just
-before and after, each fitted over the flight next to it (`measured.events`). mu and e are fitted on the
-strikes of every other toss; the errors are those on the rest.
+names their `tosses.npz`. Strikes of a single corner are cut out of them with the states just before and
+after, each fitted over the flight next to it (`measured.events`). mu and e are fitted on the strikes of every
+other toss. The errors are those on the rest.
 
-What limits the error: not the measurement, whose standard deviation is printed, but the published body.
-Whatever the law, the impulse at the corner changes momentum and angular momentum together, and with the
-published inertia and centre these two changes disagree. So inertia and centre of mass are also fitted to that
-balance alone, without any law, and the errors are given with them too.
+The published body limits the error, and not the measurement, whose standard deviation is printed. Under any
+law the impulse at the corner changes momentum and angular momentum together. With the published inertia and
+centre these two changes disagree. So inertia and centre of mass are also fitted to that balance alone,
+without any law, and the errors are given with them too.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ ALONE: Final = 0.01
 """m. A strike is a single corner's if the next corner was at least this much higher."""
 
 SHARPEST: Final = 0.15
-"""m/s, rad/s times the radius of gyration. Strikes whose velocities are known less well are left out."""
+"""m/s, and rad/s times the radius of gyration. Strikes with larger errors of velocities are left out."""
 
 
 class Strike(NamedTuple):
@@ -137,8 +137,8 @@ def measured_strikes(path: Path) -> tuple[list[Strike], int]:
 def balanced_body(strikes: Sequence[Strike]) -> tuple[MassProperties, FloatArray]:
     """Return the (isotropic) inertia and the centre of mass, (3,), m, body axes, that balance momenta best.
 
-    With d the centre and c the corner, both from the tracked origin, I dw = m (c - d) x dv, where dv is the
-    centre's: linear in 1/I and d/I where dv is known, so that a few rounds do.
+    With d the centre and c the corner, both from the tracked origin, I dw = m (c - d) x dv, where dv is that
+    of the centre. If dv is known, this is linear in 1/I and d/I, so a few rounds are enough.
     """
     mass, nominal = CUBE.mass_properties.mass, float(CUBE.mass_properties.I_B[0, 0])
     centre = np.zeros(3)
@@ -191,7 +191,7 @@ def _rigid(body: MassProperties, law: RestitutionLaw) -> Prediction:
 
 
 def _by_engine(body: MassProperties, centre: FloatArray) -> Prediction | None:
-    """Return a prediction by MuJoCo, stepped until the cube has left the floor; None: not installed."""
+    """Return a prediction by MuJoCo, stepped until the cube has left the floor, or None without MuJoCo."""
     cube = engine(body, centre)
     if cube is None:
         return None

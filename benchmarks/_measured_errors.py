@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 GYRATION: Final = math.sqrt(float(CUBE.mass_properties.I_B[0, 0]) / CUBE.mass_properties.mass)
-"""m. Weighs rad/s against m/s in the fit."""
+"""Length that weighs rad/s against m/s in the fit, m."""
 
 STEP: Final = 1e-4
-"""s, MuJoCo's."""
+"""Step of MuJoCo, s."""
 
 
 class Measured(Protocol):
@@ -50,7 +50,7 @@ def print_both(
     *,
     quoted: str = "",
 ) -> tuple[float, float]:
-    """Print the errors with the published constants, mu and e, and with fitted ones; return those.
+    """Print the errors with the published constants, mu and e, and with fitted ones. Return the fitted ones.
 
     With ``quoted``, the fitted ones' errors are offered to the documents by that name.
     """
@@ -102,7 +102,7 @@ class Engine:
     """
 
     def __init__(self, mujoco: Any, body: MassProperties, centre: FloatArray) -> None:
-        """Build the model: the inertia about ``centre``, (3,), m, of the cube's axes."""
+        """Build the model with the inertia about ``centre``, (3,), m, in the cube's axes."""
         x, y, z = -centre
         inertia = " ".join(str(x) for x in np.diag(body.I_B))
         self._mujoco = mujoco
@@ -135,7 +135,7 @@ class Engine:
         data.qvel[3:] = state.R_WB.T @ state.w_WB_W
 
     def step(self) -> bool:
-        """Go one step; return whether the cube touches."""
+        """Take one step, and return whether the cube touches."""
         self._mujoco.mj_step(self._model, self._data)
         return bool(self._data.ncon)
 
@@ -146,7 +146,7 @@ class Engine:
 
 
 def engine(body: MassProperties, centre: FloatArray) -> Engine | None:
-    """Return MuJoCo, or None where it is not installed."""
+    """Return MuJoCo, or None if it is not installed."""
     try:
         import mujoco  # a peer, which need not be there
     except ImportError:

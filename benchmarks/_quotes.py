@@ -1,11 +1,10 @@
 """The numbers that documents quote: `measured.json` has them, and documents have them between two marks.
 
-A benchmark offers its numbers (`quote`), rounded to what is worth saying. `python -m benchmarks --write`
-puts them into the file, with the command, the day, the machine and the versions, and from there into the
-documents:
+A benchmark offers its numbers (`quote`), rounded to a few digits. `python -m benchmarks --write` puts them
+into the file, with the command, the day, the machine and the versions, and from there into the documents:
     takes <!--bench:impact.space-->0.13 ms<!--/-->, of which ...
 
-A browser does not show the marks. A test holds documents and file together.
+A browser does not show the marks. A test checks that documents and file agree.
 """
 
 from __future__ import annotations
@@ -33,13 +32,13 @@ _offered: dict[str, dict[str, Any]] = {}
 
 
 def quote(name: str, value: float | Sequence[float], unit: str = "", *, digits: int = 2) -> None:
-    """Offer a number to the documents; the name begins with the benchmark's.
+    """Offer a number to the documents. Its name begins with that of the benchmark.
 
     Args:
-        name: What a document's mark says, such as `impact.space`.
-        value: The number, or several, of which documents tell the least and the largest.
-        unit: As it is written behind the number.
-        digits: How many of them are worth saying.
+        name: The name in a document's mark, such as `impact.space`.
+        value: The number, or several, of which documents have the least and the largest.
+        unit: The unit as it is written after the number.
+        digits: The number of digits to write.
     """
     several = list(value) if isinstance(value, Sequence) else [value]
     rounded = [float(f"{x:.{digits - 1}e}") for x in (min(several), max(several))]
@@ -83,7 +82,7 @@ def quoted(benchmark: str) -> set[str]:
 
 
 def rewritten(document: str, written: Mapping[str, str]) -> str:
-    """Return a document with what is ``written`` between its marks; a name that is not known stays."""
+    """Return a document with the ``written`` numbers between its marks. Unknown names stay as they are."""
     return MARKED.sub(
         lambda match: f"<!--bench:{match[1]}-->{written.get(match[1], match[2])}<!--/-->", document
     )
@@ -101,9 +100,9 @@ def write_documents() -> None:
 
 
 def write(benchmark: str) -> set[str]:
-    """Write what a benchmark has offered into the file; return the names that documents quote and it lacks.
+    """Write what a benchmark has offered into the file. Return the names that documents quote and it lacks.
 
-    Where any is lacking, nothing is written: a peer is not installed, or the recordings are not at hand.
+    If any is lacking, nothing is written. A peer may not be installed, or recordings may be missing.
     """
     numbers = offered(benchmark)
     lacking = quoted(benchmark) - set(numbers)
@@ -140,7 +139,7 @@ def print_beside(benchmark: str) -> None:
 
 
 def _versions() -> dict[str, str]:
-    """Return the versions of what is installed of `VERSIONS`."""
+    """Return the versions of those packages in `VERSIONS` that are installed."""
     installed = {(one.metadata["Name"] or "").lower(): one.version for one in metadata.distributions()}
     return {name: installed[name] for name in VERSIONS if name in installed}
 

@@ -1,12 +1,12 @@
 """Contact modes in the plane against the number of contacts, beside linear programs.
 
-Sets: `ring`, whose contacts all bound the motion (the most modes there are), `drawn`, where few do, `flush`,
-a row of feet, where all planes share a line, and `slot`, a row of feet with another one against it. The
-linear programs are SciPy's HiGHS, one for each of the 4^n strings, and one for the forces of each mode that
-is left; they must find the same strings and the same modes.
+There are four kinds of sets. In a `ring` all contacts bound the motion, which gives the most modes. In a
+`drawn` set few do. A `flush` set is a row of feet, whose planes all share a line. A `slot` is a row of feet
+with another one against it. The linear programs are SciPy's HiGHS, one for each of the 4^n strings, and one
+for the forces of each mode that is left. They must find the same strings and the same modes.
 
-Targets: to enumerate 0.3, 2, 6 and 25 ms at 4, 16, 64 and 200 contacts, growing by no more than n^2; 30 us a
-mode in bulk, 100 us for any one.
+The targets for enumeration are 0.3, 2, 6 and 25 ms at 4, 16, 64 and 200 contacts, growing by no more than
+n^2. The targets for judging are 30 us a mode in bulk, and 100 us for any one.
 """
 
 from __future__ import annotations
@@ -205,7 +205,7 @@ def run() -> None:
 
 
 def peers(make: Callable[[int], list[PlanarContact]], contacts: list[PlanarContact]) -> str:
-    """Return the times of the linear programs, where there are not too many; they must agree."""
+    """Return the times of the linear programs, if there are not too many. Their answers must agree."""
     n = len(contacts)
     if n > MOST_PROGRAMS:
         return ""

@@ -1,10 +1,10 @@
 """Recorded flights: the pose at their end, predicted from their first part, beside what was measured.
 
 Each flight is fitted over its first half (`fit_free_motion`, poses alone) and predicted to its last frame.
-The error is that to the measured pose there, whose own noise is printed beside, and so is what the fit's
-covariance says of it: its standard deviation, carried along the motion, and the noise of the pose at the end.
-"Newest velocity" predicts from the newest state of that half as a tracker publishes it, "at rest" assumes
-that nothing moves on.
+The error is the distance to the measured pose there. The noise of that pose is printed beside it, and so is
+the error that the fit's covariance predicts: its standard deviation, carried along the motion, together with
+the noise of the pose at the end. "Newest velocity" predicts from the newest state of that half as a tracker
+publishes it. "At rest" assumes that the body stays where it is.
 
 The brick's flights come with the package (MuJoCo with the noise of motion capture). The measured tosses of a
 cube are read where CUBE_TOSSES names their `.npz`, or the folder that holds it, or from beside the checkout.
@@ -97,7 +97,7 @@ def run() -> None:
 
 
 def cube_tosses() -> Path:
-    """Return where the measured tosses are to be."""
+    """Return the path at which the measured tosses should be."""
     named = Path(os.environ.get("CUBE_TOSSES", BESIDE))
     return named / FILE if named.is_dir() else named
 
@@ -137,7 +137,7 @@ def _halves(toss: Toss) -> list[Half]:
 
 
 def _expected(half: Half, fit: FitResult, noise: tuple[float, float]) -> tuple[float, float]:
-    """Return the root mean square errors, m and rad, that the fit's covariance stands for."""
+    """Return the root mean square errors, m and rad, that the fit's covariance predicts."""
     body = half.toss.body.mass_properties
     carried = propagate_covariance(
         body, fit.state, fit.covariance, [half.ahead], gravity_W=half.toss.gravity_W

@@ -1,7 +1,7 @@
-"""What the log costs: an Odometry at 240 Hz with noisy values and constant covariances, for a minute of it.
+"""The cost of the log, for a minute of Odometry at 240 Hz with noisy values and constant covariances.
 
-Handing over: processor time of the thread that received the message. Writing: that of the process less the
-former, so the compression counts. Size: the file's, a message.
+The time for handing over is processor time of the thread that received the message. The time for writing is
+that of the process less the former, so it includes compression. The size is that of the file for a message.
 """
 
 from __future__ import annotations

@@ -1,13 +1,13 @@
 """Round trip of each service, between processes, beside an empty service of the same type in the same run.
 
-The empty one returns its response untouched, so that the ratio is what the answer costs over what the
-middleware does. Calls alternate between the two, so that a change of the machine's speed meets both.
+The empty service returns its response untouched, so the ratio of both times shows what the answer costs
+beside the middleware. Calls alternate between the two, so that a change of the machine's speed affects both.
 
-Inside: the time that an answer takes in the server, as it tells itself. CPU: of the server's process, for
-each call, the log and the service events included.
+"Inside" is the time that an answer takes in the server, as the response says. "CPU" is that of the server's
+process for each call, including the log and the service events.
 
-Targets: within 1.3 times of the empty service at the median; inside at most a fifth of the server's CPU; the
-first answer 2 s after the start; 110 MB.
+The targets are: at most 1.3 times the empty service at the median, inside at most a fifth of the server's
+CPU, the first answer 2 s after the start, and 110 MB.
 """
 
 from __future__ import annotations
@@ -126,7 +126,7 @@ def _measure(*, start_server: Callable[[], int], start_empty: Callable[[], int])
 
 
 class _Asker:
-    """Asks one server, and keeps how long it took."""
+    """A client that asks one server, and keeps the times."""
 
     def __init__(self, node: Node, executor: SingleThreadedExecutor, server: str, name: str) -> None:
         self._node = node
@@ -151,7 +151,7 @@ class _Asker:
         self.inside.append(1e3 * answer.computation_time)
 
     def forget(self) -> None:
-        """Begin to count."""
+        """Forget all times so far."""
         self.trips.clear()
         self.inside.clear()
         self.cpu = -_cpu_ms(self.pid)

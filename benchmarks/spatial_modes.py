@@ -1,10 +1,11 @@
 """Contact modes in space against the number of contacts, beside a linear program for each string of letters.
 
-Sets: `drawn`, contacts all over a ball whose normals point upwards, more or less, and `flush`, a face of as
-many corners on a table. The linear programs are SciPy's HiGHS: for contacting and separating modes one for
-each of 2^n strings, for modes with mechanics one for each string of letters and sectors, (2 + 2 k)^n with k
-facets. They must find as many modes. Last, whole answers for the flush face under loads of every sort, with
-friction turned exactly and all sectors of the same letters as one mode.
+There are two kinds of sets. A `drawn` set has contacts all over a ball whose normals point more or less
+upwards. A `flush` set is a face with this many corners on a table. The linear programs are SciPy's HiGHS. For
+contacting and separating modes there is one for each of 2^n strings. For modes with mechanics there is one
+for each string of letters and sectors, (2 + 2 k)^n with k facets. They must find equally many modes. At the
+end come whole answers for the flush face under loads of every sort, with friction turned exactly and all
+sectors of the same letters as one mode.
 """
 
 from __future__ import annotations
@@ -256,7 +257,7 @@ def run_answers() -> None:
 
 
 def run_evidence() -> None:
-    """Print times of what may be asked beside the modes of a box on four feet."""
+    """Print times of margins, wrench sets and the like for a box on four feet."""
     feet, costs = flush(4), []
     print(f"\n{'margins of':>12} {'what':>22} {'answer':>12}")
     for what, (x, y, *torque) in LOADS.items():

@@ -1,4 +1,4 @@
-"""What tumbling costs and how well it does, beside SciPy's integrator, MuJoCo and Drake in the same run.
+"""The cost and accuracy of tumbling, beside SciPy's integrator, MuJoCo and Drake in the same run.
 
 Costs are processor time of this thread, so that a busy machine matters less. Errors are against the tests'
 reference of 50 digits, which shares nothing with the package.
@@ -42,12 +42,12 @@ LONG: Final = 100.0
 """s, the later of the two times at which errors are compared."""
 
 PATIENCE: Final = 30.0
-"""s. A peer that would take longer for a trajectory is not run, but reckoned from a shorter one."""
+"""s. If a peer would take longer for a trajectory, its time is extrapolated from a shorter one."""
 
 REPEATS: Final = 5
 
 FAR: Final = 1e9
-"""Revolutions, after which documents quote the error."""
+"""Number of revolutions after which documents quote the error."""
 
 COMPARED: Final = "about the major axis"
 """The motion that documents quote, and what they quote of it."""
@@ -134,7 +134,7 @@ def _states_of_many(w: FloatArray) -> object:
 
 
 def _anew(motion: FreeMotion, precision: Precision) -> object:
-    """Set up a motion as of a state never seen before, of a body that was."""
+    """Set up a motion from a new state of a body that was seen before."""
     constants_of.cache_clear()
     return free_motion(motion.body, motion.state, precision=precision)
 
@@ -187,7 +187,7 @@ def _reference() -> Any:
 
 
 Method: TypeAlias = "Callable[[tuple[float, ...], float], FloatArray]"
-"""From angular velocity and time, s, to the attitude then, by way of all samples at 1 kHz."""
+"""A function from angular velocity and time, s, to the attitude then, which computes all samples at 1 kHz."""
 
 
 def _peers(methods: dict[str, Method]) -> None:
@@ -236,7 +236,7 @@ def _once(simulate: Method, w: tuple[float, ...], seconds: float) -> float:
 
 
 def _methods() -> dict[str, Method]:
-    """Return those that can be run here, ours first, and say which cannot."""
+    """Return the methods that can be run here, ours first, and say which cannot."""
     methods: dict[str, Method] = {"closed form": _closed_form}
     for tolerance in (1e-6, 1e-9, 1e-12):
         methods[f"SciPy DOP853, rtol {tolerance:.0e}"] = lambda w, seconds, rtol=tolerance: _dop853(

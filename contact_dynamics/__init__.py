@@ -1,8 +1,8 @@
 """Contact modes, impacts and free tumbling of rigid bodies (Mason's lectures 24 to 27).
 
-What a first page needs is here: bodies and their states, contacts, problems, and one call for each question.
-Everything else stands in the chapters, in reading order; each one's own page says what is in it. All of it
-needs NumPy and SciPy, and knows no ROS.
+This page has what most users need: bodies and their states, contacts, problems, and one call for each
+question. Everything else is in the chapters, which are listed in reading order. Each chapter's docstring says
+what is in it. All of it needs NumPy and SciPy, but no ROS.
 
 - `rigid_body`: mass properties, states, momenta and energies (lectures 24 and 25), and in it `inertia`: mass
   properties from particles, shapes and meshes.
@@ -19,7 +19,7 @@ needs NumPy and SciPy, and knows no ROS.
   once (`several_impact`) or one after the other in time (`impact_sequence`).
 - `questions`: what the services answer, asked in Python: one question with all its options, one answer.
 
-`errors` says what is refused, and how; `tolerances` what counts as zero.
+`errors` has what misuse raises, and `tolerances` says what counts as zero.
 """
 
 from contact_dynamics import (

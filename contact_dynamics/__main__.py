@@ -1,4 +1,4 @@
-"""`python -m contact_dynamics <verb>`."""
+"""This file makes `python -m contact_dynamics <verb>` do the same as `contact-dynamics <verb>`."""
 
 import sys
 

@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 class Verb(NamedTuple):
-    """One verb: where its `main(arguments) -> exit code` is, where its parser, and what it does.
+    """One verb: where its `main(arguments) -> exit code` is, where its parser is, and what it does.
 
     Attributes:
-        parser: Module:function; neither needs ROS, so that `--help` works everywhere.
+        parser: The parser, as module:function. It needs no ROS, so that `--help` works everywhere.
         needs: Modules that `pip install .` does not bring.
     """
 
@@ -90,7 +90,7 @@ def _run(name: str, arguments: list[str]) -> int:
 
 
 def _is_installed(module: str) -> bool:
-    """Return whether a module can be found; a folder without code, as `srv` of the sources is, is none."""
+    """Return whether a module can be found. A folder without code, such as `srv` of the sources, is none."""
     try:
         spec = find_spec(module)
     except ModuleNotFoundError:

@@ -1,7 +1,7 @@
-"""Constants that more than one chapter uses, and what follows from them alone.
+"""Constants that more than one chapter uses, and conversions that follow from them alone.
 
-Stamps are whole nanoseconds, durations are seconds.  They meet here, and
-in `msg_adapters.stamps` as messages.
+Stamps are whole nanoseconds and durations are seconds. They are converted here, and in `msg_adapters.stamps`
+where they are messages.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 STANDARD_GRAVITY_W: Final = (0.0, 0.0, -9.80665)
-"""m/s^2, world axes, z up (REP 103); the conventional value of the third CGPM, 1901."""
+"""Standard gravity, m/s^2, world axes, z up (REP 103): the conventional value of the third CGPM, 1901."""
 
 NS_PER_S: Final = 1_000_000_000
 """Nanoseconds in a second."""
 
 
 def to_ns(seconds: float) -> int:
-    """Return a duration, s, in whole nanoseconds: the nearest."""
+    """Return a duration, s, to the nearest nanosecond."""
     return round(seconds * NS_PER_S)
 
 
@@ -45,7 +45,8 @@ def seconds_between(earlier_ns: int, later_ns: int) -> float:
 def seconds_since(reference_ns: int, stamps_ns: Sequence[int]) -> NDArray[np.float64]:
     """Return the durations, (n,), s, between one stamp, ns, and many.
 
-    They are products with 1e-9, whose last bit may differ from a quotient: fits of states keep theirs.
+    They are products with 1e-9, whose last bit may differ from that of a quotient. Fits of states depend on
+    that bit.
     """
     seconds: NDArray[np.float64] = np.array([stamp_ns - reference_ns for stamp_ns in stamps_ns]) * 1e-9
     return seconds

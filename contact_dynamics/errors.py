@@ -1,6 +1,7 @@
-"""What misuse raises: one root, one class a cause; messages name the field, the value and what is allowed.
+"""The errors that misuse raises. There is one root, and one class for each cause.
 
-An expected physical outcome (separating, inconsistent, ambiguous) is a result, never one of these.
+Messages name the field, the value found and what is allowed. An expected physical outcome (separating,
+inconsistent, ambiguous) is a result and never an error.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ class TooLargeError(InvalidFieldError):
 
 
 class OutOfPlaneError(InvalidFieldError):
-    """A planar question about something that leaves the plane of motion by more than the tolerance."""
+    """A planar question is about something that leaves the plane of motion by more than the tolerance."""
 
 
 class SeparatingContactError(InvalidFieldError):
@@ -35,11 +36,11 @@ class SeparatingContactError(InvalidFieldError):
 
 
 class NoContactError(ContactDynamicsError):
-    """A question about contacts at a state in which nothing touches, or will touch."""
+    """A question was asked about contacts, but nothing touches or will touch."""
 
 
 class UnknownBodyError(ContactDynamicsError):
-    """A name that is not among the configured bodies."""
+    """A name is not among the configured bodies."""
 
 
 class NoStateError(ContactDynamicsError):
@@ -55,11 +56,11 @@ class FrameMismatchError(ContactDynamicsError):
 
 
 class NotSupportedError(ContactDynamicsError):
-    """A question that the interface carries and this version does not answer; the message says which part."""
+    """The interface can carry the question, but this version does not answer it. The message says what."""
 
 
 class UndecidedError(NotSupportedError):
-    """A question whose answer hangs on rounding: what was asked about is degenerate to the last digits."""
+    """The answer depends on rounding, because the case is degenerate to the last digits."""
 
 
 _LONGEST_SHOWN: Final = 120

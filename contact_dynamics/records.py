@@ -1,4 +1,4 @@
-"""How the library's values show themselves: a short `repr`, a readable `str`, a `dict` that JSON takes."""
+"""The base class of the library's values: a short `repr`, a readable `str`, and a `dict` that JSON takes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _DIGITS: Final = 6
 """Significant digits of a number that is shown. `to_dict` keeps all of them."""
 
 _MOST_SHOWN: Final = 9
-"""Elements of an array or a list that is shown in one line; of longer ones the shape is told."""
+"""Largest number of elements of an array or a list that is shown. Longer ones are shown as their shape."""
 
 
 _NUMBERS: Final = (float, Decimal, Fraction, np.floating)
@@ -53,7 +53,7 @@ class Record:
         return f"{type(self).__name__}({shown})"
 
     def __str__(self) -> str:
-        """Return the fields one below the other."""
+        """Return the fields, one on each line."""
         return "\n".join([type(self).__name__, *_lines(self, "  ")])
 
     def to_dict(self) -> dict[str, Any]:
@@ -127,7 +127,7 @@ def _short(value: Any) -> str:
 
 
 def _lines(record: object, indent: str) -> list[str]:
-    """Return a line a field; fields of fields are indented."""
+    """Return a line for each field. Fields of fields are indented."""
     named = _fields(record)
     width = max((len(name) for name, _ in named), default=0)
     lines = []

@@ -1,12 +1,12 @@
-"""Every threshold of the physics: its name, its unit, and why it has that size, chapter by chapter.
+"""Every threshold of the physics, chapter by chapter, with its unit and the reason for its size.
 
-A threshold decides whether a number counts as zero, two things as one, or an iteration as done. All that are
-a hundredth or less stand here, and a test over the sources holds it. A threshold that a caller may want to
-change is a default here and an argument or parameter there.
+A threshold decides whether a number counts as zero, whether two things count as one, or whether an iteration
+is done. All thresholds up to a hundredth are in this file, and a test over the sources checks this. If a
+caller may want to change a threshold, it is a default here and an argument or parameter there.
 
-What stands beside its code instead: bounds on work and length (`MOST_...`), how a computation is cut up
-(`CHUNK`, `TERMS`, `PIECE`), shares and angles above a hundredth that only choose between two ways to the same
-answer, and the digits of each kind of number (`numerics.arithmetic`), which belong to the kind.
+Some numbers are beside the code that uses them instead: bounds on work and length (`MOST_...`); sizes of
+parts of a computation (`CHUNK`, `PIECE`); shares and angles above a hundredth that only choose between two
+ways to the same answer; and the digits of each kind of number (`numerics.arithmetic`).
 """
 
 from __future__ import annotations
@@ -19,73 +19,74 @@ from typing import Final
 UNIT_LENGTH_TOLERANCE: Final = 1e-3
 """Dimensionless. A quaternion or normal whose norm is off by more is refused, not repaired.
 
-Quaternions that went through float32 or four printed decimals are off by at most 2e-4; one that was never
-normalised, or has its components in another order than expected with one missing, is off by far more.
+Quaternions that went through float32 or four printed decimals are off by at most 2e-4. A quaternion that was
+never normalised, or that lacks a component, is off by far more.
 """
 
 LENGTH_ROUNDING: Final = 1e-15
-"""Dimensionless. A vector that was scaled to length 1 has it within this, and stays as it is: scaling twice
-changes nothing."""
+"""Dimensionless. A vector whose length is 1 within this is not scaled again, so that scaling twice changes
+nothing."""
 
 LARGEST_NUMBER: Final = 1e60
-"""In SI units: s, rad/s, kg m^2, m, m/s, m/s^2. A motion is refused whose numbers are larger, or whose
-moments of inertia are below the inverse: fourth powers and products of such numbers leave the range of
-doubles. Rates below the inverse count as rest: in the age of the universe they turn nothing."""
+"""In SI units: s, rad/s, kg m^2, m, m/s, m/s^2. A motion is refused if its numbers are larger, or if its
+moments of inertia are below the inverse, because fourth powers and products of such numbers leave the range
+of doubles. Rates below the inverse count as rest, because such a body does not turn in the age of the
+universe."""
 
 # numerics
 
 SMALL_SHARE: Final = 1e-10
-"""Of the squares of the residuals of a fit: a round that explains less of them is the last. The parameters
-are then changed by some 1e-5 of their standard deviations, and by far less in a round to come."""
+"""Share of the sum of squares of a fit's residuals. A round that reduces the sum by less is the last. It
+changed the parameters by about 1e-5 of their standard deviations, and another round would change them by far
+less."""
 
 NO_PIVOT: Final = 1e-11
-"""Relative to the largest entry of a column in Lemke's method: what is smaller is rounding, not a pivot."""
+"""Relative to the largest entry of a column in Lemke's method. A smaller entry is rounding and no pivot."""
 
 COVERED: Final = 1e-12
-"""Relative to the largest of q in Lemke's method: the size of the covering variable that counts as zero."""
+"""Relative to the largest of q in Lemke's method. A covering variable of this size counts as zero."""
 
 WRENCH_ROUNDING: Final = 1e-13
-"""Relative to the wrench that contact forces balance: what is left over and is no more is rounding."""
+"""Relative to the wrench that contact forces balance. A remainder up to this is rounding."""
 
 INDEPENDENT_FORCES: Final = 1e-12
-"""Ratio of singular values below which directions of contact forces count as the same."""
+"""Ratio of singular values. Below it, directions of contact forces count as the same."""
 
 # rigid_body
 
 SYMMETRY_TOLERANCE: Final = 1e-9
-"""Relative to the largest entry. An inertia matrix that is less symmetric than this was not meant as one."""
+"""Relative to the largest entry. A matrix that is less symmetric than this is not an inertia matrix."""
 
 NEGATIVE_VARIANCE_TOLERANCE: Final = 1e-9
-"""Dimensionless, of a correlation matrix, whose entries are at most 1: how negative an eigenvalue may be.
-Rounding of a covariance that has no variance in some direction leaves 1e-15, of one that went through filters
-some more."""
+"""Dimensionless. An eigenvalue of a correlation matrix, whose entries are at most 1, may be this negative. If
+a covariance has no variance in some direction, rounding leaves 1e-15, and more after a filter."""
 
 TRIANGLE_TOLERANCE: Final = 1e-6
 """Relative to the largest principal moment. I1 + I2 >= I3 holds with equality for flat bodies, and measured
 or rounded moments of a flat body miss it by their last printed digit."""
 
 EQUAL_MOMENTS_TOLERANCE: Final = Decimal("1e-12")
-"""Relative to the largest principal moment. Two moments within it are called equal when a rotation is named:
-turning an inertia matrix into other axes in doubles parts equal moments by some 1e-16, real bodies of one
-shape differ by far more. The motion itself is computed with the moments as they are."""
+"""Relative to the largest principal moment. Two moments within it count as equal when a rotation gets its
+name. Turning an inertia matrix into other axes in doubles separates equal moments by about 1e-16, and real
+bodies of one shape differ by far more. The motion itself is computed with the moments as they are."""
 
 SUM_ROUNDING: Final = 1e-14
-"""Relative to the largest of a sum's terms: some ten times what they are rounded by, with room. What is left
-of a difference and is no more counts as zero."""
+"""Relative to the largest of a sum's terms, whose rounding is more than ten times smaller. A difference up to
+this counts as zero."""
 
 VOLUME_ROUNDING: Final = 1e-13
-"""Relative to a surface's area times its size, m^3. A volume within it is rounding: the surface is flat."""
+"""Relative to a surface's area times its size, m^3. A smaller volume is rounding, and the surface is flat."""
 
 SURFACES_TOUCH: Final = 1e-9
-"""Relative to a part's size. Surfaces nearer than this touch; what lies between them is not looked for."""
+"""Relative to a part's size. Surfaces that are nearer than this touch, with nothing in between."""
 
 EPSILON: Final = 2.0**-52
-"""Relative, of coordinates: what rounding moves them by. Points within it of a plane lie in the plane; far
-from the origin it is a volume too."""
+"""Relative rounding of coordinates. Points within it of a plane count as in the plane. Far from the origin it
+also gives the rounding of a volume."""
 
 AXIS_TIE: Final = 1e-9
-"""Dimensionless, between components of a unit axis, of which the largest decides the sign: far above the
-rounding of, say, (1, 1, 0) / sqrt(2)."""
+"""Dimensionless. The largest component of a unit axis decides its sign, and components within this count as
+equal. It is far above the rounding of, say, (1, 1, 0) / sqrt(2)."""
 
 EXACTLY_EQUAL_MOMENTS: Final = Decimal("1e-110")
 """Relative to the largest moment. Moments closer than this are equal in the tumbling formulas too: Jacobi's
@@ -94,101 +95,102 @@ rotations leave this much in 120 digits."""
 # tumbling
 
 STEADY_AXIS_TOLERANCE: Final = Decimal("1e-24")
-"""Squared angle, rad^2, between L and the major or minor axis within which spin is called steady: an angle of
+"""Squared angle, rad^2, between L and the major or minor axis. Within it spin is called steady. The angle is
 1e-12 rad, well above the rounding of a quaternion and an angular velocity."""
 
 NEGLIGIBLE_TERM: Final = 1e-18
-"""Relative to the largest term of a sum of theta functions: far below the last bit."""
+"""Relative to the largest term of a sum of theta functions. Terms below it are left out, since they are far
+below the last bit."""
 
 SMALLEST: Final = 1e-300
-"""In any unit: stands for zero where a quotient or a logarithm of it is wanted. Added to a sum that is 0, it
-makes a quotient 0 that would be 0/0 and is meant as 0."""
+"""In any unit. It replaces zero where a quotient or a logarithm would otherwise fail. Added to a divisor, it
+makes 0/0 a 0 where 0 is meant."""
 
 SEPARATRIX_END: Final = 1e-6
-"""rad of Jacobi's amplitude, where the polhode of a single flip is cut off. The motion is this near to spin
-about the middle axis 14 time constants before and after its flip."""
+"""rad of Jacobi's amplitude, from its ends, at which the polhode of a single flip is cut off. The motion is
+this near to spin about the middle axis 14 time constants before and after its flip."""
 
 SMALLEST_COMPLEMENT: Final = 1e-100
-"""Of 1 - m, the parameter's complement. Below it the sensitivity of a tumbling body is beyond 1e90: it is
-then called infinite."""
+"""Value of 1 - m, the complement of the parameter. Below it the sensitivity of a tumbling body is beyond 1e90
+and is given as infinite."""
 
 MOTIONLESS: Final = 1e-60
-"""Squared angle, rad^2, between the angular velocity and the major or minor axis, below which the spin is
-taken as steady. The motion left out is an angle of 1e-30 rad for ever, since spin about these axes is
+"""Squared angle, rad^2, between the angular velocity and the major or minor axis. Below it the spin is
+computed as steady. This leaves out an angle of 1e-30 rad, which does not grow, since spin about these axes is
 stable."""
 
 # motion
 
 SMALL_TURN: Final = 1e-2
-"""rad. Neighbours of a free rotation are followed in one piece where they turn by less; for larger turns the
-derivative loses two digits at the most."""
+"""rad. A free rotation that turns by less is differentiated by integrating all its neighbours. For larger
+turns the derivative uses symmetries, which cost at most two digits here."""
 
 GROWTH_ROUNDING: Final = 1e-15
-"""Relative. What grew by a factor and shrank by it again carries this rounding, times the factor squared."""
+"""Relative. A number that grew by a factor and shrank by it again has this error times the factor squared."""
 
 LARGEST_DERIVATIVE_ERROR: Final = 1e-3
-"""Relative. Where neighbours parted and met again by so much that less is known of the derivative, it is
-NaN."""
+"""Relative. Where neighbours of a motion part and meet again, the derivative loses digits. It is NaN where
+its error is larger than this."""
 
 SMALL_STEP: Final = 1e-9
-"""rad of attitude, m of position, anywhere in the window of a fit: a round that changes less is the last."""
+"""rad of attitude, m of position. A round of a fit that changes less everywhere in the window is the last."""
 
 INTEGRATION_RELATIVE: Final = 3e-14
-"""Relative error of each step of an integrated motion. SciPy allows 2e-14 at the least, where rounding begins
-to make steps pointlessly short."""
+"""Relative error of each step of an integrated motion. SciPy's smallest is 2e-14, where rounding begins to
+make steps short without use."""
 
 INTEGRATION_ABSOLUTE: Final = 1e-15
-"""m, m/s, rad and rad/s of each step of an integrated motion: far below what any sensor resolves."""
+"""Absolute error of each step of an integrated motion, m, m/s, rad and rad/s. No sensor resolves it."""
 
 DIFFERENCE_STEP: Final = 1e-5
-"""m, rad, m/s and rad/s, by which a user's function is differenced, or that part of a larger number. Central:
-it errs by 1e-10 of the third derivative, and by 1e-11 of the force for rounding."""
+"""Step of central differences of a user's function, m, rad, m/s and rad/s, or relative to a larger number.
+The error is 1e-10 of the third derivative, plus 1e-11 of the force from rounding."""
 
 LEAST_NOISE: Final = 1e-12
-"""m and rad. Residuals of exact states are rounding, which is no measure of how positions weigh beside
-orientations: the noise of a fit counts as at least this."""
+"""m and rad. The noise of a fit counts as at least this. The residuals of exact states are rounding alone,
+which does not say how to weigh positions against orientations."""
 
 # shapes
 
 FLAT_HULL: Final = 1e-9
-"""Relative to the size: a hull thinner than this is a plate or a rod. Corners carry 1e-16 of rounding."""
+"""Relative to the size. A hull thinner than this is a plate or a rod. Corners carry 1e-16 of rounding."""
 
 SAME_DIRECTION: Final = 1e-9
-"""1 - cos of the angle, 4e-5 rad, within which normals, or directions of edges, are one."""
+"""1 - cos of an angle of 4e-5 rad. Normals, or directions of edges, within it count as one."""
 
 # contact
 
 VELOCITY_TOLERANCE: Final = 1e-9
-"""m/s. A contact's velocity below it counts as zero where no other tolerance is asked for: far above the
-rounding of velocities of up to 1e4 m/s, far below what any sensor resolves. Measured states need their noise
-level instead."""
+"""m/s. A contact's velocity below it counts as zero, if the caller gives no other tolerance. It is far above
+the rounding of velocities of up to 1e4 m/s, and far below what any sensor resolves. Measured states need
+their noise level instead."""
 
 DISTANCE_TOLERANCE: Final = 1e-6
-"""m. A point within it of a surface touches, where no other tolerance is asked for."""
+"""m. A point within it of a surface touches, if the caller gives no other tolerance."""
 
 ROW_TOLERANCE: Final = 1e-9
-"""Dimensionless, on rows of unit length: the sine of the angle within which contact planes (and wrenches)
-coincide, in the enumeration of modes as in their dynamics. Contact rows carry some 1e-15 of rounding, a
-hundred times that for contacts far from the centre of mass; what is built from two planes that meet at 1e-5
-is still right within it."""
+"""Sine of an angle, for rows of unit length. Contact planes (and wrenches) within it coincide, in the
+enumeration of modes and in their dynamics. Contact rows carry about 1e-15 of rounding, and a hundred times
+that for contacts far from the centre of mass. Results from two planes that meet at 1e-5 rad are still right
+within it."""
 
 SAME_POINT: Final = 1e-9
-"""m. Points this close are one, and directions whose separation is less by no more are as good: rounding."""
+"""m. Points this close count as one. Separating directions whose separations differ by less are equally
+good, since the difference is rounding."""
 
 PARALLEL_EDGES: Final = 1e-6
-"""Sine of the angle within which edges, or the sides of outlines, do not cross; their ends are what
-touches."""
+"""Sine of an angle. Edges, or sides of outlines, within it do not cross, and only their ends touch."""
 
 # plane
 
 OUT_OF_PLANE_SPEED: Final = 1e-6
-"""m/s. Motion out of the plane of a planar question that still counts as none, where no other tolerance is
-asked for."""
+"""m/s. Motion out of the plane of a planar question counts as zero below this, if the caller gives no other
+tolerance."""
 
 OUT_OF_PLANE_RATIO: Final = 1e-2
-"""Dimensionless: the sine of the angle (0.6 degrees) by which normals, forces and principal axes may lean out
-of a plane of motion. Motion capture resolves 0.1 degrees. The planar answer is then wrong by a part in 1e4,
-the cosine's second order."""
+"""Sine of the angle (0.6 degrees) by which normals, forces and principal axes may lean out of a plane of
+motion. Motion capture resolves 0.1 degrees. The planar answer is then wrong by 1e-4, since the cosine is of
+second order."""
 
 # landing
 
@@ -230,129 +232,129 @@ in radii of gyration, acts as that one does. They differ in forces whose normal 
 the wrench of the tangential one, below what wrenches are known to."""
 
 GRAZING_DEPTH: Final = 1e-9
-"""m. A point that dips into a plane by less, and rises again, may be overlooked by the search for the first
-contact; deeper ones never are. Far below what sensors resolve, and enough for the search not to creep."""
+"""m. The search for the first contact may miss a point that dips into a plane by less and rises again. It
+never misses a deeper one. Sensors do not resolve this depth, and it keeps the search from creeping."""
 
 RIM_ACCURACY: Final = 1e-9
-"""Relative, of the last of Newton's steps towards the landing of a rim, after which the square of it is left;
-at an all but double root as much again, where the depth is its square."""
+"""Relative size of the last of Newton's steps towards the landing of a rim. Its square is the error left. At
+a nearly double root the error is as large as the step, but there the depth is its square."""
 
 LEAVING_STEP: Final = 1e-5
-"""s, the step away from an obstacle where nothing pulls towards it."""
+"""Length of a step, s, away from an obstacle where no acceleration is towards it."""
 
 # contact_modes
 
 ACCELERATION_TOLERANCE: Final = 1e-9
-"""Relative to the applied wrench, and what centripetal terms add to it. An acceleration or a force counts as
-zero where a change of the wrench by that part of it turns its sign: far more than rounding of the input, far
-less than wrenches are known to."""
+"""Relative to the applied wrench plus centripetal terms. An acceleration or a force counts as zero if a
+change of the wrench by this share can change its sign. It is far more than rounding of the input, and far
+less than the accuracy to which wrenches are known."""
 
 BEYOND_MARGIN: Final = 1e-5
-"""Part of a margin (or of the wrench, where the margin is less) by which the boundary is passed to see what
-lies behind: far more than the tolerances that make the boundary, far less than the way to the next one."""
+"""Share of a margin, or of the wrench if the margin is less. The wrench is moved this far beyond the boundary
+to see which modes are there. It is far more than the tolerances of the boundary, and far less than the
+distance to the next one."""
 
 SAME_MOTION: Final = 1e-6
-"""Relative: how far two motions may lie apart that count as one. They are those of two modes, or the ends of
-what one mode allows, which is then unique."""
+"""Relative. Two motions within it count as one. They are the motions of two modes, or the ends of the range
+that one mode allows, whose motion is then unique."""
 
 FEASIBLE: Final = 1e-11
-"""Relative to the largest acceleration, and to edge forces that cause it: what a condition of a mode may
-miss. Some thousand roundings, and a hundredth of the least strictness asked for."""
+"""Relative to the largest acceleration, and to edge forces that cause it. A condition of a mode may be missed
+by this. It is some thousand roundings, and a thousandth of `STRICT`."""
 
 STRICT: Final = 1e-8
-"""Relative to the largest acceleration: what an inequality of a mode must have to hold strictly. A thousand
-times `FEASIBLE`."""
+"""Relative to the largest acceleration. A strict inequality of a mode must hold by this, a thousand times
+`FEASIBLE`."""
 
 AT_SECTORS_BORDER: Final = 1e-9
-"""In sectors of a friction pyramid: how far beyond its border a sector's edge still counts as acting."""
+"""In sectors of a friction pyramid. An edge this far beyond the border of a sector still counts as acting."""
 
 TRIAL_TURN: Final = 1e-6
-"""rad, by which a direction of friction is turned to see how the sliding turns; about the root of
-rounding."""
+"""rad. A direction of friction is turned by this to see how the sliding turns. It is somewhat above the root
+of rounding."""
 
 SETTLED_DIRECTION: Final = 1e-11
-"""rad. Directions of friction that are as close as that to those of sliding are those of the rounded
-forces."""
+"""rad. Directions of friction and of sliding that are this close differ only by the rounding of forces."""
 
 ON_PYRAMIDS_SIDE: Final = 1e-9
-"""Relative to the largest force: how far outside of a pyramid still counts as on its side. A force as small
-as that has no direction either."""
+"""Relative to the largest force. A force this far outside of a pyramid still counts as on its side. A force
+as small as this has no direction."""
 
 BEHIND_BOUNDARY: Final = 1e-5
-"""Relative to the wrench: how far behind a boundary of a mode's wrenches is looked, a thousand times
-`STRICT`."""
+"""Relative to the wrench. The search for neighbouring modes looks this far behind a boundary of a mode's
+wrenches, a thousand times `STRICT`."""
 
 ALONG_BOUNDARY: Final = 1e-3
-"""Relative to the wrench: how far from the boundary's own borders that is done."""
+"""Relative to the wrench. The search for neighbouring modes keeps this far from the boundary's borders."""
 
 ON_BOUNDARY: Final = 10.0 * ROW_TOLERANCE
-"""On unit rows: how far outside of a cone of wrenches still counts as on its boundary."""
+"""For unit rows. A wrench this far outside of a cone still counts as on its boundary."""
 
 NO_DISTANCE: Final = 1e-7
-"""Relative to the applied wrench: a distance to a mode's wrenches that counts as none. Ten times what the
-weight of a wrench's height in that distance leaves."""
+"""Relative to the applied wrench. A smaller distance to a mode's wrenches counts as zero. It is ten times the
+error that the weight of a wrench's height in that distance leaves."""
 
 # impact
 
 ENERGY_TOLERANCE: Final = 1e-12
-"""Relative to the energy that an impact exchanges. A gain above it is a law that creates energy, not
-rounding, which is some 1e-15 of the terms that energy is summed from."""
+"""Relative to the energy that an impact exchanges. If the gain is larger, the law creates energy. Rounding is
+about 1e-15 of the terms of the energy."""
 
 LEAST_PIVOT: Final = 1e-30
-"""Relative to its diagonal entry: the least pivot of an inertia matrix, which is > 0 but for rounding."""
+"""Relative to its diagonal entry. A pivot of an inertia matrix is at least this, since only rounding can make
+it smaller."""
 
 STRAIGHT: Final = 1e-12
-"""Dimensionless, of the sliding law's scale. A direction of sliding that turns more slowly is invariant: what
-turns it is the rounding of contact axes and inertia, some 1e-15, which an unstable direction would
-amplify."""
+"""Relative to the sliding law's scale. A direction of sliding that turns more slowly counts as invariant. It
+turns by the rounding of contact axes and inertia, about 1e-15, which an unstable direction would amplify."""
 
 UNCOUPLED: Final = 1e-15
-"""Dimensionless, of the tangential inverse inertia. A slower turn than this is the rounding of a coupling
-that is zero, as of a sphere's, whose scale is rounding too."""
+"""Relative to the tangential inverse inertia. A slower turn than this is the rounding of a coupling that is
+zero. For a sphere the sliding law's scale is rounding too."""
 
 STOPPED: Final = 1e-13
-"""Dimensionless, of the first sliding speed. The error in impulse from going the rest of the way straight is
-below this part of the impulse that stops the contact."""
+"""Relative to the first sliding speed. A slower contact goes straight to its stop. The error in impulse is
+below this share of the impulse that stops the contact."""
 
 LAST_TERM: Final = 1e-15
-"""Relative to the sum, of the series that leads to a stop. What is left out is of the size of the last
-term."""
+"""Relative to the sum of the series that leads to a stop. The series ends with a term of this size, and the
+terms left out are together about as large."""
 
 AT_THE_STOP: Final = 1e-15
-"""rad. The last of Newton's steps towards the direction in which sliding stops."""
+"""rad. Newton's method has found the direction in which sliding stops when its step is smaller."""
 
 SLOW_TURNING: Final = 1e-12
-"""Relative. Turning counts as slow where (|h| + |h'|)/|g|, to the power of the terms and times the speed, is
-below this part of the first speed: there the iteration has a prospect of `LAST_TERM`."""
+"""Relative. Turning counts as slow if (|h| + |h'|)/|g|, to the power of the number of terms, times the speed
+is below this share of the first speed. Then the iteration can reach `LAST_TERM`."""
 
 TRUNCATION: Final = 1e-14
-"""Relative. The last terms of the series of u and |u| may be this part of |u| where a stretch of sliding
-ends; the terms left out are smaller."""
+"""Relative. A stretch of sliding ends where the last terms of the series of u and |u| reach this share of
+|u|. The terms left out are smaller."""
 
 EVENT_LOCATED: Final = 1e-15
-"""Relative. Newton's method has located an event of an impact where its next step is within it."""
+"""Relative. Newton's method has located an event of an impact when its next step is smaller."""
 
 SWEEPS_CONVERGED: Final = 1e-13
-"""Relative to the largest approach velocity: what a sweep over impulses at once may still change in the
-contacts' velocities."""
+"""Relative to the largest approach velocity. The sweeps over simultaneous impulses are done when one changes
+the contacts' velocities by less."""
 
 SHORT_TIMES: Final = (1e-7, 1e-5, 1e-3)
-"""What the wrench may change of a jammed body's velocities in the time it acts, relative to the largest
-speed: the first that rounding does not keep from an answer is taken."""
+"""Change of a jammed body's velocities by the wrench in the time for which it acts, relative to the largest
+speed. They are tried in this order, and the first is taken for which rounding allows an answer."""
 
 CHATTER_HEIGHT: Final = 1e-7
-"""m. Rebounds lower than this are not followed: a hundred times what the search for the first contact may
-overlook, and far below the roughness of surfaces."""
+"""m. Lower rebounds are not followed. This height is a hundred times `GRAZING_DEPTH`, and far below the
+roughness of surfaces."""
 
 HELD_STILL: Final = 0.01
-"""Of the speed that a step of free motion gives a contact that is held: what may be left of it, where several
-contacts that are held throw each other back."""
+"""Share of the speed that a step of free motion gives to a held contact. This much may be left where several
+held contacts throw each other back."""
 
 CHATTER_PAUSE: Final = 1e-6
-"""s. When to look again where a contact that leaves, at the height of rounding, was found as arriving."""
+"""s. If rounding makes a leaving contact look like an arriving one, the search goes on after this time."""
 
 HELD_INDEPENDENT: Final = 1e-9
-"""Ratio of singular values below which the directions in which jammed contacts are held count as the same."""
+"""Ratio of singular values. Below it, the directions in which jammed contacts are held count as the same."""
 
 ESCAPE_ARRIVED: Final = 1e-16
 """Relative. The last of Newton's steps towards the direction in which a contact leaves its stop: below the

@@ -1,7 +1,6 @@
-"""The gates at the border of the physics: each returns its value, made safe, or raises by field name.
+"""The checks of input: each returns its value, made safe, or raises an error that names the field.
 
-Only constructors of domain types and public entry points call these; what lies behind them does not check
-again.
+Only constructors of domain types and public functions call these. The code behind them does not check again.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ _FEW: Final = 20
 
 
 def check_finite(field: str, value: Any) -> float:
-    """Return ``value`` as a float; NaN, infinite or non-numeric raises `InvalidFieldError`."""
+    """Return ``value`` as a float. If it is NaN, infinite or no number, raise `InvalidFieldError`."""
     try:
         number = float(value)
     except (TypeError, ValueError):
@@ -60,7 +59,7 @@ def check_within(field: str, value: Any, lowest: float, highest: float) -> float
 
 
 def check_choice(field: str, value: Any, kind: type[Choice]) -> Choice:
-    """Return ``value`` if it is a member of the enumeration ``kind``; its name or number is none."""
+    """Return ``value`` if it is a member of the enumeration ``kind``. Names and numbers are refused."""
     if isinstance(value, kind):
         return value
     found = f"{type(value).__name__}.{value.name}" if isinstance(value, Enum) else repr(value)
@@ -103,7 +102,7 @@ def _in_words(shape: tuple[int | None, ...]) -> str:
 
 
 def check_magnitude(field: str, value: FloatArray, most: float = LARGEST_NUMBER) -> FloatArray:
-    """Return ``value`` if no number in it is larger than ``most``, by size."""
+    """Return ``value`` if no number in it is larger than ``most`` in magnitude."""
     largest = float(np.abs(value).max(initial=0.0))
     if not largest <= most:
         raise InvalidFieldError(field, f"{largest:g}", f"numbers of at most {most:g}, by size")
@@ -111,9 +110,9 @@ def check_magnitude(field: str, value: FloatArray, most: float = LARGEST_NUMBER)
 
 
 def check_unit(field: str, value: ArrayLike, length: int) -> FloatArray:
-    """Return the vector of ``length`` numbers scaled to norm 1; refuse a norm that is not 1 within tolerance.
+    """Return the vector of ``length`` numbers scaled to norm 1. Its norm must be 1 within tolerance.
 
-    Unit means `UNIT_LENGTH_TOLERANCE`; the rest of rounding is taken out here, so that nothing behind has to.
+    The tolerance is `UNIT_LENGTH_TOLERANCE`. The code behind can rely on norm 1 to rounding.
     """
     array = check_array(field, value, (length,))
     total = 0.0

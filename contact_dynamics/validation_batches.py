@@ -1,7 +1,6 @@
-"""The gates of batches, which have a row a case or one row that stands for all, and of covariances.
+"""The checks of batches and of covariances. A batch has a row for each case, or one row for all cases.
 
-Batches are checked as the scalar calls check. Each error names the field and the first row that is not
-allowed.
+Batches are checked as single calls are. Each error names the field and the first row that is not allowed.
 """
 
 from __future__ import annotations
@@ -35,11 +34,11 @@ def check_rows(
     """Return ``value`` as finite numbers, (N, *shape); a single case becomes N = 1.
 
     Args:
-        field: Its name in an error.
-        value: (N, *shape) or ``shape``.
-        shape: Of one case.
-        allowed: What an error says is allowed.
-        test: Returns which rows are.
+        field: The name of the value in an error.
+        value: An array of shape (N, *shape) or ``shape``.
+        shape: The shape of one case.
+        allowed: The words of an error for what is allowed.
+        test: A function that returns which rows are allowed.
     """
     try:
         single = np.ndim(value) == len(shape)
@@ -86,7 +85,7 @@ def check_unit_rows(field: str, value: ArrayLike, width: int) -> FloatArray:
 
 
 def common_length(fields: Mapping[str, FloatArray]) -> int:
-    """Return the number of cases; refuse fields of different lengths, but for single rows."""
+    """Return the number of cases. Fields must have equal lengths, except single rows."""
     lengths = {name: len(rows) for name, rows in fields.items() if len(rows) != 1}
     if len(set(lengths.values())) > 1:
         raise InvalidFieldError("batch", f"arrays of lengths {lengths}", "one length N, or single cases")
@@ -97,8 +96,8 @@ def check_covariance(field: str, value: ArrayLike) -> FloatArray:
     """Return a covariance, (12, 12), made exactly symmetric.
 
     Raises:
-        InvalidFieldError: another shape, a number that is not finite, not symmetric, a negative variance, a
-            correlation beyond 1, or any direction in which the variance would be negative.
+        InvalidFieldError: the matrix has another shape, is not symmetric, or has a number that is not finite,
+            a negative variance, a correlation beyond 1, or a direction in which the variance is negative.
     """
     matrix = check_array(field, value, (12, 12))
     variances = matrix.diagonal()

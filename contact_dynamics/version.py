@@ -1,6 +1,6 @@
-"""The version of this package, which stands once: in package.xml.
+"""The version of this package. Only package.xml has the number.
 
-A source tree has the file beside the package. An installed package has the number in its metadata, which
+A source tree has that file beside the package. An installed package has the number in its metadata, which
 setup.py takes from the same file.
 """
 
@@ -14,7 +14,7 @@ _NAME = "contact_dynamics"
 
 
 def version_of_this_package() -> str:
-    """Return the version, as in "0.1.0"; without a package.xml or metadata raise `AttributeError`."""
+    """Return the version, such as "0.1.0". Without a package.xml or metadata, raise `AttributeError`."""
     manifest = Path(__file__).parents[1] / "package.xml"
     if manifest.is_file():
         text = manifest.read_text(encoding="utf-8")

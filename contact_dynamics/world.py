@@ -1,6 +1,6 @@
 """The world that questions are asked about: bodies with shapes, the surfaces they meet, and gravity.
 
-Surfaces are flats without end (`Surface`) and convex solids and plates (`Obstacle`); they stand still.
+Surfaces are flats without end (`Surface`), and convex solids and plates (`Obstacle`). They stand still.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ class Body(Record):
     """A rigid body that questions name.
 
     Attributes:
-        name: What questions call it.
+        name: The name by which questions refer to it.
         mass_properties: Mass and angular inertia about the centre of mass.
         p_FB_F: (3,), m, centre of mass in the published frame F.
-        vertices_B: (k, 3), m, corners of the shape, body axes; given, they are short for the polyhedron of
-            these corners.
-        shape: What can touch, body axes.
+        vertices_B: (k, 3), m, corners of the shape, body axes. Give them instead of a shape that is the
+            polyhedron of these corners.
+        shape: The shape that can touch, body axes.
 
     Raises:
         InvalidFieldError: a number is not finite, an array has another shape, or both vertices and a shape
@@ -64,7 +64,7 @@ class Body(Record):
             """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
-        """Check the arrays, and make corners and shape say the same."""
+        """Check the arrays, and make corners and shape agree."""
         object.__setattr__(self, "p_FB_F", check_array("center_of_mass", self.p_FB_F, (3,)))
         if self.shape is NO_SHAPE:
             object.__setattr__(self, "shape", ConvexShape(vertices=self.vertices_B))
@@ -81,18 +81,18 @@ class Body(Record):
         vertices_F: ArrayLike | None = None,
         shape_F: ConvexShape = NO_SHAPE,
     ) -> Body:
-        """Return the body of a distribution of mass in the published frame F.
+        """Return the body with a distribution of mass in the published frame F.
 
         Args:
-            name: What questions call it.
+            name: The name by which questions refer to it.
             mass: Mass, centre of mass and inertia, in F.
-            vertices_F: (k, 3), m, corners of its shape in F; instead of ``shape_F``.
+            vertices_F: (k, 3), m, corners of its shape in F, instead of ``shape_F``.
             shape_F: Its shape in F.
 
         Raises:
-            InvalidFieldError: the mass is a point or a line, vertices of another shape or not finite, or both
-                vertices and a shape.
-            TooLargeError: more vertices than `MOST_VERTICES`.
+            InvalidFieldError: the mass is a point or a line, vertices are not finite or not of shape (k, 3),
+                or both vertices and a shape are given.
+            TooLargeError: there are more vertices than `MOST_VERTICES`.
         """
         if vertices_F is not None:
             if shape_F is not NO_SHAPE:
@@ -108,14 +108,14 @@ class Body(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Surface(Record):
-    """A flat of the world: the free side is where its normal points.
+    """A flat of the world. Its normal points to the free side.
 
     Attributes:
-        name: What contacts call it.
+        name: The name by which contacts refer to it.
         p_WS_W: (3,), m, a point of the surface, world.
         normal_W: (3,), unit, into the free side, world axes.
         friction: Coulomb's mu, >= 0, between this surface and any body.
-        restitution: e, in [0, 1], likewise.
+        restitution: Coefficient e, in [0, 1], between this surface and any body.
 
     Raises:
         InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, or e outside [0, 1].
@@ -157,7 +157,7 @@ class World(Record):
         gravity_W: (3,), m/s^2, world axes.
 
     Raises:
-        InvalidFieldError: two bodies of one name, or gravity not three finite numbers.
+        InvalidFieldError: two bodies have one name, or gravity is not three finite numbers.
     """
 
     bodies: tuple[Body, ...] = ()
@@ -183,7 +183,7 @@ class World(Record):
             raise InvalidFieldError("bodies", names, "names that differ")
 
     def body(self, name: str) -> Body:
-        """Return the body of that name, or raise `UnknownBodyError`, which lists those that are known."""
+        """Return the body of that name, or raise `UnknownBodyError`, which lists the known names."""
         for body in self.bodies:
             if body.name == name:
                 return body

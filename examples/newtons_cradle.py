@@ -1,4 +1,4 @@
-"""Newton's cradle: the law for several contacts decides which balls leave, as steel balls have decided."""
+"""Newton's cradle: the law for several contacts decides which balls leave. Steel balls follow one of them."""
 
 import numpy as np
 

@@ -1,6 +1,6 @@
-"""Starts the server, with `view:=true` the visualizer too.
+"""Starts the server, and with `view:=true` the visualizer too.
 
-`ros2 launch contact_dynamics server.launch.py`
+The command is `ros2 launch contact_dynamics server.launch.py`.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Says what this machine lacks for building the environment, all of it at once, and installs nothing.
+# Says everything at once that this machine lacks for building the environment. It installs nothing.
 # usage: check_machine.sh PYTHON
 set -u
 

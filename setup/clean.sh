@@ -1,5 +1,5 @@
 #!/bin/sh
-# Removes what make made in the project's folder, and nothing that merely has a name like it.
+# Removes what make made in the project's folder, and nothing else that has a similar name.
 # usage: clean.sh VENV
 set -eu
 
@@ -16,7 +16,7 @@ rmdir "$1"-matrix 2>/dev/null || true
 # setuptools and the tools of `make test` fill these again.
 rm -rf contact_dynamics.egg-info coverage_html .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache
 
-# A folder of the demo's, by its name and by what only the demo writes into it.
+# The name shows that a folder is the demo's, and files in it that only the demo writes.
 for run in demo_output/[0-9][0-9][0-9][0-9]-[0-9][0-9]-[0-9][0-9]_*; do
     if [ -e "$run/parameters.yaml" ] && [ -e "$run/toss_publisher.txt" ]; then
         echo "removing $run"

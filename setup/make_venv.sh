@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes the virtual environment, unless there is one that works and has the Python that was asked for.
+# Makes the virtual environment, unless there is a working one with the Python that was asked for.
 # usage: make_venv.sh VENV [PYTHON]
 set -eu
 

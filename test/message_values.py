@@ -393,7 +393,7 @@ def modes_and_margins(draw: st.DrawFn) -> tuple[SpatialMode, SpatialModeMargin |
 
 @st.composite
 def wrench_sets(draw: st.DrawFn, mode: str = "sf") -> SpatialWrenchSet:
-    """With any number of vertices, generators and half-spaces; in space and in a plane."""
+    """The sets have any number of vertices, generators and half-spaces, in space and in a plane."""
     v, g, h = (draw(st.integers(0, 3)) for _ in range(3))
     sliding = len(mode) if draw(flags) else 0
     return SpatialWrenchSet(
@@ -518,7 +518,7 @@ def tumbling_questions(draw: st.DrawFn) -> TumblingQuestion:
 
 @st.composite
 def impact_questions(draw: st.DrawFn) -> ImpactQuestion:
-    """Of one body and of two, by all laws; what plays no part is left out."""
+    """The questions are about one body and two, by all laws, without the fields that play no part."""
     problem, contacts = draw(st.sampled_from(Problem)), draw(some(contact_sets()))
     is_planar, state = problem is Problem.PLANAR, draw(st.one_of(published, known_states()))
     other = draw(some(bodies()))
@@ -547,7 +547,7 @@ def impact_questions(draw: st.DrawFn) -> ImpactQuestion:
 
 @st.composite
 def contact_mode_questions(draw: st.DrawFn) -> ContactModeQuestion:
-    """With all that can be asked for or not; what plays no part is left out."""
+    """The questions ask for each option or not, without the fields that play no part."""
     problem = draw(st.sampled_from(Problem))
     may_be_planar = problem is not Problem.SPATIAL
     margins, statics = draw(flags), draw(flags)

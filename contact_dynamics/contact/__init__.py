@@ -2,8 +2,8 @@
 
 `contact` has one contact and sets of them, and `curvature` the shapes of both sides where they touch.
 `found` finds contacts from geometry: `on_flats` where a body meets a plane, `on_obstacles` and `overlap`
-where it meets a solid. `velocities` says which contacts count as at rest, `kinds` what velocities add to
-their accelerations, and `friction` makes pyramids of friction cones.
+where it meets a solid. `velocities` says which contacts count as at rest. `kinds` says what velocities add to
+the accelerations of contacts. `friction` makes pyramids from friction cones.
 """
 
 from contact_dynamics.contact.contact import Contact, ContactSet

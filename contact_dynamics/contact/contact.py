@@ -1,8 +1,8 @@
 """Contacts of a body with the world: where, along which normal, with which friction and restitution.
 
-A contact is a point of the body on a flat of the world, unless curvatures say otherwise
-(`contact.curvature`). The normal points into the body. One contact is a `Contact`; many are a `ContactSet`,
-which holds arrays, and of which each item is a `Contact`.
+A contact is a point of the body on a flat of the world, unless it has curvatures (`contact.curvature`). The
+normal points into the body. One contact is a `Contact`. Several contacts are a `ContactSet`, which holds
+arrays and whose items are `Contact`s.
 """
 
 from __future__ import annotations
@@ -33,25 +33,25 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 MOST_CONTACTS: Final = 10_000
-"""Longest list of contacts accepted: far above any real contact set, far below what would stall a service."""
+"""Longest list of contacts accepted. Real sets have far fewer, and a service can still answer for so many."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Contact(Record):
-    """One contact of a body in space. Lists are taken for vectors.
+    """One contact of a body in space. Vectors may be given as lists.
 
     Attributes:
         p_WC_W: (3,), m, the contact point, world.
         normal_W: (3,), unit, into the body, world axes.
         friction: Coulomb's mu, >= 0.
-        restitution: e, in [0, 1]; contact modes do not use it.
-        surface: The surface that it touches; empty: not known.
-        body_curvatures: Of the body there, one row; None: its point touches.
-        surface_curvatures: Of the world there, one row; None: its flat is touched.
+        restitution: Coefficient e, in [0, 1]; contact modes do not use it.
+        surface: The surface that it touches; empty if not known.
+        body_curvatures: Curvatures of the body there, one row, or None if a point of the body touches.
+        surface_curvatures: Curvatures of the world there, one row, or None if a flat is touched.
 
     Raises:
-        InvalidFieldError: a number that is not finite, a normal that is not unit, mu < 0, e outside [0, 1],
-            or curvatures of more than one contact, or with which the sides do not touch in one point.
+        InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, e is outside [0, 1], or the
+            curvatures have more than one row or do not let the sides touch in one point.
     """
 
     p_WC_W: FloatArray
@@ -87,23 +87,23 @@ class Contact(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ContactSet(Record):
-    """Contacts of one body in space; contact i is row i of each array, and `contacts[i]` is a `Contact`.
+    """Contacts of one body in space. Contact i is row i of each array, and `contacts[i]` is a `Contact`.
 
-    Lists are taken for arrays, one normal for all contacts, and one number for all frictions or restitutions.
+    Arrays may be given as lists. One normal, or one friction or restitution, may be given for all contacts.
 
     Attributes:
         p_WC_W: (n, 3), m, contact points, world.
         normals_W: (n, 3), unit, into the body, world axes.
         frictions: (n,), Coulomb's mu, >= 0.
         restitutions: (n,), e, in [0, 1]; contact modes do not use them.
-        surfaces: The surface that each contact touches; empty: not known.
-        body_curvatures: Of the body at each contact; None: its points touch.
-        surface_curvatures: Of the world at each contact; None: its flats are touched.
+        surfaces: The surface that each contact touches; empty if not known.
+        body_curvatures: Curvatures of the body at each contact, or None if points of the body touch.
+        surface_curvatures: Curvatures of the world at each contact, or None if flats are touched.
 
     Raises:
-        InvalidFieldError: arrays of unequal length, a number that is not finite, a normal that is not unit,
-            mu < 0, e outside [0, 1], or curvatures with which the sides do not touch in one point.
-        TooLargeError: more than `MOST_CONTACTS` contacts.
+        InvalidFieldError: arrays have unequal lengths, a number is not finite, a normal is not unit, mu < 0,
+            e is outside [0, 1], or curvatures do not let the sides touch in one point.
+        TooLargeError: there are more than `MOST_CONTACTS` contacts.
     """
 
     p_WC_W: FloatArray
@@ -171,7 +171,7 @@ class ContactSet(Record):
         return len(self.frictions)
 
     def __getitem__(self, i: int) -> Contact:
-        """Return one contact; from the end where ``i`` is negative."""
+        """Return one contact, counted from the end if ``i`` is negative."""
         i = range(len(self))[i]
         body, surface = self.body_curvatures, self.surface_curvatures
         return Contact(
@@ -189,7 +189,7 @@ class ContactSet(Record):
         return (self[i] for i in range(len(self)))
 
     def subset(self, indices: Sequence[int]) -> ContactSet:
-        """Return the contacts of those indices, in their order."""
+        """Return the contacts with the given indices, in their order."""
         chosen = list(indices)
         return ContactSet(
             p_WC_W=self.p_WC_W[chosen],
@@ -205,12 +205,12 @@ class ContactSet(Record):
 
 
 def _for_each(values: ArrayLike, n: int, ndim: int = 0) -> ArrayLike:
-    """Return one value for all contacts, of so many dimensions, n times; anything else as it is."""
+    """Return a value of that dimension, which is for all contacts, n times, and anything else unchanged."""
     return values if np.ndim(values) != ndim else np.broadcast_to(values, (n, *np.shape(values)))
 
 
 def _together(curvatures: list[Curvatures | None], otherwise: float) -> Curvatures | None:
-    """Return the curvatures of contacts as those of a set; a contact without any has ``otherwise``, 1/m."""
+    """Return the curvatures of contacts as those of a set. Contacts without any have ``otherwise``, 1/m."""
     if all(one is None for one in curvatures):
         return None
     each = [alike(1, otherwise) if one is None else one for one in curvatures]
@@ -234,7 +234,7 @@ def _check_curvatures(contacts: Contact | ContactSet, normals_W: FloatArray, pre
 def _check_each(
     normals: FloatArray, lengths: FloatArray, frictions: FloatArray, restitutions: FloatArray
 ) -> None:
-    """Refuse the first contact with a number that is not allowed; in floats, since most sets are small."""
+    """Refuse the first contact with a number that is not allowed. Floats are faster for small sets."""
     for i, length in enumerate(lengths.tolist()):
         if abs(length - 1.0) > UNIT_LENGTH_TOLERANCE:
             raise InvalidFieldError(f"contacts.normals[{i}]", normals[i].tolist(), "a unit vector")

@@ -1,11 +1,11 @@
 """What the shapes at a contact add to its acceleration: the velocity-product terms of each contact kind.
 
-A point of the body on a flat of the world keeps its material point, and the gap's second derivative is that
-point's a_n = n . (a + alpha x r + w x (w x r)). Where the body is curved there, or the world, the point of
-contact moves over both. Let K_B and K_S be the curvatures of body and surface at the contact (2 x 2,
-symmetric, in the tangent plane, convex positive), v the velocity of the body's material point there (tangent,
-as the contact persists), w the angular velocity and m = n x w. A material point at xi from the contact, and
-its height over the surface, are after a short time t
+If a point of the body touches a flat of the world, the same material point stays in contact. The gap's second
+derivative is then the acceleration of that point, a_n = n . (a + alpha x r + w x (w x r)). If the body or the
+world is curved there, the point of contact moves over both. Let K_B and K_S be the curvatures of body and
+surface at the contact (2 x 2, symmetric, in the tangent plane, positive where convex), v the velocity of the
+body's material point there (tangent, as the contact persists), w the angular velocity and m = n x w. A
+material point at xi from the contact has, after a short time t, this height over the surface:
 
     gap(xi) = xi' K_B xi / 2 + t m . xi + t^2 a_n / 2 + (xi + t v)' K_S (xi + t v) / 2.
 
@@ -14,21 +14,21 @@ The gap of the bodies is the least of these. With xi = t eta,
     gap'' = a_n + min over eta of  eta' K_B eta + 2 m . eta + (eta + v)' K_S (eta + v),
     (K_B + K_S) eta = -(m + K_S v),
 
-where eta is the velocity of the point of contact over the body, and eta + v that over the surface: Montana's
-equations of contact (The kinematics of contact and grasp, Int. J. of Robotics Research 7(3), 1988). An
-infinite curvature, a corner or an edge, holds eta (of the body) or eta + v (of the surface) at zero in its
-direction. The known kinds follow:
+where eta is the velocity of the point of contact over the body, and eta + v that over the surface. These are
+Montana's equations of contact (The kinematics of contact and grasp, Int. J. of Robotics Research 7(3), 1988).
+An infinite curvature is a corner or an edge. On the body it keeps eta at zero in its direction, on the
+surface eta + v. The known kinds follow:
 
     point on flat      K_B infinite, K_S = 0      eta = 0       nothing
     flat on point      K_B = 0, K_S infinite      eta = -v      -2 n . (w x v), Coriolis
     curved on flat     K_S = 0                    K_B eta = -m  -m' K_B^-1 m, a rolling disc's -w^2 R
     edge on edge       each 0 along itself        along both    2 m . eta
 
-Likewise the velocity of sliding of a contact at rest (v = 0) changes by the acceleration of the material
-point plus w x eta, as another point comes to be the one of contact: its tangential part is w_n n x eta.
+The sliding velocity of a contact at rest (v = 0) changes by the acceleration of the material point plus
+w x eta, because another point becomes the point of contact. The tangential part of this term is w_n n x eta.
 
-Not covered: pairs that touch along a line or a face (give its extreme points), or corner on corner, which has
-no normal of its own; surfaces that move.
+Not covered: pairs that touch along a line or a face (give its extreme points), a corner on a corner, which
+has no normal, and surfaces that move.
 """
 
 from __future__ import annotations
@@ -54,15 +54,15 @@ Pair: TypeAlias = "tuple[float, float]"
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Curvatures(Record):
-    """Principal curvatures of one side, body or surface, of n contacts; convex is positive.
+    """Principal curvatures of one side, body or surface, of n contacts. They are positive where convex.
 
     Attributes:
-        along: (n,), 1/m, along the direction; inf: a corner or the edge of a blade.
-        across: (n,), 1/m, along the tangent at right angles to it.
-        directions_W: (n, 3), unit, tangent, world axes; zero where both curvatures are equal.
+        along: (n,), 1/m, along the direction; inf at a corner or across the edge of a blade.
+        across: (n,), 1/m, along the tangent at right angles to the direction.
+        directions_W: (n, 3), unit tangents, world axes; zero where both curvatures are equal.
 
     Raises:
-        InvalidFieldError: arrays of unequal length, NaN, minus infinity.
+        InvalidFieldError: arrays have unequal lengths, or a number is NaN or minus infinity.
     """
 
     along: FloatArray
@@ -75,7 +75,7 @@ class Curvatures(Record):
             """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
-        """Check all three."""
+        """Check all arrays."""
         n = len(self.along)
         for name in ("along", "across"):
             values = np.array(getattr(self, name), dtype=np.float64)
@@ -181,8 +181,8 @@ class Rolling(NamedTuple):
     """How the point of contact moves over the body, and what its motion adds to the gap.
 
     Attributes:
-        eta: m/s, of the point of contact over the body.
-        gap: m/s^2, what the gap's second derivative has besides a_n.
+        eta: Velocity of the point of contact over the body, m/s.
+        gap: The gap's second derivative less a_n, m/s^2.
     """
 
     eta: Pair
@@ -204,7 +204,7 @@ def side_of(curvatures: Curvatures | None, i: int, frame: FloatArray, default: f
 
 
 def rolling(body: Side, surface: Side, m: Pair, v: Pair) -> Rolling | None:
-    """Return how the contact moves, or None where it is not one point: the minimum over eta above."""
+    """Return how the contact moves, by the minimum over eta above, or None where it is not one point."""
     held = [(u, 0.0) for k, u in body if math.isinf(k)]
     held += [(u, -_dot(u, v)) for k, u in surface if math.isinf(k)]
     if len(held) > 2:
@@ -235,7 +235,7 @@ def rolling(body: Side, surface: Side, m: Pair, v: Pair) -> Rolling | None:
 
 
 def _least(bend: list[list[float]], slope: list[float], smallest: float) -> list[float] | None:
-    """Return where a quadratic form of one or two variables is least; None: it bends too little."""
+    """Return where a quadratic form of one or two variables is least, or None if it is nearly flat."""
     if len(slope) == 1:
         return [-slope[0] / bend[0][0]] if bend[0][0] > smallest else None
     (a, b), (_, c) = bend

@@ -1,16 +1,16 @@
 """Contacts found from geometry: the points of a convex body that touch the world's surfaces at a pose.
 
-A face or an edge that lies flush gives its extreme points, which carry every force that the whole face or
-edge can: the corners of a face, the two ends of a cylinder's or a capsule's line. A ball touches in one
-point. A rim touches in its lowest point, and one that lies flush as a whole in eight points
-(`flat_contact.RIM_POINTS`) evenly spaced, the first towards the body's x axis (for a rim about x: its y
-axis): their wrenches are a cone inscribed in that of the whole rim, with at least 92 % of its tipping moments
-(the cosine of 22.5 degrees).
+A face or an edge that lies flush gives its extreme points as contacts: the corners of a face, the two ends of
+a cylinder's or a capsule's line. They carry every force that the whole face or edge can. A ball touches in
+one point. A rim touches in its lowest point. If it lies flush as a whole, it touches in `on_flats.RIM_POINTS`
+points, evenly spaced, the first towards the body's x axis (for a rim about x: its y axis). Their wrenches
+form a cone inside that of the whole rim, with at least 92 % of its tipping moments (the cosine of 22.5
+degrees).
 
-Where a body is round its curvature comes with the contact (`contact.curvature`): that of the ball that rolls
-over the shape, and along a rim of radius R whose plane is tilted by theta, sin(theta) / R.
+A round body's contact has the body's curvature (`contact.curvature`). It is that of the ball that rolls over
+the shape, and along a rim of radius R whose plane is tilted by theta, sin(theta) / R.
 
-Flats are treated here; obstacles, which have edges and corners, in `obstacle_contact`.
+This file treats flats. `on_obstacles` treats obstacles, which have edges and corners.
 """
 
 from __future__ import annotations
@@ -45,16 +45,16 @@ def find_contacts(
     *,
     distance_tolerance: float = DISTANCE_TOLERANCE,
 ) -> ContactSet:
-    """Return the contacts of a body with the surfaces, in their order; of a flat, corners first, then rims.
+    """Return the contacts of a body with the surfaces, in their order. On a flat, rims come after corners.
 
-    A point touches where its height above the surface is at most ``distance_tolerance`` (m); one below the
-    surface touches, since measured poses penetrate by their noise. A rim lies flush where all of it touches.
+    A point touches if its height above the surface is at most ``distance_tolerance`` (m). A point below the
+    surface touches too, since measured poses penetrate by their noise. A rim lies flush if all of it touches.
     The set may be empty.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
-        InvalidFieldError: a tolerance that is negative or not finite.
-        NotSupportedError: a rim of the body at an edge of an obstacle (`obstacle_contact`).
+        InvalidFieldError: the tolerance is negative or not finite.
+        NotSupportedError: a rim of the body is at an edge of an obstacle (`on_obstacles`).
     """
     check_has_shape(body)
     check_not_negative("distance_tolerance", distance_tolerance)
@@ -117,4 +117,4 @@ def _corners(points: FloatArray, surfaces: Sequence[Surface], distance_tolerance
 NO_CONTACTS: Final = ContactSet(
     p_WC_W=np.zeros((0, 3)), normals_W=np.zeros((0, 3)), frictions=np.zeros(0), restitutions=np.zeros(0)
 )
-"""Of a body that touches nothing."""
+"""The contacts of a body that touches nothing."""

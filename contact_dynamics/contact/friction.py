@@ -1,7 +1,7 @@
 """Coulomb's friction in space as a cone of forces with flat sides.
 
-Model: a contact force f_n >= 0, |f_t| <= mu f_n. The round cone is replaced by a stated number of edges
-inside it.
+Model: the contact force obeys f_n >= 0 and |f_t| <= mu f_n. The round cone is replaced by a pyramid inside
+it, with a stated number of edges.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 MOST_FACETS: Final = 1000
-"""Edges of a friction pyramid, which then leaves out 5e-6 of friction; far more would only take memory."""
+"""Largest number of edges of a friction pyramid. It leaves out 5e-6 of friction; more only take memory."""
 
 
 def check_facets(facets: int) -> int:
@@ -34,12 +34,12 @@ def linearised_cone(
 ) -> FloatArray:
     """Return the edges, (facets, 3), of a pyramid inside the round friction cone about a unit normal, (3,).
 
-    Each edge is the normal plus friction times a unit tangent; the tangents are evenly spread, so that the
-    pyramid allows at least cos(pi / facets) of the cone's tangential force in every direction. The first edge
-    leans towards ``towards``, (3,), if given.
+    Each edge is the normal plus friction times a unit tangent. The tangents are evenly spread, so the pyramid
+    allows at least cos(pi / facets) of the cone's tangential force in every direction. The first edge leans
+    towards ``towards``, (3,), if given.
 
     Raises:
-        InvalidFieldError: fewer than 3 facets, more than `MOST_FACETS`, or no whole number of them.
+        InvalidFieldError: ``facets`` is not a whole number from 3 to `MOST_FACETS`.
     """
     check_facets(facets)
     one, two = tangents_towards(normal, towards)

@@ -1,6 +1,6 @@
 """What the velocities of a body add to the accelerations at its contacts, for contacts of every kind.
 
-The derivation, and the terms of the known kinds, stand in `curvature`.
+`curvature` has the derivation, and the terms of the known kinds.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 def velocity_accelerations(contacts: ContactSet, velocities_W: FloatArray, w_W: FloatArray) -> FloatArray:
     """Return what velocities add to the accelerations of the body's points at contacts, (n, 3), m/s^2.
 
-    In the normal direction the sum is the gap's second derivative; in tangential ones, at a contact at rest,
-    the rate of its velocity of sliding.
+    With them, the acceleration along the normal is the gap's second derivative. At a contact at rest, the
+    tangential acceleration is the rate of its sliding velocity.
 
     Args:
         contacts: n contacts.

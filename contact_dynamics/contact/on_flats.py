@@ -1,6 +1,6 @@
-"""Where a convex body touches a plane: extreme points of what does, with the body's curvature there.
+"""Where a convex body touches a plane: the extreme points, with the body's curvature there.
 
-See `contact_geometry` for which points a face, a line and a rim have.
+`found` says which points a face, a line and a rim have.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ if TYPE_CHECKING:
     Side: TypeAlias = tuple[float, float, FloatArray]
 
 RIM_POINTS: Final = 8
-"""Contacts of a rim that lies flush."""
+"""Number of contacts of a rim that lies flush."""
 
 
 class Touch(NamedTuple):
     """One extreme point of where a body touches, with curvatures of both sides (`contact.curvature`).
 
     Attributes:
-        p_WC_W: (3,), m.
+        p_WC_W: (3,), m, the point in the world.
         normal_W: (3,), unit, into the body.
-        body: 1/m along a tangent and across it, and the tangent, (3,), unit.
+        body: Curvatures, 1/m, along a tangent and across it, and the tangent, (3,), unit.
     """
 
     p_WC_W: FloatArray
@@ -50,9 +50,9 @@ def flat_touches(
     level: float,
     tolerance: float,
 ) -> Iterator[Touch]:
-    """Yield where a body of a pose touches the plane n . p = ``level``, m, of a unit normal, (3,).
+    """Yield where a body at a pose touches the plane n . p = ``level``, m, of a unit normal, (3,).
 
-    Corners come first, then rims. A point touches where it is at most ``tolerance``, m, above the plane.
+    Corners come first, then rims. A point touches if it is at most ``tolerance``, m, above the plane.
     """
     points = p_WB_W + shape.vertices @ R_WB.T
     tangent = along_least(n_W)

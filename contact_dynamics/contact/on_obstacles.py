@@ -1,18 +1,18 @@
 """Contacts of a convex body with a convex obstacle: corners on faces, faces on corners, edges across edges.
 
 Two convex bodies are apart if and only if a face's normal of one of them, or a cross product of two edges,
-separates them (Gottschalk, Lin and Manocha, OBBTree, SIGGRAPH 1996). The direction of the largest
-separation is the normal; of directions that are as good, an obstacle's face comes first, then a body's, then
-edges. What lies within the tolerance of the touching plane is a polygon, an edge or a corner of each, and
-contact is where the two overlap: its extreme points, which carry every force that the overlap can, are
-corners of the body (point on flat), corners of the obstacle (flat on point) and crossings of edges (edge on
-edge).
+separates them (Gottschalk, Lin and Manocha, OBBTree, SIGGRAPH 1996). The direction of the largest separation
+is the normal. Among directions that are equally good, an obstacle's face comes first, then a body's, then
+edges. The parts of both within the tolerance of the touching plane are polygons, edges or corners, and
+contact is where the two overlap. The extreme points of the overlap carry every force that the overlap can.
+They are corners of the body (point on flat), corners of the obstacle (flat on point) and crossings of edges
+(edge on edge).
 
-Where a ball rolls over a polyhedron (a sphere, a capsule, a rounded box) the directions between nearest
-points of corners and hulls are added, and contact may also be a corner's ball on an edge or on a corner. Rims
-are covered where a face of the obstacle touches them: as on a flat, but within the face.
+Where a ball rolls over a polyhedron (a sphere, a capsule, a rounded box), the directions between nearest
+points of corners and hulls are added. A contact may then also be a corner's ball on an edge or on a corner.
+Rims are covered where a face of the obstacle touches them, as on a flat, but within the face.
 
-A sharp corner on an edge, or on a corner, has no normal of its own: it gets one of those above. Bodies that
+A sharp corner on an edge or on a corner has no normal of its own, and gets one of those above. Bodies that
 penetrate get the direction of the least penetration.
 
 Not covered: rims at an edge or a corner of the obstacle (`NotSupportedError`).
@@ -45,9 +45,9 @@ class Site(NamedTuple):
     """Where a body is nearest to an obstacle, or deepest in it.
 
     Attributes:
-        gap: m, along the normal; negative: penetration.
+        gap: Distance along the normal, m; negative where they penetrate.
         normal_W: (3,), unit, out of the obstacle, into the body.
-        level: m, the obstacle's furthest extent along the normal: its points have n . p <= level.
+        level: The obstacle's furthest extent along the normal, m: its points have n . p <= level.
     """
 
     gap: float
@@ -56,10 +56,11 @@ class Site(NamedTuple):
 
 
 def site_of(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, obstacle: Obstacle) -> Site:
-    """Return where a body, of a pose, is nearest to an obstacle.
+    """Return where a body at a pose is nearest to an obstacle.
 
-    For polyhedra that are apart the gap is the largest one along the directions above: their distance where
-    a corner faces a face or edges cross, less (never more) where only edges or corners are nearest.
+    For polyhedra that are apart, the gap is the largest one along the directions above. It is their distance
+    where a corner faces a face or edges cross. It is less, never more, where only edges or corners are
+    nearest.
     """
     theirs = obstacle.features
     axes = _axes(shape, p_WB_W, R_WB, theirs)
@@ -78,7 +79,7 @@ def site_of(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, obstacle: 
 def _axes(
     shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, theirs: Features
 ) -> tuple[FloatArray, ...]:
-    """Return directions, (n, 3) each, of which one separates what is apart; round sides have many more."""
+    """Return directions, (n, 3) each, one of which separates two polyhedra that are apart."""
     mine = features_of(shape)
     crosses = np.cross((mine.edges @ R_WB.T)[:, None], theirs.edges).reshape(-1, 3)
     sizes = np.linalg.norm(crosses, axis=1)
@@ -109,7 +110,7 @@ def _lowest(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, axes: Floa
 def touches_of(
     shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, obstacle: Obstacle, tolerance: float
 ) -> list[Touch]:
-    """Return the contacts of a body of a pose with an obstacle within a tolerance, m; none where it is apart.
+    """Return the contacts of a body at a pose with an obstacle, within a tolerance, m. There may be none.
 
     Raises:
         NotSupportedError: a rim is at an edge or a corner of the obstacle.

@@ -1,4 +1,4 @@
-"""Outlines of what lies in a touching plane, and the extreme points of where two of them overlap.
+"""Outlines of the parts that lie in a touching plane, and the extreme points of the overlap of two outlines.
 
 An outline is a convex polygon, a line or a point. Where a body's and an obstacle's overlap, the extreme
 points are corners of either within the other, and crossings of their sides.
@@ -26,7 +26,7 @@ class Outline(NamedTuple):
     Attributes:
         points: (k, 3), m, world, in order.
         flat: (k, 2), m, in the plane, counterclockwise.
-        order: (k,), which of the points that were given.
+        order: (k,), the indices of the points in the list that was given.
     """
 
     points: FloatArray
@@ -34,9 +34,9 @@ class Outline(NamedTuple):
     order: list[int]
 
     def side_at(self, place: FloatArray, frame: FloatArray, *, sharp: float, slack: float) -> Side | None:
-        """Return the curvatures of what is at a place, (2,), m: a face, an edge or a corner; None: nothing.
+        """Return the curvatures at a place, (2,), m, of a face, an edge or a corner, or None outside.
 
-        An edge is as curved across, and a corner all around, as ``sharp``, 1/m.
+        ``sharp``, 1/m, is the curvature across an edge and of a corner in all directions.
         """
         if len(self.flat) == 1:
             return (sharp, sharp, frame[0]) if math.dist(place, self.flat[0]) <= slack else None
@@ -52,7 +52,7 @@ class Outline(NamedTuple):
         return (0.0, 0.0, frame[0]) if (heights >= -SAME_POINT).all() else None
 
     def sides(self) -> list[tuple[int, int]]:
-        """Return which points each side goes between."""
+        """Return the two points of each side."""
         count = len(self.flat)
         if count < 3:
             return [(0, 1)] if count == 2 else []
@@ -75,11 +75,11 @@ def outline(points: FloatArray, frame: FloatArray) -> Outline:
 
 
 class Rounded(NamedTuple):
-    """That the body's outline is that of a hull over which a ball rolls.
+    """The rounding of a body's outline, if it is that of a hull over which a ball rolls.
 
     Attributes:
-        curvature: 1/m, the ball's.
-        slack: m, within which its corners and lines are on edges and corners.
+        curvature: Curvature of the ball, 1/m.
+        slack: Distance within which its corners and lines are on edges and corners, m.
     """
 
     curvature: float
@@ -92,11 +92,11 @@ def overlap(
     """Return the extreme points of where a body's outline and an obstacle's overlap.
 
     Args:
-        touches: of the body on the plane, in the order of its outline's points.
+        touches: the body's contacts with the plane, in the order of its outline's points.
         upper: the body's outline.
-        lower: the obstacle's.
+        lower: the obstacle's outline.
         frame: (2, 3), unit, the plane's tangents.
-        rounded: None where corners and lines of the body are sharp, or rims.
+        rounded: the rounding, or None where corners and lines of the body are sharp or belong to rims.
     """
     if not touches:
         return []
@@ -138,7 +138,7 @@ def _curvature_across(touch: Touch, side_W: FloatArray) -> float:
 
 
 def _crossing(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray) -> float | None:
-    """Return where on a side a to b, 0 to 1, it crosses c to d, ends included; None where it does not."""
+    """Return where the side a to b, 0 to 1, crosses c to d, ends included, or None if it does not."""
     x, y = _two(b - a)
     u, v = _two(d - c)
     p, q = _two(c - a)

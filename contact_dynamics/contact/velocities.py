@@ -1,4 +1,4 @@
-"""Which contacts of a body in space count as at rest: their velocities with noise taken out."""
+"""The velocities of a body's contacts in space, with noise taken out, so that some count as at rest."""
 
 from __future__ import annotations
 

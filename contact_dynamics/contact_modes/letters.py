@@ -1,7 +1,7 @@
 """The letters of contact modes (Mason, lecture 26): what one contact does, in the plane as in space.
 
-A mode is a string with one letter a contact, in the contacts' order: "ffs". In the plane a contact that
-slides goes left or right, in space it slides somewhere (`STAYS`), and the answer has the direction.
+A mode is a string with one letter for each contact, in the contacts' order, such as "ffs". In the plane a
+contact slides left or right. In space it slides in any direction (`STAYS`), and the answer has the direction.
 """
 
 from __future__ import annotations

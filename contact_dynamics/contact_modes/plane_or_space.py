@@ -1,7 +1,7 @@
-"""The questions about contact modes: each takes a problem, in the plane or in space, and answers in kind.
+"""The questions about contact modes. Each takes a problem in the plane or in space.
 
-A problem is stated once, as a `PlanarContactProblem` or a `SpatialContactProblem`, and every question can be
-asked of it. How each is answered stands in `planar` and `spatial`, under the same file names.
+You state a problem once, as a `PlanarContactProblem` or a `SpatialContactProblem`, and ask it every question.
+The files of `planar` and `spatial` answer them, under the same names.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What questions about contact modes come to, in the plane as in space: verdicts, refusals, statics."""
+"""The parts of answers about contact modes that plane and space share: verdicts, refusals, statics."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The demo: a recorded toss, played as published states; predictions beside what was then measured."""
+"""The demo plays a recorded toss as published states, and compares predictions with measurements."""

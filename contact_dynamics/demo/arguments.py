@@ -1,4 +1,4 @@
-"""The arguments of the demo's verbs, apart from what runs them, so that `--help` needs no ROS."""
+"""The arguments of the demo's verbs. They are in a file of their own, so that `--help` needs no ROS."""
 
 from __future__ import annotations
 

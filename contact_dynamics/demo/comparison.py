@@ -1,4 +1,4 @@
-"""The demo's table: what was predicted beside what was then measured."""
+"""The demo's table of predictions beside what was then measured."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 SAME_STRIKE: Final = 0.03
-"""s. A predicted strike and a measured one that are closer than that are the same."""
+"""s. A predicted strike and a measured one that are closer than this are the same."""
 
 _AVERAGED: Final = 12  # frames at either end of the rest, whose means tell whether the body moved
 
@@ -53,7 +53,7 @@ class Section:
     """A question, and the rows of its answer.
 
     Attributes:
-        time: s, on the recording's clock, when it was asked.
+        time: When it was asked, s, on the recording's clock.
     """
 
     time: float

@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
 
 TOUCHING: Final = 0.003
-"""m. Corners this near the surface touch it: so well are tracked frame, shape and surface known together."""
+"""m. Corners this near the surface touch it. Tracked frame, shape and surface together have this error."""
 
 
 def write_parameters(path: Path, toss: Toss, *, log_directory: Path) -> None:
-    """Write the file that configures server and visualizer; JSON, which every YAML reader reads."""
+    """Write the file that configures server and visualizer, as JSON, which is also YAML."""
     name, surface = toss.body.name, toss.surface
     (ixx, ixy, ixz), (_, iyy, iyz), (_, _, izz) = toss.body.mass_properties.I_B.tolist()
     parameters: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""The demo's processes: started in an own corner of ROS, and all stopped whatever happens."""
+"""The demo's processes. They run in a ROS domain of their own, and are all stopped whatever happens."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from types import TracebackType
 
 STOP_PATIENCE_S: Final = 10.0
-"""How long a process may take to finish its files after SIGINT before it is killed."""
+"""Time that a process has to finish its files after SIGINT before it is killed, s."""
 
 _COMPLAINT: Final = re.compile(r"\b(?:WARN|ERROR|FATAL)\b|^Traceback")
 _LEVEL: Final = re.compile(r"^\[")  # what begins a message of ROS's or rerun's log
 
 
 class Processes:
-    """Child processes of one run; leaving the context stops all of them, the newest first."""
+    """The child processes of one run. Leaving the context stops all of them, the newest first."""
 
     def __init__(self, log_folder: Path) -> None:
         """Give every child the same ROS domain on this machine alone, and a file for what it prints."""
@@ -51,7 +51,7 @@ class Processes:
         self.stop()
 
     def start(self, verb: str, arguments: Sequence[str]) -> subprocess.Popen[bytes]:
-        """Start a verb of the command line; what it prints goes to a file."""
+        """Start a verb of the command line. Its output goes to a file."""
         command = [sys.executable, "-m", "contact_dynamics", verb, *arguments]
         with (self._log_folder / f"{verb}.txt").open("wb") as output:
             # A session of its own: Ctrl-C reaches the children through us alone, and each closes its files in
@@ -68,7 +68,7 @@ class Processes:
         return process
 
     def all_alive(self) -> bool:
-        """Return True, or raise `RuntimeError` where a process has failed."""
+        """Return True, or raise `RuntimeError` if a process has failed."""
         for verb, process in self._running:
             if process.poll() not in {None, 0}:
                 raise RuntimeError(
@@ -81,9 +81,9 @@ class Processes:
         return (self._log_folder / f"{verb}.txt").read_text(encoding="utf-8", errors="replace")
 
     def new_complaints(self) -> list[str]:
-        """Return what the processes have warned of since the last time, whole lines, each with its verb.
+        """Return the warnings of the processes since the last call, as whole lines, each with its verb.
 
-        A message may have several lines: those that follow a complaint up to the next message are its own.
+        A warning may have several lines. It goes on up to the next message.
         """
         found = []
         for verb, heard in self._heard.items():

@@ -1,6 +1,6 @@
 """Asks the server about a toss while it happens, as a robot would.
 
-At meaningful moments, and from what was published so far.
+It asks at meaningful moments, and uses only what was published so far.
 """
 
 from __future__ import annotations
@@ -30,22 +30,22 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
 
 ANSWER_S: Final = 2.0
-"""How long an answer may take. A robot that waits longer has lost the body."""
+"""Longest time for an answer, s. A robot that waits longer has lost the body."""
 
 LAST_MOMENT: Final = 0.025
-"""s before the predicted landing at which the impact is asked for: late, and early enough to act on."""
+"""Time before the predicted landing at which it asks for the impact, s: late, but early enough to act."""
 
 SILENCE_S: Final = 1.0
-"""The toss is over when no state has come for so long."""
+"""The toss is over when no state has come for this time, s."""
 
 REST_FRAMES: Final = 2
-"""Frames for which a body must be slow before its contact mode is asked for."""
+"""Number of frames for which a body must be slow before it asks for the contact mode."""
 
 REST_DEVIATIONS: Final = 3.0
-"""Slow is what cannot be told from rest: within so many deviations of the velocities' noise."""
+"""A body is slow if its velocities are within this many standard deviations of their noise."""
 
 CURVE_POINTS: Final = 120
-"""Of polhode and herpolhode, for the picture."""
+"""Number of points of polhode and herpolhode, for the picture."""
 
 _START_S: Final = 30.0
 _POLL_S: Final = 0.1
@@ -57,9 +57,9 @@ class Asked:
     """One question with its answer.
 
     Attributes:
-        time: s, on the recording's clock, of the newest state when it was asked.
+        time: Time of the newest state when it was asked, s, on the recording's clock.
         response: The service's response.
-        round_trip: s.
+        round_trip: Time until the answer came, s.
     """
 
     time: float
@@ -68,7 +68,7 @@ class Asked:
 
 
 class Questioner(Node):
-    """The node `demo`: listens to a body's states and asks."""
+    """The node `demo`, which listens to a body's states and asks."""
 
     def __init__(self, toss: Toss) -> None:
         """Look for the services."""
@@ -100,10 +100,10 @@ class Questioner(Node):
         """Wait until all services are there, and only then subscribe, as the publisher waits for that.
 
         Args:
-            go_on: raises where there is no use in waiting longer.
+            go_on: a function that raises if it is useless to wait longer.
 
         Raises:
-            TimeoutError: they do not come.
+            TimeoutError: the services do not come.
         """
         deadline = time.monotonic() + _START_S
         for client in self._askers.values():
@@ -138,7 +138,7 @@ class Questioner(Node):
             self._ask_contact_mode(self._newest)  # by its stamp, as it is too old by now to be taken for now
 
     def _flight_seen(self) -> float:
-        """Return how long the body has been flying, s, less one frame, which may have touched."""
+        """Return how long the body has been flying, s, less one frame, in which it may have touched."""
         return max(0.0, self._now - self._flying_since - 1.0 / self._toss.rate)
 
     def _receive(self, msg: Odometry) -> None:

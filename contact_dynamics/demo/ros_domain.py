@@ -1,6 +1,6 @@
 """A ROS domain of one's own, so that demos and tests which run side by side do not hear each other.
 
-Linux only: the claim is a socket in the abstract namespace, which goes with the process that holds it.
+This works on Linux only. The claim is a socket in the abstract namespace, which vanishes with its process.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Final
 
 _DOMAINS: Final = 100
-"""ROS_DOMAIN_ID 1 to 100 use ports below the ephemeral ones of Linux."""
+"""Number of ROS domains to choose from. Domains 1 to 100 use ports below the ephemeral ones of Linux."""
 
 _FIRST_PORT: Final = 7400
 _PORTS: Final = 250
@@ -22,10 +22,10 @@ _LOCAL_PORT: Final = re.compile(r"^ *\d+: [0-9A-F]+:([0-9A-F]{4}) ", re.MULTILIN
 
 
 def claim_domain() -> int:
-    """Return a ROS_DOMAIN_ID that no other process here uses or has claimed; it is kept until this one ends.
+    """Return a ROS_DOMAIN_ID that no other process here uses or has claimed. It is kept until this one ends.
 
     Raises:
-        RuntimeError: there is none.
+        RuntimeError: all domains are in use.
     """
     in_use = _domains_in_use()
     for offset in range(_DOMAINS):
@@ -47,7 +47,7 @@ def _claim(domain: int) -> bool:
 
 
 def _domains_in_use() -> set[int]:
-    """Return the domains in whose ports somebody listens, whoever it is."""
+    """Return the domains on whose ports any process listens."""
     tables = [Path("/proc/net/udp"), Path("/proc/net/udp6")]
     text = "\n".join(table.read_text(encoding="ascii") for table in tables if table.is_file())
     ports = [int(port, 16) for port in _LOCAL_PORT.findall(text)]

@@ -1,7 +1,7 @@
-"""The demo: a toss is played as published states, the server is asked, and a table says how well it knew.
+"""The demo plays a toss as published states, asks the server, and prints how good its answers were.
 
-Three processes and this one: the server, the visualizer, the publisher; this one asks. All of them are
-stopped at the end, however it comes.
+The server, the visualizer and the publisher are three processes. This process asks. At the end it stops all
+of them, also after a failure.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from contact_dynamics.measured.recorded_toss import Toss
 
 LISTENERS: Final = 3
-"""Subscriptions that the toss waits for: the server's, the visualizer's and this process's."""
+"""Number of subscriptions that the toss waits for: the server's, the visualizer's and this process's."""
 
 PICTURE: Final = "toss.rrd"
 

@@ -42,7 +42,7 @@ class TossPublisher(Node):
         self._publisher = self.create_publisher(Odometry, topic_of(toss), QOS)
 
     def wait_for_listeners(self, count: int) -> bool:
-        """Return whether that many subscriptions have matched in time."""
+        """Return whether this many subscriptions have matched in time."""
         deadline = time.monotonic() + _DISCOVERY_S
         while self._publisher.get_subscription_count() < count:
             if time.monotonic() > deadline:
@@ -51,10 +51,10 @@ class TossPublisher(Node):
         return True
 
     def play(self) -> None:
-        """Publish every sample when its time has come, stamped with that time; but the first one at once.
+        """Publish the first sample at once, and every other one at its time. Each has its own time as stamp.
 
-        A listener that this process has found may take some tenths of a second longer to find it. The first
-        sample waits for that, and all others come on time.
+        A listener that this process has found may take some tenths of a second longer to find this process.
+        The first sample covers that time, so that all others come on time.
         """
         toss = self._toss
         lead_ns = to_ns(_LEAD_S - float(toss.times[0]))

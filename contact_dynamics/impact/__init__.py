@@ -7,8 +7,8 @@
 
 - In the plane, the impulse path is Routh's construction (`routh`); `two_bodies` may both move.
 - In space, a contact responds in all directions (`response`) and slides by its `sliding_law`, so that the
-  `path` bends: it is summed as a `taylor` series, up to where sliding comes to a `stop`, and ends by its
-  `restitution`. Batches do the same in step (`batch_paths`, `batch_restitution`).
+  `path` bends. The path is a `taylor` series up to where sliding comes to a `stop`, and `restitution` says
+  where it ends. Batches do the same for many at once (`batch_paths`, `batch_restitution`).
 - Several contacts strike in turn (`sequential`, in all `orders`) or at once (`simultaneous`), also in the
   plane (`planar`). Contacts that do not approach can jam (`jamming`) until that is over (`settling`).
 - In time, `meetings` finds which contact strikes next, and `sequence` goes on from strike to strike.

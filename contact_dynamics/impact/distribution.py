@@ -1,12 +1,12 @@
-"""What an impact does to an uncertain state, by sampling: mean, covariance, probability of each outcome.
+"""The impact of an uncertain state, by sampling: mean, covariance, probability of each outcome.
 
-An impact is not smooth in the state: sliding stops or does not, and turns. So nothing is linearised: states
+An impact is not smooth in the state: sliding stops or does not, and turns. So nothing is linearised. States
 are drawn from the normal distribution in opposite pairs (a linear law would keep mean and covariance of the
-draw), each goes through the impact, and the results are counted. The error of a probability P is sqrt(P (1 -
-P) / samples).
+draw). The impact of each is worked out, and the results are counted. The error of a probability P is
+sqrt(P (1 - P) / samples).
 
-Draws whose contact separates do not strike: they keep their velocity, and count as *missed*. Only the state
-is uncertain; body, friction, restitution and normal are taken as known, and the time of the impact as given.
+Draws whose contact separates do not strike. They keep their velocity and count as *missed*. Only the state is
+uncertain. Body, friction, restitution, normal and the time of the impact are known.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def planar_impact_distribution(
         restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A component of the contact's velocity within it counts as zero.
         samples: How many states to draw, an even number; about 0.2 us each.
-        seed: Of the draw, so that the same question has the same answer.
+        seed: Seed of the draw, so that the same question has the same answer.
 
     Raises:
         InvalidFieldError: the covariance is not symmetric and positive semidefinite, or the number of samples
@@ -132,7 +132,7 @@ def spatial_impact_distribution(
         velocity_tolerance: m/s, >= 0. A normal or tangential velocity of the contact within it counts as
             zero.
         samples: How many states to draw, an even number; 2000 take some 20 ms, 10 000 some 60 ms.
-        seed: Of the draw, so that the same question has the same answer.
+        seed: Seed of the draw, so that the same question has the same answer.
 
     Raises:
         InvalidFieldError: as `spatial_impact`; or the covariance is not symmetric and positive semidefinite,

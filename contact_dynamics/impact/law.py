@@ -1,9 +1,9 @@
 """The restitution laws, what sets them apart, and what can happen during an impact (Mason, lecture 27).
 
-Compression collects an amount of something, and restitution gives a share of it back. `RestitutionRule` says
-of each law what that is and where restitution ends, for paths in space, which are not known in advance. In
-the plane the path is known: there the three ends are closed forms in the middle of one computation
-(`planar.routh`, and `planar.batch` for many), of which a call would cost a tenth.
+Compression collects an amount, and restitution returns a share of it. `RestitutionRule` says for each law
+which amount this is and where restitution ends. It serves paths in space, which are not known in advance. In
+the plane the path is known, and the three ends are closed forms in the middle of one computation
+(`planar.routh`, and `planar.batch` for many). A call there would take a tenth of the time of the computation.
 """
 
 from __future__ import annotations

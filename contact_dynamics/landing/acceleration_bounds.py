@@ -1,18 +1,18 @@
-"""How hard the points of a moving body can be pulled towards a plane: bounds that hold along its motion.
+"""Bounds on the accelerations of a moving body's points towards a plane, which hold along its motion.
 
 A point at r from the centre of mass has the acceleration a + w' x r + w x (w x r). Its part along a plane's
 normal n is at least -(fall + |r| turning), with
 
     fall = max(-n . a),    turning = max(|w|^2 (1 + 1/sqrt 3) + |I^-1 N|),
 
-because |I^-1 (I w x w)| <= |w|^2 / sqrt 3: each of its components is |I_2 - I_3| / I_1 |w_2 w_3| or alike,
-and no body has |I_2 - I_3| > I_1.
+because |I^-1 (I w x w)| <= |w|^2 / sqrt 3. Its first component is |I_2 - I_3| / I_1 |w_2 w_3|, the others
+follow by cyclic permutation, and no body has |I_2 - I_3| > I_1.
 
 Without torque the bound holds for all time (`FreeMotion`). Under forces (`ForcedMotion`) it holds along one
-step of the integrator, over which every variable is a polynomial of degree 7: a polynomial, like its norm,
-stays within its Bernstein coefficients (Farin, Curves and Surfaces for CAGD, 4.3), so that the largest force
-and torque of the step are bounded, not sampled. The bounds are those of the motion as it is integrated, whose
-accuracy `forced_motion` states.
+step of the integrator. In the step every variable is a polynomial of degree 7, and a polynomial stays within
+its Bernstein coefficients (Farin, Curves and Surfaces for CAGD, 4.3). So the largest force and torque of the
+step are bounded, not sampled. The bounds are those of the integrated motion, whose accuracy
+`motion.integrated` states.
 """
 
 from __future__ import annotations
@@ -38,16 +38,16 @@ _GYROSCOPIC: Final = 1.0 / math.sqrt(3.0)
 _DEGREE: Final = 7
 
 _FEW: Final = 24
-"""Points for which NumPy's calls cost more than floats do."""
+"""Up to this number of points, floats cost less than NumPy's calls."""
 
 
 class Bound(NamedTuple):
-    """What holds from the time asked for until another.
+    """A bound that holds from the time asked for until another.
 
     Attributes:
-        until: s, later than the time asked for.
-        fall: m/s^2, the most that the centre of mass is pulled against the normal; may be negative.
-        turning: 1/s^2, the most that a point is pulled relative to it, for each metre of distance.
+        until: End of the bound, s, later than the time asked for.
+        fall: Largest acceleration of the centre of mass against the normal, m/s^2; may be negative.
+        turning: Largest acceleration of a point relative to it, for each metre of distance, 1/s^2.
     """
 
     until: float
@@ -56,7 +56,7 @@ class Bound(NamedTuple):
 
 
 def bounds_of(motion: Motion, normal_W: FloatArray) -> Callable[[float], Bound]:
-    """Return the bound that holds from a time >= 0, s, on, for planes of a unit normal, (3,), world axes."""
+    """Return the bound that holds from a time >= 0, s, for planes with a unit normal, (3,), world axes."""
     if isinstance(motion, FreeMotion):
         steady = isinstance(motion.rotation, Spin)  # about one axis: the angular acceleration is zero
         turning = (1.0 if steady else 1.0 + _GYROSCOPIC) * largest_rate(motion.rotation) ** 2
@@ -66,9 +66,9 @@ def bounds_of(motion: Motion, normal_W: FloatArray) -> Callable[[float], Bound]:
 
 
 def free_for(height: float, rate: float, pull: float) -> float:
-    """Return for how long, s, a point above a plane, pulled to it at most so hard, cannot arrive.
+    """Return for how long, s, a point above a plane cannot arrive, if ``pull`` is its largest acceleration.
 
-    Arguments are in m, m/s, m/s^2. A dip of less than `GRAZING_DEPTH` is no arrival.
+    Arguments are in m, m/s, m/s^2. A dip of less than `GRAZING_DEPTH` does not count as arrival.
     """
     if height <= 0.0:  # below the plane and rising: as long as it rises, and not less than a graze takes
         return max(rate, math.sqrt(2.0 * GRAZING_DEPTH * pull)) / pull if pull > 0.0 else math.inf
@@ -94,7 +94,7 @@ def all_free_for(heights: FloatArray, rates: FloatArray, pulls: FloatArray) -> f
 
 
 class _Along:
-    """The bound of the integrator's step that holds a time, kept until another step is asked for."""
+    """The bound of the integrator's step at a time. It is kept until another step is asked for."""
 
     def __init__(self, motion: ForcedMotion, normal_W: FloatArray) -> None:
         self.motion = motion
@@ -154,7 +154,7 @@ def _bernstein_at(nodes: FloatArray) -> FloatArray:
 
 
 _NODES: Final = 0.5 - 0.5 * np.cos(np.pi * np.arange(_DEGREE + 1) / _DEGREE)
-"""Chebyshev's, ends included, of a step in [0, 1]: eight values tell a polynomial of degree 7."""
+"""Chebyshev's nodes of a step in [0, 1], ends included. Eight values determine a polynomial of degree 7."""
 
 _BERNSTEIN: Final = np.linalg.inv(_bernstein_at(_NODES))
-"""From values at `_NODES` to Bernstein coefficients."""
+"""Matrix from values at `_NODES` to Bernstein coefficients."""

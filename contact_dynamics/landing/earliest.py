@@ -30,11 +30,11 @@ class Landing(Record):
     """The end of a flight: the body touches.
 
     Attributes:
-        seconds: s after the state's stamp; 0 where it touches already.
-        state: Just then.
-        contacts: That touch and do not leave; more than one where an edge or a face lands.
-        velocities_W: (n, 3), m/s, of the body's points at the contacts, world axes.
-        strikes: Whether one of them approaches faster than the velocity tolerance: an impact.
+        seconds: Time of the landing, s after the state's stamp; 0 if the body touches already.
+        state: The state of the body at that time.
+        contacts: The contacts that touch and do not leave. An edge or a face has more than one.
+        velocities_W: (n, 3), m/s, velocities of the body's points at the contacts, world axes.
+        strikes: Whether a contact approaches faster than the velocity tolerance, so that there is an impact.
     """
 
     seconds: float
@@ -55,7 +55,7 @@ def next_landing(
     motion: Motion | None = None,
     work: SearchWork | None = None,
 ) -> Landing | None:
-    """Return where a body's flight ends within ``horizon`` (s), or None: it flies at least until then.
+    """Return where a body's flight ends within ``horizon`` (s), or None if it flies at least until then.
 
     A point within ``distance_tolerance`` (m) of a surface touches it. A body that touches flies only if each
     of its contacts leaves faster than ``velocity_tolerance`` (m/s); what counts then is where it comes down.

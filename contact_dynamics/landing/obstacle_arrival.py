@@ -1,13 +1,13 @@
-"""The first time at which a moving body touches an obstacle: advancing only where it cannot touch.
+"""The first time at which a moving body touches an obstacle, by steps in which it cannot touch.
 
-At any time one plane separates the two (`obstacle_contact`); while the body stays above it, it touches
-nothing, and for how long it must is known as in `first_contact`. The search goes there,
-takes the plane that separates best then, and goes on (conservative advancement; Mirtich, Impulse-based
-dynamic simulation of rigid body systems, Berkeley 1996). A touch is found within `GRAZING_DEPTH`, and no
-deeper one is missed.
+At any time one plane separates the two (`contact.on_obstacles`). While the body stays above this plane, it
+does not touch. `acceleration_bounds` says for how long it must stay above. The search goes to the end of that
+time, takes the plane that separates best then, and goes on (conservative advancement; Mirtich, Impulse-based
+dynamic simulation of rigid body systems, Berkeley 1996). It finds a touch within `GRAZING_DEPTH`, and misses
+no deeper one.
 
-Not covered: what hovers so close and so long that `MOST_STEPS` do not get it past (`NotSupportedError`);
-rims that come to edges and corners (`obstacle_contact`).
+Not covered: a body that hovers so close and so long that the search needs more than `MOST_STEPS` steps
+(`NotSupportedError`), and rims that come to edges and corners (`contact.on_obstacles`).
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from contact_dynamics.shapes.obstacle import Obstacle
 
 MOST_STEPS: Final = 5_000
-"""Some second of computing; a toss takes ten to a hundred."""
+"""Bound on the steps of a search, about a second of computing. A toss takes ten to a hundred steps."""
 
 
 def first_touch(
@@ -44,8 +44,8 @@ def first_touch(
 ) -> float | None:
     """Return the first time in [0, horizon], s, at which a body touches an obstacle and does not leave it.
 
-    One that touches at time 0 does so at once unless it leaves; then the time at which it comes back counts.
-    None: it does not touch.
+    If it touches at time 0 and does not leave, the time is 0. If it leaves, it is the time at which it comes
+    back. The function returns None if the body does not touch.
 
     Raises:
         InvalidFieldError: horizon < 0, an empty shape, or an integrated motion that does not get as far as

@@ -1,12 +1,12 @@
 """The first time at which a moving body reaches a plane: where the flight of lecture 25 ends.
 
-The shape is a convex one (`shapes.convex`), of which corners and rims are what arrives: its parts, corners
-first. The height of a corner, of a ball's centre and of each point of a rim has a second derivative that is
-bounded along the motion (`motion_bounds`): for all time without torque, and for each step of the integrator
-under forces. A height and its rate thus give a time before which it cannot arrive (`rim_descent`: for all
-points of a rim together). The search goes there, and on from there; nothing is stepped over, however short,
-but dips of less than `GRAZING_DEPTH`, and the crossing is then found to rounding. Under forces this holds for
-the motion as it is integrated: to some 1e-12 of its lengths, see `forced_motion`.
+The shape is convex (`shapes.convex`). Its parts that arrive are corners and rims, corners first. The heights
+of a corner, of a ball's centre and of each point of a rim have second derivatives that are bounded along the
+motion (`acceleration_bounds`), for all time without torque, and for each step of the integrator under forces.
+So a height and its rate give a time before which the part cannot arrive (`rim_descent` gives it for all
+points of a rim together). The search goes to that time, and on from there. It misses no dip, however short,
+except dips of less than `GRAZING_DEPTH`. It then finds the crossing to rounding. Under forces this holds for
+the integrated motion, which is accurate to about 1e-12 of its lengths (`motion.integrated`).
 
 Not covered: edges of the plane, curved surfaces, several bodies.
 """
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from contact_dynamics.tumbling.motion import Sample
 
 _MOST_ROOT_STEPS: Final = 100
-"""Bisection alone needs 60 for the last bit; Newton's steps need four."""
+"""Bound on the steps to a root. Bisection alone needs 60 for the last bit, and Newton's steps need four."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -46,9 +46,9 @@ class FirstContact(Record):
     """A body's arrival at a plane.
 
     Attributes:
-        seconds: s after the state's stamp, >= 0.
-        vertices: The part (corner; after the corners, rim) that arrives, then those within `GRAZING_DEPTH` as
-            well.
+        seconds: Time of the arrival, s after the state's stamp, >= 0.
+        vertices: Index of the part that arrives, then those of other parts within `GRAZING_DEPTH`. Corners
+            are counted first, then rims.
         p_WC_W: (3,), m, the point that arrives, world.
         v_WC_W: (3,), m/s, its velocity, world axes.
     """
@@ -70,8 +70,8 @@ def first_contact(
 ) -> FirstContact | None:
     """Return the first time in [0, horizon] at which a body is on or below a plane and not rising, or None.
 
-    A part above the plane arrives so when it comes down to it. One on or below the plane at time 0 arrives
-    at once if it sinks or rests; if it rises, when it comes down again.
+    A part above the plane arrives when it comes down to the plane. A part on or below the plane at time 0
+    arrives at once if it sinks or rests. If it rises, it arrives when it comes down again.
 
     Args:
         motion: the flight, in closed form or integrated (`motion_of`).
@@ -104,11 +104,11 @@ class Above(NamedTuple):
     """A shape above a plane at one time.
 
     Attributes:
-        heights: (k + m,), m, of corners, then of the lowest points of rims.
-        rates: (k + m,), m/s.
-        centre: m, of the centre of mass.
-        centre_rate: m/s.
-        sample: The motion then.
+        heights: (k + m,), m, heights of corners, then of the lowest points of rims.
+        rates: (k + m,), m/s, rates of these heights.
+        centre: Height of the centre of mass, m.
+        centre_rate: Rate of that height, m/s.
+        sample: The motion at that time.
     """
 
     heights: FloatArray
@@ -120,7 +120,7 @@ class Above(NamedTuple):
 
 
 class Descent:
-    """Heights of all parts of a shape above one plane, and the way down through time."""
+    """The heights of a shape's parts above one plane over time, and the search for the first contact."""
 
     def __init__(self, motion: Motion, shape: ConvexShape, p_WS_W: FloatArray, normal_W: FloatArray) -> None:
         self.motion = motion
@@ -166,7 +166,7 @@ class Descent:
         return step
 
     def at(self, seconds: float) -> Above:
-        """Return how the shape is above the plane at one time; the last of them is remembered."""
+        """Return the shape above the plane at one time. The newest result is remembered."""
         if self.newest is None or self.newest[0] != seconds:
             self.newest = seconds, self._at(seconds)
         return self.newest[1]
@@ -217,7 +217,7 @@ class Descent:
                 return high, part
 
     def root(self, part: int, low: float, high: float) -> float:
-        """Return the time at which a part reaches the plane: above it at ``low`` and not at ``high``."""
+        """Return when a part reaches the plane. It is above the plane at ``low`` and not at ``high``."""
         now = high
         for _ in range(_MOST_ROOT_STEPS):
             at = self.at(now)
@@ -234,7 +234,7 @@ class Descent:
         return now
 
     def found(self, seconds: float, part: int) -> FirstContact:
-        """Gather the evidence of a contact."""
+        """Return the contact at a time."""
         at = self.at(seconds)
         sample = at.sample
         corners = len(self.arms)

@@ -6,8 +6,8 @@ more than P, none is below -g before the first root of
 
     h + g + h' t - P t^2 / 2 - |a + b t|,
 
-which is concave in t, so that Newton's steps from beyond the root come down to it. It is beyond the root
-where any one point of the rim is at -g.
+which is concave in t. So Newton's steps that start beyond the root come down to it. A time at which any one
+point of the rim is at -g is beyond the root.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from typing import Final, NamedTuple
 from contact_dynamics.tolerances import GRAZING_DEPTH, RIM_ACCURACY
 
 _MOST_STEPS: Final = 60
-"""Newton's steps down to a root. Four are usual; where it is all but double, each halves the distance."""
+"""Bound on Newton's steps. Four are usual. Towards a nearly double root, each step halves the distance."""
 
 
 class RimAbove(NamedTuple):
     """A rim above a plane at one time.
 
     Attributes:
-        height: m, of its centre.
-        rate: m/s.
-        a: m, of its radii, above the centre.
-        b: m/s, their rates.
+        height: Height of its centre, m.
+        rate: Rate of that height, m/s.
+        a: Heights of the ends of two orthogonal radii above the centre, m.
+        b: Rates of these heights, m/s.
     """
 
     height: float
@@ -39,7 +39,7 @@ class RimAbove(NamedTuple):
     def lowest(self) -> tuple[float, float, tuple[float, float]]:
         """Return the lowest point's height, m, its rate, m/s, and its direction (cos, sin).
 
-        Where all points are at one height, the one that sinks fastest.
+        If all points have the same height, it is the one that sinks fastest.
         """
         (a_1, a_2), (b_1, b_2) = self.a, self.b
         size = math.hypot(a_1, a_2)
@@ -51,7 +51,7 @@ class RimAbove(NamedTuple):
         return self.height - size, self.rate + b_1 * u[0] + b_2 * u[1], u
 
     def free_for(self, pull: float) -> float:
-        """Return for how long, s, no point can arrive that is pulled down by at most ``pull``, m/s^2."""
+        """Return for how long, s, no point can arrive that accelerates down by at most ``pull``, m/s^2."""
         pull = max(pull, 0.0)
         (a_1, a_2), (b_1, b_2) = self.a, self.b
         low, rate, _ = self.lowest()
@@ -79,7 +79,7 @@ class RimAbove(NamedTuple):
 
 
 def _arrival(height: float, rate: float, pull: float) -> float:
-    """Return when a point at a height > 0 that is pulled down all the time comes to zero; inf: never."""
+    """Return when a point at a height > 0 that is always pulled down arrives at zero, or inf if never."""
     root = math.sqrt(rate * rate + 2.0 * pull * height)
     if rate < 0.0:
         return 2.0 * height / (root - rate)

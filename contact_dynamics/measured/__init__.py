@@ -1,1 +1,1 @@
-"""Recorded motion: tosses read from files, velocities, flights and events found in them."""
+"""Recorded motion: tosses are read from files, and velocities, flights and events are found in them."""

@@ -5,14 +5,14 @@ representations", Conference on Robot Learning 2020 (arXiv 2009.11193); data fro
 DAIRLab/contact-nets, BSD-3-Clause. The file is an `.npz` with `data`, (N, 14); `columns`; and `offsets`: toss
 k is the rows offsets[k] to offsets[k + 1].
 
-Of the columns only time and pose are used. The file's velocities are backward differences, so that they
-belong to half a frame before their row, and a median filter over three frames distorts them beside an impact;
-`velocity_estimate` is used instead, as for our own recording.
+Only the columns of time and pose are used. The file's velocities are backward differences, so they belong to
+half a frame before their row, and a median filter over three frames distorts them beside an impact.
+`velocity_estimate` replaces them, as for the package's own recording.
 
 The cube's constants are its authors' nominal values, and the recordings differ from them. At the first strike
-the lowest corner is 2.5 to 5.5 mm below the board (5 to 95 % of the tosses): so well are tracked frame, half
-side and board known together. In flight the cube falls at 9.6 m/s^2, not 9.81: lengths or times of the
-recordings are off by 1 or 2 %.
+the lowest corner is 2.5 to 5.5 mm below the board (5 to 95 % of the tosses). This is the error of tracked
+frame, half side and board together. In flight the cube falls at 9.6 m/s^2, not 9.81, so lengths or times of
+the recordings are off by 1 or 2 %.
 """
 
 from __future__ import annotations
@@ -37,36 +37,36 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 RATE: Final = 148.0
-"""Hz."""
+"""Rate of the frames, Hz."""
 
 HALF_SIDE: Final = 0.0524
-"""m."""
+"""Half the side of the cube, m."""
 
 CUBE: Final = Body(
     name="cube",
     mass_properties=MassProperties(mass=0.37, I_B=np.diag([8.1e-4] * 3)),
     vertices_B=box_vertices((2.0 * HALF_SIDE,) * 3),
 )
-"""Mass in kg, inertia in kg m^2."""
+"""The cube, with its mass in kg and its inertia in kg m^2."""
 
 BOARD: Final = Surface(
     name="board", p_WS_W=np.zeros(3), normal_W=np.array([0.0, 0.0, 1.0]), friction=0.18, restitution=0.125
 )
 
 GRAVITY: Final = 9.81
-"""m/s^2, nominal as well."""
+"""Acceleration of gravity, m/s^2, also nominal."""
 
 POSITION_NOISE: Final = 2.5e-5
-"""m. What parabolas fitted to flights of ten frames and more leave a coordinate: median 0.020 to 0.024 mm."""
+"""m. Parabolas fitted to flights of ten frames and more leave a median of 0.020 to 0.024 mm a coordinate."""
 
 ORIENTATION_NOISE: Final = 3.5e-4
-"""rad. Likewise of the rotation vectors: 0.017 to 0.024 degrees."""
+"""rad. The same fits leave 0.017 to 0.024 degrees in the rotation vectors."""
 
 MARGIN: Final = 0.02
-"""m. A corner strikes alone where the next one is at least that much higher."""
+"""m. A corner strikes alone if the next one is at least this much higher."""
 
 FLIGHT_BETWEEN: Final = 10
-"""Frames from the first strike to the second, at least: eight in flight, to measure the velocity over."""
+"""Least number of frames between the first strike and the second. Eight in flight give the velocity."""
 
 STRIKE_HEIGHT: Final = 0.01
 """m. A corner that turns back below this height struck the board; above it, the cube's rotation turned it."""
@@ -76,7 +76,7 @@ RISE: Final = 0.003
 
 
 def read_cube_toss(path: Path, *, index: int | None = None) -> Toss:
-    """Return toss ``index`` of the file; None: the one that `default_index` chooses.
+    """Return toss ``index`` of the file. If it is None, `default_index` chooses.
 
     The first `FEWEST_FRAMES` - 1 frames are left out, since no velocity is known there.
 
@@ -111,11 +111,11 @@ def read_cube_toss(path: Path, *, index: int | None = None) -> Toss:
 
 
 def default_index(data: FloatArray, offsets: Sequence[int]) -> int:
-    """Return the toss that shows most: the longest flight that ends in a clean strike of a single corner.
+    """Return the toss with the longest flight that ends in a clean strike of a single corner.
 
-    Clean means: at the strike every other corner is `MARGIN` higher, and the next strike comes at least
-    `FLIGHT_BETWEEN` frames later. Among flights of equal length, the one with the longest flight after the
-    strike.
+    A strike is clean if every other corner is `MARGIN` higher, and the next strike comes at least
+    `FLIGHT_BETWEEN` frames later. Among equally long flights, the one with the longest flight after the
+    strike is returned.
     """
     heights = data[:, 3, None] + (matrices_of(data[:, 4:8]) @ CUBE.vertices_B.T)[:, 2, :]
     heights.sort(axis=1)

@@ -1,15 +1,15 @@
-"""What was measured of a toss, in hindsight: its strikes with the states before and after, and its rest.
+"""The events of a measured toss, in hindsight: its strikes with the states before and after, and its rest.
 
-A strike lies between two flights with at most one frame between them. Both are fitted over the frames next to
-it, and it happened when their positions and orientations agree best: the pose is continuous while velocities
-jump, so the crossing gives the time far more sharply than the frames are spaced, without using where corners
-or surface are. For a strike of some length it gives the centre of the impulse.
+A strike is between two flights with at most one frame between them. Both flights are fitted over the frames
+next to the strike. The time of the strike is when their positions and orientations agree best, because the
+pose is continuous while velocities jump. This gives the time far more sharply than the spacing of frames, and
+does not use where corners or surface are. For a strike of some length it is the centre of the impulse.
 
-Rest is where the pose no longer leaves the mean of its last `REST_SPAN`.
+The body rests from when its pose no longer leaves the mean of its last `REST_SPAN`.
 
-Each number comes with its standard deviation, so that an error of prediction can be read beside the noise of
-measurement. Not covered: strikes in quick succession, of which `flights` sees no flight between; rocking and
-sliding contact.
+Each number has its standard deviation, so that an error of prediction can be compared with the noise of
+measurement. Not covered: strikes in such quick succession that `flights` finds no flight in between, and
+rocking and sliding contact.
 """
 
 from __future__ import annotations
@@ -33,21 +33,21 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 FIT_SPAN: Final = 0.08
-"""s. Over this much of a flight next to a strike its velocity is fitted. Longer would cost more by an
-imperfect model, such as gravity off by 2 %, than it would gain in noise."""
+"""s. The velocity is fitted over this much of a flight next to a strike. In a longer span, errors of the
+model, such as gravity off by 2 %, would be larger than the gain in noise."""
 
 MOST_BETWEEN: Final = 1
-"""Frames between two flights that one strike may take: one that caught the body in contact."""
+"""Most frames between two flights that one strike may take. Such a frame shows the body in contact."""
 
 REST_SPAN: Final = 0.05
-"""s. A body that kept its pose for so long is at rest. No longer, because the published recordings of cubes
-stop soon after the cube does."""
+"""s. A body that kept its pose for this time is at rest. It is short because the published recordings of
+cubes stop soon after the cube does."""
 
 REST_SPEED: Final = 0.02
 """m/s. Mean speed over `REST_SPAN` below which a body rests: friction of 0.2 ends such a slide in 10 ms."""
 
 REST_SPIN: Final = 0.2
-"""rad/s. Likewise of the angular velocity, for a body of a decimetre."""
+"""rad/s. Mean angular speed over `REST_SPAN` below which a body of a decimetre rests."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -55,10 +55,10 @@ class MeasuredStrike(Record):
     """One strike between two flights.
 
     Attributes:
-        time: s, on the recording's clock.
-        time_std: s.
-        before: At that time, from the flight that ends.
-        after: At that time, from the flight that begins.
+        time: Time of the strike, s, on the recording's clock.
+        time_std: Standard deviation of that time, s.
+        before: The state at that time, from the flight that ends.
+        after: The state at that time, from the flight that begins.
     """
 
     time: float
@@ -86,10 +86,10 @@ class MeasuredRest(Record):
     """The body at rest at the end of the recording.
 
     Attributes:
-        time: s, of the first frame from which on the pose stayed.
+        time: Time of the first frame from which on the pose stayed, s.
         state: The mean pose from then on, at velocity 0.
-        position_std: m, of each coordinate of the mean.
-        orientation_std: rad, of each component of the mean.
+        position_std: Standard deviation of each coordinate of the mean, m.
+        orientation_std: Standard deviation of each component of the mean, rad.
         heights: (k,), m, of the body's corners above the surface.
     """
 
@@ -102,12 +102,12 @@ class MeasuredRest(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class MeasuredEvents(Record):
-    """All that was found in one toss.
+    """All events of one toss.
 
     Attributes:
-        flights: Frames of each free flight.
-        strikes: In the order of time.
-        rest: None: still moving at the end.
+        flights: The frames of each free flight.
+        strikes: The strikes in the order of time.
+        rest: The rest, or None if the body still moves at the end.
     """
 
     flights: tuple[slice, ...]

@@ -1,4 +1,4 @@
-"""The free flight that fits a stretch of measured poses best: what a tracker's poses say in hindsight.
+"""The free flight that fits a stretch of measured poses best, in hindsight.
 
 Model: the centre of mass flies a parabola of known gravity, and the angular momentum L about it is constant
 (lecture 25). The orientations themselves are measured, so the angular inertia in world axes is known at each
@@ -7,9 +7,9 @@ theta / dt = J(theta)^-1 I_W^-1 L, where J is the left Jacobian of rotation vect
 least squares, p_0 and v_0 from the positions, theta_0 and L from the orientations, and use no integrator and
 no closed form of tumbling: the physics that is to be tested takes no part in them.
 
-Uncertainties are those of white noise of the toss's stated size, enlarged where the residuals are larger than
-that (Birge's ratio). Not covered: drag, a wrong gravity or inertia, noise that is correlated from frame to
-frame.
+Uncertainties follow from white noise of the toss's stated size. If the residuals are larger, they are
+enlarged by Birge's ratio. Not covered: drag, a wrong gravity or inertia, noise that is correlated from frame
+to frame.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 FEWEST_FRAMES: Final = 4
-"""Frames. Positions and orientations have two unknown vectors each; two frames more give residuals."""
+"""Least number of frames. Positions and orientations have two unknown vectors each, and two more frames give
+residuals."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -38,12 +39,12 @@ class MeasuredState(Record):
     """A state found by a fit, with the standard deviation of each of its parts.
 
     Attributes:
-        time: s, on the recording's clock.
-        state: Of the centre of mass, world axes.
-        position_std: m, of each coordinate.
-        orientation_std: (3,), rad, of a rotation vector's components, world axes.
-        velocity_std: m/s, of each component.
-        angular_velocity_std: (3,), rad/s, of each component, world axes.
+        time: Time of the state, s, on the recording's clock.
+        state: The state of the centre of mass, world axes.
+        position_std: Standard deviation of each coordinate, m.
+        orientation_std: (3,), rad, those of a rotation vector's components, world axes.
+        velocity_std: Standard deviation of each component, m/s.
+        angular_velocity_std: (3,), rad/s, that of each component, world axes.
     """
 
     time: float
@@ -56,19 +57,19 @@ class MeasuredState(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class FlightFit(Record):
-    """A fitted free flight: position and rotation vector with their rates' constants at a reference time.
+    """A fitted free flight: position and rotation vector at a reference time, with velocity and L.
 
     Attributes:
-        reference: s.
-        q_reference: (4,), x, y, z, w: the measured orientation that rotation vectors start from.
-        p_W: (3,), m, at the reference.
-        v_W: (3,), m/s, at the reference.
-        theta_W: (3,), rad, at the reference, world axes.
+        reference: The reference time, s.
+        q_reference: (4,), x, y, z, w, the measured orientation from which rotation vectors start.
+        p_W: (3,), m, position at the reference.
+        v_W: (3,), m/s, velocity at the reference.
+        theta_W: (3,), rad, rotation vector at the reference, world axes.
         L_W: (3,), kg m^2/s, angular momentum about the centre of mass.
         gravity_W: (3,), m/s^2.
         I_B: (3, 3), kg m^2, body axes.
-        cov_p: (2, 2), of a coordinate and its rate: m^2, m^2/s, m^2/s^2.
-        cov_rotation: (6, 6), of theta and L.
+        cov_p: (2, 2), covariance of a coordinate and its rate: m^2, m^2/s, m^2/s^2.
+        cov_rotation: (6, 6), covariance of theta and L.
     """
 
     reference: float
@@ -85,8 +86,8 @@ class FlightFit(Record):
     def at(self, time: float) -> MeasuredState:
         """Return the flight's state at ``time``, s.
 
-        From the reference the orientation goes one step of the midpoint rule, whose error is of third order
-        in the angle: ask within a few frames of the reference.
+        The orientation is one step of the midpoint rule from the reference. Its error is of third order in
+        the angle, so ask within a few frames of the reference.
         """
         after = time - self.reference
         q_0 = turned(self.q_reference, self.theta_W[None])[0]
@@ -124,7 +125,7 @@ class FlightFit(Record):
 def fit_flight(toss: Toss, frames: slice, *, reference: int | None = None) -> FlightFit:
     """Return the free flight that fits the poses of ``frames`` (a slice of at least `FEWEST_FRAMES`) best.
 
-    ``reference``: which of the frames the fit refers to in time and orientation; None: the last one.
+    ``reference`` is the frame to which the fit refers in time and orientation. The default is the last one.
     """
     if reference is None:
         reference = frames.stop - 1

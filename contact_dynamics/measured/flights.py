@@ -1,13 +1,13 @@
 """When the body of a recorded toss was in free flight: stretches of frames that one flight explains.
 
-A flight grows frame by frame: each new pose is compared with what the fitted last frames (`SPAN`) predict,
-and the flight ends where the pose is off by more than noise and an imperfect model explain. A stretch counts
-as flight from `SPAN` on, if the body falls in it: its acceleration, fitted for once, is nearer to gravity
-than to that of a body whose weight is carried. With white noise sigma over n frames and a time T its standard
-deviation is sigma sqrt(720 / n) / T^2: 0.7 m/s^2 for the recorded brick.
+A flight grows frame by frame. Each new pose is compared with the prediction of the fitted last frames
+(`SPAN`). The flight ends where the pose is off by more than noise and an imperfect model explain. A stretch
+of at least `SPAN` counts as flight if the body falls in it: its fitted acceleration is nearer to gravity than
+to zero, as for a body whose weight is carried. With white noise sigma over n frames and a time T the standard
+deviation of that acceleration is sigma sqrt(720 / n) / T^2, which is 0.7 m/s^2 for the recorded brick.
 
-Not covered: flights shorter than `SPAN`, between strikes in quick succession; impacts too gentle to show
-within `SPAN`.
+Not covered: flights shorter than `SPAN`, between strikes in quick succession, and impacts that are too gentle
+to show within `SPAN`.
 """
 
 from __future__ import annotations
@@ -24,16 +24,17 @@ if TYPE_CHECKING:
     from contact_dynamics.measured.recorded_toss import Toss
 
 SPAN: Final = 0.047
-"""s. Shortest flight, and how much of a longer one predicts its next frame."""
+"""s. Length of the shortest flight, and of the part of a longer one that predicts its next frame."""
 
 DEVIATIONS: Final = 5.0
-"""Standard deviations by which noise may put a coordinate off its prediction: one in 1.7 million."""
+"""Number of standard deviations by which a coordinate may miss its prediction. Noise exceeds it once in 1.7
+million frames."""
 
 POSITION_SLACK: Final = 5e-4
-"""m. What drag, a gravity off by 2 % and a centre of mass off by a millimetre may add within `SPAN`."""
+"""m. Error within `SPAN` that drag, a gravity off by 2 % and a centre of mass off by a millimetre may add."""
 
 ORIENTATION_SLACK: Final = 5e-3
-"""rad. What an inertia off by some percent may add within `SPAN`."""
+"""rad. Error within `SPAN` that an inertia off by some percent may add."""
 
 
 def find_flights(toss: Toss) -> list[slice]:

@@ -19,13 +19,13 @@ DEFAULT_RECORDING: Final = Path(__file__).parent / "tosses" / "brick.csv"
 def read_toss(path: str | Path = DEFAULT_RECORDING, *, index: int | None = None) -> Toss:
     """Return the toss that ``path`` names: a recording in this project's CSV, or a cube toss in an `.npz`.
 
-    ``index`` selects one of the tosses of an `.npz`, as does a path that ends in ``#17`` or ``:17``; without
-    either, `cube_tosses.default_index` does.
+    ``index``, or a path that ends in ``#17`` or ``:17``, selects one of the tosses of an `.npz`. Without
+    either, `cube_tosses.default_index` selects it.
 
     Raises:
         FileNotFoundError: there is no such file.
-        InvalidFieldError: neither `.csv` nor `.npz`, an index out of range, or a file whose content is not as
-            described.
+        InvalidFieldError: the file is neither `.csv` nor `.npz`, its content is not as described, or the
+            index is out of range.
     """
     file, chosen = _split_index(path)
     if index is not None:

@@ -1,7 +1,7 @@
-"""A recorded toss: what a tracking system measured of a body that flew, bounced and came to rest.
+"""A recorded toss: a tracking system measured a body that flew, bounced and came to rest.
 
-Velocities are estimates from the past poses alone (`velocity_estimate`), for every source by the same method,
-so that a prediction made from them was possible at that moment.
+Velocities are estimates from past poses alone (`velocity_estimate`), by the same method for every source. So
+a prediction from them was possible at that moment.
 
 Assumptions: one body, a box whose tracked frame has its origin at the centre of mass; one surface; world z
 up.
@@ -30,25 +30,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Toss(Record):
-    """A recorded toss of one box-shaped body onto one surface; sample k is row k of each array.
+    """A recorded toss of one box-shaped body onto one surface. Sample k is row k of each array.
 
     Attributes:
-        source: Where the numbers come from, for people.
+        source: Where the numbers come from, in words.
         body: Mass properties and corners; its published frame is B itself.
         box_size: (3,), m, full side lengths along the body's axes.
-        surface: What it falls on, with friction and restitution.
+        surface: The surface on which it falls, with friction and restitution.
         gravity_W: (3,), m/s^2, world axes.
-        rate: Hz, of the samples.
-        position_noise: m, standard deviation of each coordinate of a measured position.
+        rate: Rate of the samples, Hz.
+        position_noise: Standard deviation of each coordinate of a measured position, m.
         times: (n,), s, increasing.
         p_WB_W: (n, 3), m, centre of mass in the world.
         q_WB: (n, 4), unit quaternions x, y, z, w: body coordinates into world coordinates.
-        v_WB_W: (n, 3), m/s, of the centre of mass, world axes, estimated causally.
-        w_WB_W: (n, 3), rad/s, world axes, estimated causally.
+        v_WB_W: (n, 3), m/s, velocity of the centre of mass, world axes, estimated from the past.
+        w_WB_W: (n, 3), rad/s, angular velocity, world axes, estimated from the past.
 
     Raises:
-        InvalidFieldError: arrays of unequal length, a number that is not finite, times that do not increase,
-            a quaternion that is not unit, or a rate or noise that is not > 0.
+        InvalidFieldError: arrays have unequal lengths, a number is not finite, times do not increase, a
+            quaternion is not unit, or a rate or noise is not > 0.
     """
 
     source: str

@@ -1,8 +1,8 @@
 """The project's own file of one recorded toss: CSV, with a header of comment lines that a person can read.
 
-A header line is `# name [unit]: value`, the value in JSON; other comment lines are prose. Then one line of
-column names, then the samples. Numbers are rounded to far below the noise, in decimal, so that the same
-recording gives the same bytes anywhere.
+A header line is `# name [unit]: value`, with the value in JSON. Other comment lines are prose. After the
+header there is one line of column names, then the samples. Numbers are rounded in decimal, far below the
+noise, so that the same recording gives the same bytes everywhere.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 COLUMNS: Final = ("t", "px", "py", "pz", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz")
 
 DECIMALS: Final = (9, *(6,) * 3, *(6,) * 4, *(4,) * 3, *(4,) * 3)
-"""Decimals of each column: 1 ns, 1 um, 1e-6 (2 urad), 0.1 mm/s, 0.1 mrad/s."""
+"""Number of decimals of each column: 1 ns, 1 um, 1e-6 (2 urad), 0.1 mm/s, 0.1 mrad/s."""
 
 UNITS: Final = {
     "source": "",
@@ -82,8 +82,8 @@ def read_toss_csv(path: Path) -> Toss:
     """Return the toss in ``path``.
 
     Raises:
-        InvalidFieldError: a header line is missing or has another unit, other columns, or a sample that is
-            not numbers.
+        InvalidFieldError: a header line is missing or has another unit, the columns are others, or a sample
+            is not numbers.
     """
     header, rows = _split(path)
     names = rows[0].split(",") if rows else []

@@ -1,17 +1,17 @@
-"""Velocities as a tracking system has them: from the measured poses alone, and from the past alone.
+"""Velocities as a tracking system estimates them, from past measured poses alone.
 
-Model: over the last few frames each coordinate of the position, and each of the rotation vector relative to
-the newest orientation, is a quadratic of time. Least squares gives the three coefficients; the velocity is
-the slope of the quadratic **at the newest frame**, so that the estimate belongs to the stamp of its sample. A
-quadratic because its slope at the end of the window has no lag under constant acceleration, such as
-gravity's; a straight line would be half a window late.
+Model: over the last few frames each coordinate of the position, and of the rotation vector relative to the
+newest orientation, is a quadratic function of time. Least squares gives the three coefficients. The velocity
+is the slope of the quadratic **at the newest frame**, so that the estimate belongs to the stamp of its
+sample. At the end of the window the slope of a quadratic has no lag under constant acceleration, such as
+gravity's. A straight line would be half a window late.
 
-The price is noise: for n frames spaced dt with white noise sigma, the slope's standard deviation at the end
+The price is noise. For n frames spaced dt with white noise sigma, the slope's standard deviation at the end
 is sigma / dt * sqrt(12 (2n - 1)(8n - 11) / (n (n^2 - 1)(n^2 - 4))), close to sigma / dt * sqrt(192 / n^3).
 
-Not covered: a window that spans an impact averages what was before with what is after; such estimates are
-wrong by up to the jump itself until the window has passed. A body that turns by half a turn within one window
-has no rotation vector.
+Not covered: a window that spans an impact averages the velocities before and after it, and such estimates are
+wrong by up to the jump until the window has passed. A body that turns by half a turn within one window has no
+rotation vector.
 """
 
 from __future__ import annotations
@@ -27,14 +27,15 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 WINDOW: Final = 0.05
-"""s. Long enough to average the noise of motion capture, short against the flights to be predicted."""
+"""Length of the window, s. It averages the noise of motion capture, and is short compared with flights."""
 
 FEWEST_FRAMES: Final = 5
-"""Frames. Through three a quadratic goes exactly, noise and all; five more than halve the slope's noise."""
+"""Least number of frames. A quadratic fits three exactly, with all their noise. Five more than halve the
+slope's noise."""
 
 
 def frames_in_window(rate: float, window: float = WINDOW) -> int:
-    """Return how many frames at ``rate`` (Hz) the estimate looks back over, the newest included."""
+    """Return how many frames at ``rate`` (Hz) the estimate uses, including the newest."""
     return max(FEWEST_FRAMES, round(rate * window))
 
 
@@ -44,8 +45,8 @@ def causal_velocities(
     """Return linear and angular velocity, (n, 3) each, m/s and rad/s, world axes, of the tracked frame.
 
     Row k uses rows k - frames + 1 to k of ``times``, (n,), s; ``p_W``, (n, 3), m; and ``q``, (n, 4), x y z w,
-    body to world. While fewer frames have been seen, those serve, down to `FEWEST_FRAMES`; the rows before
-    that are NaN.
+    body to world. The first rows use the frames seen so far, if there are at least `FEWEST_FRAMES`. The rows
+    before that are NaN.
     """
     v_W = np.full((len(times), 3), np.nan)
     w_W = np.full((len(times), 3), np.nan)

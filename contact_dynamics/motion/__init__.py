@@ -1,9 +1,9 @@
 """Motion under gravity, wrenches and drag: integrated, differentiated, fitted, with covariances.
 
-`forces` says what acts on a body besides gravity. `integrated` has its motion; `motion_of` takes the closed
-form where nothing turns or drags. `free_derivative` and `integrated_derivative` say how a motion changes
-with its first state, and `covariance` carries what is uncertain about that state along. `free_fit` and
-`integrated_fit` find the motion that fits some published states best.
+`forces` says what acts on a body besides gravity. `integrated` computes its motion; its function `motion_of`
+takes the closed form where no torque and no drag acts. `free_derivative` and `integrated_derivative` say how
+a motion changes with its first state, and `covariance` carries the covariance of that state along. `free_fit`
+and `integrated_fit` find the motion that fits some published states best.
 """
 
 from contact_dynamics.motion.covariance import (

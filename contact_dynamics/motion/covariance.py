@@ -1,20 +1,21 @@
-"""How uncertain a body's future is: its state's covariance, carried along a free or a forced motion.
+"""The covariance of a body's state, carried along a free or a forced motion.
 
 Covariances are (12, 12), in the order position (m), rotation vector (rad, world axes, a small rotation
 applied after the attitude: R_true = Exp(theta) R), linear velocity (m/s), angular velocity (rad/s, world
-axes). Two methods: the exact derivative J of the motion, C(t) = J C J^T, which is cheap and right as long as
-the body's possible states stay close together; and sampling, the motions of many states drawn from C.
+axes). There are two methods. The first takes the exact derivative J of the motion, C(t) = J C J^T. It is
+cheap, and right as long as the body's possible states stay close together. The second draws many states from
+C and computes the motion of each.
 
-A tumbling body's orientation becomes unpredictable: its deviation grows with time, near the middle axis
-exponentially. Linearisation then goes on growing while a real orientation is merely lost, so both methods say
-from when on not to rely on small rotations: `CarriedCovariance.trusted`.
+A tumbling body's orientation becomes unpredictable. Its deviation grows with time, and near the middle axis
+it grows exponentially. A linear covariance grows without bounds, but a real orientation can only be lost. So
+both methods say from when on small rotations no longer describe it: `CarriedCovariance.trusted`.
 
-Sampled deviations are from the motion of the given state, which is what a caller predicts with, so a bias of
-that prediction counts. The draws come in opposite pairs and are scaled to have exactly the covariance asked
-for: where the motion is linear, the samples' answer is that of linearisation to rounding.
+Sampled deviations are measured from the motion of the given state. A caller predicts with that motion, so its
+bias counts. The draws come in opposite pairs and are scaled to have exactly the given covariance. So where
+the motion is linear, both methods agree to rounding.
 
-Not covered: uncertain mass properties or gravity, noise on the way. How uncertain the times of flips are:
-`contact_dynamics.tumbling.flips`.
+Not covered: uncertain mass properties or gravity, noise on the way. `contact_dynamics.tumbling.flips` has the
+uncertainty of the times of flips.
 """
 
 from __future__ import annotations
@@ -44,18 +45,19 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 TRUSTED_DEVIATION: Final = 0.1
-"""rad. Linearisation leaves out squares of deviations. At this limit they are, against samples, less than
-1 % of the largest deviation, and up to a third of variances in directions in which neighbours hardly part."""
+"""Largest trusted standard deviation of orientation, rad. Linearisation leaves out squares of deviations. At
+this limit, compared with samples, they are less than 1 % of the largest deviation, and up to a third of the
+variance in directions in which neighbours hardly part."""
 
 PROBES: Final = 64
-"""Times at which growth on the way is looked at, over the period of the polhode or as far as is asked for."""
+"""Number of times on the way at which growth is checked, over at most one period of the polhode."""
 
 FEWEST_SAMPLES: Final = 50
-"""Draws are scaled by their own covariance, (12, 12), which takes some more than 12 pairs."""
+"""Least number of draws. Scaling them by their own covariance, (12, 12), needs more than 12 pairs."""
 
 
 class PropagationMethod(enum.Enum):
-    """How a covariance is carried along."""
+    """The method by which a covariance is carried along."""
 
     LINEARISED = "linearised"
     SAMPLED = "sampled"
@@ -69,7 +71,7 @@ class CarriedCovariance(Record):
         seconds: (n,), s after the stamp of the state that the motion began with.
         covariances: (n, 12, 12), in the module's order; NaN where no double holds it.
         orientation_deviations: (n,), rad, largest standard deviation of orientation about any axis.
-        trusted: (n,), whether it has been below TRUSTED_DEVIATION all the way from time 0.
+        trusted: (n,), whether that deviation has been below TRUSTED_DEVIATION all the way from time 0.
         method: How the covariance was carried along.
     """
 
@@ -92,8 +94,8 @@ def propagate_covariance(
     """Return the covariance, (12, 12) at the state's stamp, at times (n,), s after it, of either sign.
 
     Raises:
-        InvalidFieldError: the covariance is not one (see `check_covariance`), the times are not a flat list
-            of finite numbers, gravity is not three.
+        InvalidFieldError: the matrix is not a covariance (see `check_covariance`), the times are not a flat
+            list of finite numbers, or gravity is not three finite numbers.
     """
     motion = free_motion(body, state, gravity_W=gravity_W)
     return covariance_along(motion, covariance, times, method=method)
@@ -108,10 +110,10 @@ def covariance_along(
     samples: int = 400,
     seed: int = 0,
 ) -> CarriedCovariance:
-    """Return the covariance of the state of a motion at hand, as `propagate_covariance`.
+    """Return the covariance of the state along a motion that is given, as `propagate_covariance` does.
 
-    ``samples`` and ``seed`` serve sampling only, which costs so many motions: of free ones the set-up, of
-    forced ones the integration.
+    Only sampling uses ``samples`` and ``seed``. It computes that many motions: for free ones this takes the
+    set-up, for forced ones the integration.
 
     Raises:
         InvalidFieldError: as `propagate_covariance`; or fewer than `FEWEST_SAMPLES` samples.

@@ -1,8 +1,9 @@
 """What acts on a body besides gravity: constant wrenches, and drag (lecture 24).
 
-A wrench is a force through the centre of mass and a torque about it. Drag is the usual pair of laws for still
-air or water, linear where the flow creeps, quadratic where it is turbulent; it acts at the centre of mass and
-alike in all directions. Not covered: wind, lift, added mass, a centre of pressure elsewhere.
+A wrench is a force through the centre of mass and a torque about it. Drag follows the usual two laws for
+still air or water: it is linear where the flow creeps and quadratic where it is turbulent. It acts at the
+centre of mass and equally in all directions. Not covered: wind, lift, added mass, a centre of pressure
+elsewhere.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class WrenchAxes(NamedInt):
-    """In whose axes a wrench is constant."""
+    """The axes in which a wrench is constant."""
 
     WORLD = 0
     BODY = 1  # it turns with the body
@@ -28,7 +29,7 @@ class WrenchAxes(NamedInt):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ConstantWrench(Record):
-    """A force through the centre of mass and a torque about it that stay as they are.
+    """A constant force through the centre of mass and a constant torque about it.
 
     Attributes:
         force: (3,), N, in `axes`.
@@ -36,7 +37,7 @@ class ConstantWrench(Record):
         axes: Whether force and torque are given in world or in body axes.
 
     Raises:
-        InvalidFieldError: not three finite numbers each, or axes that are none of `WrenchAxes`.
+        InvalidFieldError: force or torque is not three finite numbers, or the axes are not a `WrenchAxes`.
     """
 
     force: FloatArray = field(default_factory=lambda: np.zeros(3))
@@ -59,13 +60,15 @@ class ConstantWrench(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Drag(Record):
-    """Drag in still air, at the centre of mass: force -(linear + quadratic |v|) v, torque the same of w.
+    """Drag in still air, at the centre of mass.
+
+    The force is -(linear + quadratic |v|) v, the torque -(linear_angular + quadratic_angular |w|) w.
 
     Attributes:
-        linear: N s/m, >= 0.
-        quadratic: N s^2/m^2, >= 0.
-        linear_angular: N m s, >= 0.
-        quadratic_angular: N m s^2, >= 0.
+        linear: Coefficient of the force, N s/m, >= 0.
+        quadratic: Coefficient of the force, N s^2/m^2, >= 0.
+        linear_angular: Coefficient of the torque, N m s, >= 0.
+        quadratic_angular: Coefficient of the torque, N m s^2, >= 0.
 
     Raises:
         InvalidFieldError: a coefficient is negative or not finite.
@@ -77,7 +80,7 @@ class Drag(Record):
     quadratic_angular: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check all four."""
+        """Check all coefficients."""
         for name in self.__slots__:
             object.__setattr__(self, name, check_not_negative(f"{name}_drag", getattr(self, name)))
 

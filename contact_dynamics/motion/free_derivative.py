@@ -7,23 +7,24 @@ neighbours of a torque-free rotation obey
 
 Five of the six solutions follow from symmetry (Arnold, Mathematical Methods of Classical Mechanics, 29):
 turns of the world, theta = e and dL = e x L; a later start, theta = w; a faster motion, theta = t w and
-dL = L. What is left is A(t), theta = A(t) theta_0 at dL = 0, so that for any change
+dL = L. The last one needs A(t), with theta = A(t) theta_0 at dL = 0. Then any change obeys
 
     theta(t) = e + A(t) (theta_0 - e) + t w(t) (dL . L) / L^2,    e = L x dL / L^2.
 
-Seen from the body A is B = R^T A R_0 with dB/dt = (I^-1 [L_B] - [w_B]) B, whose coefficients are elliptic
-functions of time with the period T of the polhode. B is found on one period by Gauss collocation, in pieces
-so short that its error is rounding. B(T) leaves L and w as they are and keeps volumes, so that B(T) - 1 is
-nilpotent and B(n T) = 1 + n (B(T) - 1): the cost does not grow with time. A steady spin has a constant
-coefficient with K^3 = -nu^2 K, and is in closed form. Motion that turns by less than `SMALL_TURN` is solved
-for with dL as well, because e would grow without bounds.
+In the body's axes A is B = R^T A R_0 with dB/dt = (I^-1 [L_B] - [w_B]) B. Its coefficients are elliptic
+functions of time with the period T of the polhode. B is computed on one period by Gauss collocation, in
+pieces so short that its error is rounding. B(T) does not change L and w and keeps volumes, so B(T) - 1 is
+nilpotent and B(n T) = 1 + n (B(T) - 1). So the cost does not grow with time. A steady spin has a constant
+coefficient with K^3 = -nu^2 K, and a closed form. For motion that turns by less than `SMALL_TURN`, dL is part
+of the equations that are solved, because e would grow without bounds.
 
-Accuracy, relative to the largest entry: 1e-13 for compact bodies; thin rods amplify rounding, to 1e-9 where
+Accuracy, relative to the largest entry: 1e-13 for compact bodies. Thin rods amplify rounding, to 1e-9 where
 moments are as 1 to 1000 and to some percent at 1 to 50 000. Near the middle axis neighbours part by a factor
-G before a flip and meet again after it, which leaves 1e-15 G^2 at the most: 1e-9 for 1e-3 rad from that axis.
+G before a flip and meet again after it. This leaves at most 1e-15 G^2, which is 1e-9 for 1e-3 rad from that
+axis.
 
-Not covered: torque. The answer is NaN where G is beyond 1e6 or so and a flip has come, and where neighbours
-part so fast that no double holds it.
+Not covered: torque. The answer is NaN where G is beyond about 1e6 and a flip has come, and where neighbours
+part so far that the derivative exceeds the range of doubles.
 """
 
 from __future__ import annotations
@@ -51,10 +52,10 @@ GAUSS: Final = Collocation(12)
 
 PIECE: Final = 0.5
 """Length of a piece in u, the argument of the elliptic functions. Their nearest poles are pi/2 away, so the
-polynomial through 12 points in 0.5 errs by some (0.25 / pi)^12, 1e-13."""
+polynomial through 12 points in 0.5 errs by about (0.25 / pi)^12, 1e-13."""
 
 FARTHEST: Final = 300.0
-"""Exponent up to which neighbours may part: their squares are then still doubles."""
+"""Largest exponent by which neighbours may part, so that squares stay in the range of doubles."""
 
 
 def state_derivatives(motion: FreeMotion, seconds: ArrayLike) -> FloatArray:
@@ -182,8 +183,9 @@ def _largest(matrices: FloatArray) -> FloatArray:
 def _edges(farthest: float, rate: float, w: float) -> FloatArray:
     """Return where pieces begin and end, (n + 1,), s, from 0 to ``farthest``.
 
-    In a nearly symmetric body they may last for many turns, w t, in which B grows as w t does: the first is
-    cut at each tenth of its length, so that the numbers early in it are not lost beside those late in it.
+    In a nearly symmetric body a piece may last for many turns, w t, and B grows with w t. So the first piece
+    is cut again at a tenth of its length, a hundredth and so on. Otherwise the small numbers early in it
+    would lose their digits beside the large ones late in it.
     """
     count = max(math.ceil(farthest * rate / PIECE), 1)
     length = farthest / count

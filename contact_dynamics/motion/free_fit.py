@@ -1,15 +1,15 @@
-"""The free motion that fits a short window of published states best: one noisy velocity spoils nothing.
+"""The free motion that fits a short window of published states best, so that one noisy velocity does no harm.
 
-Model: a torque-free body in uniform gravity (`contact_dynamics.tumbling`), seen at n times with white noise
-in position and orientation and, where they are to be used, in the velocities. The centre of mass is a linear
-least-squares problem. The rotation has six unknowns, attitude and angular velocity at the newest stamp, found
-by Gauss's and Newton's method with the exact derivative of the motion (`free_derivative`), from a start that
-no single velocity decides: L is constant, so it is averaged over all neighbouring pairs (where that fits
-worse than the last turn alone, as for needles, from that).
+Model: a torque-free body in uniform gravity (`contact_dynamics.tumbling`) is seen at n times. There is white
+noise in position and orientation, and in the velocities if they are used. The path of the centre of mass is a
+linear least-squares problem. The rotation has six unknowns, attitude and angular velocity at the newest
+stamp. Gauss's and Newton's method finds them with the exact derivative of the motion (`free_derivative`). It
+starts from the angular momentum averaged over all neighbouring pairs of states, since L is constant. If the
+last turn alone fits better, as it does for needles, it starts from that.
 
-Not covered: windows in which something touched the body, torque and drag (`forced_motion_fit`), outliers,
-noise that is correlated from state to state, unknown mass properties; half a turn or more between
-neighbouring states.
+Not covered: windows in which something touched the body, torque and drag (`integrated_fit`), outliers, noise
+that is correlated from state to state, unknown mass properties, half a turn or more between neighbouring
+states.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 FEWEST_STATES: Final = 3
-"""Two poses and the twelve numbers of a state would fit exactly, noise and all."""
+"""Least number of states. Twelve numbers fit two poses exactly, with all their noise."""
 
 MOST_STATES: Final = 2000
-"""A window of seconds; longer ones are no short windows, and cost."""
+"""Largest number of states, which is a window of seconds. More would take too long."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -51,11 +51,11 @@ class StateNoise(Record):
     Attributes:
         position: m, > 0.
         orientation: rad, > 0, of a rotation vector's components.
-        linear_velocity: m/s, > 0; None: published velocities are not used.
-        angular_velocity: rad/s, > 0; None: likewise.
+        linear_velocity: m/s, > 0, or None if published linear velocities are not used.
+        angular_velocity: rad/s, > 0, or None if published angular velocities are not used.
 
     Raises:
-        InvalidFieldError: one is not > 0.
+        InvalidFieldError: a deviation is not > 0.
     """
 
     position: float
@@ -80,8 +80,8 @@ class FitResult(Record):
         covariance: (12, 12): position, rotation vector (world, after the attitude), both velocities.
         position_residual: m, root mean square distance of the positions.
         orientation_residual: rad, root mean square angle between the orientations.
-        count: Of states.
-        rounds: Of Gauss and Newton.
+        count: Number of states.
+        rounds: Number of rounds of Gauss's and Newton's method.
         converged: Whether the last round changed next to nothing.
     """
 
@@ -103,13 +103,13 @@ def fit_free_motion(
 ) -> FitResult:
     """Return the free motion that fits ``states``, in order of time, best.
 
-    With ``noise`` the covariance follows from it, and velocities are used that it has a deviation for.
-    Without, poses alone are used, and the covariance follows from their residuals.
+    If ``noise`` is given, the covariance follows from it, and the fit uses the velocities for which it has a
+    deviation. Otherwise the fit uses poses alone, and the covariance follows from their residuals.
 
     Raises:
-        InvalidFieldError: fewer than `FEWEST_STATES` states; stamps that do not ascend, as where two are
-            equal; a window so long that neighbours of the motion part by more than a double holds;
-            gravity is not three finite numbers.
+        InvalidFieldError: there are fewer than `FEWEST_STATES` states, their stamps do not ascend, the window
+            is so long that neighbours of the motion part beyond the range of doubles, or gravity is not
+            three finite numbers.
         TooLargeError: more than `MOST_STATES` states.
     """
     if len(states) < FEWEST_STATES:
@@ -152,7 +152,7 @@ class _Place:
 def _fit_place(
     states: Sequence[BodyState], seconds: FloatArray, gravity: FloatArray, noise: StateNoise | None
 ) -> _Place:
-    """Fit a parabola: p + v t + g t^2 / 2, in coordinates that start at the newest position."""
+    """Fit the parabola p + v t + g t^2 / 2, in coordinates that start at the newest position."""
     origin = states[-1].p_WB_W
     positions = np.array([state.p_WB_W for state in states]) - origin
     fallen = positions - 0.5 * np.square(seconds)[:, None] * gravity
@@ -233,7 +233,7 @@ def _fit_rotation(
 
 
 def _motion_from(body: MassProperties, q_WB: FloatArray, w_WB_W: FloatArray) -> FreeMotion:
-    """Return the rotation alone: what the centre of mass does is fitted by itself."""
+    """Return a motion with this rotation and a resting centre of mass, whose path is fitted separately."""
     state = BodyState(p_WB_W=np.zeros(3), q_WB=q_WB, v_WB_W=np.zeros(3), w_WB_W=w_WB_W)
     return free_motion(body, state, gravity_W=np.zeros(3), precision=Precision.DOUBLE)
 
@@ -256,7 +256,8 @@ def _averaged_rate(body: MassProperties, q: FloatArray, seconds: FloatArray) -> 
 def _last_rate(q: FloatArray, seconds: FloatArray) -> FloatArray:
     """Return the angular velocity, (3,), of the last turn.
 
-    It is noisier than what L says, but for a needle: its spin about its own axis is the smallest part of L.
+    It is noisier than the rate from L. A needle is the exception, because the spin about its own axis is the
+    smallest part of L.
     """
     rate: FloatArray = rotation_vectors(q[-1:], q[-2:-1])[0] / (seconds[-1] - seconds[-2])
     return rate

@@ -1,15 +1,15 @@
 """Motion of a rigid body under forces and torques besides gravity (lecture 24), integrated.
 
-Newton's and Euler's laws about the centre of mass, dp/dt = v, m dv/dt = m g + F, dL/dt = N, dR/dt = [w] R
-with w = R I^-1 R^T L. Forces: constant in world or in body axes, drag in still air, and a user's function of
-time and state.
+The equations are Newton's and Euler's laws about the centre of mass, dp/dt = v, m dv/dt = m g + F, dL/dt = N,
+dR/dt = [w] R with w = R I^-1 R^T L. Forces may be constant in world or in body axes, drag in still air, and a
+user's function of time and state.
 
 The method. L in world axes is a variable, so it is constant to the last bit where no torque acts. The
-attitude is a quaternion whose rates depend on q / |q| alone: the integrator's error of |q| is seen by nothing
-and is divided out of every answer, so that the attitude stays on the rotation group without the restarts that
-re-anchored rotation vectors need. Position and velocity are deviations from the free parabola, which is
-therefore exact. SciPy's DOP853 (Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, II.5)
-steps them, in both directions of time and as far as is asked for; what has been stepped is kept.
+attitude is a quaternion whose rates depend on q / |q| alone. So the integrator's error of |q| affects
+nothing, and every answer is divided by |q|. Rotation vectors would need restarts. Position and velocity are
+deviations from the free parabola, which is therefore exact. SciPy's DOP853 (Hairer, Norsett and Wanner,
+Solving Ordinary Differential Equations I, II.5) steps these variables, in both directions of time and as far
+as is asked for. The steps are kept.
 
 Accuracy, against the closed form at zero torque: 1e-12 rad after 10 revolutions of a compact body and 5e-11
 after 100, growing with the square of time; a rod of 1 to 20 is ten times as sensitive, and spin near the
@@ -48,11 +48,11 @@ if TYPE_CHECKING:
     WrenchFunction: TypeAlias = Callable[[float, Sample], tuple[Sequence[float], Sequence[float]]]
 
 MOST_STEPS: Final = 20_000
-"""In one direction of time. Some 10 s of computing, and some 500 revolutions of a body."""
+"""Largest number of steps in one direction of time. They take about 10 s, and cover about 500 revolutions."""
 
 
 class Method(NamedInt):
-    """How a motion is computed; the numbers are those of PredictTumbling.srv."""
+    """The method by which a motion is computed. The numbers are those of PredictTumbling.srv."""
 
     CLOSED_FORM = 0  # exact to rounding, the error does not grow with time
     INTEGRATED = 1  # stepped by an integrator
@@ -60,18 +60,18 @@ class Method(NamedInt):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ForcedMotion(Record):
-    """Where a body under forces is at any time; made by `forced_motion`. Not to be shared between threads.
+    """The motion of a body under forces. `forced_motion` makes it. Threads must not share it.
 
     Attributes:
         body: Mass and angular inertia.
-        state: At time 0.
+        state: The state of the body at time 0.
         gravity_W: (3,), m/s^2, world axes.
         wrench: The constant wrench that acts besides gravity.
         drag: Drag in still air.
-        wrench_of: A user's, of time and state.
-        law: What a caller adds to the wrench, as a function; None: nothing.
-        ahead: What has been stepped into the future.
-        back: And into the past.
+        wrench_of: The user's function of time and state that returns a wrench, or None.
+        law: The differential equations.
+        ahead: The steps into the future.
+        back: The steps into the past.
     """
 
     body: MassProperties
@@ -86,7 +86,7 @@ class ForcedMotion(Record):
 
     @property
     def rotates_freely(self) -> bool:
-        """Whether only forces act: the rotation is then that of `free_motion`, Poinsot's picture and all."""
+        """Whether only forces act. The rotation, and so Poinsot's picture, is then that of `free_motion`."""
         angular_drag = self.drag.linear_angular or self.drag.quadratic_angular
         return not (self.wrench.torque.any() or angular_drag or self.wrench_of is not None)
 
@@ -94,14 +94,14 @@ class ForcedMotion(Record):
         """Return the motion at one time, s after the state's stamp, in plain floats.
 
         Raises:
-            InvalidFieldError: the integrator does not get there: more steps than are allowed, or the motion
-                grows without bounds before, as under drag into the past.
+            InvalidFieldError: the integrator does not reach the time, because it needs too many steps, or
+                because the motion grows without bounds before, as under drag into the past.
         """
         side = self.ahead if seconds >= 0.0 else self.back
         return self.law.sample(seconds, side.at(seconds).tolist())
 
     def step_at(self, seconds: float) -> IntegratedStep:
-        """Return the integrator's step that holds a time >= 0, s, and where two meet, the later.
+        """Return the integrator's step that contains a time >= 0, s. Where two steps meet, it is the later.
 
         Raises:
             InvalidFieldError: as `sample`.
@@ -163,10 +163,10 @@ class IntegratedStep(NamedTuple):
     """One step of the integrator: all variables are polynomials of degree 7 in time.
 
     Attributes:
-        start: s.
-        end: s, > start.
-        variables: (n,), s, to (13, n), as `_SIZE` says; L is scaled so:
-        scale: kg m^2, L = scale times the last three variables.
+        start: Time at which the step begins, s.
+        end: Time at which it ends, s, > start.
+        variables: Function from times, (n,), s, to the variables, (13, n), that `_SIZE` explains.
+        scale: L over the last three variables, kg m^2.
     """
 
     start: float
@@ -176,7 +176,7 @@ class IntegratedStep(NamedTuple):
 
 
 class ChosenMotion(NamedTuple):
-    """A motion and how it is computed."""
+    """A motion and the method by which it is computed."""
 
     motion: FreeMotion | ForcedMotion
     method: Method
@@ -213,7 +213,7 @@ def motion_of(
 
 
 def turns_or_drags(wrench: ConstantWrench, drag: Drag, wrench_of: WrenchFunction | None) -> bool:
-    """Return whether something acts that the closed form knows nothing of."""
+    """Return whether something acts that the closed form does not cover."""
     turns = bool(np.any(wrench.torque)) or (wrench.axes is WrenchAxes.BODY and bool(np.any(wrench.force)))
     return turns or drag != NO_DRAG or wrench_of is not None
 
@@ -228,16 +228,15 @@ def forced_motion(
     wrench_of: WrenchFunction | None = None,
     most_steps: int = MOST_STEPS,
 ) -> ForcedMotion:
-    """Return the motion of a body on which a constant wrench, drag and a function act, by an integrator.
+    """Return the motion of a body under a constant wrench, drag and a user's function, by an integrator.
 
     Gravity is (3,), m/s^2, world axes. ``wrench_of(seconds, sample)`` returns a force, N, and a torque about
-    the centre of mass, N m, three numbers each, in world axes; seconds count from the state's stamp. Times
-    further away than ``most_steps`` of the integrator are refused when they are asked for.
+    the centre of mass, N m, three numbers each, in world axes. Its seconds count from the state's stamp. The
+    motion refuses times that are further away than ``most_steps`` of the integrator.
 
     Raises:
-        InvalidFieldError: gravity is not three finite numbers; a number is beyond `LARGEST_NUMBER`; or, then
-            and whenever the motion is asked for, the function returns anything but twice three finite
-            numbers.
+        InvalidFieldError: gravity is not three finite numbers; a number is beyond `LARGEST_NUMBER`; or the
+            function does not return two vectors of three finite numbers, now or whenever the motion calls it.
     """
     gravity = check_array("gravity_W", gravity_W, (3,))
     check_extent(body, state, gravity)
@@ -339,7 +338,7 @@ class _Law:
 
 
 class _Steps:
-    """What has been integrated in one direction of time, and how to go on."""
+    """The steps of the integrator in one direction of time. They are continued when a time needs it."""
 
     def __init__(self, law: _Law, end: float, most: int) -> None:
         self.law = law
@@ -358,7 +357,7 @@ class _Steps:
         return value
 
     def step_at(self, seconds: float) -> IntegratedStep:
-        """Return the step that holds a time on this side."""
+        """Return the step that contains a time on this side."""
         self._reach(math.nextafter(seconds, self.end))
         step = bisect_right(self.ends, abs(seconds)) - 1
         return IntegratedStep(self.ends[step], self.ends[step + 1], self.dense[step], self.law.scale)

@@ -1,18 +1,18 @@
-"""How a motion under forces changes with its initial state: the derivative, along what was integrated.
+"""How a motion under forces changes with its initial state: the derivative along the integrated motion.
 
-With theta a small rotation applied after the attitude, dL the change of the angular momentum and dF, dN those
-of force and torque, all in world axes, the neighbours of a motion obey
+Let theta be a small rotation applied after the attitude, dL the change of the angular momentum, and dF and dN
+the changes of force and torque, all in world axes. The neighbours of a motion then obey
 
     dp' = dv,   theta' = I_W^-1 (dL - theta x L),   m dv' = dF,   dL' = dN,   I_W = R I R^T,
 
-where dF and dN are linear in dp, theta, dv and dw = theta x w + I_W^-1 (dL - theta x L): a wrench in body
-axes turns by theta, drag follows its law, a user's function is differenced. These equations are solved by
-Gauss collocation (`numerics.gauss_collocation`) over the integrator's own steps, cut where neighbours move
-faster than the motion does.
+where dF and dN are linear in dp, theta, dv and dw = theta x w + I_W^-1 (dL - theta x L). A wrench in body
+axes turns by theta, drag follows its law, and a user's function is differentiated by differences. Gauss
+collocation (`numerics.gauss_collocation`) solves these equations over the integrator's own steps, which are
+cut where neighbours move faster than the motion does.
 
-Accuracy: that of the motion, 1e-11 relative to the largest entry over ten revolutions of a compact body; with
-a user's function, of the differences: `DIFFERENCE_STEP`. Not covered: forces that jump, and quadratic drag
-where the speed passes through zero, beyond what its one-sided slopes say.
+The accuracy is that of the motion: 1e-11 relative to the largest entry over ten revolutions of a compact
+body. With a user's function it is that of the differences (`DIFFERENCE_STEP`). Not covered: forces that jump,
+and quadratic drag where the speed passes through zero, beyond its one-sided slopes.
 """
 
 from __future__ import annotations
@@ -40,14 +40,14 @@ if TYPE_CHECKING:
 GAUSS: Final = Collocation(8)
 
 PIECE: Final = 0.5
-"""Length of a piece times the fastest rate at which neighbours turn, part or meet, rad: 8 points then err by
-some (PIECE / 4)^8 / 8!, 1e-12, in the middle of a piece, and by far less at its end."""
+"""Length of a piece times the fastest rate at which neighbours turn, part or meet, rad. Its 8 points then err
+by about (PIECE / 4)^8 / 8!, 1e-12, in the middle of a piece, and by far less at its end."""
 
 MOST_PIECES: Final = 5000
 """Pieces in one direction of time: 0.2 GB, and some seconds of computing. A turn takes some twenty."""
 
 P, THETA, V, W = (slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12))
-"""Rows and columns of the parts of a state; in the equations the last is dL / I_max, rad/s."""
+"""Rows and columns of the parts of a state. In the equations the last part is dL / I_max, rad/s."""
 
 
 def forced_state_derivatives(motion: ForcedMotion, seconds: ArrayLike) -> FloatArray:

@@ -1,11 +1,13 @@
 """The motion under torque and drag that fits a short window of published states best.
 
-Model: a body under gravity, a constant wrench, drag and a user's function (`motion.integrated`),
-seen at n times with white noise. All twelve numbers of the newest state are found together, since a force
-that turns with the body ties its path to its attitude: Gauss's and Newton's method with the derivative of the
-integrated motion (`contact_dynamics.motion.integrated_derivative`), from the free motion that fits best.
+Model: a body moves under gravity, a constant wrench, drag and a user's function (`motion.integrated`), and is
+seen at n times with white noise. All twelve numbers of the newest state are found together, because a force
+that turns with the body ties its path to its attitude. Gauss's and Newton's method finds them with the
+derivative of the integrated motion (`contact_dynamics.motion.integrated_derivative`). It starts from the free
+motion that fits best.
 
-Not covered: what `contact_dynamics.motion.free_fit` does not; forces that are not known.
+Not covered: forces that are not known, outliers, correlated noise, contacts within the window, unknown mass
+properties, and half a turn or more between neighbouring states.
 """
 
 from __future__ import annotations
@@ -34,8 +36,9 @@ if TYPE_CHECKING:
     from contact_dynamics.motion.integrated import WrenchFunction
 
 PASSES: Final = 3
-"""With weights from residuals, where noise is not known: those of the free motion are too large where it fits
-badly, those of the first pass nearly right, and the covariance is of those of the second."""
+"""Number of passes where the noise is not known and weights come from residuals. The residuals of the free
+motion are too large if it fits badly. Those of the first pass are nearly right. The covariance uses those of
+the second."""
 
 
 def fit_motion(
@@ -51,14 +54,14 @@ def fit_motion(
 ) -> FitResult:
     """Return the motion that fits ``states``, in order of time, best under the forces that act.
 
-    Where `contact_dynamics.motion_of` would have it in closed form it is `fit_free_motion`'s. Seconds of
-    ``wrench_of`` count from the newest state; ``most_steps`` is `forced_motion`'s. With ``noise`` the
-    covariance follows from it, and velocities are used that it has a deviation for; without, poses alone, and
-    the covariance follows from their residuals.
+    Where `contact_dynamics.motion_of` takes the closed form, this is `fit_free_motion`. The seconds of
+    ``wrench_of`` count from the newest state, and ``most_steps`` is as in `forced_motion`. If ``noise`` is
+    given, the covariance follows from it, and the fit uses the velocities for which it has a deviation.
+    Otherwise the fit uses poses alone, and the covariance follows from their residuals.
 
     Raises:
-        InvalidFieldError, TooLargeError: as `fit_free_motion` and `forced_motion`; or the motion grows
-            without bounds within the window, into the past.
+        InvalidFieldError, TooLargeError: as in `fit_free_motion` and `forced_motion`, and where the motion
+            grows without bounds into the past within the window.
     """
     gravity = check_array("gravity_W", gravity_W, (3,))
     if not turns_or_drags(wrench, drag, wrench_of):
@@ -92,7 +95,7 @@ def fit_motion(
 
 
 def _noise_of(position_residual: float, orientation_residual: float, count: int) -> StateNoise:
-    """Return the deviations of components that residuals of so many poses stand for."""
+    """Return the noise of each component that these residuals of ``count`` poses imply."""
     share = math.sqrt(
         count / (3 * count - 6)
     )  # of a vector's root mean square; six numbers are fitted to each
@@ -103,7 +106,7 @@ def _noise_of(position_residual: float, orientation_residual: float, count: int)
 
 
 class _Seen:
-    """The published states, as arrays, and their fit."""
+    """The published states, as arrays, with the methods that fit a motion to them."""
 
     def __init__(self, states: Sequence[BodyState]) -> None:
         newest = states[-1].stamp_ns
@@ -114,7 +117,7 @@ class _Seen:
         self.w = np.array([state.w_WB_W for state in states])
 
     def misses(self, motion: ForcedMotion) -> FloatArray:
-        """Return what was seen less what is computed, (n, 12), in the order of states."""
+        """Return the seen states less the computed ones, (n, 12)."""
         then = motion.at(self.seconds)
         return np.hstack(
             [
@@ -132,7 +135,7 @@ class _Seen:
         return math.sqrt(squares[:, :3].sum() / n), math.sqrt(squares[:, 3:6].sum() / n)
 
     def fitted(self, motion: ForcedMotion, noise: StateNoise) -> Fit[ForcedMotion]:
-        """Return the fit of what there is a deviation for, from a start."""
+        """Return the fit, from a start, of the components for which ``noise`` has a deviation."""
         deviations = (noise.position, noise.orientation, noise.linear_velocity, noise.angular_velocity)
         used = np.repeat([deviation is not None for deviation in deviations], 3)
         weights = 1.0 / np.repeat([deviation or 1.0 for deviation in deviations], 3)[used]

@@ -93,11 +93,11 @@ class ShapeParameters:
     """A shape as it is configured, of a body or of an obstacle; lengths in m.
 
     Attributes:
-        numbers: Of each of `DESCRIPTIONS`.
-        rounding: radius of the ball that rolls over it.
-        position: Of the shape in the body's frame, or in the world.
-        orientation: X, y, z, w.
-        pose_names: Parameters of the two above.
+        numbers: The numbers of each of `DESCRIPTIONS`.
+        rounding: Radius of the ball that rolls over it.
+        position: Position of the shape in the body's frame, or in the world.
+        orientation: Unit quaternion x, y, z, w of the shape there.
+        pose_names: Names of the parameters for position and orientation.
     """
 
     numbers: dict[str, list[float]]

@@ -83,7 +83,7 @@ def stop_signals() -> Iterator[threading.Event]:
     """
     stop = threading.Event()
     numbers = [signal.SIGINT, signal.SIGTERM]
-    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # which is what `nohup` makes of it
+    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # which is what nohup makes of it
         numbers.append(signal.SIGHUP)
     before = {number: signal.signal(number, lambda _number, _frame: stop.set()) for number in numbers}
     try:

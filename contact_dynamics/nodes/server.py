@@ -40,17 +40,17 @@ if TYPE_CHECKING:
     from msg_adapters.status import Response
 
 SERVICE_QOS = QoSProfile(depth=1000)
-"""Of the services. With the usual depth of 10, replies get lost when several clients ask at once."""
+"""Queue depth of the services. With the usual 10, replies get lost when several clients ask at once."""
 
 EVENT_QOS = QoSProfile(depth=10 * SERVICE_QOS.depth)
 """The queue of the service events is this deep. The log must lose none of them, and all requests that wait
 are answered, each with two events, before the first of these events is taken."""
 
 CLOCK_QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
-"""Of the simulated time: matches every publisher, as the subscription by which the node itself hears it."""
+"""Queue of the simulated time. It matches every publisher, like the node's own subscription to the clock."""
 
 PATH_QOS = QoSProfile(depth=1)
-"""Of the newest predicted trajectory as a path: a picture, of which the last one matters."""
+"""Queue of the predicted trajectory as a path. It is a picture, and only the newest one matters."""
 
 
 class Server(Node):

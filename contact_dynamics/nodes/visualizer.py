@@ -51,7 +51,7 @@ if TYPE_CHECKING:
 NODE_NAME: Final = "contact_dynamics_visualizer"
 
 EVENT_QOS: Final = QoSProfile(depth=10_000)
-"""Of the service events: as deep as the server's, so that a burst of questions is drawn in full."""
+"""Queue depth of the service events. It equals the server's, so that a burst of questions is all drawn."""
 
 DRAW_PERIOD_S: Final = 0.05
 """States are drawn in batches, because a batch costs what a single state does."""

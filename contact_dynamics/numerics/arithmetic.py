@@ -1,8 +1,9 @@
 """The numbers in which the constants of a rotation are computed: doubles, alone or in arrays, or decimals.
 
-The formulas are written once. Extended precision is for the long run: a phase that is off by a last bit in
-its rate is off by radians after 1e16 of them, and after far fewer near the middle axis, where rates depend on
-what differences leave. In doubles the constants take a third of the time.
+The formulas are written once for all these numbers. Long motions need extended precision: an error of one
+last bit in the rate of a phase becomes an error of radians after 1e16 rad. Near the middle axis this happens
+much earlier, because rates depend on small differences there. In doubles the constants take a third of the
+time.
 """
 
 from __future__ import annotations
@@ -38,10 +39,10 @@ Number = TypeVar("Number", float, Decimal, "FloatArray")
 
 
 class Precision(enum.Enum):
-    """In what numbers the constants of a motion are computed; attitudes are doubles in any case."""
+    """The numbers in which the constants of a motion are computed. Attitudes are always doubles."""
 
     DOUBLE = "double"
-    """Errors of attitude grow with time: some 1e-16 of the angle turned, times the motion's sensitivity."""
+    """Errors of attitude grow with time: about 1e-16 of the angle turned, times the motion's sensitivity."""
 
     EXTENDED = "extended"
     """Errors of attitude stay at the last bits, for the doubles given, over 1e9 revolutions and more."""
@@ -52,13 +53,13 @@ class Arithmetic(Generic[Number]):
     """What the formulas need to know of a kind of number.
 
     Attributes:
-        number: Exact.
-        any: Whether a comparison is true, or true anywhere.
-        sums: For sums that cancel.
-        rates: For what grows with time.
-        cancelled: Relative to a sum's terms, what rounding leaves of zero.
+        number: Function that converts a double exactly.
+        any: Function that says whether a comparison is true, in any element of an array.
+        sums: Decimal context for sums that cancel.
+        rates: Decimal context for numbers that are multiplied by time.
+        cancelled: Rounding of a sum that should be zero, relative to its terms.
         half_precise: Relative difference whose square is below the last digit.
-        eighth_precise: The same of the eighth power, for what does not grow with time.
+        eighth_precise: Relative difference whose eighth power is, for numbers that do not grow with time.
     """
 
     number: Callable[[float], Number]
@@ -88,7 +89,7 @@ DOUBLES: Final = Arithmetic(
 
 
 def _context(digits: int) -> Context:
-    """Return a context that says all itself, so that neither the caller's nor the default one matters."""
+    """Return a context that sets every option, so that the caller's and the default one do not matter."""
     return Context(
         prec=digits,
         rounding=ROUND_HALF_EVEN,

@@ -1,7 +1,8 @@
-"""Convex hulls by Qhull, asked again in other rotations where rounding makes it give up.
+"""Convex hulls by Qhull. If rounding makes Qhull give up, it is asked again for rotated points.
 
 Qhull merges facets that are nearly one. Where points are symmetric, or lie nearly in a plane, rounding can
-lead it into merges that it refuses, in one rotation of a thousand or in four of five; others give the hull.
+lead it into merges that it refuses. This happens in one rotation of a thousand or in four of five, and other
+rotations give the hull.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ class Hull(NamedTuple):
 
     Attributes:
         vertices: (k,), the extreme points; counterclockwise in the plane.
-        simplices: (s, d), that make up the surface, in any orientation.
-        neighbors: (s, d), of a simplex: across from each of its points.
+        simplices: (s, d), the simplices of the surface, in any orientation.
+        neighbors: (s, d), the neighbour of each simplex across from each of its points.
         equations: (s, d + 1), outward unit normals, then offsets: normal . x + offset <= 0 within.
     """
 
@@ -37,7 +38,7 @@ def hull_of(field: str, points: FloatArray) -> Hull:
     """Return the convex hull of points, (n, d), d >= 2, that do not lie in a plane.
 
     Args:
-        field: What the caller knows the points by; an error names it.
+        field: The caller's name of the points, which errors use.
         points: Any unit.
 
     Raises:

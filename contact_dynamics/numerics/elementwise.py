@@ -1,8 +1,8 @@
-"""Arithmetic that one case and many share: a number is a float, or an array with a case an element.
+"""Arithmetic for one case and for many: a number is a float, or an array with one element for each case.
 
-What is written with it once gives one case and a batch the same bits: sums, products, quotients and square
-roots are rounded correctly by both. Other functions are not, so that NumPy's are not used for them; nor is
-`sum`, which compensates rounding from Python 3.12 on.
+Code that uses only these functions gives one case and a batch the same bits, because Python and NumPy both
+round sums, products, quotients and square roots correctly. They do not round other functions equally, so
+NumPy's are not used for those. `sum` is not used either, because it compensates rounding from Python 3.12 on.
 """
 
 from __future__ import annotations

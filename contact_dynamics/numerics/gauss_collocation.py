@@ -1,8 +1,8 @@
 """Linear differential equations y' = K(t) y to rounding, by Gauss collocation over short pieces.
 
-A polynomial stands for y' in each piece and obeys the equation at Gauss's points (Hairer, Norsett and Wanner,
-Solving Ordinary Differential Equations I, II.7). Pieces are the caller's: short beside what K does. The
-method is stable where solutions decay however fast.
+In each piece y' is a polynomial that obeys the equation at Gauss's points (Hairer, Norsett and Wanner,
+Solving Ordinary Differential Equations I, II.7). The caller chooses the pieces, so short that K changes and
+turns y little in each. The method is stable for solutions that decay at any rate.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 CHUNK: Final = 64
-"""Pieces solved for at a time: their matrices are some MB."""
+"""Number of pieces that are solved at a time. Their matrices take a few MB."""
 
 
 class Collocation:
     """Gauss's method with a number of points in each piece.
 
-    More points allow for longer pieces. With m unknowns each piece is a system of m times as many equations:
-    at 100 and more of them LAPACK starts threads, which on a busy machine wait for each other for longer than
-    they work.
+    More points allow longer pieces. With m unknowns and p points each piece is a system of m p equations.
+    From 100 equations on LAPACK starts threads, which on a busy machine wait for each other longer than they
+    work.
     """
 
     def __init__(self, count: int) -> None:

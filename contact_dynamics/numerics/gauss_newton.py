@@ -1,11 +1,11 @@
 """Nonlinear least squares by Gauss's and Newton's method, with steps that are halved until they help.
 
-SciPy's `least_squares` finds the same and serves as witness in the tests. It is not used here because a model
-is more than its parameters: an attitude is moved by a rotation vector, anew in each round, which there would
-be a start of its own; because the rounds end where a change counts as none in the measured quantities; and
-because its import takes tenths of a second, in the middle of the first question with a window of states.
+SciPy's ``least_squares`` finds the same, and the tests compare both. It is not used here for three reasons.
+An attitude is moved by a new rotation vector in each round, and SciPy's would have to start anew for
+that. The rounds here end where the change is negligible in the measured quantities. And its import takes
+tenths of a second, in the middle of the first question with a window of states.
 
-Not covered: bounds, outliers, starts so far off that linearisation says nothing.
+Not covered: bounds, outliers, and starts that are too far off for linearisation.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 Model = TypeVar("Model")
 
 MOST_ROUNDS: Final = 20
-"""Three are the rule; a start a radian off takes some more."""
+"""Bound on the rounds. Most fits take three, and a start that is a radian off takes a few more."""
 
 MOST_HALVINGS: Final = 10
-"""Of a step that does not make the residuals smaller."""
+"""Bound on the halvings of a step that does not make the residuals smaller."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,8 +36,8 @@ class Fit(Generic[Model]):
     """The model that fits best.
 
     Attributes:
-        misses: (m,), weighted: measured less the model's.
-        inverse: (k, k): inverse @ inverse^T is the parameters' covariance for unit variances.
+        misses: (m,), weighted residuals: measured less computed.
+        inverse: (k, k). inverse @ inverse^T is the parameters' covariance for unit variances.
         converged: Whether the last round changed next to nothing.
     """
 

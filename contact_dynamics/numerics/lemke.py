@@ -1,8 +1,8 @@
 """Linear complementarity: find z >= 0 with w = M z + q >= 0 and z . w = 0, by Lemke's pivots.
 
-Friction makes M unsymmetric and copositive; then Lemke's method ends at a solution wherever w >= 0 can be met
-at all (Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, 4.4). Ties, which redundant contacts
-make, are broken by a covering vector in general position, drawn once and for all.
+Friction makes M unsymmetric and copositive. Lemke's method then ends at a solution wherever some z >= 0 gives
+w >= 0 (Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, 4.4). Redundant contacts make ties.
+A covering vector in general position breaks them. It is always the same.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 _PIVOTS_A_ROW: Final = 50
-"""Pivots, for each row, after which the search counts as failed; solutions take one to three."""
+"""Number of pivots for each row after which the search counts as failed. Solutions take one to three."""
 
 
 def solve_complementarity(M: FloatArray, q: FloatArray) -> FloatArray | None:
-    """Return z, (m,), with z >= 0, M z + q >= 0 and z . (M z + q) = 0; None: the method ended on a ray.
+    """Return z, (m,), with z >= 0, M z + q >= 0 and z . (M z + q) = 0, or None if the method ends on a ray.
 
     Args:
-        M: (m, m).
-        q: (m,), scaled like M z.
+        M: (m, m), a copositive matrix.
+        q: (m,), in the unit of M z.
     """
     m = len(q)
     if np.all(q >= 0.0):

@@ -1,6 +1,6 @@
-"""How many of some vectors are independent, and orthonormal bases of what they span and what they do not.
+"""Orthonormal bases of the span of some vectors and of its complement, and their dimensions.
 
-A few plain vectors go through Gram's and Schmidt's method, rows of a matrix through its singular values.
+A few plain vectors go through Gram's and Schmidt's method. Rows of a matrix go through its singular values.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ def orthonormal(vectors: Iterable[Sequence[float]]) -> list[tuple[float, ...]]:
 
 
 def rough_span(vectors: Iterable[Vector3], *, tolerance: float) -> list[Vector3]:
-    """Return an orthonormal basis of the span of unit ``vectors``, and of zero ones, which add nothing.
+    """Return an orthonormal basis of the span of unit ``vectors``. Zero vectors are allowed and add nothing.
 
-    What leans out of the span by no more than ``tolerance``, a sine, counts as in it. That is far more than
-    rounding leaves, so that one pass is enough, unlike in `orthonormal`.
+    A vector that leans out of the span by no more than ``tolerance``, a sine, counts as in it. This is far
+    more than rounding leaves, so one pass is enough, unlike in `orthonormal`.
     """
     basis: list[Vector3] = []
     for vector in vectors:
@@ -62,7 +62,7 @@ def row_space(rows: FloatArray) -> FloatArray:
 
 
 def null_space(rows: FloatArray) -> FloatArray:
-    """Return an orthonormal basis, (d, k), of what the rows, (m, d), do not see."""
+    """Return an orthonormal basis, (d, k), of the vectors orthogonal to all rows, (m, d)."""
     if len(rows) == 0:
         return np.eye(rows.shape[1])
     sizes, basis = np.linalg.svd(rows)[1:]
@@ -70,10 +70,11 @@ def null_space(rows: FloatArray) -> FloatArray:
 
 
 def seen_and_unseen(rows: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return orthonormal bases, (k, d) and (d - k, d), of what rows of about unit length see and do not.
+    """Return orthonormal bases, (k, d) and (d - k, d), of the span of rows of unit length, and of the rest.
 
-    Unlike in `row_space` and `null_space` the rows' unit is part of the question: rows that are all rounding
-    see nothing. And rows are many here, so that they become as few as columns first, with other last bits.
+    Unlike in `row_space` and `null_space`, the length of the rows matters: rows that consist of rounding
+    alone span nothing. There are many rows here, so they are first reduced to as many as there are columns,
+    which changes last bits.
     """
     if len(rows) > rows.shape[1]:
         rows = np.asarray(np.linalg.qr(rows, mode="r"))

@@ -1,9 +1,9 @@
-"""Non-negative least squares, after Lawson and Hanson (1974, ch. 23): a choice of forces, or the nearest.
+"""Non-negative least squares, after Lawson and Hanson (1974, ch. 23).
 
-`least_force` chooses where many forces balance a wrench: the one of least sum of squares where that has no
-negative force, as under a block on a row of feet, and otherwise one that few forces carry. It is written out,
-because a planar answer must not wait for SciPy, whose first import takes tenths of a second, longer than all
-else in the answer. And it leaves out directions that are no more than rounding, which SciPy's does not.
+`least_force` chooses among the forces that balance a wrench. It returns those of least sum of squares if none
+of them is negative, as under a block on a row of feet. Otherwise it returns a solution with few forces. It
+does not use SciPy, because SciPy's first import takes tenths of a second, longer than all else in a planar
+answer. Also, it leaves out directions that consist of rounding alone, and SciPy does not.
 
 `exact_combination` calculates with as many digits as it takes, for columns that nearly coincide.
 
@@ -42,7 +42,8 @@ _GUESSES: Final = 30
 _Decimals: TypeAlias = "list[Decimal]"
 
 _NEAREST_STEPS: Final = 10
-"""Steps for each span in the search for the nearest sum. It takes one or two; SciPy alone stops at three."""
+"""Bound on the steps for each column in the search for the nearest sum, which takes one or two. SciPy's own
+bound is three."""
 
 
 def least_force(columns: Sequence[Vector3], target: Vector3, absent: Sequence[Vector3]) -> list[float]:
@@ -66,7 +67,7 @@ def least_force(columns: Sequence[Vector3], target: Vector3, absent: Sequence[Ve
 
 
 def _few_forces(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    """Let the column that helps most act, drop those that would pull, until nothing is left over."""
+    """Add the column that helps most and drop those that would pull, until the target is balanced."""
     count = matrix.shape[1]
     x = np.zeros(count)
     acting = np.zeros(count, dtype=bool)
@@ -207,7 +208,7 @@ def _inner(a: _Decimals, b: _Decimals) -> Decimal:
 def nearest_combination(columns: FloatArray, target: FloatArray) -> tuple[FloatArray, float] | None:
     """Return x >= 0, (k,), for which columns @ x is nearest to a target, (d,), and its distance.
 
-    ``columns`` is (d, k). None: they are so nearly dependent that the search did not end.
+    ``columns`` is (d, k). It returns None if they are so nearly dependent that the search did not end.
     """
     from scipy.optimize import nnls
 

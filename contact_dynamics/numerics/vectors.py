@@ -1,10 +1,10 @@
 """Vectors of three numbers, and the tangents of a plane whose normal is given.
 
-`Vector3` is three plain floats: where one answer is wanted they are much faster than an array.  The products
-of `Triple` are written with numbers that may be arrays too (`numerics.elementwise`), for a case or for many.
+`Vector3` is three plain floats. For one answer they are much faster than an array. The numbers of a `Triple`
+may be floats or arrays (`numerics.elementwise`), for one case or for many.
 
-**Which tangents?**  No choice changes continuously with all normals.  Physics must not depend on the choice,
-but the order of a pyramid's edges and the last bits of answers do, so that each choice keeps its name here.
+**Which tangents?**  No choice changes continuously with all normals. Physics does not depend on the choice,
+but the order of a pyramid's edges and the last bits of answers do. So each choice has its own function here.
 *Least* is the coordinate axis that is furthest from the normal.
 
 | function | first tangent | chosen where |
@@ -121,7 +121,7 @@ def along_least(normal: FloatArray) -> FloatArray:
 
 
 def near_x(normal: FloatArray) -> FloatArray:
-    """Return a tangent, (3,), not unit, of a unit normal, (3,): as near to x as can be, or y for x."""
+    """Return a tangent, (3,), not unit, of a unit normal, (3,): x made orthogonal, or y for one near x."""
     return across(np.array(AXES[0] if abs(normal[0]) < ALONG_X else AXES[1]), normal)
 
 
@@ -141,7 +141,8 @@ def _least(unit: Vector3) -> Vector3:
 def point_jacobians(arms: FloatArray) -> FloatArray:
     """Return the (n, 3, 6) matrices that take a body's (v, w) to the velocities of its points at ``arms``.
 
-    ``arms`` is (n, 3), from the point that v is of.  The transpose takes forces there to a wrench about it.
+    ``arms`` is (n, 3), from the point whose velocity is v. The transpose takes forces at the points to a
+    wrench about that point.
     """
     rows = np.zeros((len(arms), 3, 6))
     rows[:, :, :3] = np.eye(3)

@@ -1,8 +1,8 @@
 """Planar problems, and the way between space and a plane of motion.
 
-`types` has a planar body, its velocity, contacts and wrench. `projection` states a question in space as a
-planar one, or says by how much it is none; `lifting` brings a planar answer back to space, and `in_space`
-makes a spatial problem of a planar one. `force_dual` is lecture 26's picture of planar wrenches.
+`types` has a planar body, its velocity, contacts and wrench. `projection` turns a question in space into a
+planar one, or says by how much it is not planar. `lifting` brings a planar answer back to space, and
+`in_space` makes a spatial problem from a planar one. `force_dual` is lecture 26's picture of planar wrenches.
 """
 
 from contact_dynamics.plane.in_space import planar_in_space

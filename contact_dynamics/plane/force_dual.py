@@ -1,9 +1,9 @@
 """Lecture 26's picture of planar wrenches and accelerations: the force dual.
 
-With the centre of mass as origin and the radius of gyration as unit of length, a wrench and the acceleration
-that it causes are the same vector, so that its projection is one point: the force dual of the wrench and the
-acceleration centre (Mason, 5.8 and lecture 26). The point carries the sign of the moment. The wrenches of a
-contact with Coulomb's friction are the positive combinations of the two edges of its friction cone.
+Take the centre of mass as origin and the radius of gyration as unit of length. Then a wrench and the
+acceleration that it causes are the same vector. Its projection is one point, which is the force dual of the
+wrench and the acceleration centre (Mason, 5.8 and lecture 26). The point carries the sign of the moment. The
+wrenches of a contact with Coulomb's friction are the positive combinations of the two edges of its cone.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ class Turn(NamedInt):
 
     CLOCKWISE = -1
     NEITHER = 0
-    """The point is at infinity, in the given direction: a pure force, or a translation."""
+    """The point is at infinity in the given direction. This is a pure force, or a translation."""
     ANTICLOCKWISE = 1
 
 
@@ -28,7 +28,7 @@ class OrientedPoint(NamedTuple):
     """A wrench or an acceleration up to a positive factor, as a point of the plane with a sign.
 
     Attributes:
-        point: m, from the centre of mass; a unit direction where the point is at infinity.
+        point: Position from the centre of mass, m, or a unit direction where the point is at infinity.
     """
 
     point: Vector2
@@ -38,7 +38,7 @@ class OrientedPoint(NamedTuple):
 def friction_cone(contact: PlanarContact) -> tuple[PlanarWrench, PlanarWrench]:
     """Return the wrenches of unit normal force along the two edges of a contact's cone.
 
-    First the one that pushes right (of a contact that slides left), then the one that pushes left.
+    The first pushes right, as on a contact that slides left, and the second pushes left.
     """
     return _edge(contact, contact.friction), _edge(contact, -contact.friction)
 
@@ -50,14 +50,14 @@ def _edge(contact: PlanarContact, slope: float) -> PlanarWrench:
 
 
 def force_dual(body: PlanarBody, wrench: PlanarWrench) -> OrientedPoint | None:
-    """Return the force dual of a wrench, in m; None: no wrench (Mason, 5.8)."""
+    """Return the force dual of a wrench, in m, or None for a zero wrench (Mason, 5.8)."""
     return acceleration_centre(
         (wrench.f[0] / body.mass, wrench.f[1] / body.mass), wrench.moment / body.inertia
     )
 
 
 def acceleration_centre(acceleration: Vector2, angular_acceleration: float) -> OrientedPoint | None:
-    """Return the point of a body, at rest, that does not accelerate; None: all do not (lecture 26).
+    """Return the point of a body at rest that does not accelerate, or None if no point does (lecture 26).
 
     Args:
         acceleration: m/s^2, of the centre of mass.

@@ -1,7 +1,7 @@
-"""A planar problem as one in space that moves alike.
+"""A planar problem as a problem in space with the same motion.
 
-The plane is put into space, where nothing couples it to the motion out of it: a body that is isotropic there
-moves in the plane as the planar one does.
+The body in space has equal moments of inertia about all axes. Then nothing couples its motion in the plane to
+motion out of it, and it moves in the plane as the planar body does.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """From a planar answer back to space: whether it holds there, and what it says of the body in space.
 
-A planar problem is one of space too where every contact lies in the plane of motion, or has a like one on the
-other side: then contact forces can balance about the axes in the plane, and like contacts carry equal shares.
+A planar answer holds in space if every contact lies in the plane of motion, or has an equal contact at its
+mirror image on the other side. Then contact forces can balance about the axes in the plane, and mirrored
+contacts carry equal shares.
 """
 
 from __future__ import annotations
@@ -24,10 +25,11 @@ if TYPE_CHECKING:
 def mirror_partners(
     plane: PlaneOfMotion, state: BodyState, contacts: ContactSet, *, distance_tolerance: float
 ) -> tuple[int, ...]:
-    """Return, for each contact, the one that is its mirror image in the plane; itself where it lies in it.
+    """Return, for each contact, the index of its mirror image in the plane, or -1 if there is none.
 
-    -1: there is none. Positions may be off by `OUT_OF_PLANE_RATIO` of the farthest contact's distance, or by
-    ``distance_tolerance``, m, where that is more; normals by that ratio; frictions are equal.
+    A contact in the plane is its own mirror image. Positions may be off by `OUT_OF_PLANE_RATIO` of the
+    farthest contact's distance, or by ``distance_tolerance``, m, if that is more. Normals may be off by that
+    ratio. Frictions must be equal.
     """
     n_x, n_y, n_z = plane.normal_W.tolist()
     points, normals = (contacts.p_WC_W - state.p_WB_W).tolist(), contacts.normals_W.tolist()
@@ -55,12 +57,12 @@ def mirror_partners(
 def check_mirrored(
     plane: PlaneOfMotion, state: BodyState, contacts: ContactSet, partners: tuple[int, ...]
 ) -> None:
-    """Refuse contacts that lie beside the plane of motion without a like one on its other side.
+    """Refuse contacts that lie beside the plane of motion without a mirror image on its other side.
 
     ``partners`` are the `mirror_partners` of the contacts.
 
     Raises:
-        OutOfPlaneError: with the first such contact and how far from the plane it is.
+        OutOfPlaneError: names the first such contact and its distance from the plane.
     """
     if -1 in partners:
         alone = partners.index(-1)
@@ -79,7 +81,7 @@ def equal_shares(forces_W: FloatArray, partners: tuple[int, ...]) -> FloatArray:
 
 
 def with_planar_velocity(problem: PlanarProblem, state: BodyState, velocity: PlanarVelocity) -> BodyState:
-    """Return the state of a planar problem with another velocity in the plane; what is out of it stays."""
+    """Return the state with another velocity in the plane. The velocity out of the plane stays."""
     (v_x, v_y), (before_x, before_y) = velocity.v, problem.velocity.v
     plane = problem.plane
     return replace(
@@ -90,6 +92,6 @@ def with_planar_velocity(problem: PlanarProblem, state: BodyState, velocity: Pla
 
 
 def planar_velocity(plane: PlaneOfMotion, state: BodyState) -> PlanarVelocity:
-    """Return the velocity that the plane of motion sees."""
+    """Return the part of a velocity in the plane of motion."""
     x, y = plane.axes_W @ state.v_WB_W
     return PlanarVelocity(v=(float(x), float(y)), w=float(state.w_WB_W @ plane.normal_W))

@@ -1,12 +1,12 @@
 """From space to a plane of motion and back: when a question is a planar one, and by how much it is not.
 
-The plane passes through the centre of mass. Seen with its normal towards the eye and a contact's normal up,
-*right* is right, so that turning the plane over swaps left and right.
+The plane passes through the centre of mass. Look at it with its normal towards you and a contact's normal up:
+then the mode letter for *right* means to your right. Turning the plane over swaps left and right.
 
-A spatial problem is planar where nothing couples it to the motion out of the plane: velocities lie in the
-plane, contact normals and the applied force too, and the plane's normal is a principal axis. Contacts at
-different depths project onto one plane: their forces are taken to balance about the axes in the plane, as
-they do where body and contacts are symmetric about it.
+A spatial problem is planar if nothing couples it to motion out of the plane. This is so if velocities,
+contact normals and the applied force lie in the plane, and the plane's normal is a principal axis. Contacts
+at different depths project onto one plane. Their forces are assumed to balance about the axes in the plane,
+as they do if body and contacts are symmetric about it.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 _STEEP: Final = 0.8
-"""Cosine to the world's up above which a normal counts as upright: it is then over 36 degrees off x."""
+"""Cosine to the world's up above which a normal counts as upright. It is then over 36 degrees off x."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -43,7 +43,7 @@ class PlaneOfMotion(Record):
 
     Attributes:
         normal_W: (3,), unit, world axes.
-        axes_W: (2, 3), unit, the plane's x and y, world axes; they follow from the normal.
+        axes_W: (2, 3), unit, the plane's x and y in world axes, which follow from the normal.
 
     Raises:
         InvalidFieldError: the normal is not a unit vector of three finite numbers.
@@ -75,7 +75,7 @@ class PlaneOfMotion(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class PlanarProblem(Record):
-    """A spatial problem as the plane of motion sees it.
+    """The projection of a spatial problem onto the plane of motion.
 
     Attributes:
         plane: The plane of motion.
@@ -83,7 +83,7 @@ class PlanarProblem(Record):
         velocity: Its velocity in the plane.
         contacts: Its contacts in the plane, in their order.
         wrench: The applied wrench in the plane.
-        out_of_plane: m/s, the largest motion out of the plane.
+        out_of_plane: The largest speed out of the plane, at a contact or the centre of mass, m/s.
     """
 
     plane: PlaneOfMotion
@@ -119,7 +119,7 @@ def project_onto_plane(
 
     Raises:
         OutOfPlaneError: velocity, a contact normal, the wrench or the inertia leaves the plane by more than
-        its tolerance.
+            its tolerance.
     """
     normal = _three(plane.normal_W)
     x, y = (_three(axis) for axis in plane.axes_W)
@@ -194,7 +194,7 @@ def _curvatures_in(plane: PlaneOfMotion, contacts: ContactSet) -> list[tuple[flo
 
 
 def out_of_plane_speed(plane: PlaneOfMotion, state: BodyState, contacts: ContactSet) -> float:
-    """Return the largest speed, m/s, at contacts and centre of mass that the plane leaves out."""
+    """Return the largest speed out of the plane, m/s, at contacts and centre of mass."""
     normal = _three(plane.normal_W)
     w = without(_three(state.w_WB_W), normal)
     v = scaled(normal, dot(_three(state.v_WB_W), normal))
@@ -216,16 +216,17 @@ def best_plane(
     torque_W: FloatArray,
     speed_tolerance: float = OUT_OF_PLANE_SPEED,
 ) -> PlaneOfMotion:
-    """Return a plane in which a problem is planar, or the one in which it nearly is.
+    """Return a plane in which a problem is planar, or the plane in which it is most nearly planar.
 
-    Contact normals and the applied force must lie in it. Where they leave a choice (a body on a floor), the
-    candidates, made to contain them, are: normal to the rotation's axis; along the sliding motion; normal to
-    the torque; through all contacts, where there is such a plane; normal to each of the body's principal
-    axes, and to the world's. The first that leaves out no motion above ``speed_tolerance`` (m/s) and couples
-    no inertia beyond `OUT_OF_PLANE_RATIO` is taken; if none does, the one that leaves out least.
+    Contact normals and the applied force must lie in the plane. If they leave a choice (a body on a floor),
+    these planes are tried in turn, each made to contain them: normal to the rotation's axis; along the
+    sliding motion; normal to the torque; through all contacts, if there is such a plane; normal to each of
+    the body's principal axes, and to the world's. The first is taken that leaves out no motion above
+    ``speed_tolerance`` (m/s) and couples no inertia beyond `OUT_OF_PLANE_RATIO`. If none does, it is the one
+    that leaves out least.
 
     Raises:
-        OutOfPlaneError: contact normals and force span space: no plane contains them.
+        OutOfPlaneError: no plane contains all contact normals and the force.
     """
     fixed = rough_span(
         [*_rows(contacts.normals_W), _normalised(_three(force_W))], tolerance=OUT_OF_PLANE_RATIO
@@ -260,7 +261,7 @@ def best_plane(
 def _axis_candidates(
     body: MassProperties, state: BodyState, contacts: ContactSet, fixed: list[Vector3], torque: Vector3
 ) -> Iterator[Vector3]:
-    """Yield normals of planes, not unit; zero vectors among them."""
+    """Yield normals of planes, which are not unit and may be zero."""
     yield _three(state.w_WB_W)
     for direction in fixed:
         yield cross(direction, _three(state.v_WB_W))
@@ -272,7 +273,7 @@ def _axis_candidates(
 
 
 def _normal_through(direction: Vector3, points: list[Vector3]) -> Vector3:
-    """Return the normal, not unit, of the plane of a direction and points; zero where they name none."""
+    """Return the normal, not unit, of the plane of a direction and points, or zero if they span none."""
     farthest = max((cross(direction, point) for point in points), key=norm)
     size = norm(farthest)
     off = max(abs(dot(farthest, point)) for point in points)
@@ -287,7 +288,7 @@ def _principal_axes(body: MassProperties) -> FloatArray:
 
 
 def _inertia_about(body: MassProperties, R_WB: FloatArray, normal_W: Vector3) -> tuple[float, float]:
-    """Return the inertia about an axis, and the part of the angular momentum across it, relative to that."""
+    """Return the inertia about an axis, and the ratio of angular momentum across it to that along it."""
     axis_B = np.array(normal_W) @ R_WB
     momentum, axis = _three(body.I_B @ axis_B), _three(axis_B)
     along = dot(momentum, axis)

@@ -29,10 +29,10 @@ class PlanarBody(Record):
 
     Attributes:
         mass: kg.
-        inertia: kg m^2, about the centre of mass; m rho^2 with rho the radius of gyration.
+        inertia: kg m^2, about the centre of mass: m rho^2 with rho the radius of gyration.
 
     Raises:
-        InvalidFieldError: either is not a finite number > 0, or beyond `LARGEST_NUMBER` or below its inverse.
+        InvalidFieldError: a field is not > 0, not finite, above `LARGEST_NUMBER` or below its inverse.
     """
 
     mass: float
@@ -54,8 +54,8 @@ class PlanarVelocity(Record):
     """Velocity of a planar body.
 
     Attributes:
-        v: m/s, of the centre of mass.
-        w: rad/s, positive from x to y.
+        v: Velocity of the centre of mass, m/s.
+        w: Angular velocity, rad/s, positive from x to y.
 
     Raises:
         InvalidFieldError: a number is not finite, or beyond `LARGEST_NUMBER`.
@@ -75,8 +75,8 @@ class PlanarWrench(Record):
     """Force and moment applied to a planar body, besides those of its contacts.
 
     Attributes:
-        f: N.
-        moment: N m, about the centre of mass.
+        f: Force, N.
+        moment: Moment about the centre of mass, N m.
 
     Raises:
         InvalidFieldError: a number is not finite, or beyond `LARGEST_NUMBER`.
@@ -93,22 +93,24 @@ class PlanarWrench(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class PlanarContact(Record):
-    """A point of the body on a flat of the world; or sides that are curved, as `contact.curvature` has it.
+    """A contact of a planar body: a point of the body on a flat of the world, or two curved sides.
 
-    A corner of the world that a flat of the body slides over has ``body_curvature=0`` and
-    ``surface_curvature=math.inf``; a disc of radius R on a floor has ``body_curvature=1 / R``.
+    If a flat of the body touches a corner of the world, give ``body_curvature=0`` and
+    ``surface_curvature=math.inf``. For a disc of radius R on a floor, give ``body_curvature=1 / R``.
+    `contact.curvature` says what curvatures do.
 
     Attributes:
-        r: m, from the centre of mass to the contact.
-        normal: Unit, into the body.
+        r: Position of the contact from the centre of mass, m.
+        normal: Unit normal into the body.
         friction: Coulomb's mu, >= 0.
-        restitution: e, in [0, 1]; contact modes do not use it.
-        body_curvature: 1/m, of the body at the contact, convex positive; inf: a corner.
-        surface_curvature: 1/m, of what it touches, likewise.
+        restitution: Coefficient e, in [0, 1]; contact modes do not use it.
+        body_curvature: Curvature of the body there, 1/m, positive where convex, inf at a corner.
+        surface_curvature: Curvature of the surface there, 1/m, positive where convex, inf at a corner.
 
     Raises:
-        InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, e outside [0, 1], or two
-            sides that do not touch in one point of one normal: curvatures of a sum <= 0, or two corners.
+        InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, e is outside [0, 1], or the
+            sides do not touch in one point with one normal: the sum of curvatures is <= 0, or both are
+            corners.
     """
 
     r: Vector2
@@ -144,18 +146,20 @@ class PlanarContact(Record):
             )
 
     def gap_acceleration(self, v_t: float, w: float) -> float:
-        """Return what the gap's second derivative has besides the contact point's a_n, m/s^2.
+        """Return the gap's second derivative less the contact point's a_n, m/s^2.
 
-        For a tangential velocity, m/s, of the body's point at the contact, and an angular one, rad/s.
+        It depends on the tangential velocity, m/s, of the body's point at the contact, and on the angular
+        velocity, rad/s.
         """
         if self.body_curvature == math.inf and self.surface_curvature == 0.0:
             return 0.0
         return planar_gap_acceleration(self.body_curvature, self.surface_curvature, v_t=v_t, w=w)
 
     def reach(self, rho: float) -> float:
-        """Return how far, m, an angular velocity counts at the contact, of a body of radius of gyration rho.
+        """Return the length, m, by which an angular velocity counts at the contact.
 
-        Where sides are curved the body turns about another point than its own, and a corner slides along it.
+        ``rho`` is the radius of gyration, m. Where sides are curved the body does not turn about the contact
+        point itself, and a corner slides along it.
         """
         if self.body_curvature == math.inf and self.surface_curvature == 0.0:
             return math.hypot(*self.r)

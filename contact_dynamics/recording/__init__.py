@@ -1,7 +1,8 @@
 """The log: every state received and every request and response, in MCAP as rosbag2 of Jazzy lays it out.
 
-Writing: `BagWriter` (one thread), `Recorder` (beside a server). Reading: `BagReader`, `service_calls`,
-`decode` with the classes of ROS, `decode_without_ros` with the definitions in the log.
+`BagWriter` writes a log from one thread, and `Recorder` writes it beside a server. `BagReader` and
+`service_calls` read it. `decode` makes messages with the classes of ROS, and `decode_without_ros` makes them
+from the definitions in the log.
 """
 
 from contact_dynamics.recording.bag_reader import BagReader, LoggedMessage

@@ -1,7 +1,7 @@
-"""A file that only grows, nothing of it held back in the process, so that a kill loses nothing written.
+"""A file that only grows. The process holds nothing back, so a kill loses nothing that was written.
 
-Python's own buffered file keeps what a full disk refused and refuses to be closed then; this one does
-neither, and can be cut back to where it was last whole.
+Python's own buffered file keeps data that a full disk refused, and then cannot be closed. This file does not
+do that, and it can be cut back to where it was last whole.
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ if TYPE_CHECKING:
 
 
 class AppendFile:
-    """What ``mcap.writer.Writer`` asks of a stream: ``write``, ``tell``, ``flush``."""
+    """A stream with the methods that ``mcap.writer.Writer`` needs: ``write``, ``tell``, ``flush``."""
 
     def __init__(self, path: Path) -> None:
-        """Create the file; `FileExistsError` where one stands."""
+        """Create the file. If it exists, raise `FileExistsError`."""
         self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o644)
         self._size = 0
 
     def write(self, data: bytes | bytearray | memoryview) -> int:
-        """Hand all of ``data`` to the operating system; `OSError` where the disk refuses."""
+        """Hand all of ``data`` to the operating system. If the disk refuses, raise `OSError`."""
         rest = memoryview(data)
         while rest:
             count = os.write(self._descriptor, rest)
@@ -35,7 +35,7 @@ class AppendFile:
         return self._size
 
     def flush(self) -> None:
-        """Do nothing: nothing is held back."""
+        """Do nothing, since nothing is held back."""
 
     def cut_back(self, size: int) -> None:
         """Drop everything behind the first ``size`` bytes."""

@@ -1,6 +1,6 @@
-"""``metadata.yaml`` of a bag as rosbag2 of Jazzy writes it (version 9); the MCAP file holds it too.
+"""``metadata.yaml`` of a bag as rosbag2 of Jazzy writes it (version 9). The MCAP file has the same text.
 
-Written by hand, since the form is fixed and short: strings as JSON writes them, which is YAML too.
+The code writes the YAML without a library, since the form is fixed and short. JSON strings are valid YAML.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ CHECKSUM_KEY: Final = "checksum"  # in that record, because MCAP gives metadata 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TopicSummary:
-    """What ``metadata.yaml`` says of one topic.
+    """The entry of ``metadata.yaml`` for one topic.
 
     Attributes:
-        name: With its leading slash.
+        name: The topic's name with its leading slash.
         type_name: "package/msg/Name" or "package/srv/Name_Event".
         type_hash: "RIHS01_..." or empty.
         qos: Lines of a YAML list of profiles, `qos_lines`.
@@ -38,13 +38,13 @@ class TopicSummary:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BagSummary:
-    """What ``metadata.yaml`` says of a bag of one file.
+    """The content of ``metadata.yaml`` for a bag of one file.
 
     Attributes:
-        file_name: Relative to the folder.
+        file_name: The file's path relative to the folder.
         start_ns: Log time of the earliest message, ns since the epoch.
         end_ns: Log time of the latest message, ns since the epoch.
-        custom_data: What the writer says of the run.
+        custom_data: The writer's record of the run.
     """
 
     file_name: str
@@ -55,12 +55,12 @@ class BagSummary:
 
 
 def sealed_run(run: Mapping[str, str]) -> dict[str, str]:
-    """Return what the run's record holds: how the run was made, and a checksum of that."""
+    """Return the record of the run: how it was made, and a checksum."""
     return {**run, CHECKSUM_KEY: _checksum(run)}
 
 
 def unsealed_run(record: Mapping[str, str]) -> dict[str, str] | None:
-    """Return how the run was made; None where the checksum does not match, or is not there."""
+    """Return how the run was made, or None if the checksum is missing or does not match."""
     run = {key: value for key, value in record.items() if key != CHECKSUM_KEY}
     return run if record.get(CHECKSUM_KEY) == _checksum(run) else None
 

@@ -1,10 +1,10 @@
 """Reads a log: a bag folder or a bare ``.mcap``, ours or rosbag2's, in the order in which it was written.
 
-Every checksum is checked. What is damaged is passed over and everything else is read (`mcap_walk`), as are
-all whole chunks of a log cut short by a crash or a full disk. `BagReader.losses` then says what is missing,
-and a `DamagedLogWarning` is raised as a warning, once a file.
+The reader checks every checksum. It skips what is damaged and reads everything else (`mcap_walk`), also all
+whole chunks of a log that a crash or a full disk cut short. `BagReader.losses` then says what is missing, and
+the reader warns once for each file (`DamagedLogWarning`).
 
-Needs no ROS: messages come as bytes, and `decoding` turns them into message objects where the packages are
+It needs no ROS. Messages are bytes, and `decoding` turns them into message objects if their packages are
 installed.
 """
 
@@ -39,12 +39,12 @@ class LoggedMessage:
     """One message as it was logged.
 
     Attributes:
-        topic: With its leading slash.
+        topic: The topic's name with its leading slash.
         type_name: "package/msg/Name" or "package/srv/Name_Event".
-        data: Serialised (CDR).
-        log_time_ns: When it was received, ns since the epoch.
+        data: The serialised message (CDR).
+        log_time_ns: When the message was received, ns since the epoch.
         publish_time_ns: When its source made it, ns since the epoch.
-        definition: The text of its type, as the log has it, in MCAP's ros2msg form. Empty: another form.
+        definition: The text of its type in the log, in MCAP's ros2msg form; empty if it has another form.
     """
 
     topic: str
@@ -56,7 +56,7 @@ class LoggedMessage:
 
 
 class BagReader:
-    """A log to read from; each call of a method reads the file anew."""
+    """A log to read from. Each call of a method reads the file again."""
 
     def __init__(self, path: str | Path) -> None:
         """Find the files of a log.
@@ -76,7 +76,7 @@ class BagReader:
 
     @property
     def damage(self) -> str | None:
-        """What the last reading met, in words; None: all was whole."""
+        """The damage that the last reading met, in words, or None if all was whole."""
         described = [
             _described(path, losses)
             for path in self.paths
@@ -85,10 +85,10 @@ class BagReader:
         return "\n".join(described) or None
 
     def messages(self, topics: Collection[str] | None = None) -> Iterator[LoggedMessage]:
-        """Yield the messages, of all topics or of those named, in the order in which they were written.
+        """Yield the messages, of all topics or of the given ones, in the order in which they were written.
 
-        Events of services come behind what was received while the answer was made: `log_time_ns` has the
-        order in which all of it happened.
+        Events of services come after messages that were received while the answer was made. `log_time_ns`
+        has the order in which everything happened.
         """
         self.losses = []
         for path in self.paths:
@@ -132,7 +132,7 @@ class BagReader:
         return {schema.name: text for schema in schemas if (text := _ros2msg(schema))}
 
     def run(self) -> dict[str, str]:
-        """Return what the writer of the log said of its run; empty where that is not there or damaged."""
+        """Return the writer's record of its run. It is empty if the record is missing or damaged."""
         self.losses = []
         for path in self.paths:
             with self._walk(path) as walk:
@@ -146,7 +146,7 @@ class BagReader:
 
     @contextmanager
     def _walk(self, path: Path) -> Iterator[McapWalk]:
-        """Open a file to walk through, and in the end say what was lost."""
+        """Open a file to walk through, and say at the end what was lost."""
         with path.open("rb") as stream:
             walk = McapWalk(McapFile(path, stream, path.stat().st_size))
             try:
@@ -159,7 +159,7 @@ class BagReader:
 
 
 class _Definitions:
-    """Channels and schemas of one file, those that a lost chunk defined taken from the file's summary."""
+    """Channels and schemas of one file. The file's summary has those that a lost chunk defined."""
 
     def __init__(self, walk: McapWalk) -> None:
         self._walk = walk
@@ -168,7 +168,7 @@ class _Definitions:
         self._known: dict[int, tuple[str, str, str] | None] = {}
 
     def add(self, record: WalkedRecord) -> None:
-        """Take a definition; other records are none."""
+        """Keep a record if it is a definition."""
         if isinstance(record, Schema):
             self._schemas[record.id] = record
         elif isinstance(record, Channel):
@@ -176,7 +176,7 @@ class _Definitions:
             self._known.pop(record.id, None)
 
     def channel(self, channel_id: int) -> tuple[str, str, str] | None:
-        """Return topic, type and its text, the latter two empty where there are none; None: not defined."""
+        """Return topic, type and its text, which may both be empty, or None if the channel is not defined."""
         if channel_id not in self._known:
             self._known[channel_id] = self._find(channel_id)
         return self._known[channel_id]

@@ -1,14 +1,18 @@
 """Writes a log: a folder with one MCAP file and the ``metadata.yaml`` that makes it a bag of rosbag2 (Jazzy).
 
-Layout, and why each part is so: profile ``ros2``; a schema a type with its full definition (`definitions`),
-so that a reader needs none of our packages; a channel a topic with its quality of service and type hash;
-small compressed chunks (256 KiB, closed by each `BagWriter.flush`), so that a kill of the process costs what
-came since the last flush; a metadata record ``contact_dynamics`` at the head that says how the run was made,
-and rosbag2's own at the end.
+The file has these parts:
 
-Not thread-safe: `recorder.Recorder` owns one on a thread of its own. Messages are bytes as a subscription
-with ``raw=True`` gives them; what ``rclpy.serialization.serialize_message`` returns ends in bytes of chance
-and is not for logs. Writes survive the death of the process, not that of the machine (no ``fsync``).
+- The profile is ``ros2``.
+- Each type has a schema with its full definition (`definitions`), so a reader does not need our packages.
+- Each topic has a channel with its quality of service and type hash.
+- Chunks are small and compressed (256 KiB, closed by each `BagWriter.flush`), so that a kill of the process
+  costs only what came since the last flush.
+- A metadata record ``contact_dynamics`` at the head says how the run was made. rosbag2's own is at the end.
+
+The writer is not thread-safe. `recorder.Recorder` owns one on its own thread. Messages are bytes as a
+subscription with ``raw=True`` gives them. The result of ``rclpy.serialization.serialize_message`` ends in
+random bytes and is not for logs. Writes survive the death of the process, but not that of the machine, since
+there is no ``fsync``.
 """
 
 from __future__ import annotations
@@ -62,13 +66,13 @@ class _Topic:
 
 
 class BagWriter:
-    """A log being written; a context manager. Methods raise `OSError` where the disk refuses."""
+    """A log that is being written, as a context manager. Methods raise `OSError` if the disk refuses."""
 
     def __init__(self, folder: str | Path, *, run: Mapping[str, str] | None = None) -> None:
         """Create ``folder`` and in it ``<folder>_0.mcap``.
 
         Args:
-            folder: where; parents are made, an existing one raises `LogExistsError`.
+            folder: the folder of the log. Parents are made. If it exists, `LogExistsError` is raised.
             run: how the run was made (parameters, configuration), kept in the log beside the package's
                 version.
         """
@@ -119,12 +123,14 @@ class BagWriter:
         """Declare a topic before its first message.
 
         Args:
-            name: with its leading slash; a service's events are at ``<service>/_service_event``.
+            name: the topic's name with its leading slash. A service's events are at
+                ``<service>/_service_event``.
             type_name: ``package/msg/Name``, or ``package/srv/Name_Event``.
-            qos: as offered by the publisher: rclpy's ``QoSProfile`` or an `OfferedQos`; None: its defaults.
+            qos: the quality of service of the publisher, as rclpy's ``QoSProfile`` or an `OfferedQos`, whose
+                defaults are taken for None.
 
         Raises:
-            InvalidFieldError: a name that is taken or not absolute, or a type that is not installed.
+            InvalidFieldError: the name is taken or not absolute, or the type is not installed.
         """
         self._check_open()
         if not name.startswith("/") or name in self._topics:
@@ -151,14 +157,14 @@ class BagWriter:
         """Append one message.
 
         Args:
-            topic: one that was declared.
+            topic: the name of a declared topic.
             data: the serialised message (CDR).
-            log_time_ns: when it was received, ns since the epoch.
-            publish_time_ns: when its source made it; None: the stamp that the message begins with, or the
-                time of reception where it has none.
+            log_time_ns: when the message was received, ns since the epoch.
+            publish_time_ns: when its source made it, ns. For None it is the stamp with which the message
+                begins, or the time of reception if it has no stamp.
 
         Raises:
-            InvalidFieldError: an argument is not of this kind. Nothing is written then, and the log goes on.
+            InvalidFieldError: an argument is not as described. Nothing is written then, and the log goes on.
         """
         self._check_open()
         declared = self._topics.get(topic)
@@ -190,7 +196,7 @@ class BagWriter:
                 self._write_metadata_file()
 
     def close(self) -> None:
-        """Finish the file and ``metadata.yaml``; after a failed write, only the latter. Twice is fine."""
+        """Finish the file and ``metadata.yaml``, or only the latter after a failed write. Twice is fine."""
         if self._closed:
             return
         self._closed = True
@@ -226,7 +232,7 @@ class BagWriter:
 
     @contextlib.contextmanager
     def _cut_back_on_failure(self) -> Iterator[None]:
-        """On any failure, leave the file as it was after the last flush: whole up to there, and readable."""
+        """On any failure, leave the file as it was after the last flush, when it was whole and readable."""
         try:
             yield
         except Exception as error:

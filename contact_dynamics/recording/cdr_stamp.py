@@ -1,8 +1,8 @@
-"""Stamps and identities read straight out of serialised messages (CDR), without a message class.
+"""Stamps and identities, read from serialised messages (CDR) without a message class.
 
-CDR is four bytes of encapsulation, of which the second says the byte order, then the fields, each aligned to
-its own size counted from the fifth byte. A message that begins with a ``std_msgs/Header`` or a time thus has
-int32 seconds and uint32 nanoseconds at bytes 4 and 8; a service event begins with
+CDR has four bytes of encapsulation, the second of which gives the byte order. Then come the fields, each
+aligned to its own size, counted from the fifth byte. So a message that begins with a ``std_msgs/Header`` or a
+time has int32 seconds and uint32 nanoseconds at bytes 4 and 8. A service event begins with
 ``service_msgs/ServiceEventInfo``: uint8 event type at 4, stamp at 8 and 12, 16 bytes of client identity at
 16, int64 sequence number at 36 (aligned to 8).
 """
@@ -23,7 +23,7 @@ _EVENT_INFO: Final = {True: struct.Struct("<4xB3xiI16s4xq"), False: struct.Struc
 
 
 class EventType(enum.IntEnum):
-    """What a service event reports; the values of ``service_msgs/ServiceEventInfo``."""
+    """The kinds of service events, with the values of ``service_msgs/ServiceEventInfo``."""
 
     REQUEST_SENT = 0
     REQUEST_RECEIVED = 1
@@ -33,13 +33,13 @@ class EventType(enum.IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EventInfo:
-    """Who asked what when: the head of a service event.
+    """The head of a service event: who asked, and when.
 
     Attributes:
-        event_type: Whether it tells of a request or a response, at the client or the server.
-        stamp_ns: ns since the epoch of the clock given to configure_introspection.
-        client_gid: 16 bytes, the client within this session.
-        sequence_number: Of the request among those of that client.
+        event_type: Whether this is a request or a response, at the client or the server.
+        stamp_ns: Time of the clock that was given to ``configure_introspection``, ns.
+        client_gid: 16 bytes that identify the client within this session.
+        sequence_number: Number of the request among those of that client.
     """
 
     event_type: EventType

@@ -1,4 +1,4 @@
-"""Unpacks the data of a chunk piece by piece, so that no size that a damaged chunk claims takes memory."""
+"""Unpacks the data of a chunk piece by piece, so that a damaged chunk with a huge size takes no memory."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ _PIECE: Final = 1024 * 1024  # bytes
 
 
 def uncompressed(compression: bytes, data: bytes, size: int) -> bytes:
-    """Return what was compressed; of more than ``size`` bytes, some more than these.
+    """Return the unpacked data. Unpacking stops soon after ``size`` bytes.
 
     Raises:
-        ValueError: the compression is none of MCAP's.
-        Exception: of the library that unpacks it, where the data are damaged.
+        ValueError: MCAP has no such compression.
+        Exception: the data are damaged. The class is that of the unpacking library.
     """
     if compression == b"":
         return data

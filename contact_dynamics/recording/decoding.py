@@ -1,4 +1,4 @@
-"""Logged bytes to ROS message objects, where ROS and the message's package are installed."""
+"""Turns logged bytes into ROS message objects, if ROS and the message's package are installed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def message_class(type_name: str) -> Any:
     """Return the class of ``package/msg/Name``, or the event class of ``package/srv/Name_Event``.
 
     Raises:
-        InvalidFieldError: not such a name, or its package is not installed here.
+        InvalidFieldError: the name has another form, or its package is not installed.
     """
     try:
         package, folder, name = type_name.split("/")
@@ -33,7 +33,7 @@ def message_class(type_name: str) -> Any:
 
 
 def decode(message: LoggedMessage) -> Any:
-    """Return the ROS message logged; of a service's event, ``info``, ``request`` and ``response``."""
+    """Return the logged ROS message. A service's event has ``info``, ``request`` and ``response``."""
     from rclpy.serialization import deserialize_message  # here, for logs are read without ROS too
 
     return deserialize_message(message.data, message_class(message.type_name))

@@ -1,13 +1,13 @@
-"""What a message type looks like: its full text in ROS's notation and its hash, from the ament prefixes.
+"""The definition of a message type: its full text in ROS's notation and its hash, from the ament prefixes.
 
-A log explains itself by carrying, for each type, the `.msg` text followed by that of each type it is built of
-(MCAP's encoding ``ros2msg``: a line of 80 ``=``, a line ``MSG: package/Type``, the text). Read from
-``share/<package>/{msg,srv}/`` of the folders in ``AMENT_PREFIX_PATH`` and of this Python's own prefix, which
-is where the packages from wheels live. Needs no ROS library.
+A log explains itself. For each type it has the `.msg` text, followed by the text of each type that it uses
+(MCAP's encoding ``ros2msg``: a line of 80 ``=``, a line ``MSG: package/Type``, the text). The texts are in
+``share/<package>/{msg,srv}/`` of the folders in ``AMENT_PREFIX_PATH``, and of this Python's own prefix, where
+packages from wheels are. No ROS library is needed.
 
-The event type of a service, ``package/srv/Name_Event``, has no file. Its text is put together here from the
-`.srv` as a message with the fields ``info``, ``request``, ``response``, the form that most readers decode:
-rosbag2 itself writes the `.srv` text as it is, which only rosbag2 understands.
+The event type of a service, ``package/srv/Name_Event``, has no file. Its text is made here from the `.srv`,
+as a message with the fields ``info``, ``request``, ``response``. Most readers can decode this form. rosbag2
+itself writes the `.srv` text, which only rosbag2 understands.
 
 Not covered: types defined by `.idl` alone (no such type is logged here), actions.
 """
@@ -47,9 +47,9 @@ class TypeDefinition:
 
     Attributes:
         type_name: "package/msg/Name" or "package/srv/Name_Event".
-        text: Its fields, then each type it is built of, in MCAP's ros2msg form.
-        type_hash: "RIHS01_..." of REP 2011; empty where no .json stands beside the text.
-        begins_with_stamp: The first field is a std_msgs/Header or a time.
+        text: Its fields, then each type that it uses, in MCAP's ros2msg form.
+        type_hash: "RIHS01_..." of REP 2011; empty if there is no .json beside the text.
+        begins_with_stamp: Whether the first field is a std_msgs/Header or a time.
     """
 
     type_name: str
@@ -73,7 +73,7 @@ def find_definition(type_name: str, *, prefixes: Sequence[Path] | None = None) -
     """Return the definition of ``package/msg/Name`` or ``package/srv/Name_Event``.
 
     Raises:
-        InvalidFieldError: not such a name, or the type or one it is built of stands in none of the prefixes.
+        InvalidFieldError: the name has another form, or no prefix has the type or a type that it uses.
     """
     match = _TYPE_NAME.fullmatch(type_name)
     if match is None or (match[2] == "srv") != (match[4] is not None):
@@ -103,7 +103,7 @@ def _service_event(shares: _Shares, package: str, name: str) -> tuple[str, dict[
 
 
 def _add_dependencies(shares: _Shares, package: str, text: str, sections: dict[str, str]) -> None:
-    """Add to ``sections`` each type that ``text`` names and that is not there yet, then those of these."""
+    """Add to ``sections`` each type that ``text`` uses and that is not there yet, and the types these use."""
     for dependency in _field_types(text, package):
         if "/" in dependency and dependency not in sections:
             owner, name = dependency.split("/")

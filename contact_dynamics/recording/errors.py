@@ -1,4 +1,4 @@
-"""What goes wrong with a log by misuse or by damage; a full disk stays the `OSError` that it is."""
+"""The errors of misused or damaged logs. A full disk raises its own `OSError`."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ from contact_dynamics.errors import ContactDynamicsError
 
 
 class LogExistsError(ContactDynamicsError, FileExistsError):
-    """A new log was to be written where a file or folder already stands; logs are never overwritten."""
+    """The file or folder of a new log already exists. Logs are never overwritten."""
 
 
 class LogFailedError(ContactDynamicsError):
-    """A message for a log that is closed or whose disk refused an earlier write."""
+    """The log of a message is closed, or its disk refused an earlier write."""
 
 
 class NotALogError(ContactDynamicsError):
-    """A path that holds no MCAP file, or a file that does not begin as one."""
+    """There is no MCAP file at the path, or the file does not begin as one."""
 
 
 class DamagedLogWarning(UserWarning):
-    """A log ends early (crash, full disk) or fails its checksums; all but the damage was still read."""
+    """A log ends early (crash, full disk) or fails its checksums. All but the damage was read."""

@@ -1,4 +1,4 @@
-"""The bytes of an MCAP file and where its records begin and end, never beyond the end of the file."""
+"""The bytes of an MCAP file, and where its records begin and end."""
 
 from __future__ import annotations
 
@@ -21,25 +21,25 @@ _LONGEST_CONTENT: Final = 16 * 1024 * 1024  # bytes, of a record that is neither
 
 
 class DamagedError(Exception):
-    """What stands at a place of the file is no whole record; never leaves this package."""
+    """There is no whole record at a place of the file. This error never leaves the package."""
 
 
 class McapFile:
     """The first ``size`` bytes of a file that is open for reading."""
 
     def __init__(self, path: Path, stream: BinaryIO, size: int) -> None:
-        """Read from ``stream``, which stays the caller's to close."""
+        """Read from ``stream``, which the caller closes."""
         self.path = path
         self.size = size
         self._stream = stream
 
     def bytes_at(self, position: int, count: int) -> bytes:
-        """Return so many bytes, or fewer where the file ends."""
+        """Return this many bytes, or fewer where the file ends."""
         self._stream.seek(position)
         return self._stream.read(max(0, min(count, self.size - position)))
 
     def number_at(self, position: int, width: int) -> int:
-        """Return an unsigned number of so many bytes."""
+        """Return an unsigned number of this many bytes."""
         return int.from_bytes(self.bytes_at(position, width), "little")
 
     def checksum(self, begin: int, end: int) -> int:
@@ -53,7 +53,7 @@ class McapFile:
         """Return the kind of the record at a position, and where its content begins and ends.
 
         Raises:
-            DamagedError: the file has not so many bytes.
+            DamagedError: the file ends before the record.
         """
         head = self.bytes_at(position, HEAD.size)
         if len(head) < HEAD.size:
@@ -67,10 +67,10 @@ class McapFile:
         return kind, begin, begin + length
 
     def content(self, begin: int, end: int) -> bytes:
-        """Return the content of a record of a kind that is short.
+        """Return the content of a record whose kind is always short.
 
         Raises:
-            DamagedError: it is not short.
+            DamagedError: the record is too long.
         """
         if end - begin > _LONGEST_CONTENT:
             message = f"a record claims {end - begin} bytes"
@@ -79,14 +79,14 @@ class McapFile:
 
 
 def demand(condition: bool, what: str) -> None:  # noqa: FBT001  as an assertion
-    """Raise `DamagedError` unless the condition holds; ``what`` is wrong then."""
+    """Raise `DamagedError` unless the condition holds. ``what`` says what is wrong."""
     if not condition:
         message = f"{what} is wrong"
         raise DamagedError(message)
 
 
 def parsed(record_type: Any, content: bytes) -> Any:
-    """Return a record of the library's whose fields fill its length; `DamagedError` where it has others."""
+    """Return a record of the library, or raise `DamagedError` if its fields do not fill its length."""
     stream = ReadDataStream(io.BytesIO(content))
     try:
         record = record_type.read(stream)

@@ -1,4 +1,4 @@
-"""What the end of an MCAP file repeats of it, under a checksum of its own."""
+"""The summary at the end of an MCAP file, which has its own checksum."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Summary:
     chunks: tuple[ChunkIndex, ...] = ()
 
     def messages_between(self, begin: int, end: int) -> int | None:
-        """Return how many messages the chunks have that begin in a stretch; None: they are not indexed."""
+        """Return how many messages the chunks have that begin in a stretch, or None without an index."""
         chunks = [chunk for chunk in self.chunks if begin <= chunk.chunk_start_offset < end]
         if any(chunk.message_index_length == 0 for chunk in chunks):
             return None
@@ -37,7 +37,7 @@ class Summary:
 
 
 def read_summary(file: McapFile) -> Summary:
-    """Return the summary of a file, empty where its writer made none.
+    """Return the summary of a file. It is empty if the writer made none.
 
     Raises:
         DamagedError: the file's end is not there, or not whole.

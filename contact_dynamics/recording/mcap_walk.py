@@ -1,11 +1,11 @@
-"""Walks through an MCAP file from front to back, past what is damaged in it.
+"""Walks through an MCAP file from front to back, and skips what is damaged.
 
-What is given is known to be whole: a chunk by its checksum, any other record by its lengths, each of which
-the file tells twice. Where a record is damaged its length is not to be trusted, so the next whole one is
-looked for byte by byte; what lies between is a `Loss`. The summary at the end of the file, which has a
-checksum of its own, then tells how many messages that was.
+The walk gives only whole records. A checksum shows that a chunk is whole. Any other record is checked by its
+lengths, each of which the file has twice. The length of a damaged record cannot be trusted, so the walk
+searches for the next whole record byte by byte. The bytes in between are a `Loss`. The summary at the end of
+the file, which has its own checksum, says how many messages were lost.
 
-Takes no more memory than the largest chunk and the summary do, whatever lengths a damaged file claims.
+The walk needs memory for the largest chunk and the summary, whatever lengths a damaged file claims.
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ class Loss:
     """A stretch of a log that could not be read.
 
     Attributes:
-        begin: Byte that it begins at.
-        end: Byte behind it.
-        messages: Messages lost with it, by the file's own summary; None: that is not there to tell.
+        begin: Its first byte.
+        end: The byte after its last one.
+        messages: Number of lost messages, by the file's summary, or None if there is no summary.
     """
 
     path: Path
@@ -67,10 +67,10 @@ class McapWalk:
     """One walk through a file; `losses` is complete when `records` has ended."""
 
     def __init__(self, file: McapFile) -> None:
-        """Begin at the beginning.
+        """Start at the head of the file.
 
         Raises:
-            NotALogError: it does not begin as an MCAP file, one byte apart, which may be damaged.
+            NotALogError: it does not begin as an MCAP file. One damaged byte is allowed.
         """
         self._file = file
         self._losses: list[Loss] = []
@@ -91,7 +91,7 @@ class McapWalk:
             self._lose(0, len(MAGIC), "its first bytes are not those of an MCAP file", messages=0)
 
     def records(self) -> Iterator[WalkedRecord]:
-        """Yield what is whole, but for repetitions and indexes, in the order of the file."""
+        """Yield all whole records, except repetitions and indexes, in the order of the file."""
         position: int | None = len(MAGIC)
         while position is not None:
             found: list[WalkedRecord] = []
@@ -111,7 +111,7 @@ class McapWalk:
 
     @property
     def losses(self) -> list[Loss]:
-        """What could not be read so far, with the number of messages where the summary tells it."""
+        """The losses so far, with the number of messages if the summary has it."""
         summary = self.summary if self._losses else None
         if summary is None:
             return list(self._losses)
@@ -124,7 +124,7 @@ class McapWalk:
 
     @property
     def summary(self) -> Summary | None:
-        """What the end of the file repeats of it; None where that is not there, or damaged."""
+        """The summary at the end of the file, or None if it is missing or damaged."""
         if self._summary is None:
             try:
                 self._summary = read_summary(self._file)
@@ -146,7 +146,7 @@ class McapWalk:
         )
 
     def _whole(self, kind: int, begin: int, end: int) -> list[WalkedRecord]:
-        """Return what a record, which is whole, has to give; `DamagedError` where it is not."""
+        """Return the content of a whole record, or raise `DamagedError` if it is not whole."""
         if kind in self._readers:
             return self._readers[kind](begin, end)
         if kind == Opcode.HEADER and begin == len(MAGIC) + HEAD.size:
@@ -201,7 +201,7 @@ class McapWalk:
         return []
 
     def _find_whole(self, start: int) -> int | None:
-        """Return where the next chunk, metadata record or end of the data is that is whole."""
+        """Return the position of the next whole chunk, metadata record or end of the data."""
         for window_start in range(start, self._file.size, WINDOW):
             window = self._file.bytes_at(window_start, WINDOW + HEAD.size)
             for match in _PERHAPS_WHOLE.finditer(window):

@@ -1,7 +1,7 @@
-"""Quality of service in the words of rosbag2: YAML maps with all nine keys (a partial one is fatal there).
+"""Quality of service in the form of rosbag2: YAML maps with all nine keys. rosbag2 fails on a partial one.
 
-Takes rclpy's ``QoSProfile`` as it is, by its attributes alone, so that writing a log needs no rclpy;
-`OfferedQos` stands in where there is none.
+The functions use only the attributes of rclpy's ``QoSProfile``, so that writing a log needs no rclpy. Without
+rclpy, use `OfferedQos`.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ _FOREVER_NS: Final = 2**63 - 1
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OfferedQos:
-    """A quality of service without rclpy; the defaults are those of an ordinary publisher.
+    """A quality of service without rclpy. The defaults are those of an ordinary publisher.
 
     Attributes:
-        history: Keep_last, keep_all, system_default, unknown.
-        depth: Messages kept, for keep_last.
-        reliability: Reliable, best_effort, system_default, best_available, unknown.
-        durability: Volatile, transient_local, system_default, best_available, unknown.
-        deadline: ns.
-        lifespan: ns.
-        liveliness: Automatic, manual_by_topic, system_default, best_available, unknown.
-        liveliness_lease_duration: ns.
-        avoid_ros_namespace_conventions: Topic name used as it is.
+        history: One of keep_last, keep_all, system_default, unknown.
+        depth: Number of messages kept, for keep_last.
+        reliability: One of reliable, best_effort, system_default, best_available, unknown.
+        durability: One of volatile, transient_local, system_default, best_available, unknown.
+        deadline: Longest time between messages, ns.
+        lifespan: Time after which messages expire, ns.
+        liveliness: One of automatic, manual_by_topic, system_default, best_available, unknown.
+        liveliness_lease_duration: Time after which a silent publisher counts as dead, ns.
+        avoid_ros_namespace_conventions: Whether the topic's name is used without ROS's prefix.
     """
 
     history: str = "keep_last"

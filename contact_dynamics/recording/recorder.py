@@ -1,13 +1,11 @@
-"""A log written beside a running server: handing over a message costs microseconds, and never an error.
+"""A log written beside a running server. Handing over a message takes microseconds and never raises.
 
-A thread takes what has gathered every 100 ms (sooner above 1 MiB), writes it and flushes; so a kill of the
-process costs at most that much. The queue has no length limit but a limit in bytes: should the disk stall,
-messages wait until `MAX_WAITING_BYTES` wait already, and newer ones are then dropped and counted rather than
-taking the server's memory.
+Every 100 ms (sooner above 1 MiB) a thread takes the messages that wait, writes and flushes them. So a kill of
+the process costs at most that much. The queue has a limit in bytes. If the disk stalls, messages wait until
+there are `MAX_WAITING_BYTES`. Newer ones are then dropped and counted, to spare the server's memory.
 
-A write that fails (a full disk) ends the log where it was last whole; messages from then on are counted as
-lost. Whoever asked learns of it once, through ``on_problem``, and can read `Recorder.status` at any time.
-Nothing raises into `Recorder.record`.
+If a write fails (a full disk), the log ends where it was last whole, and messages from then on are counted as
+lost. ``on_problem`` is called once with the first problem, and `Recorder.status` can be read at any time.
 """
 
 from __future__ import annotations
@@ -37,14 +35,14 @@ _WAKE_BYTES: Final = 1024 * 1024  # waiting bytes that wake the thread before it
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecorderStatus:
-    """How the log fares; every message given is written, lost or waiting.
+    """The state of the log. Every message is written, lost or waiting.
 
     Attributes:
-        written: Messages in the file, where a kill cannot take them.
-        lost: Messages dropped: disk failed, queue full, or refused as invalid.
-        waiting: Messages not in the file yet.
-        most_waiting_bytes: High-water mark of the memory taken by messages waiting, bytes.
-        problem: The first thing that went wrong, None while all is well.
+        written: Number of messages in the file, which a kill cannot lose.
+        lost: Number of messages dropped because the disk failed, the queue was full, or they were invalid.
+        waiting: Number of messages that are not in the file yet.
+        most_waiting_bytes: The most memory that waiting messages have taken so far, bytes.
+        problem: The first problem, or None if there was none.
     """
 
     written: int
@@ -62,7 +60,7 @@ class _Item(NamedTuple):
 
 
 class Recorder:
-    """Owns a `BagWriter`, whose topics are declared, on a thread of its own; a context manager."""
+    """A thread that owns a `BagWriter` whose topics are declared. It is a context manager."""
 
     def __init__(
         self,
@@ -74,10 +72,10 @@ class Recorder:
         """Start the thread.
 
         Args:
-            writer: the log; nobody else touches it from here on.
-            on_problem: told once, from the thread, of the first problem; default: a warning through
-                `logging`.
-            max_waiting_bytes: beyond this much, newer messages are dropped and counted.
+            writer: the log. Nobody else may use it from here on.
+            on_problem: a function that the thread calls once, with the first problem. The default warns
+                through `logging`.
+            max_waiting_bytes: if this much waits, newer messages are dropped and counted.
         """
         self.folder = writer.folder
         self._writer = writer
@@ -109,7 +107,7 @@ class Recorder:
 
     @property
     def status(self) -> RecorderStatus:
-        """How the log fares now."""
+        """The state of the log now."""
         with self._lock:
             return RecorderStatus(
                 written=self._written,
@@ -122,7 +120,7 @@ class Recorder:
     def record(
         self, topic: str, data: bytes, *, log_time_ns: int, publish_time_ns: int | None = None
     ) -> None:
-        """Hand over one message from any thread; arguments as of `BagWriter.write`. Never raises."""
+        """Hand over one message from any thread, with the arguments of `BagWriter.write`. It never raises."""
         size = _size(data)
         with self._lock:
             self._given += 1
@@ -143,9 +141,9 @@ class Recorder:
             )
 
     def close(self, *, timeout_s: float = 10.0) -> RecorderStatus:
-        """Write all that waits, finish the file, and return how it went; later messages count as lost.
+        """Write all waiting messages, finish the file, and return the status. Later messages count as lost.
 
-        A disk that hangs for longer than ``timeout_s`` is left to itself; the status then says that messages
+        If the disk hangs for longer than ``timeout_s``, the method returns, and the status says that messages
         wait.
         """
         with self._lock:

@@ -1,8 +1,8 @@
 """Requests and responses of a log brought together, by client and sequence number.
 
-Of the four events that a call can leave, the server's two count here: request received, response sent. Those
-of the client (request sent, response received) tell the same contents again where a client is introspected as
-well.
+A call can leave four events. This file uses the server's two: request received, response sent. The client's
+two (request sent, response received) have the same contents, and are there only if the client is introspected
+too.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ class ServiceCall:
     """One call of a service as its server logged it.
 
     Attributes:
-        service: With its leading slash.
+        service: The service's name with its leading slash.
         service_type: "package/srv/Name".
-        client_gid: 16 bytes, the client within its session.
-        sequence_number: Of the request among those of that client.
-        request_event: None: the log begins later.
-        response_event: None: never answered, or the log ends earlier.
+        client_gid: 16 bytes that identify the client within its session.
+        sequence_number: Number of the request among those of that client.
+        request_event: The request, or None if the log begins later.
+        response_event: The response, or None if it was never sent or the log ends earlier.
     """
 
     service: str
@@ -43,16 +43,16 @@ class ServiceCall:
     response_event: LoggedMessage | None = None
 
     def request(self) -> Any:
-        """Return the request as a ROS message; None where the log does not have it."""
+        """Return the request as a ROS message, or None if the log does not have it."""
         return _content(self.request_event, "request")
 
     def response(self) -> Any:
-        """Return the response as a ROS message; None where the log does not have it."""
+        """Return the response as a ROS message, or None if the log does not have it."""
         return _content(self.response_event, "response")
 
 
 def service_calls(messages: Iterable[LoggedMessage]) -> Iterator[ServiceCall]:
-    """Yield each call when its response is met, and at the end those without one."""
+    """Yield each call when its response comes, and at the end the calls without one."""
     waiting: dict[tuple[str, bytes, int], ServiceCall] = {}
     for message in messages:
         if not message.topic.endswith(EVENT_TOPIC_SUFFIX):

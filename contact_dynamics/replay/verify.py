@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from contact_dynamics.replay.again import ServerAgain
 
 MOST_TOLD: Final = 10
-"""Of so many questions with other answers, the differences are told."""
+"""Number of questions with other answers whose differences are kept."""
 
 MOST_FIELDS_TOLD: Final = 5
-"""So many fields of one answer are told."""
+"""Number of different fields of one answer that are kept."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -59,7 +59,7 @@ class OtherAnswer:
 
     Attributes:
         service: With its leading slash.
-        number: Of the question among those to this service, from 1.
+        number: Number of the question among those to this service, from 1.
         asked_ns: When it came, ns since the epoch by the machine's clock: the ``log_time`` of its event.
         differences: The first fields that differ.
     """
@@ -77,12 +77,12 @@ class Verification:
     Attributes:
         path: The log.
         tolerance: What a number may differ by, in parts of the larger one or of 1.
-        versions: Of what wrote the log; by name.
-        versions_now: Of what answered again.
-        services: By the service's name.
+        versions: Versions of what wrote the log, by name.
+        versions_now: Versions of what answered again, by name.
+        services: Tallies by the service's name.
         others: The first questions that are answered otherwise.
         unreadable: Why a call could not be read: the first reason.
-        damage: What of the log could not be read. None: all was whole.
+        damage: What of the log could not be read, or None if all was whole.
     """
 
     path: Path

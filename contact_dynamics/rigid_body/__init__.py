@@ -1,8 +1,8 @@
 """Rigid bodies (Mason, lectures 24 and 25): mass properties, states, momenta and energies.
 
-`body` has a body's mass properties, its state, and what follows from the two. `published_frame`
-takes a state from a body's published frame to its centre of mass and back. `inertia` makes mass properties
-from particles, shapes and meshes, and has principal axes.
+`body` has a body's mass properties, its state, and what follows from the two. `published_frame` converts
+between the frame that is published for a body and the one at its centre of mass. `inertia` makes mass
+properties from particles, shapes and meshes, and has principal axes.
 """
 
 from contact_dynamics.rigid_body import inertia

@@ -1,7 +1,7 @@
 """A rigid body: its mass properties, its state, and what follows from the two (Mason, lectures 24 and 25).
 
-Frames: W is the world; B is the body's, with its origin at the centre of mass. Between B and a published
-frame whose origin is elsewhere stands `published_frame`.
+Frames: W is the world. B is the body's frame, with its origin at the centre of mass. If a published frame has
+its origin elsewhere, `published_frame` converts.
 """
 
 from __future__ import annotations
@@ -31,9 +31,8 @@ class MassProperties(Record):
         I_B: (3, 3), kg m^2, about the centre of mass, in body axes.
 
     Raises:
-        InvalidFieldError: mass not > 0; inertia not symmetric, not positive definite, or with principal
-        moments that no
-            distribution of mass has (I1 + I2 >= I3).
+        InvalidFieldError: the mass is not > 0; or the inertia is not symmetric, not positive definite, or has
+            principal moments that no distribution of mass has (I1 + I2 >= I3).
     """
 
     mass: float
@@ -76,7 +75,7 @@ class BodyState(Record):
         q_WB: (4,), unit quaternion x, y, z, w: body coordinates into world coordinates.
         v_WB_W: (3,), m/s, velocity of the centre of mass, world axes.
         w_WB_W: (3,), rad/s, angular velocity, world axes.
-        stamp_ns: ns, the time of this state, on whatever clock the caller uses.
+        stamp_ns: The time of this state, ns, on the caller's clock.
 
     Raises:
         InvalidFieldError: a number is not finite, or the quaternion is not unit.
@@ -130,7 +129,7 @@ def mean_radius_of_gyration(mass: float, inertia: FloatArray) -> float:
 def inverse_mass_matrix(mass: float, inertia_W: FloatArray) -> FloatArray:
     """Return the (6, 6) matrix that takes force and torque to linear and angular acceleration.
 
-    ``inertia_W`` is (3, 3), kg m^2, about the centre of mass. The body is taken at rest: no w x L.
+    ``inertia_W`` is (3, 3), kg m^2, about the centre of mass. The body is at rest, so there is no w x L.
     """
     inverse = np.zeros((6, 6))
     inverse[:3, :3] = np.eye(3) / mass

@@ -1,8 +1,8 @@
-"""Between the frame of a body that is published and the one that the physics uses.
+"""Conversions between the published frame of a body and the one that the physics uses.
 
-F is the body's published frame, B the physics' one: same axes, origin at the centre of mass. W is the world.
-The published point moves with F's origin, so that a velocity must be carried over to the centre of mass: v_B
-= v_F + w x p_FB.
+F is the body's published frame. B is the frame of the physics, with the same axes and its origin at the
+centre of mass. W is the world. A published velocity belongs to F's origin, so it must be carried over to the
+centre of mass: v_B = v_F + w x p_FB.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _ORIGIN: Final = [0.0, 0.0, 0.0]
 
 
 def turned(q_WB: FloatArray, vector_B: FloatArray) -> FloatArray:
-    """Return a vector, (3,), given in body axes, in world axes; most centres of mass are at 0."""
+    """Turn a vector, (3,), from body axes into world axes. A zero vector, the usual one, costs nothing."""
     if vector_B.tolist() == _ORIGIN:
         return vector_B
     vector_W: FloatArray = rotation_matrix(q_WB) @ vector_B

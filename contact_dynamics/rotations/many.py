@@ -1,6 +1,6 @@
 """Many rotations at once: quaternions x, y, z, w, (n, 4), matrices, (n, 3, 3), and rotation vectors, (n, 3).
 
-A rotation vector is axis times angle, rad. All are in world axes and come after the attitude: Exp(theta) R.
+A rotation vector is axis times angle, rad. It is in world axes and turns the attitude R into Exp(theta) R.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ def matrices_of(q: FloatArray) -> FloatArray:
 def products(p: FloatArray, q: FloatArray) -> FloatArray:
     """Return Hamilton's products, (n, 4): the rotations ``q``, each followed by one of ``p``, (n, 4).
 
-    ``q`` is (n, 4), or (4,) for all.  The last bit of the two may differ: NumPy sums a product of matrices
-    and of rows in another order.
+    ``q`` is (n, 4), or (4,) for all. The two cases may differ in the last bit, because NumPy sums a product
+    of matrices in another order than one of rows.
     """
     x, s = p[:, :3], p[:, 3:]
     u, w = q[..., :3], q[..., 3:]
@@ -87,7 +87,7 @@ def _of_angles(theta: FloatArray, angles: FloatArray) -> FloatArray:
 
 
 def make_continuous(q: FloatArray, first: FloatArray) -> None:
-    """Choose of q and -q, one attitude, the one nearer to the row before, and at first to ``first``, (4,)."""
+    """Give each quaternion the sign nearer to the row before, and the first one that nearer to ``first``."""
     if len(q) == 0:
         return
     signs = np.empty(len(q))

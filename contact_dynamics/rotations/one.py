@@ -43,7 +43,7 @@ def normalised(q: Sequence[float]) -> Quaternion:
 
 
 def nearer(q: Quaternion, to: Quaternion) -> Quaternion:
-    """Return of ``q`` and -``q``, one attitude, the one nearer to another quaternion."""
+    """Return ``q`` or -``q``, which are the same attitude, whichever is nearer to another quaternion."""
     x, y, z, w = q
     return q if x * to[0] + y * to[1] + z * to[2] + w * to[3] >= 0.0 else (-x, -y, -z, -w)
 

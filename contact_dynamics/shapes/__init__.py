@@ -1,8 +1,8 @@
 """Shapes of bodies and of obstacles.
 
-`convex` has the shapes of bodies, from spheres to rounded polyhedra, made by functions that are named after
-them. An `obstacle` is a convex piece of the world with edges and corners. `hull_features` and `rim` have
-what of a shape can touch.
+`convex` has the shapes of bodies, from spheres to rounded polyhedra, and a function for each. An `obstacle`
+is a convex piece of the world with edges and corners. `hull_features` and `rim` have the parts of a shape
+that can touch.
 """
 
 from contact_dynamics.shapes.convex import (

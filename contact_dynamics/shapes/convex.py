@@ -1,12 +1,13 @@
 """Convex shapes of bodies: the hull of corners and circles, rolled over by a ball.
 
-A sphere is one point and a ball, a capsule two points and a ball, a box its corners, a cylinder its two rims.
-Rounding makes every shape larger: the faces of `rounded(box(...), radius=r)` are r outside the box's. All are
-centred on the body frame's origin, round ones about z; `moved` puts them elsewhere.
+A sphere is one point and a ball, a capsule is two points and a ball, a box is the hull of its corners, and a
+cylinder that of its two rims. Rounding makes every shape larger: the faces of `rounded(box(...), radius=r)`
+are r outside the box's. All shapes are centred on the body frame's origin, and round ones are about z. Their
+method `moved` puts them elsewhere.
 
-Their mass properties are those of `contact_dynamics.rigid_body.inertia`, of the same names and places.
+`contact_dynamics.rigid_body.inertia` has their mass properties, with the same names and places.
 
-Not covered: shapes that are not convex, ellipsoids, meshes (their corners do: `polyhedron`).
+Not covered: shapes that are not convex, ellipsoids, meshes (give their corners to `polyhedron`).
 """
 
 from __future__ import annotations
@@ -31,18 +32,18 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 MOST_VERTICES: Final = 10_000
-"""Longest list of vertices accepted: above it a convex shape should be simplified, not searched."""
+"""Longest list of vertices accepted. A convex shape with more should be simplified first."""
 
 MOST_RIMS: Final = 1_000
-"""Longest list of rims accepted; no primitive has more than two."""
+"""Longest list of rims accepted. The shapes of this file have at most two."""
 
 
 class Rim(NamedTuple):
     """A circle.
 
     Attributes:
-        center: m.
-        axis: Unit, normal to its plane; either sense.
+        center: Position of the centre, m.
+        axis: Unit normal of its plane, in either direction.
         radius: m, > 0.
     """
 
@@ -53,16 +54,16 @@ class Rim(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ConvexShape(Record):
-    """The convex hull of points and circles, rolled over by a ball; without points and circles, no shape.
+    """The convex hull of points and circles, rolled over by a ball. Without points and circles it is empty.
 
     Attributes:
-        vertices: (k, 3), m, body axes.
-        rims: Body axes.
-        rounding: m, >= 0, the ball's radius.
+        vertices: (k, 3), m, corners in body axes.
+        rims: Circles in body axes.
+        rounding: The ball's radius, m, >= 0.
 
     Raises:
-        InvalidFieldError: a number is not finite, a negative radius, an axis that is not unit.
-        TooLargeError: more than `MOST_VERTICES` vertices or `MOST_RIMS` rims.
+        InvalidFieldError: a number is not finite, a radius is negative, or an axis is not unit.
+        TooLargeError: there are more than `MOST_VERTICES` vertices or `MOST_RIMS` rims.
     """
 
     vertices: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
@@ -101,7 +102,7 @@ class ConvexShape(Record):
         """Return the same shape turned by a unit quaternion x, y, z, w, then shifted by ``offset``, (3,), m.
 
         Raises:
-            InvalidFieldError: not three finite numbers, or not a unit quaternion.
+            InvalidFieldError: the offset is not three finite numbers, or the quaternion is not unit.
         """
         shift = check_array("offset", offset, (3,))
         turn = check_unit("orientation", q, 4)
@@ -119,7 +120,7 @@ NO_SHAPE: Final = ConvexShape()
 
 
 def polyhedron(vertices: ArrayLike) -> ConvexShape:
-    """Return the hull of corners, (k, 3), m; they may lie in a plane (a plate), or on a line (a rod)."""
+    """Return the hull of corners, (k, 3), m. They may lie in a plane (a plate) or on a line (a rod)."""
     return ConvexShape(vertices=np.asarray(vertices))
 
 
@@ -147,7 +148,7 @@ def sphere(*, radius: float) -> ConvexShape:
 
 
 def capsule(*, radius: float, length: float) -> ConvexShape:
-    """Return a rod with round ends, about z: ``length``, m, >= 0, is between the centres of its two balls."""
+    """Return a rod with round ends, about z. ``length``, m, >= 0, is between the centres of its two balls."""
     half = 0.5 * check_not_negative("length", length)
     return ConvexShape(
         vertices=np.array([[0.0, 0.0, -half], [0.0, 0.0, half]]), rounding=check_positive("radius", radius)
@@ -155,20 +156,20 @@ def capsule(*, radius: float, length: float) -> ConvexShape:
 
 
 def cylinder(*, radius: float, length: float) -> ConvexShape:
-    """Return a cylinder about z, m; a disc without thickness where the length is 0."""
+    """Return a cylinder about z, lengths in m. If the length is 0, it is a disc without thickness."""
     radius, half = check_positive("radius", radius), 0.5 * check_not_negative("length", length)
     rims = (Rim((0.0, 0.0, -half), _Z, radius), Rim((0.0, 0.0, half), _Z, radius))
     return ConvexShape(rims=rims if half > 0.0 else rims[:1])
 
 
 def cone(*, radius: float, height: float) -> ConvexShape:
-    """Return a cone about z, m: its base at z = 0, its tip at z = ``height`` > 0."""
+    """Return a cone about z, lengths in m. Its base is at z = 0, its tip at z = ``height`` > 0."""
     rim = Rim((0.0, 0.0, 0.0), _Z, check_positive("radius", radius))
     return ConvexShape(vertices=np.array([[0.0, 0.0, check_positive("height", height)]]), rims=(rim,))
 
 
 def rounded(shape: ConvexShape, *, radius: float) -> ConvexShape:
-    """Return a shape with a ball of ``radius``, m, >= 0, rolled over it: larger by that on all sides."""
+    """Return a shape with a ball of ``radius``, m, >= 0, rolled over it. It grows by that on all sides."""
     return replace(shape, rounding=shape.rounding + check_not_negative("radius", radius))
 
 

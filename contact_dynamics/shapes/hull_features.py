@@ -1,4 +1,4 @@
-"""What of a convex hull can touch: its corners, the normals of its faces and the directions of its edges."""
+"""The features of a convex hull that can touch: corners, normals of faces, directions of edges."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ if TYPE_CHECKING:
 _RIM_CORNERS: Final = 32
 
 _KEPT: Final = 64
-"""Shapes whose features are remembered."""
+"""Number of shapes whose features are remembered."""
 
 
 class Features(NamedTuple):
-    """Of a hull that is solid, a plate (two faces), a rod (one edge) or a point.
+    """The features of a hull, which is solid, a plate (two faces), a rod (one edge) or a point.
 
     Attributes:
         corners: (k, 3), m.
         normals: (f, 3), unit, outward.
-        edges: (e, 3), unit, one for each direction.
-        triangles: (t, 3, 3), m, the faces.
+        edges: (e, 3), unit directions of edges; parallel edges have one.
+        triangles: (t, 3, 3), m, the corners of the triangles that the faces consist of.
     """
 
     corners: FloatArray
@@ -41,7 +41,7 @@ class Features(NamedTuple):
 def features_of(shape: ConvexShape) -> Features:
     """Return the features of the hull of a shape's corners and of points of its rims, in its axes.
 
-    Rims have `_RIM_CORNERS` corners there: their directions are some of those that a round side has.
+    Rims are replaced by `_RIM_CORNERS` corners, so the features have some of the directions of a round side.
     """
     rims = [radii_of(rim) for rim in shape.rims]
     turns = np.linspace(0.0, 2.0 * np.pi, _RIM_CORNERS, endpoint=False)

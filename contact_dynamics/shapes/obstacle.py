@@ -1,4 +1,4 @@
-"""A convex piece of the world with edges and corners: a table's top, a box, a step, the sides of a slot."""
+"""A convex piece of the world with edges and corners, such as a table's top, a box or a step."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ class Obstacle(Record):
     """The hull of corners that stand still: a solid, or a plate (a convex polygon) with two sides.
 
     Attributes:
-        name: What contacts call it.
-        vertices_W: (k, 3), m, world.
+        name: The name by which contacts refer to it.
+        vertices_W: (k, 3), m, corners in the world.
         friction: Coulomb's mu, >= 0, between this obstacle and any body.
-        restitution: e, in [0, 1], likewise.
-        features: Its faces, edges and corners; they follow from the vertices.
+        restitution: Coefficient e, in [0, 1], between this obstacle and any body.
+        features: Its faces, edges and corners, which follow from the vertices.
 
     Raises:
-        InvalidFieldError: a number is not finite, corners on a line, mu < 0, or e outside [0, 1].
-        TooLargeError: more than `MOST_VERTICES` corners.
+        InvalidFieldError: a number is not finite, all corners are on a line, mu < 0, or e is outside [0, 1].
+        TooLargeError: there are more than `MOST_VERTICES` corners.
     """
 
     name: str
@@ -61,8 +61,8 @@ class Obstacle(Record):
 def closest_points(features: Features, points: FloatArray) -> FloatArray:
     """Return the points, (n, 3), of a hull's faces, or of a rod, that are nearest to points, (n, 3), m.
 
-    The nearest one of each triangle is above its inside or on a side, as Ericson, Real-Time Collision
-    Detection, 2005, 5.1.
+    The nearest point of each triangle is inside it or on a side (Ericson, Real-Time Collision Detection,
+    2005, 5.1).
     """
     if len(features.triangles) == 0:
         return _on_sides(features.corners[:1], features.corners[-1:], points)[:, 0]

@@ -18,10 +18,10 @@ class Radii(NamedTuple):
     """A rim as two orthogonal radii.
 
     Attributes:
-        center: m.
-        first: m.
-        second: m.
-        reach: m, a distance from the origin that no point of the rim exceeds.
+        center: Position of the centre, m.
+        first: The first radius, as a vector, m.
+        second: The second radius, m.
+        reach: A distance from the origin that no point of the rim exceeds, m.
     """
 
     center: Vector
@@ -31,7 +31,7 @@ class Radii(NamedTuple):
 
 
 def radii_of(rim: Rim) -> Radii:
-    """Return two orthogonal radii of a rim; the first lies as near to x as can be, or to y for an x axis."""
+    """Return two orthogonal radii of a rim. The first is towards x, or towards y for a rim about x."""
     axis = np.array(rim.axis)
     first = near_x(axis)
     first *= rim.radius / math.sqrt(first @ first)

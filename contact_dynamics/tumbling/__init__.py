@@ -4,9 +4,9 @@
 has the flips of a body that spins near its middle axis. `poinsot_construction` is Poinsot's picture: an
 ellipsoid that rolls on a plane.
 
-How it is done: the `constants` of a rotation come from the principal axes (`rigid_body.inertia`) and from
-where it starts on its `polhode`, with `elliptic` integrals. The attitude is made of quotients of `theta`
-functions (`attitude_form` sets them up), and `double_double` keeps their phases exact over many turns.
+The method: `constants` computes the constants of a rotation from the principal axes (`rigid_body.inertia`)
+and from where it starts on its `polhode`, with `elliptic` integrals. The attitude consists of quotients of
+`theta` functions, which `attitude_form` sets up. `double_double` keeps their phases exact over many turns.
 """
 
 from contact_dynamics.numerics.arithmetic import Precision

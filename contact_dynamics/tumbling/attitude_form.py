@@ -1,4 +1,4 @@
-"""From the constants of a motion to the functions of time that `theta` evaluates."""
+"""This file turns the constants of a motion into the functions of time that `theta` evaluates."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ class AttitudeForm(Record):
 
     Attributes:
         series: The theta functions, in the form that suits this rotation.
-        z: In the series' unit.
-        psi: Half turns.
+        z: The phase on the polhode, in the series' unit.
+        psi: The phase of the precession about L, in half turns.
     """
 
     series: Steady | Harmonics | Bumps | OneFlip
@@ -99,7 +99,7 @@ def zeros(a2: Number, c2: Number, m: Number, numbers: Arithmetic[Number]) -> tup
 
 
 def harmonics(xi: Any, eta: Any, peaks: tuple[Any, Any], *, functions: ModuleType = math) -> Harmonics:
-    """Sum the theta series as far as they matter: q = exp(-2 (xi + eta)), r = exp(-xi).
+    """Sum the theta series up to their last term that matters: q = exp(-2 (xi + eta)), r = exp(-xi).
 
     All may be arrays (n,), with NumPy for ``functions``; ``peaks`` are a and c.
     """
@@ -141,7 +141,7 @@ def harmonics(xi: Any, eta: Any, peaks: tuple[Any, Any], *, functions: ModuleTyp
 
 
 def bumps(xi: Any, eta: Any, peaks: tuple[Any, Any], *, functions: ModuleType = math) -> Bumps:
-    """Weigh the six nearest bumps; all may be arrays (n,), with NumPy for ``functions``."""
+    """Weigh the six nearest bumps. All arguments may be arrays (n,), with NumPy for ``functions``."""
     h = 2.0 * (xi + eta)  # pi K'/K
     mu = xi / h
     steepness = math.pi**2 / h

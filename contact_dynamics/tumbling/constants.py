@@ -1,4 +1,4 @@
-"""What does not change along a free rotation: found once from body and state, and kept."""
+"""The constants of a free rotation: they are computed once from body and state, and kept."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ if TYPE_CHECKING:
     from decimal import Decimal
 
 MOST_TURNED: Final = 1e16
-"""rad. Later times are refused: they are doubles more than a turn apart, and the phases' double-doubles no
-longer hold the last bits of a turn."""
+"""Angle, rad, beyond which times are refused. Neighbouring doubles are then more than a turn apart, and the
+phases' double-doubles no longer hold the last bits of a turn."""
 
 REMEMBERED: Final = 128
-"""Rotations whose constants are kept, 3 kB each: a state is often asked about more than once."""
+"""Number of rotations whose constants are kept, 3 kB each, since a state is often asked about twice."""
 
 _IDENTITY: Final = (0.0, 0.0, 0.0, 1.0)
 
 
 class Constants(NamedTuple):
-    """What does not change along a rotation; the fields of `FreeMotion` say what each is."""
+    """The constants of a rotation. The fields of `FreeMotion` explain them."""
 
     frame: PrincipalFrame[Decimal]
     rotation: Rotation

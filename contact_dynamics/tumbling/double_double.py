@@ -1,9 +1,9 @@
-"""Phases that grow linearly with time, reduced modulo one without losing digits however many turns they are.
+"""Phases that grow linearly with time, reduced modulo one without losing digits over any number of turns.
 
-The rate and the offset are double-doubles (unevaluated sums of two doubles, 32 digits); a product with a time
-is formed with its rounding error (Dekker 1971), and whole turns are taken off before anything is rounded. The
-error of the remainder is therefore about 1e-32 of the number of turns, plus the last bit of the remainder
-itself.
+The rate and the offset are double-doubles (unevaluated sums of two doubles, 32 digits). The product of the
+rate with a time is formed together with its rounding error (Dekker 1971), and whole turns are taken off
+before anything is rounded. So the error of the remainder is about 1e-32 of the number of turns, plus the last
+bit of the remainder itself.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ class LinearPhase(Record):
     """The phase ``rate * t + offset``, in turns.
 
     Attributes:
-        rate: Turns/s, leading part.
-        rate_rest: Turns/s.
-        rate_upper: Turns/s, upper half of the bits of ``rate``.
-        rate_lower: Turns/s, lower half.
-        offset: Turns, leading part.
-        offset_rest: Turns.
+        rate: Leading part of the rate, turns/s.
+        rate_rest: What ``rate`` leaves of the rate, turns/s.
+        rate_upper: Upper half of the bits of ``rate``, turns/s.
+        rate_lower: Lower half of the bits of ``rate``, turns/s.
+        offset: Leading part of the offset, turns.
+        offset_rest: What ``offset`` leaves of the offset, turns.
     """
 
     rate: float

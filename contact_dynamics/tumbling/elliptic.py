@@ -1,7 +1,7 @@
 """The elliptic integrals that tumbling needs, without cancellation, in doubles or in decimal arithmetic.
 
 All take the complementary modulus k' = sqrt(1 - m) or Carlson's symmetric arguments, never the parameter m
-itself: near the middle axis m is 1 to more digits than a double has, and what matters is the rest.
+itself. Near the middle axis m equals 1 to more digits than a double has, and the difference 1 - m matters.
 
 Both kinds of number of `arithmetic` go through the same formulas; decimals have the digits of the caller's
 context.

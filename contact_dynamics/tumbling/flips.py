@@ -29,16 +29,15 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 NEAR_MIDDLE_AXIS: Final = 0.75
-"""cos^2 of 30 degrees: between flips the middle axis comes at least this near to the angular momentum, or
-they are called none. Spin about the other axes has the same zeros of its middle component, twice in each
-small wobble."""
+"""cos^2 of 30 degrees. Between flips the middle axis must come at least this near to the angular momentum.
+Spin about the other axes also has zeros of its middle component, two in each small wobble, but no flips."""
 
 NEAR_SEPARATRIX: Final = 0.1
-"""Of 1 - m. A body stays between flips: here half a period is half as long again as it is for small m.
-A nearly axisymmetric rod turns its middle axis over as well, but evenly."""
+"""Largest 1 - m of a rotation that flips. There the body stays between flips: half a period is half as long
+again as for small m. A nearly axisymmetric rod turns its middle axis over as well, but evenly."""
 
 DRAWS: Final = 500
-"""Pairs of opposite errors: they tell a deviation to 3 % in about a millisecond."""
+"""Number of pairs of opposite errors. They give a deviation to 3 % in about a millisecond."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -65,7 +64,7 @@ def next_flips(motion: FreeMotion, count: int, *, covariance: ArrayLike | None =
     the same pairs, around the given one.
 
     Raises:
-        InvalidFieldError: the covariance is none (`uncertainty.check_covariance`).
+        InvalidFieldError: the matrix is not a covariance (`validation_batches.check_covariance`).
     """
     regime, rotation = motion.regime, motion.rotation
     flips = regime in (Regime.ABOUT_MAJOR_AXIS, Regime.ABOUT_MINOR_AXIS, Regime.SEPARATRIX)
@@ -94,7 +93,7 @@ def _flip_times(rotation: Tumble[Decimal] | Tumble[float], count: int, *, from_s
 
 
 def _covariance_in_body(motion: FreeMotion, covariance: FloatArray) -> FloatArray:
-    """Return the covariance (3, 3) of the angular velocity in body axes, which alone decides."""
+    """Return the covariance (3, 3) of the angular velocity in body axes, on which flip times depend alone."""
     rows = np.r_[3:6, 9:12]
     turned = cross_matrix(motion.state.w_WB_W)  # by an error of the attitude
     onto_body = motion.state.R_WB.T @ np.hstack([turned, np.eye(3)])

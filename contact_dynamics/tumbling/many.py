@@ -1,7 +1,8 @@
 """Many free motions at once, each at its own time: samples of an uncertain state, or a cloud of bodies.
 
-The formulas for one, over arrays and in doubles. Errors of attitude grow by some 1e-16 of the angle turned,
-times the motion's sensitivity. What lies on the separatrix to the last bit is taken as lying 1e-300 off it.
+The formulas are those for one motion, over arrays and in doubles. Errors of attitude grow by about 1e-16 of
+the angle turned, times the motion's sensitivity. A motion that is on the separatrix to the last bit is
+computed as if it were 1e-300 off it.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from contact_dynamics.tumbling.theta import Bumps, Harmonics
 
 CHUNK: Final = 4096
-"""Rotations at a time: their intermediate arrays stay in the processor's cache."""
+"""Number of rotations computed at a time. Their intermediate arrays stay in the processor's cache."""
 
 
 def states_of_many(
@@ -48,8 +49,8 @@ def states_of_many(
 ) -> Trajectory:
     """Return where n bodies are, each from its own state at its own time: row i is body i.
 
-    Principal axes are found in doubles: a needle's small moment is off by what rounding the entries of an
-    oblique I_B does to it, 1e-16 of the large one.
+    Principal axes are found in doubles. If I_B is oblique, rounding its entries changes a needle's small
+    moment by 1e-16 of the large one.
 
     Args:
         I_B: (3, 3) for all bodies, or (n, 3, 3), kg m^2, about the centre of mass, body axes.
@@ -89,7 +90,7 @@ def states_of_many(
 
 
 def _rows(field: str, value: ArrayLike, n: int, shape: tuple[int, ...]) -> FloatArray:
-    """Return finite numbers, (n, *shape); what is not finite is refused by its row."""
+    """Return finite numbers, (n, *shape). An error names the row of a number that is not finite."""
     rows = check_array(field, value, (None, *shape))
     if len(rows) != n:
         raise InvalidFieldError(field, f"{len(rows)} rows", f"{n}, one for each body")
@@ -158,8 +159,8 @@ def rotations_of_many(
 def flips_of_many(moments: ArrayLike, w_P: ArrayLike) -> tuple[FloatArray, FloatArray]:
     """Return the time, s, of one flip of each body, and the time from flip to flip; (n,) each.
 
-    A flip is where the angular velocity has no component along the middle axis, whatever the rotation. Steady
-    spin has none: NaN. Arguments and errors are those of `rotations_of_many`.
+    Every zero of the component along the middle axis counts as a flip here, whatever the rotation. Steady
+    spin has no flips, and its times are NaN. Arguments and errors are those of `rotations_of_many`.
     """
     w, given = _checked(moments, w_P)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # in rows of steady spin
@@ -179,7 +180,7 @@ def _checked(moments: ArrayLike, w_P: ArrayLike) -> tuple[FloatArray, FloatArray
 
 @dataclass(frozen=True, slots=True)
 class _Tumbles:
-    """What `polhode.Tumble` is for one, in arrays (n,), in Jacobi's axes of each."""
+    """The numbers of `polhode.Tumble` for many rotations, in arrays (n,), in Jacobi's axes of each."""
 
     axes: NDArray[np.intp]  # (n, 3), which of the given axes is 1, 2, 3
     signs: FloatArray  # (n, 3), and whether it points along or against it

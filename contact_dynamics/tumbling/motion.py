@@ -1,15 +1,16 @@
 """Free motion of a rigid body: torque-free tumbling in closed form, ballistic centre of mass (lecture 25).
 
-Nothing is stepped: any time, past or future, costs the same, and the error does not grow with the number of
-revolutions. The constants are found in extended precision from the exact values of the doubles given; where
-the body or the motion is degenerate (sphere, axis of symmetry, principal axis, separatrix) or nearly so, the
-same formulas hold.
+No integrator steps through time. Any time, past or future, costs the same, and the error does not grow with
+the number of revolutions. The constants are computed in extended precision from the exact values of the
+doubles given. The same formulas hold where the body or the motion is degenerate (sphere, axis of symmetry,
+principal axis, separatrix) or nearly so.
 
-Frames: W the world, B the body at its centre of mass, P the principal axes in Jacobi's order, L the world
-turned so that its z axis lies along the angular momentum.
+Frames: W is the world, B the body at its centre of mass, P the principal axes in Jacobi's order, and L the
+world turned so that its z axis is along the angular momentum.
 
-Not covered: torque, drag, gravity gradients. The answer for given doubles is exact to rounding, but near the
-middle axis it changes much when they do: `contact_dynamics.tumbling.poinsot_construction` says how much.
+Not covered: torque, drag, gravity gradients. The answer is exact to rounding for the doubles given. Near the
+middle axis a small change of the doubles changes it much; `contact_dynamics.tumbling.poinsot_construction`
+says how much.
 """
 
 from __future__ import annotations
@@ -48,10 +49,10 @@ if TYPE_CHECKING:
     from contact_dynamics.tumbling.regime import Regime
 
 CHUNK: Final = 8192
-"""Samples at a time: their intermediate arrays stay in the processor's cache."""
+"""Number of samples computed at a time. Their intermediate arrays stay in the processor's cache."""
 
 FEW: Final = 16
-"""Samples that cost less one by one than NumPy's calls do."""
+"""Up to this number, samples cost less one by one than NumPy's calls do."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -61,7 +62,7 @@ class Trajectory(Record):
     Attributes:
         seconds: (n,), s after the stamp of the state that the motion began with.
         p_WB_W: (n, 3), m, centre of mass in the world.
-        q_WB: (n, 4), unit, x y z w, body to world; of q and -q the one nearer to the row before.
+        q_WB: (n, 4), unit quaternions x, y, z, w, body to world. Each has the sign nearer to the row before.
         v_WB_W: (n, 3), m/s, velocity of the centre of mass, world axes.
         w_WB_W: (n, 3), rad/s, angular velocity, world axes.
     """
@@ -81,10 +82,10 @@ class Sample(NamedTuple):
     """A motion at one time, in plain floats: what `BodyState` holds, without the cost of its arrays.
 
     Attributes:
-        p_WB_W: m.
-        q_WB: X y z w.
-        v_WB_W: m/s.
-        w_WB_W: rad/s.
+        p_WB_W: Position of the centre of mass in the world, m.
+        q_WB: Unit quaternion x, y, z, w, body to world.
+        v_WB_W: Velocity of the centre of mass, m/s, world axes.
+        w_WB_W: Angular velocity, rad/s, world axes.
     """
 
     p_WB_W: tuple[float, float, float]
@@ -93,7 +94,7 @@ class Sample(NamedTuple):
     w_WB_W: tuple[float, float, float]
 
     def as_state(self, begin_ns: int, seconds: float) -> BodyState:
-        """Return it as the state at a time, s after the stamp ``begin_ns``, ns."""
+        """Return the sample as a `BodyState`, ``seconds`` after the stamp ``begin_ns``, ns."""
         return BodyState(
             p_WB_W=np.array(self.p_WB_W),
             q_WB=np.array(self.q_WB),
@@ -105,20 +106,20 @@ class Sample(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class FreeMotion(Record):
-    """Where a body without torque is at any time; made by `free_motion`.
+    """The motion of a body without torque. `free_motion` makes it.
 
     Attributes:
         body: Mass and angular inertia.
-        state: At time 0.
+        state: The state of the body at time 0.
         gravity_W: (3,), m/s^2, world axes.
         frame: Principal moments and axes of the body.
         rotation: Constants of the rotation.
         form: Attitude about L as a function of time.
         q_WL: Unit quaternion x, y, z, w: axes with z along L into world axes.
         q_PB: Unit quaternion x, y, z, w: body axes into principal axes.
-        w_along: rad/s, component of the angular velocity along L, constant.
-        w_across: rad/s, L (1/I_1 - 1/I_2) and L (1/I_3 - 1/I_2).
-        farthest: s, how far from now times may be, on either side.
+        w_along: Component of the angular velocity along L, rad/s, constant.
+        w_across: L (1/I_1 - 1/I_2) and L (1/I_3 - 1/I_2), rad/s.
+        farthest: How far from time 0 times may be, on either side, s.
         regime: What kind of rotation it is.
     """
 
@@ -280,7 +281,7 @@ def free_motion(
 
 
 def check_extent(body: MassProperties, state: BodyState, gravity_W: FloatArray) -> None:
-    """Refuse numbers whose powers leave the range of doubles, by name."""
+    """Refuse numbers whose powers leave the range of doubles. The error names the field."""
     numbers = {
         "inertia": body.I_B,
         "position": state.p_WB_W,

@@ -1,11 +1,11 @@
 """Poinsot's picture of a free rotation: the energy ellipsoid rolls on the invariable plane (lecture 25).
 
-In the space of angular velocities the ellipsoid w^T I w = 2 T is fixed in the body, the plane w . L = 2 T in
-the world, and w is where they touch. Its trace on the ellipsoid is the polhode, closed; its trace on the
-plane is the herpolhode, which in general never closes.
+In the space of angular velocities the ellipsoid w^T I w = 2 T is fixed in the body and the plane w . L = 2 T
+is fixed in the world. They touch at w. Its trace on the ellipsoid is the polhode, which is closed. Its trace
+on the plane is the herpolhode, which in general never closes.
 
-Near the middle axis a rotation is stable in neither sense: the body flips (the Dzhanibekov effect), and when
-it does depends on the last digits of its state. `sensitivity` and `next_flips` say how much.
+Near the middle axis the body flips (the Dzhanibekov effect), and the time of a flip depends on the last
+digits of the state. `sensitivity` and `next_flips` say how much.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from contact_dynamics.tumbling.motion import FreeMotion
 
 CONSTANT_RATE: Final = (Regime.AT_REST, Regime.SPHERICAL, Regime.PRINCIPAL_AXIS)
-"""Where the angular velocity does not change, or only within rounding: there is no polhode to speak of."""
+"""Regimes in which the angular velocity in the body is constant to rounding: the polhode is a point."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -45,13 +45,13 @@ class Poinsot(Record):
 
     Attributes:
         regime: What the rotation is called.
-        rotational_energy: J, T.
+        rotational_energy: T, J.
         L_W: (3,), kg m^2/s, angular momentum, world axes: the normal of the invariable plane.
         invariable_plane_distance: rad/s, 2 T / |L|; NaN at rest.
         polhode_period: s; inf on the separatrix, NaN where the angular velocity is constant.
-        precession_per_period: rad, turn about L in one period; NaN where there is no period.
+        precession_per_period: Turn about L in one period, rad; NaN where there is no period.
         principal_moments: (3,), kg m^2, ascending.
-        principal_axes_B: (3, 3), columns: their axes in body coordinates; see `inertia.principal`.
+        principal_axes_B: (3, 3), whose columns are their axes in body coordinates (`inertia.principal_axes`).
         ellipsoid_semi_axes: (3,), rad/s, of the energy ellipsoid, along those axes: sqrt(2 T / I).
         sensitivity: Attitude error per rad turned and relative error of the rate; NaN at rest.
     """
@@ -113,13 +113,14 @@ def polhode_period(rotation: Rotation) -> float:
 def sensitivity(motion: FreeMotion) -> float:
     """Return how fast an error of the initial angular velocity becomes an error of attitude, in the long run.
 
-    The error of attitude, rad, divided by the angle turned, rad, and by the relative error of the angular
-    velocity, for the worst direction of that error and the worst phase: 1 for a steady spin, large near the
-    separatrix, inf on it and about the middle axis itself, where errors grow exponentially. NaN at rest.
+    It is the error of attitude, rad, divided by the angle turned, rad, and by the relative error of the
+    angular velocity, for the worst direction of that error and the worst phase. It is 1 for a steady spin and
+    large near the separatrix. It is inf on the separatrix and about the middle axis itself, where errors grow
+    exponentially, and NaN at rest.
 
-    Both phases of the attitude are linear in time with rates that depend on T and |L| alone: nu on the
-    polhode and P about L. With the action J of nu, dT = nu dJ + P dL, and both rates are homogeneous in (J,
-    L); so that d nu / dT at constant L gives all four derivatives.
+    Both phases of the attitude are linear in time: nu on the polhode and P about L. Their rates depend on T
+    and |L| alone. With the action J of nu, dT = nu dJ + P dL, and both rates are homogeneous in (J, L). So
+    d nu / dT at constant L gives all four derivatives.
     """
     rotation = motion.rotation
     if isinstance(rotation, Spin) or motion.regime is Regime.SPHERICAL:
@@ -157,7 +158,7 @@ def sensitivity(motion: FreeMotion) -> float:
 
 
 def _sensitivity_of_spin(motion: FreeMotion) -> float:
-    """Steady spin is as predictable as any, but about the middle axis and at rest."""
+    """Return the sensitivity of steady spin: 1, but inf about the middle axis and NaN at rest."""
     if motion.regime is Regime.AT_REST:
         return math.nan
     if motion.regime is not Regime.PRINCIPAL_AXIS:
@@ -169,12 +170,12 @@ def _sensitivity_of_spin(motion: FreeMotion) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class RollingCurves(Record):
-    """Polhode and herpolhode, which roll on each other: row i of both is where they touch at ``seconds[i]``.
+    """Polhode and herpolhode, which roll on each other. They touch in row i of both at ``seconds[i]``.
 
-    Arcs of the two between the same rows are equally long.
+    Arcs of the two between the same rows have equal length.
 
     Attributes:
-        seconds: (n,), s after the state's stamp, ascending; 0 throughout where nothing moves.
+        seconds: (n,), s after the state's stamp, ascending; all 0 where nothing moves.
         polhode_B: (n, 3), rad/s, angular velocity in body axes.
         herpolhode_W: (n, 3), rad/s, the same in world axes, in the invariable plane.
     """
@@ -185,9 +186,10 @@ class RollingCurves(Record):
 
 
 def rolling_curves(motion: FreeMotion, count: int) -> RollingCurves:
-    """Return ``count`` points of `polhode` with the times at which the motion passes them, and where then.
+    """Return ``count`` points of the polhode, the times when the motion passes them, and the herpolhode then.
 
-    They go once around the polhode, through the period that holds time 0; see `polhode` for what has none.
+    They go once around the polhode, through the period that contains time 0. `polhode` says what it returns
+    where there is no period.
 
     Raises:
         InvalidFieldError: the period is so long that doubles do not tell turns apart in it, as it may be in
@@ -223,9 +225,9 @@ def rolling_curves(motion: FreeMotion, count: int) -> RollingCurves:
 def polhode(motion: FreeMotion, count: int) -> FloatArray:
     """Return ``count`` points of the polhode, (count, 3), rad/s, body axes, in order along it.
 
-    The curve is closed: the last point is the first again. On the separatrix, whose ends are infinitely far
-    away in time, it is the arc from one middle-axis spin to the other, to `SEPARATRIX_END` of each; where the
-    angular velocity is constant all points are one.
+    The curve is closed, so the last point equals the first. The ends of the separatrix are infinitely far
+    away in time. There the curve is the arc from one spin about the middle axis to the other, up to
+    `SEPARATRIX_END` from each. Where the angular velocity is constant, all points are the same.
     """
     rotation = motion.rotation
     if isinstance(rotation, Spin) or motion.regime in CONSTANT_RATE:

@@ -6,8 +6,8 @@ L^2 > 2 T I_2 and the minor one where L^2 < 2 T I_2; axis 2 is the middle one. W
     L_1 / L = a cn u,    L_2 / L = b sn u,    L_3 / L = c dn u,    u = omega_p t + u_0,
 
 (Whittaker, Analytical Dynamics, 69; van Zon and Schofield, J. Comput. Phys. 225, 145, 2007, eq. 13 to 18).
-Differences such as L^2 - 2 T I_i are summed as I_j (I_j - I_i) w_j^2, never taken from totals, and the
-complement 1 - m has a form of its own.
+To avoid cancellation, differences such as L^2 - 2 T I_i are sums of I_j (I_j - I_i) w_j^2, and the complement
+1 - m has a formula of its own.
 
 The attitude has two phases, both linear in time: z = pi u / 2K on the polhode, and the mean precession about
 L.
@@ -44,22 +44,22 @@ class Spin(Generic[Scalar]):
 
 @dataclass(frozen=True, slots=True)
 class Tumble(Generic[Scalar]):
-    """The angular velocity moves on a polhode; axes in Jacobi's order, right-handed, axis 3 on L's side.
+    """The angular velocity moves on a polhode. Axes are in Jacobi's order, right-handed, axis 3 on L's side.
 
     Attributes:
         moments: kg m^2, about axes 1, 2, 3.
         gaps: kg m^2, I_2 - I_1, I_3 - I_2, I_3 - I_1; > 0 about the major axis.
-        axes_B: 3 rows: unit axes 1, 2, 3 in body coordinates.
-        L: kg m^2/s, |angular momentum|.
+        axes_B: Unit axes 1, 2, 3 in body coordinates, as 3 rows.
+        L: Magnitude of the angular momentum, kg m^2/s.
         m: Parameter of the elliptic functions, in [0, 1].
         m1: 1 - m, in [0, 1]; 0 on the separatrix.
-        a2: A^2 = 1 - c^2, > 0.
-        b2: B^2.
-        c2: C^2.
-        omega_p: rad/s, du/dt, < 0 where axis 3 is the minor one.
-        u0: U at time 0.
-        quarter: Pi / 2K, 0 on the separatrix.
-        precession: rad/s, mean rate about L; on the separatrix the rate in the far past and future.
+        a2: The square of a, 1 - c^2, > 0.
+        b2: The square of b.
+        c2: The square of c.
+        omega_p: du/dt, rad/s, < 0 where axis 3 is the minor one.
+        u0: The value of u at time 0.
+        quarter: pi / 2K, 0 on the separatrix.
+        precession: Mean rate about L, rad/s; on the separatrix the rate in the far past and future.
     """
 
     moments: tuple[Scalar, Scalar, Scalar]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Regime(NamedInt):
-    """A name for people; the formulas do not go by it, and hold in between as well."""
+    """A name of a rotation for people. The formulas do not use it, and hold between the regimes as well."""
 
     UNKNOWN = 0  # a torque acts: Poinsot's picture does not apply
     AT_REST = 1  # no rotation

@@ -12,14 +12,18 @@ shifted by half of its imaginary period, so that nothing is singular for a symme
 about a principal axis, r = 0).
 
 Near the middle axis q tends to 1. Poisson's summation then gives the same functions as a sum of bumps, one
-for each stay near the middle axis, of which the nearest six suffice; the separatrix is the case of two.
+for each time that the motion stays near the middle axis. The nearest six suffice. On the separatrix there are
+two.
 
 `Harmonics` and `Bumps` are the two forms, `OneFlip` is the separatrix, `Steady` is spin at a constant rate.
-Each turns z, as fraction and whole number, and psi, in half turns, into `Values`: A, B' with alpha = e^{i
-psi} A, beta = -i e^{i psi} B' up to a common positive factor; C = 2 Re(A B'*) and D = |A|^2 - |B'|^2, to
-which L_1 and L_3 are proportional; and tan psi, which is enough of psi because a common sign is no part of an
-attitude. C and D are sums of their own, theta_2 and theta_3 with nome q, as |A|^2 + |B'|^2 is theta_4: a
-needle spins fast about an axis along which L is small.
+Each takes z, as fraction and whole number, and psi, in half turns, and returns `Values`:
+
+- A and B', with alpha = e^{i psi} A, beta = -i e^{i psi} B' up to a common positive factor;
+- C = 2 Re(A B'*) and D = |A|^2 - |B'|^2, to which L_1 and L_3 are proportional;
+- tan psi, which says enough about psi, because a common sign does not change an attitude.
+
+C and D are summed separately, as theta_2 and theta_3 with nome q (|A|^2 + |B'|^2 is theta_4). Differences
+would lose digits, since a needle spins fast about an axis along which L is small.
 """
 
 from __future__ import annotations
@@ -46,7 +50,7 @@ class Steady(Record):
     """Spin at a constant rate about z."""
 
     def values(self, functions: ModuleType, z: Any, _: Any, psi: Any) -> Values:
-        """Return the values; z does not matter."""
+        """Return the values, which do not depend on z."""
         zero = 0.0 * z
         one = zero + 1.0
         return one, zero, zero, zero, zero, one, functions.tan(math.pi * psi)
@@ -57,13 +61,13 @@ class Harmonics(Record):
     """Theta functions as trigonometric series: polynomials in cos 2z, lowest power first.
 
     Attributes:
-        r: e^{-xi}.
-        A_cos: Re A.
-        A_sin: Im A / sin 2z.
-        B_cos: Re B.
-        B_sin: Im B / sin 2z.
-        C: C / cos z.
-        D: D.
+        r: The number e^{-xi}.
+        A_cos: Coefficients of Re A.
+        A_sin: Coefficients of Im A / sin 2z.
+        B_cos: Coefficients of Re B.
+        B_sin: Coefficients of Im B / sin 2z.
+        C: Coefficients of C / cos z.
+        D: Coefficients of D.
     """
 
     r: float
@@ -75,7 +79,7 @@ class Harmonics(Record):
     D: tuple[float, ...]
 
     def values(self, functions: ModuleType, z: Any, _: Any, psi: Any) -> Values:
-        """Return the values for z in turns, of which whole ones do not matter."""
+        """Return the values for z in turns. They do not depend on whole turns."""
         half = functions.tan(math.pi * z)
         square = half * half
         inverse = 1.0 / (1.0 + square)
@@ -96,18 +100,18 @@ class Harmonics(Record):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Bumps(Record):
-    """Theta functions after Poisson's summation: stays near the middle axis, and a flip between each two.
+    """Theta functions after Poisson's summation. The body stays near the middle axis and flips in between.
 
     Attributes:
         steepness: |log| of the ratio of the two nearest bumps, per half turn of z.
         drift: Half turns of psi per half turn of z.
-        g: Ratio of a bump to the next at its own top.
+        g: Ratio of the next bump to a bump, at the top of the latter.
         A_cos: Amplitudes of the cosines of A, three terms.
         A_sin: Amplitudes of the sines of A, three terms.
         B_cos: Amplitudes of the cosines of B, three terms.
         B_sin: Amplitudes of the sines of B, three terms.
-        C: At z = 0, but for terms in g.
-        D: Likewise.
+        C: Value of C at z = 0, without the terms in g.
+        D: Value of D at z = 0, without the terms in g.
     """
 
     steepness: float
@@ -141,13 +145,13 @@ class Bumps(Record):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class OneFlip(Record):
-    """The separatrix: from spin about the middle axis, by one flip, to spin about it the other way round.
+    """The separatrix: the body spins about the middle axis, flips once, and spins about it the other way.
 
     Attributes:
         A: The two amplitudes of A.
         B: The two amplitudes of B.
-        C: At u = 0.
-        D: At u = 0.
+        C: Value of C at u = 0.
+        D: Value of D at u = 0.
     """
 
     A: tuple[float, float]

@@ -103,9 +103,9 @@ def draw_impact(
 
     Args:
         recording: To draw into.
-        shape: Of the body.
+        shape: The shape of the body.
         answer: The impact.
-        other_shape: Of the body that is struck. None: it is not drawn, its velocities are.
+        other_shape: The shape of the body that is struck. If it is None, only its velocities are drawn.
     """
     path, size = impact_entity(answer.body_name), shape.size
     impact, other = answer.impact, answer.other

@@ -54,7 +54,7 @@ def draw_planar_modes(
         recording: To draw into.
         answer: The answer, in world axes.
         plane: The plane of motion.
-        outline: Of the body, a closed strip, (k, 2), m from the centre of mass; no points: no shape.
+        outline: Outline of the body, a closed strip, (k, 2), m from the centre of mass. It may be empty.
     """
     contacts, modes = seen_contacts(answer, plane), seen_modes(answer, plane)
     reach = [contact.r for contact in contacts]

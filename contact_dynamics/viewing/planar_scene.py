@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 CONE_LENGTH: Final = 0.2
-"""Of a friction cone's edges, relative to the body's size."""
+"""Length of a friction cone's edges, relative to the body's size."""
 
 ARROW_LENGTH: Final = 0.4
-"""Of the longest arrow of a kind, relative to the body's size."""
+"""Length of the longest arrow of a kind, relative to the body's size."""
 
 _LABEL_OFFSET: Final = 0.07  # of a contact's label from the contact, out of the body, relative to its size
 _COVERED: Final = 0.06  # labels that are nearer cover each other, likewise

@@ -40,8 +40,8 @@ class Sinks:
 
     Attributes:
         rrd_path: File to write, which is replaced; empty: none.
-        port: Of the viewer that is started, or that is served.
-        url: Of the viewer to connect to, as rerun+http://127.0.0.1:9876/proxy.
+        port: Port of the viewer that is started, or that is served.
+        url: URL of the viewer to connect to, such as rerun+http://127.0.0.1:9876/proxy.
     """
 
     rrd_path: str = ""

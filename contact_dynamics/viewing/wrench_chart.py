@@ -38,7 +38,7 @@ _ON_RIM: Final = 1e-9
 """Sine to the pure forces below which a wrench stands on the rim, which both discs show."""
 
 _CURVE_POINTS: Final = 3000
-"""Of a boundary: so many that they are nearer to each other than the points of the screen."""
+"""Number of points of a boundary. They are nearer to each other than the points of the screen."""
 
 
 class WrenchChart(Protocol):

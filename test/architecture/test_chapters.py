@@ -118,7 +118,7 @@ def test_an_import_goes_to_a_chapter_above(path: Path) -> None:
 
 @pytest.mark.parametrize("path", INSIDE, ids=relative)
 def test_nobody_asks_the_table_of_contents(path: Path) -> None:
-    """Inside, names come from the file that defines them; `contact_dynamics` itself is for users."""
+    """Inside, names come from the file that defines them. `contact_dynamics` itself is for users."""
     assert "contact_dynamics" not in imports_of(path), relative(path)
 
 

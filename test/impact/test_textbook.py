@@ -134,7 +134,7 @@ def test_eccentric_rod_drop_on_rough_ground(theta: float, law: RestitutionLaw) -
 @pytest.mark.parametrize("law", RestitutionLaw)
 @pytest.mark.parametrize("offset", [0.0, 0.3])
 def test_a_ball_strikes_a_free_block(offset: float, law: RestitutionLaw) -> None:
-    """Smooth: J = (1 + e) v / (1/m + 1/M + d^2/I); the block moves and turns by it."""
+    """Without friction J = (1 + e) v / (1/m + 1/M + d^2/I), by which the block moves and turns."""
     ball, block, e, v = PlanarBody(mass=0.5, inertia=1e-3), PlanarBody(mass=4.0, inertia=0.8), 0.8, 6.0
     impact = planar_pair_impact(
         ball,
@@ -265,7 +265,7 @@ FACE = [[x, y, 0.0] for x in (-0.05, 0.05) for y in (-0.05, 0.05)]
 
 @pytest.mark.parametrize("e", [0.0, 0.4, 0.9])
 def test_a_cube_on_its_face(e: float) -> None:
-    """At once it bounces level, by symmetry; in turn one corner is the first, and the orders spread."""
+    """At once the cube bounces level, by symmetry. In turn one corner is the first, and the orders spread."""
     contacts = contacts_at(FACE, normal=(0.0, 0.0, 1.0), friction=0.0, restitution=e)
     state = moving([0.0, 0.0, 0.05], [0.0, 0.0, -1.0])
     level = several_impact(CUBE, state, contacts, several_contacts_law=SIMULTANEOUS)
@@ -377,7 +377,7 @@ def test_one_contact_in_the_plane_is_the_planar_law(law: RestitutionLaw) -> None
 
 
 def test_a_level_rod_on_two_supports_in_the_plane() -> None:
-    """As in `test_several`, by hand: m v / 2 at the right end, then m v at the left one."""
+    """By hand, the impulses are m v / 2 at the right end, then m v at the left one."""
     rod, falling = PlanarBody(mass=2.0, inertia=2.0 / 3.0), PlanarVelocity(v=(0.0, -1.0), w=0.0)
     ends = [PlanarContact(r=(x, 0.0), normal=UP, friction=0.0, restitution=1.0) for x in (1.0, -1.0)]
     answer = planar_several_impact(rod, falling, ends)

@@ -46,7 +46,7 @@ def test_a_wrench_is_constant_in_the_axes_it_names() -> None:
 
 
 def test_drag_follows_its_law() -> None:
-    """At v = (3, 0, -4), 5 long: -(c + q 5) v / m; likewise of w and I."""
+    """For v = (3, 0, -4), whose length is 5, it is -(c + q 5) v / m. The same holds for w and I."""
     v = np.array([3.0, 0.0, -4.0])
     drag = Drag(linear=0.1, quadratic=0.02, linear_angular=0.03, quadratic_angular=0.004)
     a, alpha = accelerations(v=tuple(v), w=tuple(v), drag=drag)

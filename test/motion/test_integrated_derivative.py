@@ -99,7 +99,7 @@ def test_without_torque_it_is_that_of_the_closed_form(w: tuple[float, float, flo
 
 
 def test_linear_drag_on_a_sphere() -> None:
-    """A change of v fades as exp(-k t); it has gone (1 - exp(-k t)) / k by then; likewise of spin."""
+    """A change of v fades as exp(-k t), after a way of (1 - exp(-k t)) / k. The same holds for spin."""
     motion = forced_motion(
         SPHERE, state(w=(0.0, 0.0, 0.0)), drag=Drag(linear=1.0, linear_angular=0.8), gravity_W=np.zeros(3)
     )
@@ -115,7 +115,7 @@ def test_linear_drag_on_a_sphere() -> None:
 
 
 def test_neighbours_that_fade_faster_than_the_motion_are_followed() -> None:
-    """At rest nothing happens, so the integrator steps far; a neighbour's spin is gone in hundredths."""
+    """At rest the integrator takes long steps, while a neighbour's spin fades much faster."""
     rest = state(v=(0.0, 0.0, 0.0), w=(0.0, 0.0, 0.0))
     motion = forced_motion(SPHERE, rest, drag=Drag(linear_angular=40.0), gravity_W=np.zeros(3))
     found = forced_state_derivatives(motion, [0.03, 5.0])
@@ -132,7 +132,7 @@ def test_derivatives_of_two_stretches_multiply() -> None:
 
 
 def test_a_function_that_breaks_off_beside_the_motion_is_refused() -> None:
-    """At the wall itself it is defined; a little further it is not."""
+    """The function is defined at the wall itself, but not a little further."""
     motion = forced_motion(
         SPHERE,
         BodyState(p_WB_W=np.zeros(3), q_WB=[0, 0, 0, 1], v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)),

@@ -25,7 +25,7 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
 
 
 def block_on_incline(mu: float) -> PredictContactMode.Request:
-    """A block of two feet, seen from the front; the feet are given downhill first."""
+    """A block of two feet, seen from the front. The foot downhill comes first."""
     request = PredictContactMode.Request()
     request.inertia.m = MASS
     request.inertia.ixx = request.inertia.iyy = request.inertia.izz = MASS * (WIDTH**2 + HEIGHT**2) / 12.0
@@ -93,7 +93,7 @@ def test_seen_from_behind_left_and_right_change_places(client: Client) -> None:
 
 
 def test_every_mode_comes_with_the_wrenches_that_bring_it_about(client: Client) -> None:
-    """The applied wrench lies in the sets of the consistent modes alone; generators in their half-spaces."""
+    """Only sets of consistent modes contain the applied wrench. Generators are in their half-spaces."""
     request = block_on_incline(math.tan(math.radians(30.0)))
     request.want_wrenches = True
     answer = client.ask(request)

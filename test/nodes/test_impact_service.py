@@ -253,7 +253,7 @@ def test_without_restitution_the_contact_stays(client: Client) -> None:
 
 
 def test_a_contact_that_leaves_strikes_when_it_comes_back(client: Client) -> None:
-    """Thrown up from the floor: nothing strikes at once, which other laws refuse; in time it does."""
+    """A body thrown up from the floor does not strike at once, which other laws refuse. In time it does."""
     request = PredictImpact.Request()
     ball(request)
     request.state.linear_velocity.z = 0.1
@@ -353,7 +353,7 @@ def test_feet_beside_the_plane_are_refused(client: Client) -> None:
 def test_a_plate_that_falls_on_another_with_four_corners(
     client: Client, law: str, restitution: float
 ) -> None:
-    """By symmetry a central impact: equal plates end with (1 - e)/2 and (1 + e)/2 of the velocity."""
+    """The impact is central by symmetry, so equal plates end with (1 - e)/2 and (1 + e)/2 of the velocity."""
     request = PredictImpact.Request()
     request.state_source, request.contact_source = request.STATE_EXPLICIT, request.CONTACTS_EXPLICIT
     request.restitution_law = getattr(request, law)

@@ -101,7 +101,7 @@ def test_automatic_stays_in_the_plane_where_the_case_is_planar(client: Client) -
 
 @pytest.mark.parametrize("share", [0.999, 1.001])
 def test_pushed_askew_it_sticks_or_slides_along_the_push(client: Client, share: float) -> None:
-    """Coulomb: it slides once the push exceeds mu m g, whatever its direction; then a = F / m - mu g."""
+    """By Coulomb's law it slides once the push in any direction exceeds mu m g, and then a = F / m - mu g."""
     way = np.array([math.cos(0.5), math.sin(0.5), 0.0])
     push = share * MU * MASS * G * way
     request = brick_on_floor()
@@ -120,7 +120,7 @@ def test_pushed_askew_it_sticks_or_slides_along_the_push(client: Client, share: 
 
 
 def test_a_published_brick_that_spins_on_the_floor_is_braked(client: Client) -> None:
-    """Each foot slides at right angles to its arm; all are as far from the axis, so that m g takes it all."""
+    """Each foot slides at right angles to its arm. The arms are equal, so friction brakes with mu m g."""
     publisher = client.publisher(Odometry, "/brick/odometry")
     state = Odometry()
     state.header.frame_id, state.child_frame_id = "world", "brick"
@@ -157,7 +157,7 @@ TRIPOD = [(1.0, 0.0, -1.0), (-0.5, 0.8, -1.0), (-0.5, -0.6, -1.0)]
 
 
 def test_a_tripod_has_no_plane_of_motion(client: Client) -> None:
-    """The weight's shares follow from three moments; one foot carries too little once it is pushed over."""
+    """The shares of the weight follow from three moments. One foot carries too little once it is pushed."""
     request = explicit(TRIPOD, 0.9)
     answer = client.ask(request)
     assert answer.problem == request.SPATIAL
@@ -237,7 +237,7 @@ def test_facets_are_those_that_were_asked_for(client: Client, facets: int) -> No
 
 
 def test_statics_of_a_brick_that_is_pushed_askew(client: Client) -> None:
-    """In space: held by friction alone up to mu m g; the disturbance that it takes is one of the way left."""
+    """Friction alone holds it up to mu m g. The disturbance that it takes is what is left of that."""
     way = np.array([math.cos(0.5), math.sin(0.5), 0.0])
     for share, holds in ((0.9, True), (1.001, False)):
         request = brick_on_floor()
@@ -258,7 +258,7 @@ def test_statics_of_a_brick_that_is_pushed_askew(client: Client) -> None:
 
 
 def test_margins_of_a_brick_in_space(client: Client) -> None:
-    """At rest on four feet: the way to the side of the friction cone, or of its pyramid; then it slides."""
+    """At rest on four feet, the margin is the distance to the side of the friction cone or pyramid."""
     request = brick_on_floor()
     request.problem, request.want_margins, request.margin_length = request.SPATIAL, True, 1e-4
     request.friction_facets = 16

@@ -44,7 +44,7 @@ def block() -> Any:
 
 
 def tray(mu: float = 0.25) -> Any:
-    """Two points on the floor, one at either wall; the right one higher, so that turning lifts that side."""
+    """Two points on the floor and one at each wall, the right one higher, so that turning lifts that side."""
     return touching([(-1.0, -0.2, UP), (1.0, -0.2, UP), (-1.2, 0.2, RIGHT), (1.2, 0.4, LEFT)], mu)
 
 

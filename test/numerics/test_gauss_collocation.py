@@ -26,7 +26,7 @@ def test_a_constant_coefficient_is_an_exponential(m: int, end: float) -> None:
 
 
 def test_a_coefficient_that_varies() -> None:
-    """Of y' = cos(t) y: y = exp(sin t), begun at t = 1."""
+    """The equation y' = cos(t) y has the solution y = exp(sin t). It begins at t = 1."""
     edges = np.linspace(1.0, 7.0, 16)
     times = np.linspace(1.0, 7.0, 101)
     at_edges, at_times = GAUSS.solutions(np.cos(GAUSS.nodes_of(edges))[:, :, None, None], edges, times)

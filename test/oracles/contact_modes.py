@@ -228,7 +228,7 @@ def maximum(objective: list[Fraction], equations: list[list[Fraction]]) -> Fract
 
 
 def _simplex(table: list, basis: list[int], objective: list[Fraction], allowed: int) -> bool:
-    """Improve until nothing does; False: without bound."""
+    """Improve until nothing does. Return False if there is no bound."""
     while True:
         entering = next((j for j in range(allowed) if _gain(table, basis, objective, j) > 0), None)
         if entering is None:

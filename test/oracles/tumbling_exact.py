@@ -13,7 +13,7 @@ import mpmath
 from mpmath import mpf
 
 DIGITS = 80
-"""Unless more are asked for; 20 of them may be lost before what is left of a sum counts as zero."""
+"""Number of digits, unless more are asked for. A sum may lose 20 of them before it counts as zero."""
 
 
 class ExactMotion:

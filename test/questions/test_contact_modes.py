@@ -62,7 +62,7 @@ def test_a_push_beyond_friction_makes_it_slide(problem: Problem) -> None:
 
 
 def test_the_margin_is_what_is_left_of_friction() -> None:
-    """In the plane, by the shortest way in the metric; along the push alone it would be mu m g - F."""
+    """The margin is the shortest way in the metric. Along the push alone it would be mu m g - F."""
     push = 0.25 * HOLDS
     found = answer(
         replace(AT_REST, force_W=np.array([push, 0.0, 0.0]), plane=FROM_THE_SIDE, want_margins=True),

@@ -123,7 +123,7 @@ def test_equal_bodies_without_friction_exchange_their_velocities() -> None:
 
 
 def test_two_feet_at_once_or_in_turn() -> None:
-    """Without restitution and friction both feet stop the fall together; in turn each order has an answer."""
+    """Without restitution and friction both feet stop the fall together. In turn, orders differ."""
     question = ImpactQuestion(body=CUBE, state=state(v=(0.0, 0.0, -1.0)), contacts=TWO_FEET)
     at_once = replace(question, several_contacts_law=SeveralContactsLaw.SIMULTANEOUS)
     found = answer(at_once).impact

@@ -117,7 +117,7 @@ def test_rerun_finds_nothing_to_complain_of(real_log: Any) -> None:
 
 
 def test_rerun_draws_nothing_of_a_log_by_itself(real_log: Any, tmp_path: Path) -> None:
-    """As `docs/log.md` says: the values are there, and nothing that its 3D view would show."""
+    """As `docs/log.md` says, the values are there, but nothing that its 3D view would show."""
     pytest.importorskip("rerun")
     rerun, converted = Path(sys.executable).with_name("rerun"), tmp_path / "log.rrd"
     subprocess.run([str(rerun), "mcap", "convert", str(real_log.path), "-o", str(converted)], check=True)

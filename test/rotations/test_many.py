@@ -64,7 +64,7 @@ def test_products_turned_vectors_and_quaternions_of_vectors_are_those_of_scipy()
 @settings(deadline=None)
 @given(axis=axes, angle=st.sampled_from(ANGLES))
 def test_turning_and_asking_by_how_much_are_inverse(axis: tuple, angle: float) -> None:
-    """To the last bits relative to the angle, however small; near half a turn to those of the attitude."""
+    """The error is last bits of the angle, however small, and near half a turn last bits of the attitude."""
     theta = np.tile(angle * np.array(axis) / np.linalg.norm(axis), (COUNT, 1))
     after = turned(BEFORE.as_quat(), theta)
     np.testing.assert_allclose(np.linalg.norm(after, axis=1), 1.0, rtol=0.0, atol=1e-15)

@@ -16,7 +16,7 @@ from oracles.tumbling_draws import draw
 from tumbling.known_motions import MOTIONS, motion_of
 
 ROUNDING = 1.5e-15
-"""Of a state passed on in doubles, some last bits: relative to |w| for angular velocity, rad for attitude."""
+"""Rounding of a state passed on in doubles: relative to abs(w) for angular velocity, rad for attitude."""
 
 HOPELESS = 1e9
 """Conditioning above which the passing on in doubles says nothing about the motion."""
@@ -65,7 +65,7 @@ def test_known_motions_compose_and_reverse(name: str) -> None:
     second=st.one_of(st.none(), st.floats(-50.0, 50.0)),
 )
 def test_drawn_motions_compose_and_reverse(seed: int, first: float, second: float | None) -> None:
-    """Times in rad turned; without a second one, back to the beginning."""
+    """Times are in rad turned. Without a second time, the motion goes back to the beginning."""
     drawn = draw(np.random.default_rng(seed))
     rate = float(np.linalg.norm(drawn.w_WB_W))
     state = BodyState(p_WB_W=np.zeros(3), q_WB=drawn.q_WB, v_WB_W=np.zeros(3), w_WB_W=drawn.w_WB_W)

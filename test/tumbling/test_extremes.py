@@ -52,7 +52,7 @@ def test_any_size_any_spin_any_time(
 
 
 def test_no_number_within_bounds_breaks_anything() -> None:
-    """Warnings are errors here; every answer is finite."""
+    """Warnings are errors here, and every answer is finite."""
     units = itertools.product((2e-60, 1e-12, 4e59), (0.0, 5e-324, 1e-300, 1e-59, 1e6, 1e60))
     spins = ((0.3, -0.5, 0.8), (1e-9, 1.0, 1e-9), (0.0, 0.0, 1.0))
     for (inertia, rate), spin in itertools.product(units, spins):

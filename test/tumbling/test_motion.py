@@ -1,4 +1,4 @@
-"""Free motion of all kinds of bodies: beside an integrator that knows no elliptic functions; conservation."""
+"""Free motion of all kinds of bodies, beside an integrator without elliptic functions; conservation."""
 
 from __future__ import annotations
 

@@ -138,7 +138,7 @@ def test_a_body_without_shape_has_a_path_all_the_same(
 def test_a_longer_path_has_more_outlines(
     recording: rr.RecordingStream, read: Callable[[], Drawn], *, body: Body, speed: float, count: int
 ) -> None:
-    """Over 0.05 s; the box is 0.182 m from corner to corner."""
+    """The time is 0.05 s, and the box is 0.182 m from corner to corner."""
     start = BodyState(
         p_WB_W=np.zeros(3),
         q_WB=np.array([0.0, 0.0, 0.0, 1.0]),

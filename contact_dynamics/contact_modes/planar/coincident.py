@@ -1,4 +1,4 @@
-"""Contacts that coincide, as those of a body's two sides do in a plane of motion: answered as one.
+"""Contacts that coincide are answered as one, such as those of a body's two sides in a plane of motion.
 
 Contacts of one place and normal, within `SAME_ROWS`, and of one friction and kind have the same letter in
 every mode. Their force is known only in sum, and told in equal shares.
@@ -22,8 +22,8 @@ class Coincident(NamedTuple):
     """Which contacts are the same.
 
     Attributes:
-        firsts: Of each group, the first contact.
-        group: Of each contact.
+        firsts: The first contact of each group.
+        group: The group of each contact.
         counts: Contacts of each group.
     """
 

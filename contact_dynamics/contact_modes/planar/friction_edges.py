@@ -25,8 +25,8 @@ class Edges(NamedTuple):
 
     Attributes:
         positions: The row of the problem that each belongs to.
-        slopes: F_t / f_n.
-        wrenches: Of a unit f_n.
+        slopes: The ratio f_t / f_n of each edge.
+        wrenches: The wrench of a unit f_n along each edge.
     """
 
     positions: list[int]

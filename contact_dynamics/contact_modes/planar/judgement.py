@@ -2,7 +2,7 @@
 
 Each letter of a mode brings as many equations as unknown forces (lecture 26): `l` and `r` the normal
 acceleration and the force along the edge of the friction cone, `f` both accelerations and both forces. Where
-these few equations are independent they are solved, and the letters' inequalities decide (`independent`).
+these few equations are independent they are solved, and the letters' inequalities decide (`determined`).
 Where they are not (more contacts stay than a body has freedoms, or friction cancels the response, as for
 Painleve's rod), what matters is whether the applied wrench lies in the cone of those that can bring the mode
 about (`wrench_cone`), and the forces are some of many.

@@ -9,7 +9,7 @@ with w the acceleration without contact force, terms of velocities included. Eac
 equations; what contradicts the letter's inequalities is discarded. Plain floats throughout: this is the path
 of one answer in microseconds.
 
-Does not cover: several contacts (`planar`), moving surfaces.
+Does not cover: several contacts (`answer`), moving surfaces.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class _ContactAxes(NamedTuple):
         where it is a sum of ``terms``.
 
         Args:
-            square: Of the function's row, as `along` has it for accelerations.
+            square: The square of the function's row, as `along` has it for accelerations.
             terms: The sizes that the value is a sum of, in its unit.
         """
         return self.accuracy * math.sqrt(square) * self.load + SUM_ROUNDING * terms

@@ -53,7 +53,7 @@ class PlanarContactProblem(Record):
 
     Attributes:
         body: Mass and angular inertia.
-        velocity: Of the body.
+        velocity: The velocity of the body.
         contacts: Any may coincide, oppose or repeat another.
         wrench: On the body besides its contact forces, gravity included.
         velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero, and so

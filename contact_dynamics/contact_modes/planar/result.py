@@ -1,8 +1,8 @@
-"""What a question about contact modes comes to: a verdict, every consistent mode, and why the others are not.
+"""The answer to a question about contact modes in the plane: a verdict, every consistent mode, and refusals.
 
-A mode is a string with one letter a contact, in the contacts' order (lecture 26): `s` separate, `l` slide
-left, `r` slide right, `f` fixed. Contact axes are (tangent, normal), the tangent being the normal turned by
--90 degrees.
+A mode is a string with one letter for each contact, in the contacts' order (lecture 26): `s` separates, `l`
+slides left, `r` slides right, `f` stays fixed. Contact axes are (tangent, normal), where the tangent is the
+normal turned by -90 degrees.
 """
 
 from __future__ import annotations

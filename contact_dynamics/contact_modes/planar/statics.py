@@ -4,9 +4,9 @@ Model: as for `planar_contact_modes`, with the body at rest. Equilibrium is poss
 can cancel the applied wrench, that is, where the wrench lies in the cone of negated contact wrenches; it is
 certain where besides no other motion is consistent. Rigid bodies may be free to do either.
 
-Jammed (after Whitney 1982): friction alone holds the body, which without friction would move under the same
-wrench. Wedged: the contacts can press against each other without any applied wrench, so that how hard they
-hold is not known from the wrench. How the body came to be pressed is outside the model.
+The body is jammed (after Whitney 1982) if friction alone holds it: without friction it would move under the
+same wrench. It is wedged if the contacts can press against each other without any applied wrench. Then the
+wrench does not determine how hard they hold. The model does not say how the body came to be pressed.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Applied wrenches that can bring a planar contact mode about: pos({a} + {-c_i}) of lecture 26, as a cone.
+"""The applied wrenches that can bring about a planar mode, as the cone pos({a} + {-c_i}) of lecture 26.
 
 Newton's law m q = w + sum of contact forces turns the accelerations q of a mode and the forces its letters
 allow into applied wrenches w = m q - c: the accelerations' rays and the negated edges of the friction cones

@@ -1,4 +1,4 @@
-"""Contact modes of a body in space that are consistent with mechanics: separate, stick, or slide which way.
+"""The contact modes of a body in space that are consistent with mechanics, with directions of sliding.
 
 Model: as in the plane (lecture 26), with Coulomb's round cone. A contact that moves slides in a known
 direction and has its exact friction. For one at rest the cone is a pyramid with a stated number of edges, the

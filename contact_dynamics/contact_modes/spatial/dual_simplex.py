@@ -38,7 +38,7 @@ _GOLDEN: Final = 0.6180339887498949
 """Its multiples are spread evenly modulo 1: weights of the edge forces without ties."""
 
 _MOST_STEPS: Final = 500
-"""Of the primal simplex; Bland's rule, which cannot cycle, holds from a fifth of it."""
+"""Bound on the steps of the primal simplex. From a fifth of it Bland's rule holds, which cannot cycle."""
 
 
 _CLEAR: Final = 1e3
@@ -91,7 +91,7 @@ class Program:
         Args:
             motion: In the units in which conditions are stated.
             named: (k, 7), combinations of motion and a constant that are not negative.
-            names: Of the rows, >= K: `narrowed` refers to them by these, to edge forces by 0 to K - 1.
+            names: The names of the rows, >= K, for `narrowed`. Edge forces have the names 0 to K - 1.
         """
         count = motion.shape[1] - 1
         weights = np.append(1.0 + 0.5 * (np.arange(1, count + 1) * _GOLDEN % 1.0), 0.0)

@@ -46,7 +46,7 @@ def spatial_kinematic_modes(
     where a contact approaches, and where every acceleration penetrates.
 
     Args:
-        state: Of the body, with its origin at the centre of mass.
+        state: The state of the body, with its origin at the centre of mass.
         contacts: At most `MOST_SPATIAL_CONTACTS`.
         velocity_tolerance: m/s, >= 0. A contact's normal velocity within it counts as zero, and so does an
             angular velocity that moves no contact relative to the centre of mass by more than that.

@@ -1,7 +1,8 @@
-"""Which contact forces a mode in space is shown with, and how far linearisation turns friction.
+"""The contact forces that the answer shows for a mode in space, and how far linearisation turns friction.
 
-Where many forces bring about the same motion, as under four feet, those of least sum of squares are shown if
-every contact's friction pyramid allows them, and otherwise those of fewest edges that were found.
+Many forces may bring about the same motion, as under four feet. The answer shows those of least sum of
+squares if every contact's friction pyramid allows them. Otherwise it shows those with the fewest edges that
+the search found.
 """
 
 from __future__ import annotations

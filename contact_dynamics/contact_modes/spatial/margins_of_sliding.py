@@ -1,9 +1,9 @@
 """How far an applied wrench is from leaving a mode in which contacts at rest begin to slide.
 
-Each way in which they slide together has a convex cone of wrenches (`spatial_wrench_sets`), and those of the
-mode are the union. The cones are gone through outwards from one that holds the wrench, boundary by boundary
-in the order of their distances. What lies just behind a boundary says whether the mode ends there, or goes on
-in a cone that the whole boundary belongs to. Friction pyramids stay where they are meanwhile.
+Each way in which they slide together has a convex cone of wrenches (`wrench_sets`), and the wrenches of the
+mode are the union of these cones. The search starts in a cone that contains the wrench, and crosses
+boundaries in the order of their distances. Just behind a boundary the mode either ends, or goes on in a cone
+to which the whole boundary belongs. Friction pyramids do not turn meanwhile.
 
 Does not cover: boundaries behind which the mode goes on in parts, as where loads are shared in many ways;
 more than `MOST_BEGINNING` contacts that begin to slide; those of bodies that turn. There the margin is NaN.
@@ -76,7 +76,7 @@ def union_margin(
 
     Args:
         case: The body with its contacts.
-        search: Of that case.
+        search: The search of that case.
         found: By that search, with contacts at rest that begin to slide.
         metric: (6,), m, by which a wrench is divided: ones, then the length that torques are divided by.
         facets: Edges of the friction pyramids.

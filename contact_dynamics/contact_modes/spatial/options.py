@@ -1,7 +1,7 @@
-"""What the letters of one contact in space ask for: separate, stick, or slide within which sector.
+"""The conditions of each letter of one contact in space: separate, stick, or slide within a sector.
 
-Letters come in groups, a tree whose leaves are letters and whose groups ask for no more than each of their
-letters does, so that a group which cannot hold ends the trial of all its letters (`search`).
+Letters are the leaves of a tree of groups. A group asks for no more than each of its letters does. So if a
+group cannot hold, all its letters are refused together (`search`).
 
 The edges of a contact's friction pyramid are numbered around it, and items of sliding with them: 2 j is the
 sector of directions opposite to edge j, 2 j + 1 its border with the next sector.
@@ -32,8 +32,8 @@ class Option(NamedTuple):
     """A letter of one contact, or several together; rows are (motion, constant), 7 numbers.
 
     Attributes:
-        letter: s, f, c; c also for an arc of sliding directions; empty: several.
-        item: Of sliding; -1: none, or several.
+        letter: s, f or c, where c may be an arc of sliding directions; empty for several letters.
+        item: The item of sliding, or -1 for none or several.
         zeroed: Edge forces, and normal acceleration, that are zero.
         raised: The normal acceleration's name, where that is positive.
         rows: (k, 7), zero or not negative.

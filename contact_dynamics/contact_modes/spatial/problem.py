@@ -1,7 +1,7 @@
-"""A question about contact modes in space, in the terms that it is answered in.
+"""A question about contact modes in space, and its case: the question in the units of the computation.
 
-Accelerations of the body and of its contact points are affine functions of the contact forces. They are
-stated in units in which those of contact points are about 1, so that one tolerance serves all.
+Accelerations of the body and of its contact points are affine functions of the contact forces. The units are
+such that accelerations of contact points are about 1, so that one tolerance serves all.
 """
 
 from __future__ import annotations
@@ -52,8 +52,8 @@ class SpatialContactProblem(Record):
 
     Attributes:
         body: Mass and angular inertia.
-        state: Of the body, with its origin at the centre of mass.
-        contacts: Of any kind; at most `MOST_DYNAMIC_CONTACTS` of them touch.
+        state: The state of the body, with its origin at the centre of mass.
+        contacts: Contacts of any kind. At most `MOST_DYNAMIC_CONTACTS` of them touch.
         force_W: (3,), N, on the body besides its contact forces, gravity included, world axes.
         torque_W: (3,), N m, likewise, about the centre of mass, world axes.
         friction_facets: Edges of the pyramid that stands for a friction cone, >= 3.

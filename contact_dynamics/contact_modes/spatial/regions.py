@@ -105,10 +105,10 @@ class Flat(NamedTuple):
     """The motions in which some contacts stick.
 
     Attributes:
-        chosen: Contacts that were asked to.
-        stuck: Those and all that stick with them.
-        rows: (k, 6), of the motion, zero.
-        image: Of the contacts that need not stick.
+        chosen: The contacts that were asked to stick.
+        stuck: These contacts, and all that stick with them.
+        rows: (k, 6), combinations of the motion that are zero.
+        image: The tangential motions of the contacts that need not stick.
     """
 
     chosen: tuple[int, ...]

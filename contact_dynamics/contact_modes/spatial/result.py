@@ -1,4 +1,4 @@
-"""What a question about contact modes in space comes to."""
+"""The answer to a question about contact modes in space."""
 
 from __future__ import annotations
 

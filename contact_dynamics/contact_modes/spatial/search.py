@@ -1,18 +1,23 @@
 """Every combination of letters that some contact forces bring about: a search that refuses many at once.
 
-First which contacts stay, one after another. Then, where several frictional contacts at rest stay, which of
-them stick; the motions with given contacts sticking form a flat, and there are few: under a face on a table
-one for each foot, and rest. Within a flat all others slide, in one of few regions of their common motions,
-split while it is wide and may hold (`regions`). Then the letters of each contact, in groups that are
-split further and further (`options`). Whatever is asked is asked of all its parts, and what cannot
-hold is dropped with all of them, so that no consistent mode is missed. Each trial is a few pivots of a dual
-simplex (`dual_simplex`).
+The search decides three things in turn:
 
-At rest, power refuses much at once. Motions gain kinetic energy, so the applied wrench has power >= 0 on
-them, and at least what friction takes. Friction takes the most that it can (maximum dissipation), so that any
-other share of friction, taken for a whole region, must leave some power somewhere in it (`_dissipates`).
-Without this the load could shift to contacts that are not decided yet, and nothing is refused before the last
-few: with many feet, that would be every cell of the arrangement of all their sectors.
+- First it decides which contacts stay, one after another.
+- Then it decides which of several frictional contacts at rest stick. The motions with given contacts sticking
+  form a flat. There are few flats: for a face on a table one for each foot, and rest.
+- Within a flat all other contacts slide. Their common motions are divided into few regions, which are split
+  further while they are wide and may hold (`regions`). In a region, the letters of each contact are tried in
+  groups that are split further and further (`options`).
+
+A group or region asks no more than each of its parts does. If it cannot hold, none of its parts can, and all
+are dropped together. So no consistent mode is missed. Each trial is a few pivots of a dual simplex
+(`dual_simplex`).
+
+For bodies at rest, power refuses many cases at once. Motions gain kinetic energy, so the applied wrench has
+power >= 0 on them, and at least the power that friction takes. Friction takes the most that it can (maximum
+dissipation). So any other choice of friction for a whole region must leave some power somewhere in it
+(`_dissipates`). Without this the load could shift to contacts that are not decided yet, and nothing would be
+refused before the last few. With many feet that would be every cell of the arrangement of all their sectors.
 """
 
 from __future__ import annotations
@@ -44,7 +49,7 @@ AnyProgram = Program | CarefulProgram
 
 _REGION_TAG = -2
 _CONTACT_TAG = -3
-"""Of contact 0; each further one is one less."""
+"""The tag of contact 0. Each further contact's tag is one less."""
 
 
 class _DoubtError(Exception):
@@ -73,9 +78,9 @@ class Found(NamedTuple):
     """A mode that some forces bring about.
 
     Attributes:
-        letters: Of each touching contact.
-        program: Solved.
-        motion: Of a mixture of the motion's components: whether it is unique.
+        letters: The letter of each touching contact.
+        program: The solved program.
+        motion: The range of a weighted sum of the motion's components, which shows whether it is unique.
     """
 
     letters: list[Option]

@@ -1,9 +1,10 @@
 """Static questions in space: does a body at rest stay, is it jammed or wedged, which disturbance can it take?
 
-As in the plane (`statics`), with friction cones replaced by pyramids inside them: what is said to hold holds,
-and the disturbance is one that it surely takes. What holds by less than the pyramids leave out, a part of
-1 - cos(pi / facets) of friction, may be said not to. The wrenches that contact forces can balance are a
-polyhedral cone in R^6, torques being divided by a length; its facets are the extreme rays of the dual cone.
+The questions are those of the plane (`planar.statics`), but pyramids inside the friction cones replace them.
+So the answer is on the safe side: a body that is said to stay does stay, and the disturbance is one that it
+surely takes. If a property holds by less than the pyramids leave out, a part 1 - cos(pi / facets) of
+friction, the answer may deny it. The wrenches that contact forces can balance are a polyhedral cone in R^6,
+with torques divided by a length. Its facets are the extreme rays of the dual cone.
 """
 
 from __future__ import annotations

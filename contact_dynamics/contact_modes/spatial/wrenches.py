@@ -34,7 +34,7 @@ class Way(NamedTuple):
 
     Attributes:
         letter: s (separates), f (sticks) or c (stays).
-        item: Of sliding (`options`); -1: none is asked for.
+        item: The item of sliding (`options`), or -1 if none is asked for.
     """
 
     letter: str
@@ -68,8 +68,8 @@ def wrench_generators(
 
     Args:
         case: The body with its contacts.
-        search: Of that case.
-        ways: Of each touching contact.
+        search: The search of that case.
+        ways: The way of each touching contact.
         metric: (6,), m, by which a wrench is divided: ones, then the length that torques are divided by.
     """
     motion = case.motion

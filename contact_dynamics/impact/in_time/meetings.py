@@ -1,7 +1,7 @@
-"""Which contacts of a body come next: those found from its shape and the world, or points that were named.
+"""The next contacts of a body: those found from its shape and the world, or points that the caller gives.
 
-Both answer with a `Landing` and know each contact again when it comes back: a corner, a ball, a named point.
-On a rim each point is a contact of its own.
+Both return a `Landing`, and recognise a contact when it comes back: a corner, a ball, a given point. On a rim
+each point is a contact of its own.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a landing over several strikes comes to: each strike with its time, and why it ends."""
+"""The result of a landing over several strikes: each strike with its time, and why the sequence ends."""
 
 from __future__ import annotations
 

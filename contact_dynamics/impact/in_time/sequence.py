@@ -1,20 +1,20 @@
 """A landing in time: corners that strike some milliseconds apart, with free flight between the strikes.
 
-What looks like several contacts at once is mostly this, in recordings of real bodies: one corner strikes, the
-body flies on, another strikes. Each strike is Routh's impact at one contact (`spatial`), each flight is free
-motion in closed form (`tumbling`), and the next strike is found to rounding (`first_contact`). Nothing is
-stepped. Contacts of one instant are struck one after the other, the fastest approach first, as the sequential
-law does (`several`); there the order is a choice, between instants it is not.
+In recordings of real bodies, contacts that look simultaneous are mostly this: one corner strikes, the body
+flies on, another corner strikes. Each strike is Routh's impact at one contact (`impact.spatial`), each flight
+is free motion in closed form (`tumbling`), and the next strike is found to rounding (`landing`). Nothing is
+stepped. Contacts of one instant are struck one after the other, the fastest approach first, as in the
+sequential law (`impact.several`). Their order is a choice. The order of different instants is not.
 
-The sequence ends where nothing strikes within a window, where a contact stays, or where strikes
-accumulate: rebounds that shrink by a ratio r < 1 have all ended d / (1 - r) after a strike whose rebound
-takes d (Zeno). Then free flight is over, and which contacts stay, slide or roll is a question
-of contact modes, not of impacts.
+The sequence ends where nothing strikes within a window, where a contact stays, or where strikes accumulate.
+Rebounds that shrink by a ratio r < 1 have all ended d / (1 - r) after a strike whose rebound takes d (Zeno).
+Then free flight is over. Contact modes, not impacts, then say which contacts stay, slide or roll.
 
-With a ``hold_step`` it goes on: the body moves freely for that time, an impulse without restitution then
-takes the contact's approach (Moreau's time-stepping, with Coulomb's friction), and so on until it leaves.
-That part alone is an approximation, of first order in the step: times are known to a step, the contact sinks
-by half a step's fall each time, and what approaches by no more than two steps' fall meanwhile is held too.
+With a ``hold_step`` the sequence goes on. The body moves freely for that time, then an impulse without
+restitution takes away the contact's approach (Moreau's time-stepping, with Coulomb's friction), and so on
+until the contact leaves. Only this part is an approximation, of first order in the step. Times are known to a
+step, the contact sinks by half a step's fall each time, and other contacts that approach by at most two
+steps' fall are held too.
 
 Not covered: a resting contact that its own sliding jams.
 """
@@ -64,7 +64,8 @@ MOST_STRIKES: Final = 200
 """Strikes after which a sequence ends unfinished: rebounds of e = 0.9 have lost their height by then."""
 
 HELD: Final = 2.0
-"""Of the speed that a step of free motion gives a contact that is held: above it, something else struck."""
+"""Largest approach of a held contact, relative to the speed that a step of free motion gives it. If it is
+faster, something else struck."""
 
 MOST_HELD: Final = 100
 """Impulses that hold contacts at one instant. Two ends of a rod need four, the corners of a face some ten."""
@@ -74,8 +75,8 @@ ROUND: Final = 20
 sequence comes to an end within some 2500 of them."""
 
 STILL: Final = 0.1
-"""Of that speed: a body that is held and moves no faster, after a step, rests. One that begins to fall over
-has more by then, unless it is balanced to within some degrees."""
+"""Speed of a held body after a step below which it rests, relative to the speed that a step of free motion
+gives it. A body that begins to fall over is faster, unless it is balanced to within some degrees."""
 
 
 def impact_sequence(

@@ -1,4 +1,4 @@
-"""Many planar impacts at once: the operations of `routh` and `planar`, in the same order, on arrays.
+"""Many planar impacts at once: the operations of `routh` and `one_contact`, in the same order, on arrays.
 
 Every number equals the scalar call's to the last bit, because each is formed from the same operations and all
 of them (sums, products, quotients, square roots) are rounded correctly by both. Branches become masks.

@@ -5,7 +5,8 @@ Bodies are rigid, the impact takes no time, friction is Coulomb's with one coeff
 acts. A contact that rests (zero normal velocity) gets an impulse only where its own sliding drives it into
 compression, which is how an inconsistent contact mode (lecture 26) is settled.
 
-Not covered here: several contacts at once (`several`), two moving bodies (`pair`), space (`spatial`).
+Not covered here: several contacts at once (`impact.several`), two moving bodies (`two_bodies`), space
+(`impact.spatial`).
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ def planar_impact(
 
     Args:
         body: Mass and angular inertia.
-        velocity: Of the body just before.
+        velocity: The velocity of the body just before.
         contact: Where, along which normal, with which friction and restitution.
         restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A component of the contact's velocity within it counts as zero.

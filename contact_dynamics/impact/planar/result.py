@@ -1,4 +1,4 @@
-"""What an impact at one planar contact comes to: velocities afterwards, and the impulse path as evidence."""
+"""The result of an impact at one planar contact: velocities afterwards, and the impulse path as evidence."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class PlanarImpact(Record):
         inverse_inertia: 1/kg, the contact's response to impulse.
         contact_path: Impulse path and the contact's velocity afterwards, contact axes.
         impulse: N s, total, on the body, axes of the plane.
-        other_velocity: Of the second body afterwards; None: the fixed world.
+        other_velocity: The velocity of the second body afterwards, or None for the fixed world.
     """
 
     restitution_law: RestitutionLaw

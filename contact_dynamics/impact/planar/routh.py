@@ -17,8 +17,8 @@ speed to begin with.
 One slip in the lecture: the compression impulse of an approaching particle is -m v_n, which its formulas
 write as m v_n.
 
-Everything here is plain floats in contact axes, tangent and normal; `planar` and `pair` put bodies around it,
-and `batch` repeats the same operations in the same order on arrays.
+All numbers here are plain floats in contact axes, tangent and normal. `one_contact` and `two_bodies` apply
+this to bodies, and `batch` repeats the same operations in the same order on arrays.
 """
 
 from __future__ import annotations

@@ -34,9 +34,9 @@ def planar_pair_impact(
 
     Args:
         body: The first body, which the contact's normal points into.
-        velocity: Of the first body just before.
+        velocity: The velocity of the first body just before.
         other: The second body.
-        other_velocity: Of the second body just before.
+        other_velocity: The velocity of the second body just before.
         contact: Where on the first body (from its centre of mass), normal, friction, restitution.
         other_r: m, from the second body's centre of mass to the contact.
         restitution_law: What the coefficient of restitution means.

@@ -1,4 +1,4 @@
-"""Several contacts of one body at once: no single law is accepted for them, so laws have names here.
+"""Several contacts of one body at once. No single law is accepted for them, so laws have names here.
 
 * SEQUENTIAL (Routh 1860; Ivanov 1995; Smith et al. 2012): the single-contact law at one contact after the
   other, the one that approaches fastest first (the first in the list where they tie), until none approaches.
@@ -10,8 +10,8 @@
 spread: how far the answer is undecided. `outcomes_at_once` does so for the solutions of SIMULTANEOUS. In the
 plane: `several_planar`.
 
-Not covered: moments at the contacts, and resting contacts that their own sliding would jam (`spatial` answers
-that for one). Several bodies: `bodies`. Contacts that strike one after the other in time: `sequence`.
+Not covered: moments at the contacts, and resting contacts that their own sliding would jam (`impact.spatial`
+answers that for one).
 """
 
 from __future__ import annotations

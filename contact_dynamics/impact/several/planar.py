@@ -1,7 +1,7 @@
-"""Several contacts of one planar body at once: the laws of `several`, in the plane.
+"""Several contacts of one planar body at once: the laws of `orders`, in the plane.
 
-The plane is put into space, where nothing couples it to the motion out of it: a body that is isotropic there
-moves in the plane as the planar one does, so that the laws are the same and are written once.
+The plane is put into space, where the body has equal moments about all axes. Such a body moves in the plane
+as the planar one does, so the laws are the same and are written once.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def planar_several_impact(
 
     Args:
         body: Mass and angular inertia.
-        velocity: Of the body just before.
+        velocity: The velocity of the body just before.
         contacts: All that touch, approaching or not; at least one.
         several_contacts_law: The law for several contacts.
         restitution_law: What the coefficients of restitution mean; ENERGETIC only with SEQUENTIAL.

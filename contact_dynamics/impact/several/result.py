@@ -1,4 +1,4 @@
-"""What an impact at several contacts comes to, of one body or of several, and the laws' names."""
+"""The result of an impact at several contacts, of one body or of several, and the names of the laws."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class BodiesImpact(Record):
         several_contacts_law: The law for several contacts.
         restitution_law: The law of restitution.
         verdict: Whether the answer holds.
-        states: Of each body afterwards: the pose of before, new velocities.
+        states: The state of each body afterwards, with the pose of before and new velocities.
         impulses_W: (n, 3), N s, total, on the first body of each contact.
         velocities_before_W: (n, 3), m/s, of the first body's point relative to the second's.
         velocities_after_W: (n, 3), m/s, likewise.

@@ -1,12 +1,12 @@
 """Several contacts between several bodies, and between them and the fixed world, at once.
 
-The laws are those of one body (`several`): SEQUENTIAL strikes one contact after the other, each as the impact
-of the two bodies that meet there (`pair`, `spatial`); SIMULTANEOUS solves one complementarity problem over
-all contacts and bodies (`simultaneous`). Momentum and angular momentum of bodies that touch no world stay as
-they are, to rounding.
+The laws are those of one body (`orders`). SEQUENTIAL strikes one contact after the other, each as the impact
+of the two bodies that meet there (`impact.spatial`). SIMULTANEOUS solves one complementarity problem over all
+contacts and bodies (`simultaneous`). Momentum and angular momentum of bodies that do not touch the world are
+conserved to rounding.
 
-For Newton's cradle of equal balls at e = 1 the two differ, as rigid-body mechanics leaves them free to: the
-sequential law lets the last ball leave, as ball bearings do, the simultaneous one moves all of them.
+For Newton's cradle of equal balls at e = 1 the two laws differ, and rigid-body mechanics allows both. The
+sequential law lets the last ball leave, as ball bearings do. The simultaneous one moves all of them.
 
 Not covered: moments at the contacts.
 """

@@ -1,7 +1,7 @@
-"""What jammed contacts come to in the end: jamming impacts until some mode is consistent.
+"""Jammed contacts go through jamming impacts until some contact mode is consistent.
 
-After one jamming impact (`jamming`) contacts may slide on in another direction, and jam again in that. Each
-takes energy, so that it comes to an end: in hundreds of drawn sets after at most three.
+After one jamming impact (`jamming`) contacts may slide on in another direction, and jam again. Each impact
+takes energy, so this ends. In hundreds of drawn sets it ended after at most three.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
-"""Many impacts in space at once: arrays in, arrays out, with the numbers of `spatial` to the last bit.
+"""Many impacts in space at once: arrays in, arrays out, with the numbers of `one_contact` to the last bit.
 
-Contacts slide in lock-step (`lockstep`); those whose direction is invariant (spheres, central impacts, plane
-problems, no friction) are closed forms here as there. What is not kept is the vertices of the impulse paths.
+Contacts slide in lock-step (`batch_paths`). Those whose direction is invariant (spheres, central impacts,
+plane problems, no friction) have closed forms, as in `one_contact`. The vertices of the impulse paths are not
+kept.
 """
 
 from __future__ import annotations

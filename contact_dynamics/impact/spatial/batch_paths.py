@@ -1,9 +1,9 @@
-"""The impulse paths of many contacts in space at once: `swerve`, `stopping` and `progress` in lock-step.
+"""The impulse paths of many contacts in space at once: `path`, `stop` and `restitution` in lock-step.
 
-Each contact is a lane. All that still slide take their next stretch together, those whose impact is over or
-that have stopped drop out, and within a stretch branches become selections of lanes. The arithmetic is the
-scalar path's, partly the same lines (`series`, `sliding`, `stopping`), in the same order, so that every
-number is the same to the last bit. Vertices of the paths are not kept.
+Each contact is a lane. All lanes that still slide take their next stretch together. Lanes drop out when they
+have stopped or their impact is over. Within a stretch, branches become selections of lanes. The arithmetic is
+that of the single path in the same order, partly by the same lines (`taylor`, `sliding_law`, `stop`), so that
+every number is the same to the last bit. Vertices of the paths are not kept.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def trace_all(
 ) -> SpatialPaths:
     """Return the paths of contacts that start with ``u``, tangential, and ``v_n`` <= 0, normal, m/s.
 
-    The same as `swerve.trace` of each.
+    The results are those of `path.trace` for each.
     """
     speed = np.sqrt(u[0] * u[0] + u[1] * u[1])
     slides = speed > 0.0
@@ -107,7 +107,7 @@ def taken_law(sliding: SlidingLaw, lanes: Lanes) -> SlidingLaw:
 
 
 class _Slide:
-    """Sliding contacts on their way: `swerve._slide` for many."""
+    """Many contacts that slide: the loop of `path.trace` for many."""
 
     def __init__(self, sliding: SlidingLaw, u: tuple[FloatArray, FloatArray], progress: ManyProgress) -> None:
         self.sliding = sliding
@@ -248,7 +248,7 @@ def _after_stop(sliding: SlidingLaw) -> tuple[FloatArray, FloatArray, FloatArray
 def _stops_ahead(
     sliding: SlidingLaw, u: tuple[FloatArray, FloatArray], first_speed: FloatArray, *, with_work: bool
 ) -> tuple[Lanes, Stop]:
-    """Return the positions that have a stop ahead, and those stops: `stopping.stop_ahead` for many."""
+    """Return the positions that have a stop ahead, and those stops: `stop.stop_ahead` for many."""
     speed = np.sqrt(u[0] * u[0] + u[1] * u[1])
     d1, d2 = u[0] / speed, u[1] / speed
     slow = np.flatnonzero(turns_slowly(sliding, d1, d2, speed, first_speed))
@@ -305,7 +305,7 @@ def _near_stops(
 def _regular_solutions(
     g: list[FloatArray], h: list[FloatArray], x: FloatArray, power: float
 ) -> tuple[NDArray[np.bool_], FloatArray]:
-    """Return where the series has converged, and F(x) there: `stopping._regular_solution` for many."""
+    """Return where the series has converged, and F(x) there: `stop._regular_solution` for many."""
     f = [-1.0 / (power * g[0])]
     slope: list[FloatArray] = []
     total, x_n = f[0].copy(), np.ones(len(x))

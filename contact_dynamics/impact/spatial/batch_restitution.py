@@ -1,6 +1,6 @@
-"""How far many impacts have come while their normal impulses grow: `progress` for many, in lock-step.
+"""How far many impacts have come while their normal impulses grow: `restitution` for many, in lock-step.
 
-The operations are the scalar ones in the same order, and branches are selections of lanes, so that every
+The operations are those of one impact in the same order, and branches are selections of lanes, so that every
 number is the same to the last bit.
 """
 
@@ -217,7 +217,7 @@ def taken(arrays: Iterable[FloatArray], lanes: Lanes | Mask) -> Any:
 
 
 def crossings(series: list[FloatArray], level: FloatArray, begin: FloatArray, end: FloatArray) -> FloatArray:
-    """Return where polynomials cross ``level`` between ``begin`` and ``end``: `series.crossing` for many."""
+    """Return where polynomials cross ``level`` between ``begin`` and ``end``: `taylor.crossing` for many."""
     low, high = begin.copy(), end.copy()
     first, last = value(series, begin), value(series, end)
     rising = last >= first

@@ -1,13 +1,14 @@
 """Impact in space of one body at one contact: with the fixed world, or with a second moving body.
 
-Model: as in the plane (`planar`): rigid, without duration, Coulomb friction, the contact's force alone. In
-space the sliding direction swerves while the impulse grows, and the path is an ordinary differential equation
-in the normal impulse (lecture 27 carried to space; Routh 1860; Keller 1986), solved to rounding (`sliding`,
-`series`, `swerve`); where the direction stays, in closed form. Impulses on two bodies are opposite, so that
-only their relative velocity matters and the contact's inverse inertia is the sum of both (`response`).
+Model: as in the plane (`impact.planar`), bodies are rigid, the impact has no duration, friction is Coulomb's,
+and only the contact's force acts. In space the sliding direction swerves while the impulse grows. The path
+obeys an ordinary differential equation in the normal impulse (lecture 27 carried to space; Routh 1860; Keller
+1986), which is solved to rounding (`sliding_law`, `taylor`, `path`), and in closed form where the direction
+stays constant. Impulses on two bodies are opposite, so only their relative velocity matters, and the
+contact's inverse inertia is the sum of both (`response`).
 
-Not covered: torsional friction and rolling resistance (the contact transmits a force, no moment), several
-contacts (`several`).
+Not covered: torsional friction and rolling resistance (the contact transmits a force and no moment), several
+contacts (`impact.several`).
 """
 
 from __future__ import annotations
@@ -87,9 +88,9 @@ def spatial_pair_impact(
 
     Args:
         body: The first body, which the normal points into.
-        state: Of the first body just before.
+        state: The state of the first body just before.
         other: The second body.
-        other_state: Of the second body just before.
+        other_state: The state of the second body just before.
         contact: Where, along which normal into the first body, with which friction and restitution.
         restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A normal or tangential relative velocity within it counts as zero.

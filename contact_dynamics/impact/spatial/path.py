@@ -1,9 +1,9 @@
 """The impulse path of one contact in space, from the first touch to the end of restitution.
 
-Phases: sliding that swerves (`series`), or slides straight where its direction is invariant; after a stop,
-sticking or leaving in the one admissible direction, both straight (`sliding`). The straight ones are closed
-forms: a central or spherical impact, a planar impact embedded in space, one without friction, and every
-impact after its stop.
+The contact first slides. It swerves (`taylor`), or slides straight if its direction is invariant. After a
+stop it sticks, or leaves in the one admissible direction, straight in both cases (`sliding_law`). Straight
+phases have closed forms: a central or spherical impact, a planar impact embedded in space, an impact without
+friction, and every impact after its stop.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """How a contact in space responds to impulse: axes, inverse inertia, and what an impulse does to a body.
 
 Contact axes are two tangents and the normal; the tangents are the principal ones of the tangential block of
-the inverse inertia, as the sliding equations want them (`sliding`). Everything is written out by component,
-for one case as for many (`elementwise`).
+the inverse inertia, as the sliding equations need them (`sliding_law`). Everything is written by component,
+for one case and for many (`elementwise`).
 
 The inverse inertia of a pair of bodies is the sum of both: their impulses are opposite, and so are their
 shares of the relative velocity.

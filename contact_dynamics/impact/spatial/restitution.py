@@ -6,7 +6,7 @@ given back in restitution; Newton's law only looks at the normal velocity. In sp
 swerves, so that a contact can approach once more before its restitution is over: what the second compression
 collects is added to what was left of the first.
 
-One path is followed here, with its vertices; `lockstep` repeats the same operations for many at once.
+This file follows one path, with its vertices. `batch_restitution` repeats the same operations for many.
 """
 
 from __future__ import annotations

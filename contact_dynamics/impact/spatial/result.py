@@ -1,4 +1,4 @@
-"""What an impact at one contact in space comes to: the state afterwards, and the impulse path as evidence."""
+"""The result of an impact at one contact in space: the state afterwards, and the impulse path as evidence."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class SpatialImpact(Record):
             tolerance is 0.
         velocity_after_W: (3,), m/s, of the contact, relative to what it touches.
         inverse_inertia_W: (3, 3), 1/kg, the contact's change of velocity per impulse.
-        other_state: Of the second body afterwards; None: the fixed world.
+        other_state: The state of the second body afterwards, or None for the fixed world.
     """
 
     restitution_law: RestitutionLaw

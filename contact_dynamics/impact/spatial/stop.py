@@ -1,9 +1,9 @@
 """How much normal impulse brings a swerving contact to its stop, without following it there.
 
-A contact that stops does so in an invariant direction f with g < 0 that attracts its neighbours (`sliding`; g
-= d|u|/dp, h = |u| times the rate of turning). Near f, with x the angle from it, the impulse that is left
-until the stop is |u| F(x), and what friction dissipates on the way is mu |u|^2 G(x). Along the path d|u| : dx
-: dp = g : h/|u| : 1, so that
+A contact that stops does so in an invariant direction f with g < 0 that attracts its neighbours
+(`sliding_law`; g = d|u|/dp, h = |u| times the rate of turning). Near f, with x the angle from it, the impulse
+that is left until the stop is |u| F(x), and what friction dissipates on the way is mu |u|^2 G(x). Along the
+path d|u| : dx : dp = g : h/|u| : 1, so that
 
     h F' + g F = -1,        h G' + 2 g G = -1,
 
@@ -188,7 +188,7 @@ def next_coefficient(
         h: Coefficients of h, of which the first is 0.
         f: Coefficients of F so far, at least one.
         slope: Coefficients of F' so far, one fewer.
-        power: Of |u|, which the sought quantity is proportional to.
+        power: The power of |u| to which the sought quantity is proportional.
     """
     m = len(f)
     known = g[m] * f[0]

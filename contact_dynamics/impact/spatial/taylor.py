@@ -1,6 +1,6 @@
 """A stretch of a swerving impulse path as power series, from its own recurrences.
 
-With a parameter s that runs as ds = |law's scale| dp/|u| the sliding equations (`sliding`) lose their
+With a parameter s that runs as ds = |law's scale| dp/|u| the sliding equations (`sliding_law`) lose their
 singularity at the stop, and their coefficients are of size 1,
 
     du/ds = |u| k - mu L u,    dp/ds = |u|,    dI/ds = -mu u,    dv_n/ds = k_n |u| - mu k . u,
@@ -31,10 +31,11 @@ ORDER: Final = 24
 and over s = 2.6 by 24, for twice the work."""
 
 LONGEST: Final = 16.0
-"""Of s. A bound where hardly anything changes; a decay that is in sight ends a stretch long before."""
+"""Longest stretch, in s. It matters only where hardly anything changes."""
 
 SURE: Final = 0.5
-"""Of s. Where the last terms underflow they tell nothing; over it the direction hardly turns even then."""
+"""Length of a stretch, in s, where the last terms underflow to zero, so that they do not say how far the
+series reaches. The direction hardly turns over this length."""
 
 WITH_WORK: Final = 0.85
 """Part of the length that is used where the work is asked for: as a product of two series, it leaves out more

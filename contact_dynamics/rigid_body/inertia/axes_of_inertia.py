@@ -1,18 +1,19 @@
 """Principal axes and moments, their order and signs, and the inertia ellipsoid (lecture 25, eq. 10 to 17).
 
-An inertia matrix fixes its principal axes up to order and sign, and, where moments are equal, up to a turn.
-This is the choice:
+An inertia matrix determines its principal axes up to order and sign, and, where moments are equal, up to a
+turn. This module chooses:
 
-- moments ascend, and the axes are right-handed;
-- of the first and the second axis the largest component is positive (of equally large ones the first; equal
-  means within `AXIS_TIE`); the third is their cross product;
-- of two equal moments, the axis of the other moment has its largest component positive, and the frame is the
-  one nearest to the body's: what the least rotation makes of x, y, z when it takes the body axis nearest to
-  that axis onto it; so all three axes point the way of the body axes nearest to them;
-- of three equal moments, the axes are the body's.
+- Moments ascend, and the axes are right-handed.
+- The largest component of the first axis and that of the second are positive. If two components are equally
+  large (within `AXIS_TIE`), the first of them counts. The third axis is the cross product.
+- If two moments are equal, the axis of the other moment has its largest component positive. The least
+  rotation that takes the nearest body axis onto it also gives the other two axes. So all three axes point the
+  way of the body axes nearest to them.
+- If all three moments are equal, the axes are the body's.
 
-Equal means within `EQUAL_MOMENTS_TOLERANCE` of the largest; equal moments are returned as their mean. Any
-rule jumps somewhere: this one where moments meet and where two components of an axis are equally large.
+Equal means within `EQUAL_MOMENTS_TOLERANCE` of the largest. Equal moments are returned as their mean. Every
+such rule jumps somewhere: this one jumps where moments meet, and where two components of an axis are equally
+large.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 REMEMBERED: Final = 128
-"""Bodies whose axes are kept."""
+"""Number of bodies whose axes are kept."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -43,7 +44,7 @@ class PrincipalAxes(Record):
 
     Attributes:
         moments: (3,), kg m^2, ascending.
-        R_BP: (3, 3), a rotation; columns: the axis of each moment, body axes.
+        R_BP: (3, 3), a rotation. Its columns are the axes of the moments, in body axes.
     """
 
     moments: FloatArray
@@ -56,9 +57,9 @@ class InertiaEllipsoid(Record):
 
     Attributes:
         I_B: (3, 3), kg m^2.
-        level: A, kg m^4 where r is in m.
+        level: The number a, kg m^4 where r is in m.
         semi_axes: (3,), m, descending: sqrt(a / I); inf where a moment is 0.
-        R_BP: (3, 3), columns: their directions, body axes.
+        R_BP: (3, 3), whose columns are the directions of the semi-axes, in body axes.
     """
 
     I_B: FloatArray
@@ -69,7 +70,7 @@ class InertiaEllipsoid(Record):
     def distance(self, axis_B: ArrayLike) -> float:
         """Return the distance sqrt(a / I_n), m, to the surface along a unit axis, (3,) (lecture 25, eq. 16).
 
-        It is sqrt(a / m) over the radius of gyration about that axis (eq. 17).
+        This is sqrt(a / m) divided by the radius of gyration about that axis (eq. 17).
         """
         axis = check_unit("axis", axis_B, 3)
         angular_inertia = float(axis @ self.I_B @ axis)
@@ -79,7 +80,7 @@ class InertiaEllipsoid(Record):
 def principal_axes(I_B: ArrayLike) -> PrincipalAxes:
     """Return the principal moments and axes of a (3, 3) symmetric matrix, kg m^2, such as a body's I_B.
 
-    Both are right to the last bit of the numbers given, slim bodies' small moments included.
+    Both are right to the last bit of the numbers given, also the small moments of slim bodies.
 
     Raises:
         InvalidFieldError: the matrix is not symmetric, or not finite.
@@ -118,8 +119,8 @@ def axes_of_bytes(data: bytes) -> PrincipalAxes:
 def inertia_ellipsoid(I_B: ArrayLike, *, level: float = 1.0) -> InertiaEllipsoid:
     """Return the inertia ellipsoid r^T I r = a of a (3, 3) matrix, kg m^2 (lecture 25, eq. 14 and 15).
 
-    With ``level`` = a = 2 T it is the energy ellipsoid in the space of angular velocities, rad/s (eq. 23);
-    with a = m times 1 m^4 its distance is one over the radius of gyration.
+    With ``level`` = a = 2 T it is the energy ellipsoid in the space of angular velocities, rad/s (eq. 23).
+    With a = m times 1 m^4 its distance is one over the radius of gyration.
 
     Raises:
         InvalidFieldError: the level is not > 0, the matrix is not symmetric, or a moment is negative.

@@ -1,10 +1,10 @@
-"""Is a list of triangles a closed surface, wound one way? If not, which edge says so.
+"""Is a list of triangles a closed surface, wound one way? If not, at which edge does it fail?
 
 Each edge must belong to exactly two triangles, which pass it in opposite directions. Triangles that name a
-vertex twice are no surface and are left out; flat ones with three vertices are kept: they join their
-neighbours and enclose nothing. Where indices alone leave edges open, vertices at exactly the same place are
-taken as one, since STL files and meshes with texture seams repeat them; places that differ in the last bit
-are not.
+vertex twice have no area and are left out. Flat triangles with three different vertices are kept: they join
+their neighbours and enclose nothing. If the indices alone leave edges open, vertices at exactly the same
+place are taken as one, because STL files and meshes with texture seams repeat vertices. Places that differ in
+the last bit stay separate.
 """
 
 from __future__ import annotations

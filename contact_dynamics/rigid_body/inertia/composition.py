@@ -1,4 +1,4 @@
-"""Several distributions of mass as one, and one without a part of it: lecture 24's sums, part by part."""
+"""Sums and differences of mass distributions, part by part (lecture 24)."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 def combined(parts: Iterable[MassDistribution]) -> MassDistribution:
     """Return all parts as one rigid mass.
 
-    All are given in the same frame F; `MassDistribution.placed` brings them there. Parts that overlap count
-    twice where they do.
+    All parts are given in the same frame F; `MassDistribution.placed` brings them there. Where parts overlap,
+    the mass counts twice.
 
     Raises:
         InvalidFieldError: there is no part.
@@ -38,11 +38,11 @@ def combined(parts: Iterable[MassDistribution]) -> MassDistribution:
 
 
 def without(whole: MassDistribution, part: MassDistribution) -> MassDistribution:
-    """Return what is left of ``whole`` when ``part``, in the same frame F, is taken out of it: a bore.
+    """Return what is left of ``whole`` when ``part``, in the same frame F, is taken out of it, as a bore is.
 
     Raises:
-        InvalidFieldError: the part is not lighter than the whole, or what is left is no distribution of
-            mass: the part does not lie within the whole.
+        InvalidFieldError: the part is not lighter than the whole, or no mass can have the inertia that is
+            left, because the part does not lie within the whole.
     """
     mass = whole.mass - part.mass
     if mass <= 0.0:

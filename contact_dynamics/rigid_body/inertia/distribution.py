@@ -1,9 +1,9 @@
 """Mass in a frame: how much, where its centre is, and its angular inertia (Mason, lectures 24 and 25).
 
-A `MassDistribution` is what shapes are turned into and what composes: it may also be a point or a line, whose
-inertia no rigid body has. `mass_properties` is its view for dynamics.
+Shapes are turned into a `MassDistribution`, and several of these can be combined. It may also be a point or a
+line, whose inertia no rigid body has. Its `mass_properties` are what dynamics needs.
 
-Frames: F is any frame fixed to the mass; B has F's axes and its origin at the centre of mass.
+Frames: F is any frame fixed to the mass. B has F's axes and its origin at the centre of mass.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ class MassDistribution(Record):
         I_B: (3, 3), kg m^2, about the centre of mass, F's axes.
 
     Raises:
-        InvalidFieldError: mass not > 0, a number not finite, a centre beyond `LARGEST_NUMBER`, or an inertia
-            that no mass has: not symmetric, or principal moments that break I1 + I2 >= I3.
+        InvalidFieldError: the mass is not > 0, a number is not finite, the centre is beyond `LARGEST_NUMBER`,
+            or no mass has the inertia: it is not symmetric, or its principal moments break I1 + I2 >= I3.
     """
 
     mass: float
@@ -59,7 +59,7 @@ class MassDistribution(Record):
     def from_inertia_about(
         cls, p_FQ_F: ArrayLike, I_Q: ArrayLike, *, mass: float, p_FB_F: ArrayLike
     ) -> MassDistribution:
-        """Return the distribution whose inertia about a point Q is known: parallel axes, backwards.
+        """Return the distribution whose inertia about a point Q is known, by the parallel-axis theorem.
 
         Args:
             p_FQ_F: (3,), m, the point.
@@ -68,7 +68,7 @@ class MassDistribution(Record):
             p_FB_F: (3,), m, centre of mass.
 
         Raises:
-            InvalidFieldError: as the class does, also where the inertia is too small for a centre so far.
+            InvalidFieldError: as in the class, and if the inertia is too small for a centre so far from Q.
         """
         mass = check_positive("mass", mass)
         center = check_array("center_of_mass", p_FB_F, (3,))
@@ -79,17 +79,17 @@ class MassDistribution(Record):
 
     @property
     def mass_properties(self) -> MassProperties:
-        """The same for dynamics, about the centre of mass.
+        """The mass properties of a body with this mass, about the centre of mass.
 
         Raises:
-            InvalidFieldError: the mass is a point or lies on a line: it has no inertia about some axis.
+            InvalidFieldError: the mass is a point or lies on a line, so it has no inertia about some axis.
         """
         return MassProperties(mass=self.mass, I_B=self.I_B)
 
     def placed(
         self, *, p_GF_G: ArrayLike = (0.0, 0.0, 0.0), q_GF: ArrayLike = (0.0, 0.0, 0.0, 1.0)
     ) -> MassDistribution:
-        """Return the same mass in a frame G in which F has that pose (lecture 25, eq. 11).
+        """Return the same mass in a frame G in which F has the given pose (lecture 25, eq. 11).
 
         Args:
             p_GF_G: (3,), m, F's origin in G.
@@ -105,13 +105,13 @@ class MassDistribution(Record):
         )
 
     def mirrored(self, normal_F: ArrayLike) -> MassDistribution:
-        """Return the mirror image in the plane through F's origin with that unit normal, (3,)."""
+        """Return the mirror image in the plane through F's origin with the given unit normal, (3,)."""
         normal = check_unit("normal", normal_F, 3)
         M = np.eye(3) - 2.0 * np.outer(normal, normal)
         return MassDistribution(mass=self.mass, p_FB_F=M @ self.p_FB_F, I_B=_symmetric(M @ self.I_B @ M.T))
 
     def with_mass(self, mass: float) -> MassDistribution:
-        """Return the same shape with another mass, kg, say the one that a scale shows."""
+        """Return the same shape with another mass, kg, for example the mass that a scale shows."""
         mass = check_positive("mass", mass)
         return MassDistribution(mass=mass, p_FB_F=self.p_FB_F, I_B=self.I_B * (mass / self.mass))
 
@@ -126,7 +126,7 @@ class MassDistribution(Record):
 
         Args:
             axis_F: (3,), unit, the line's direction.
-            p_FQ_F: (3,), m, a point of the line; the centre of mass where none is given.
+            p_FQ_F: (3,), m, a point of the line. The default is the centre of mass.
         """
         axis = check_unit("axis", axis_F, 3)
         about_center = max(
@@ -156,10 +156,10 @@ def inertia_of_second_moments(second: FloatArray) -> FloatArray:
 
 
 def difference(minuend: FloatArray, subtrahend: FloatArray, *, terms: float) -> FloatArray:
-    """Return the difference of two inertias, (3, 3), kg m^2, that rounding does not make impossible.
+    """Return the difference of two inertias, (3, 3), kg m^2, corrected where rounding makes it impossible.
 
-    What is left of a point or a line is rounding alone, and may have I1 + I2 < I3. Where that is within the
-    rounding of the ``terms``, kg m^2, that went into it, the nearest possible inertia is returned.
+    If a point or a line is left, the difference may be rounding alone and have I1 + I2 < I3. If that is
+    within the rounding of its ``terms``, kg m^2, the nearest possible inertia is returned.
     """
     inertia: FloatArray = minuend - subtrahend
     half_trace = 0.5 * float(np.trace(inertia))
@@ -174,7 +174,7 @@ def _symmetric(matrix: FloatArray) -> FloatArray:
 
 
 def _check_inertia(field: str, value: ArrayLike) -> FloatArray:
-    """Return the matrix if some mass has it: I1 + I2 >= I3 >= I2 also makes every moment >= 0."""
+    """Return the matrix if a mass can have it. I1 + I2 >= I3 >= I2 also makes every moment >= 0."""
     inertia = check_symmetric(field, value)
     moments = np.linalg.eigvalsh(inertia)
     if moments[0] + moments[1] < moments[2] - TRIANGLE_TOLERANCE * abs(moments[2]):

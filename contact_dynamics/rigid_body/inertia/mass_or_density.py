@@ -1,4 +1,4 @@
-"""How much mass a shape has: given outright, or as a density."""
+"""The mass of a shape, which is given as such or as a density."""
 
 from __future__ import annotations
 

@@ -1,11 +1,11 @@
 """Which way do the parts of a closed surface face? Solids outwards, cavities inwards and within a solid.
 
-A surface may have several parts that share no edge. One that encloses a positive volume is a solid and must
-not lie within another (its mass would count twice); a negative one is a cavity and must lie within a solid
-(else it is inside out). Which holds is asked at one point just inside each part: the winding number of the
-others about it, a sum of solid angles, is 0 or 1 (Van Oosterom and Strackee 1983).
+A surface may have several parts that share no edge. A part with a positive volume is a solid. It must not lie
+within another, because its mass would count twice. A part with a negative volume is a cavity. It must lie
+within a solid; otherwise it is inside out. This is tested at one point just inside each part: the winding
+number of the others about it, a sum of solid angles, is 0 or 1 (Van Oosterom and Strackee 1983).
 
-Not covered: surfaces that cut through themselves or each other. What they enclose counts by winding number.
+Not covered: surfaces that cut through themselves or each other. Their volumes count by winding number.
 """
 
 from __future__ import annotations
@@ -118,7 +118,7 @@ def _labels(surface: ClosedSurface) -> NDArray[np.int64]:
 def _point_inside(own: FloatArray, near: FloatArray, inwards: float) -> FloatArray:
     """Return a point behind a part's largest triangle, half way to the next triangle of any part.
 
-    The ray meets planes where Möller and Trumbore (1997) have it, in barycentric coordinates u, v.
+    The ray is intersected with triangles as by Möller and Trumbore (1997), in barycentric coordinates u, v.
     """
     normals = np.cross(own[:, 1] - own[:, 0], own[:, 2] - own[:, 0])
     sizes = np.linalg.norm(normals, axis=1)

@@ -1,11 +1,12 @@
 """Volume, centre and second moments of what triangles enclose: exact integrals (lecture 25, eq. 4 to 9).
 
-Each triangle spans a tetrahedron with the origin, its volume signed by the side on which the origin lies;
-over it, polynomials integrate in closed form from its corners (Tonon 2004; Eberly 2002, "Polyhedral mass
-properties"). The origin is put at a vertex mean, then at the centre of mass: a mesh far away loses no digits.
+Each triangle and the origin span a tetrahedron. The sign of its volume says on which side the origin is.
+Integrals of polynomials over it have closed forms in its corners (Tonon 2004; Eberly 2002, "Polyhedral mass
+properties"). The origin is first put at the mean of the vertices, then at the centre of mass, so that a mesh
+far away loses no digits.
 
-Rounding leaves errors of some 1e-15, but for a needle of a times its thickness that lies askew to the axes:
-up to 1e-16 a^2 (measured for a = 1e3 and 1e6: 4e-13 and 4e-7 of the volume).
+Rounding leaves errors of about 1e-15. The exception is a needle that is askew to the axes: if its length is a
+times its thickness, errors are up to 1e-16 a^2 (measured for a = 1e3 and 1e6: 4e-13 and 4e-7 of the volume).
 
 Nothing is checked here: the surface must be closed and wound outwards.
 """
@@ -53,8 +54,8 @@ def polyhedron(p_FV_F: FloatArray, triangles: NDArray[np.int64]) -> Polyhedron:
 def signed_volumes(points: FloatArray, triangles: NDArray[np.int64]) -> FloatArray:
     """Return the signed volumes, (m,), m^3, of the triangles' tetrahedra with the origin.
 
-    From a corner and edges, so that small triangles far from the origin keep their digits; from the two
-    shorter edges, so that needles do.
+    They are computed from a corner and two edges, so that small triangles far from the origin keep their
+    digits. The edges are the two shorter ones, so that needles keep theirs.
     """
     corners = points[triangles.T]  # (3, m, 3)
     edges = np.roll(corners, -1, axis=0) - corners  # each from its corner to the next

@@ -1,11 +1,11 @@
 """Principal moments and axes of an inertia matrix in extended precision (lecture 25, eq. 10 and 11).
 
-A tumbling body turns by phases that grow with time, so an error of one last bit in a moment is an error of
-radians after 1e16 revolutions, and after far fewer near the middle axis. The matrix is therefore taken as the
-exact numbers that its doubles are, and diagonalised in decimal arithmetic by Jacobi's rotations, which
-converge quadratically and stay orthogonal where moments are nearly equal.
+A tumbling body turns by phases that grow with time. So an error of one last bit in a moment becomes an error
+of radians after 1e16 revolutions, and much earlier near the middle axis. The doubles of the matrix are
+therefore taken as exact numbers, and the matrix is diagonalised in decimal arithmetic by Jacobi's rotations.
+These converge quadratically, and stay orthogonal where moments are nearly equal.
 
-Not covered: an ordering or sign of axes for people to rely on; this frame serves the tumbling formulas only.
+Not covered: an order or sign of axes for people to rely on. Only the tumbling formulas use this frame.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 _MOST_SWEEPS: Final = 30
-"""Convergence takes four to eight."""
+"""Bound on the sweeps. Convergence takes four to eight."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,8 +33,8 @@ class PrincipalFrame(Generic[Scalar]):
 
     Attributes:
         moments: kg m^2.
-        gaps: kg m^2, >= 0: middle - small, large - middle, large - small.
-        axes_B: 3 rows: unit axes, body coordinates, either handedness.
+        gaps: Differences middle - small, large - middle and large - small, kg m^2, >= 0.
+        axes_B: Unit axes in body coordinates, as 3 rows, of either handedness.
     """
 
     moments: tuple[Scalar, Scalar, Scalar]
@@ -49,7 +49,7 @@ def principal_frame(I_B: FloatArray) -> PrincipalFrame[Decimal]:
 
 @lru_cache(maxsize=256)
 def in_doubles(frame: PrincipalFrame[Decimal]) -> PrincipalFrame[float]:
-    """Return a frame with each number rounded, the gaps too, which keeps nearly equal moments apart."""
+    """Return a frame in doubles. The gaps are rounded too, which keeps nearly equal moments apart."""
     small, middle, large = (float(moment) for moment in frame.moments)
     low, high, both = (float(gap) for gap in frame.gaps)
     axes = tuple((float(x), float(y), float(z)) for x, y, z in frame.axes_B)
@@ -78,7 +78,7 @@ def _of_bytes(data: bytes) -> PrincipalFrame[Decimal]:
 
 
 def _diagonalise(matrix: list[list[Decimal]], axes: list[list[Decimal]]) -> None:
-    """Make ``matrix`` diagonal, and turn ``axes`` (columns) likewise (Golub and Van Loan, 8.5)."""
+    """Make ``matrix`` diagonal, and turn ``axes`` (columns) with it (Golub and Van Loan, 8.5)."""
     negligible = EXACTLY_EQUAL_MOMENTS / 10**5 * sum(matrix[i][i] for i in range(3))
     for _ in range(_MOST_SWEEPS):
         if all(abs(matrix[p][q]) <= negligible for p, q in ((0, 1), (0, 2), (1, 2))):

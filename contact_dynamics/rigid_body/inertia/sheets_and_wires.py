@@ -1,11 +1,11 @@
 """Sheets and wires of no thickness, in closed form.
 
-Axes as for the solids: an axis of symmetry is z, the origin is the centre. Lengths in m. Give either
-``mass``, kg, or ``density``: kg/m^2 of a sheet, kg/m of a wire.
+Axes are those of the solids: an axis of symmetry is z, and the origin is the centre. Lengths are in m. Give
+either ``mass``, kg, or ``density``, kg/m^2 for a sheet and kg/m for a wire.
 
-A `rod` has no inertia about its own axis: it is a part of a body, not a body.
+A `rod` has no inertia about its own axis, so it can be a part of a body but not a body.
 
-All raise `InvalidFieldError` where a length is not > 0, or not exactly one of mass and density is given.
+All raise `InvalidFieldError` if a length is not > 0, or if not exactly one of mass and density is given.
 """
 
 from __future__ import annotations

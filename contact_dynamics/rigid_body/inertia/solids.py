@@ -1,11 +1,11 @@
 """Solids of uniform density in closed form.
 
-Each stands in axes of its own: where it has an axis of symmetry, that is z; the origin is its centre, or,
-where the two ends of the axis differ (cone, hemisphere), the centre of its base, with the solid on the side
-of +z. `MassDistribution.placed` moves it anywhere. Lengths in m. Give either ``mass``, kg, or ``density``,
+Each solid has axes of its own. An axis of symmetry is z. The origin is the centre. If the two ends of the
+axis differ (cone, hemisphere), the origin is the centre of the base, and the solid is on the side of +z.
+`MassDistribution.placed` moves it anywhere. Lengths are in m. Give either ``mass``, kg, or ``density``,
 kg/m^3.
 
-All raise `InvalidFieldError` where a length is not > 0, or not exactly one of mass and density is given.
+All raise `InvalidFieldError` if a length is not > 0, or if not exactly one of mass and density is given.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def sphere(*, radius: float, mass: float | None = None, density: float | None = 
 def hollow_sphere(
     *, outer_radius: float, inner_radius: float, mass: float | None = None, density: float | None = None
 ) -> MassDistribution:
-    """Return a ball with a concentric hollow; thin: `spherical_shell`."""
+    """Return a ball with a concentric hollow. For a thin one take `spherical_shell`."""
     R, r = _wall(outer_radius, inner_radius)
     squares = R * R + R * r + r * r
     total = mass_of(4.0 / 3.0 * math.pi * (R - r) * squares, mass=mass, density=density)
@@ -59,7 +59,7 @@ def ellipsoid(
 
 
 def hemisphere(*, radius: float, mass: float | None = None, density: float | None = None) -> MassDistribution:
-    """Return half a ball: its flat face in z = 0, centred, the dome towards +z."""
+    """Return half a ball. Its flat face is in z = 0, centred, and its dome is towards +z."""
     r = check_positive("radius", radius)
     total = mass_of(2.0 / 3.0 * math.pi * r**3, mass=mass, density=density)
     return centered(total, (r * r / 5.0, r * r / 5.0, 19.0 / 320.0 * r * r), height=0.375 * r)
@@ -80,7 +80,7 @@ def tube(
     mass: float | None = None,
     density: float | None = None,
 ) -> MassDistribution:
-    """Return a cylinder with a concentric bore, along z, about its centre; thin: `cylindrical_shell`."""
+    """Return a cylinder with a concentric bore, along z, about its centre. `cylindrical_shell` is thin."""
     return _tube(*_wall(outer_radius, inner_radius), length, mass, density)
 
 
@@ -105,7 +105,7 @@ def cone(
     mass: float | None = None,
     density: float | None = None,
 ) -> MassDistribution:
-    """Return a circular cone, or a frustum: its base in z = 0, centred, its top at z = height.
+    """Return a circular cone, or a frustum. Its base is in z = 0, centred, and its top is at z = height.
 
     A pointed cone's centre of mass is at a quarter of its height.
     """

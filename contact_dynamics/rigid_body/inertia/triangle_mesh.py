@@ -1,7 +1,7 @@
 """Solids bounded by triangles: closed meshes, and the convex hull of points.
 
-Uniform density. Coordinates are in m: scale a mesh in mm before it comes here. What makes a mesh closed and
-well wound is said in `surface` and `parts`; the integrals are in `polyhedron`.
+Density is uniform. Coordinates are in m, so scale a mesh in mm first. `closed_surface` and `mesh_parts` say
+what makes a mesh closed and well wound. `polyhedron_integrals` has the integrals.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ def mesh(
     Args:
         p_FV_F: (n, 3), m, vertices in F.
         triangles: (m, 3), whole numbers: three vertices each, counter-clockwise seen from outside.
-        mass: kg; or
-        density: kg/m^3.
+        mass: kg, or None if a density is given.
+        density: kg/m^3, or None if a mass is given.
 
     Raises:
         InvalidFieldError: the mesh is open, has edges of more than two triangles, is not wound one way, is

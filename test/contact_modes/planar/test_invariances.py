@@ -110,7 +110,7 @@ def test_a_contact_that_leaves_adds_an_s(case: FloatCase) -> None:
 def test_copies_that_rounding_parts_are_copies_all_the_same(
     case: FloatCase, angle: float, chance: random.Random
 ) -> None:
-    """As the feet of a box on both sides of its plane of motion, the lower ones of an inclined face."""
+    """The feet are those on both sides of a box's plane of motion, and the lower ones of an inclined face."""
     body, velocity, contacts, wrench = case
     c, s = math.cos(angle), math.sin(angle)
     near = [

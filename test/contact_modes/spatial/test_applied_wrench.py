@@ -17,7 +17,7 @@ BODY = MassProperties(mass=0.7, I_B=np.diag([0.02, 0.05, 0.06]))
 
 @pytest.mark.parametrize("seed", range(20))
 def test_the_applied_wrench_follows_from_each_mode(seed: int) -> None:
-    """Of a turned body that spins, at up to three contacts that leave or stay."""
+    """The body is turned and spins, and up to three contacts leave or stay."""
     random = np.random.default_rng(seed)
     q = random.normal(size=4)
     state = BodyState(

@@ -215,7 +215,7 @@ def test_a_block_that_begins_to_slide_stops_at_the_edge_of_its_cone(
 
 @pytest.mark.parametrize("seed", range(8))
 def test_margins_of_a_foot_that_begins_to_slide_beside_the_whole_map(seed: int) -> None:
-    """Up to the margin, sets of the mode hold the wrench, whichever way it changes; behind it none does."""
+    """Up to the margin, sets of the mode contain the wrench, however it changes. Behind it none does."""
     chance = np.random.default_rng(seed)
     foot = ContactSet(
         p_WC_W=chance.normal(size=(1, 3)),

@@ -243,7 +243,7 @@ def can_balance(found: ContactSet, wrench: np.ndarray, share: float) -> bool:
 
 @pytest.mark.parametrize("seed", range(12))
 def test_linear_programs_over_the_forces_agree(seed: int) -> None:
-    """Between pyramids that surely lie inside ours and cones that surely hold them; many coincidences."""
+    """The answer lies between pyramids inside ours and cones around ours. There are many coincidences."""
     chance = np.random.default_rng(seed)
     n, whole = int(chance.integers(2, 6)), seed % 2 == 0
     normals = np.ones((1, 3))

@@ -57,7 +57,7 @@ def dropped_pin(height: float) -> BodyState:
 @pytest.mark.parametrize("law", RestitutionLaw)
 @pytest.mark.parametrize("e", [0.1, 0.5, 0.8])
 def test_a_bouncing_point_comes_to_rest_in_finite_time(e: float, law: RestitutionLaw) -> None:
-    """After the first strike, at speed v: rebound k flies 2 e^k v / g; all sum to 2 e v / (g (1 - e))."""
+    """After a first strike at speed v, rebound k flies for 2 e^k v / g. All sum to 2 e v / (g (1 - e))."""
     height = 0.002
     v = math.sqrt(2.0 * G * height)
     sequence = impact_sequence(
@@ -154,7 +154,7 @@ def test_a_tilted_rod_strikes_with_one_end_and_then_with_the_other(e: float) -> 
 
 
 def test_strikes_that_come_together_are_those_of_the_sequential_law() -> None:
-    """As the tilt goes to zero the two strikes become the rod's on two supports at once."""
+    """For a tilt towards zero the two strikes become those of the rod on two supports at once."""
     contacts = ContactSet(
         p_WC_W=np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]),
         normals_W=np.tile(UP, (2, 1)),
@@ -248,7 +248,7 @@ def assert_agrees(
 
 @pytest.mark.parametrize(("seed", "e"), [(0, 0.3), (1, 0.5), (2, 0.7), (3, 0.9), (5, 1.0)])
 def test_brute_force_in_small_steps_comes_to_the_same_strikes(seed: int, e: float) -> None:
-    """Frictionless; the stepped flight is off by some 1e-12 at 50 us, and each strike multiplies that."""
+    """Without friction, the stepped flight errs by about 1e-12 at 50 us, and each strike multiplies that."""
     body, state = random_toss(seed)
     sequence = impact_sequence(body, state, world_of(body, floor(e=e)), window=0.6)
     last = sequence.strikes[min(2, len(sequence.strikes) - 1)].seconds

@@ -59,7 +59,7 @@ FACE = [[x, y, 0.0] for x in (-0.05, 0.05) for y in (-0.05, 0.05)]
 @pytest.mark.parametrize("law", [RestitutionLaw.POISSON, RestitutionLaw.NEWTON])
 @pytest.mark.parametrize("restitution", [0.0, 0.4, 1.0])
 def test_cube_on_its_face_at_once(restitution: float, law: RestitutionLaw) -> None:
-    """By symmetry it stays level: the centre's velocity turns round by e."""
+    """The cube stays level by symmetry, and the centre's velocity turns round by e."""
     contacts = floor_contacts(FACE, friction=0.3, restitution=restitution)
     answer = several_impact(
         CUBE,
@@ -119,7 +119,7 @@ def test_cube_on_an_edge(law: SeveralContactsLaw, restitution_law: RestitutionLa
 
 @pytest.mark.parametrize("law", RestitutionLaw)
 def test_level_rod_on_two_supports(law: RestitutionLaw) -> None:
-    """Elastic and frictionless: one end, then the other; both orders are mirror images.
+    """The strikes are elastic and frictionless, at one end, then at the other. Both orders are mirror images.
 
     By hand for half length l and I = m l^2/3: the first strike at the right takes J = 2 v m / 4 = m v / 2, so
     that the centre falls at v/2 and the left end at 2 v; the second strike takes J = 2 (2 v) m / 4 = m v. The

@@ -177,7 +177,7 @@ def increments(problem: dict[str, object], law: RestitutionLaw, increment: float
 
 @pytest.mark.parametrize("seed", [6, 8, 11, 21, 25, 45, 48, 65, 77, 100, 111])
 def test_sliding_stops_where_the_integrated_equations_do(seed: int) -> None:
-    """Whether the direction turns fast or hardly beside the slowing down; the oracle stops at 1e-12."""
+    """The direction turns fast or hardly, compared with the slowing down. The oracle stops at 1e-12."""
     problem = random_problem(seed)
     problem["friction"] *= 3.0 if seed % 2 else 1.0
     state = problem["state"]
@@ -201,7 +201,7 @@ def test_sliding_stops_where_the_integrated_equations_do(seed: int) -> None:
 @pytest.mark.parametrize("law", RestitutionLaw)
 @pytest.mark.parametrize("friction", [1e6, 1e100, 1e308])
 def test_unbounded_friction_is_the_rough_limit(friction: float, law: RestitutionLaw) -> None:
-    """A rough contact stops at once; then normal impulse meets the normal response of a held contact.
+    """A rough contact stops at once. Then normal impulse meets the normal response of a held contact.
 
     Compression makes the contact's velocity W I + u zero, restitution is one-dimensional.
     """
@@ -491,7 +491,7 @@ def test_mirrored_problems_have_mirrored_answers_to_the_last_bit(law: Restitutio
 
 @pytest.mark.parametrize("law", RestitutionLaw)
 def test_a_swerving_contact_can_be_compressed_twice(law: RestitutionLaw) -> None:
-    """It swerves into a direction that jams while restitution is under way; found by search."""
+    """The contact swerves into a direction that jams during restitution. A search found this case."""
     normal = np.array([-0.07, 0.99, -0.14])
     problem = {
         "body": MassProperties(mass=1.0, I_B=np.diag([0.023, 0.098, 0.105])),

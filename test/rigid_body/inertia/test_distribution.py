@@ -98,7 +98,7 @@ def test_a_box_is_its_eight_octants() -> None:
 @settings(deadline=None)
 @given(cloud=clouds, point=vectors)
 def test_parallel_axes_both_ways(cloud: list, point: np.ndarray) -> None:
-    """About any point: the sums taken there; and back again to the centre."""
+    """The inertia about any point equals the sums taken there, and the theorem leads back to the centre."""
     distribution = of_cloud(cloud)
     about = distribution.inertia_about(point)
     direct = sum(

@@ -103,7 +103,7 @@ def test_a_given_mass_and_the_density_that_makes_it_agree(name: str) -> None:
 @settings(max_examples=20, deadline=None)
 @given(factor=st.floats(1e-3, 1e3))
 def test_solids_scale_with_the_cube_and_the_fifth_power(name: str, factor: float) -> None:
-    """Sheets: square and fourth; wires: first and third."""
+    """Sheets scale with the square and the fourth power, wires with the first and the third."""
     make, sizes, _ = SHAPES[name]
     one = make(**sizes, density=2.0)
     larger = make(**{key: factor * np.asarray(value) for key, value in sizes.items()}, density=2.0)

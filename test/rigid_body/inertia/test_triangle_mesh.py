@@ -1,4 +1,4 @@
-"""Closed meshes beside exact rational integrals, closed forms, convergence; refusals with their reasons."""
+"""Closed meshes beside exact rational integrals, closed forms and convergence, and refusals with reasons."""
 
 from __future__ import annotations
 
@@ -291,7 +291,7 @@ def test_vertices_that_are_none_are_refused() -> None:
 @settings(deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), count=st.integers(5, 40))
 def test_a_hull_of_points_is_the_mesh_of_its_corners(seed: int, count: int) -> None:
-    """Points within change nothing; it is a body."""
+    """Points inside change nothing."""
     points = np.random.default_rng(seed).normal(size=(count, 3))
     whole = inertia.convex_hull(points, density=1.0)
     assert_equal(
