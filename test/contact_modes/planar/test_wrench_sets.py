@@ -238,7 +238,13 @@ def test_no_map_without_touching_contacts() -> None:
         )
         == ()
     )
-    assert mode_margins(PlanarContactProblem(body=BODY, velocity=up, contacts=BLOCK, wrench=WEIGHT)) == ()
+
+
+def test_where_everything_separates_no_wrench_changes_the_mode() -> None:
+    up = PlanarVelocity(v=(0.0, 1.0), w=0.0)
+    (margin,) = mode_margins(PlanarContactProblem(body=BODY, velocity=up, contacts=BLOCK, wrench=WEIGHT))
+    assert set(margin.mode) == {"s"}
+    assert margin.margin == math.inf
 
 
 def test_a_length_that_is_none_is_refused() -> None:
