@@ -17,20 +17,75 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.inertia import MassDistribution
     from contact_dynamics.validation import FloatArray
 
+    Check: TypeAlias = Callable[[str, float], float]
     ShapeMaker: TypeAlias = Callable[[FloatArray], ConvexShape]
     MassMaker: TypeAlias = Callable[[FloatArray, float], MassDistribution]
 
-DESCRIPTIONS: Final = {
-    "box": "Full side lengths of a box, m: x, y, z.",
-    "sphere": "Radius of a ball, m.",
-    "capsule": "Radius and length between the centres of the round ends of a capsule about z, m.",
-    "cylinder": "Radius and length of a cylinder about z, m; of length 0 a disc.",
-    "cone": "Radius of the base, at z = 0, and height of a cone about z, m.",
-    "vertices": "Corners of a convex shape, m: x, y, z of one after the other.",
-}
-"""The shapes and what their numbers are. One number 0.0 is none."""
 
-_COUNTS: Final = {"box": 3, "sphere": 1, "capsule": 2, "cylinder": 2, "cone": 2}
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Primitive:
+    """A shape that can be configured by numbers.
+
+    Attributes:
+        description: What the numbers are.
+        checks: The check of each number; None where there are three for each corner.
+        shape: Makes the shape.
+        mass: Makes the mass, kg, that fills the shape evenly.
+    """
+
+    description: str
+    checks: tuple[Check, ...] | None
+    shape: ShapeMaker
+    mass: MassMaker
+
+
+def _of_cylinder(radius: float, length: float, mass: float) -> MassDistribution:
+    if length == 0.0:
+        return inertia.disc(radius=radius, mass=mass)
+    return inertia.cylinder(radius=radius, length=length, mass=mass)
+
+
+_PRIMITIVES: Final = {
+    "box": _Primitive(
+        description="Full side lengths of a box, m: x, y, z.",
+        checks=(check_positive, check_positive, check_positive),
+        shape=lambda sides: convex_shape.box(size=sides),
+        mass=lambda sides, mass: inertia.box(size=sides, mass=mass),
+    ),
+    "sphere": _Primitive(
+        description="Radius of a ball, m.",
+        checks=(check_positive,),
+        shape=lambda sizes: convex_shape.sphere(radius=sizes[0]),
+        mass=lambda sizes, mass: inertia.sphere(radius=sizes[0], mass=mass),
+    ),
+    "capsule": _Primitive(
+        description="Radius and length between the centres of the round ends of a capsule about z, m.",
+        checks=(check_positive, check_not_negative),
+        shape=lambda sizes: convex_shape.capsule(radius=sizes[0], length=sizes[1]),
+        mass=lambda sizes, mass: inertia.capsule(radius=sizes[0], length=sizes[1], mass=mass),
+    ),
+    "cylinder": _Primitive(
+        description="Radius and length of a cylinder about z, m; of length 0 a disc.",
+        checks=(check_positive, check_not_negative),
+        shape=lambda sizes: convex_shape.cylinder(radius=sizes[0], length=sizes[1]),
+        mass=lambda sizes, mass: _of_cylinder(sizes[0], sizes[1], mass),
+    ),
+    "cone": _Primitive(
+        description="Radius of the base, at z = 0, and height of a cone about z, m.",
+        checks=(check_positive, check_positive),
+        shape=lambda sizes: convex_shape.cone(radius=sizes[0], height=sizes[1]),
+        mass=lambda sizes, mass: inertia.cone(radius=sizes[0], height=sizes[1], mass=mass),
+    ),
+    "vertices": _Primitive(
+        description="Corners of a convex shape, m: x, y, z of one after the other.",
+        checks=None,
+        shape=convex_shape.polyhedron,
+        mass=lambda corners, mass: inertia.convex_hull(corners, mass=mass),
+    ),
+}
+
+DESCRIPTIONS: Final = {name: primitive.description for name, primitive in _PRIMITIVES.items()}
+"""The shapes and what their numbers are. One number 0.0 is none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -60,7 +115,7 @@ class ShapeParameters:
         name = self._name()
         if not name:
             return NO_SHAPE
-        shape = convex_shape.rounded(_SHAPES[name](self._values(name)), radius=self.rounding)
+        shape = convex_shape.rounded(_PRIMITIVES[name].shape(self._values(name)), radius=self.rounding)
         return shape.moved(*self._pose())
 
     def uniform(self, mass: float) -> MassDistribution:
@@ -74,7 +129,7 @@ class ShapeParameters:
             found = "a rounded shape" if name else "no shape"
             raise InvalidFieldError("inertia", f"[0.0], with {found}", "the six numbers, or a shape without")
         position, orientation = self._pose()
-        return _MASSES[name](self._values(name), mass).placed(p_GF_G=position, q_GF=orientation)
+        return _PRIMITIVES[name].mass(self._values(name), mass).placed(p_GF_G=position, q_GF=orientation)
 
     def _pose(self) -> tuple[FloatArray, FloatArray]:
         position, orientation = self.pose_names
@@ -87,39 +142,13 @@ class ShapeParameters:
         return given[0] if given else ""
 
     def _values(self, name: str) -> FloatArray:
-        values = self.numbers[name]
-        if name == "vertices":
+        values, checks = self.numbers[name], _PRIMITIVES[name].checks
+        if checks is None:
             if len(values) % 3 > 0:
                 raise InvalidFieldError(name, f"{len(values)} numbers", "3 for each (or [0.0]: none)")
             return check_array(name, values, (None,)).reshape(-1, 3)
-        if len(values) != _COUNTS[name]:
-            allowed = f"{_COUNTS[name]} (or [0.0]: none)"
+        if len(values) != len(checks):
+            allowed = f"{len(checks)} (or [0.0]: none)"
             raise InvalidFieldError(name, f"{len(values)} numbers", allowed)
-        may_be_zero = name in {"capsule", "cylinder"}
-        checks = [check_positive, check_not_negative if may_be_zero else check_positive, check_positive]
-        return check_array(name, [checks[i](f"{name}[{i}]", x) for i, x in enumerate(values)], (None,))
-
-
-def _of_cylinder(radius: float, length: float, mass: float) -> MassDistribution:
-    if length == 0.0:
-        return inertia.disc(radius=radius, mass=mass)
-    return inertia.cylinder(radius=radius, length=length, mass=mass)
-
-
-_SHAPES: Final[dict[str, ShapeMaker]] = {
-    "box": lambda sides: convex_shape.box(size=sides),
-    "sphere": lambda sizes: convex_shape.sphere(radius=sizes[0]),
-    "capsule": lambda sizes: convex_shape.capsule(radius=sizes[0], length=sizes[1]),
-    "cylinder": lambda sizes: convex_shape.cylinder(radius=sizes[0], length=sizes[1]),
-    "cone": lambda sizes: convex_shape.cone(radius=sizes[0], height=sizes[1]),
-    "vertices": convex_shape.polyhedron,
-}
-
-_MASSES: Final[dict[str, MassMaker]] = {
-    "box": lambda sides, mass: inertia.box(size=sides, mass=mass),
-    "sphere": lambda sizes, mass: inertia.sphere(radius=sizes[0], mass=mass),
-    "capsule": lambda sizes, mass: inertia.capsule(radius=sizes[0], length=sizes[1], mass=mass),
-    "cylinder": lambda sizes, mass: _of_cylinder(sizes[0], sizes[1], mass),
-    "cone": lambda sizes, mass: inertia.cone(radius=sizes[0], height=sizes[1], mass=mass),
-    "vertices": lambda corners, mass: inertia.convex_hull(corners, mass=mass),
-}
+        numbers = [checks[i](f"{name}[{i}]", x) for i, x in enumerate(values)]
+        return check_array(name, numbers, (None,))

@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import time
 from collections.abc import Iterable
 from pathlib import Path
@@ -130,6 +131,18 @@ def test_a_change_is_followed_by_what_depends_on_it(
     checkout.write(changed, "changed")
     assert sorted(kinds(checkout.make("setup"))) == steps
     assert checkout.make("setup") == []
+
+
+@pytest.mark.parametrize(("minor", "checked"), [(10, False), (11, True), (14, True)])
+def test_types_are_checked_where_numpys_own_serve(checkout: Checkout, minor: int, *, checked: bool) -> None:
+    pretence = f"import sys; sys.version_info = (3, {minor}, 1)"
+    for program, text in (
+        ("python", f'[ "$1" != -c ] || exec "{sys.executable}" -c "{pretence}\n$2"'),
+        ("mypy", "echo mypy >>calls"),
+    ):
+        checkout.write(f".venv/bin/{program}", f"#!/bin/sh\n{text}\n").chmod(0o755)
+    assert checkout.make("types") == ["mypy"] * checked
+    assert ("NOT CHECKED: the types" in checkout.output) is not checked
 
 
 def test_an_interface_that_goes_is_noticed(checkout: Checkout) -> None:
