@@ -58,7 +58,7 @@ def deserialize(data: bytes, message_type: type[Message]) -> Message:
         raise InvalidFieldError("data", f"bytes that begin with {data[:_HEAD].hex()}", "CDR: 0000 or 0001")
     try:
         return _Cursor(data, _CDR[data[1]]).message(message_type)
-    except (struct.error, ValueError) as error:
+    except (struct.error, ValueError, RecursionError) as error:
         expected = f"a serialised {message_type.__name__} ({error})"
         raise InvalidFieldError("data", f"{len(data)} bytes", expected) from None
 

@@ -15,7 +15,7 @@ def replay_parser() -> argparse.ArgumentParser:
         "2 a log is none of the server",
     )
     parser.add_argument(
-        "logs", nargs="+", metavar="LOG", help="folder of a log of the server, or its .mcap file"
+        "logs", nargs="*", metavar="LOG", help="folder of a log of the server, or its .mcap file"
     )
     parser.add_argument(
         "--tolerance",

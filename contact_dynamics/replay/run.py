@@ -23,7 +23,10 @@ _TELL_EVERY_S: Final = 1.0
 
 def main(arguments: list[str]) -> int:
     """Verify each log; return the exit code."""
-    given = replay_parser().parse_args(arguments)
+    parser = replay_parser()
+    given = parser.parse_args(arguments)
+    if not given.logs:  # here, so that a mistyped option is named first
+        parser.error("found no LOG, needed is one at least")
     worst = 0
     for name in given.logs:
         progress = _Progress(name)
