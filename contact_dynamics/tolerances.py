@@ -194,6 +194,43 @@ second order."""
 
 # landing
 
+SAME_ROWS: Final = 1e-11
+"""Dimensionless, in the plane: the sine below which contact planes, and wrenches, are one where modes are
+enumerated, and the part of the radius of gyration (or of the arm, if longer) and of the unit normal within
+which contacts are one. Some 1e5 roundings of the input, and far below what any sensor resolves."""
+
+CLEAR_ROWS: Final = 1e-4
+"""Dimensionless: the sine above which floats tell contact planes, and wrenches, apart, to within `SAME_ROWS`.
+Between the two, what is the case is found with more digits."""
+
+DECIMALS_ZERO: Final = Decimal("1e-60")
+"""Relative: what decimals of `DECIMALS.sums` leave of zero, with room for products of products."""
+
+TARGET_ROUNDING: Final = Decimal("1e-14")
+"""Relative: the target's own rounding. Columns that differ by no more would need huge shares to meet it."""
+
+DECIMALS_MET: Final = Decimal("1e-30")
+"""Relative: what may be left over where all is met."""
+
+SAME_SHARP_ROWS: Final = 1e-14
+"""The sine below which rows that are known better than to floats are one: friction that never slips leaves of
+a contact's normal no more than 1e-10 of the tangent, and short arms less."""
+
+INDEPENDENT_EQUATIONS: Final = 1e-6
+"""The pivot of unit rows below which equations do not count as independent: their solution would carry more
+rounding than the accuracy asked for."""
+
+FORCES_ROUNDING: Final = 1e-13
+"""Relative to the forces: what sums of them leave."""
+
+SAME_IMPULSES: Final = 1e-8
+"""Relative to the largest impulse: two ways to a solution that differ by less have found the same one."""
+
+LARGEST_GRIP: Final = 1e10
+"""Dimensionless, in the plane: a coefficient of friction above it, or above it divided by the contact's arm
+in radii of gyration, acts as that one does. They differ in forces whose normal part is less than 1e-10 of
+the wrench of the tangential one, below what wrenches are known to."""
+
 GRAZING_DEPTH: Final = 1e-9
 """m. The search for the first contact may miss a point that dips into a plane by less and rises again. It
 never misses a deeper one. Sensors do not resolve this depth, and it keeps the search from creeping."""
@@ -322,3 +359,70 @@ HELD_INDEPENDENT: Final = 1e-9
 ESCAPE_ARRIVED: Final = 1e-16
 """Relative. Newton's method has found the direction in which a contact leaves its stop when its step is
 smaller, which is below the last bit."""
+
+MODE_STRAIGHT: Final = 1e-8
+"""rad, misdirection of friction that is rounding."""
+
+MODE_OBLIQUE: Final = 1e-3
+"""rad: surfaces that lean less are flush. Several modes are rare there with usual friction."""
+
+MODE_RESTS: Final = 1e-12
+"""Relative to the load: what forces that hold a body may leave over."""
+
+MODE_BETTER: Final = 1e-2
+"""Relative: less is rounding."""
+
+CAREFUL_UNMET: Final = 1e-9
+"""Relative to the largest acceleration: by how much equations that count as the same may ask for different
+accelerations, as where centripetal terms are rounded."""
+
+CAREFUL_LEAST_PIVOT: Final = 1e-13
+"""Entries of the table up to it may be rounding of the doubles that it is made from."""
+
+TABLE_SMALL_PIVOT: Final = 1e-3
+"""Division by a larger one counts as harmless: the rounding that it adds is within `FEASIBLE`."""
+
+TABLE_ROUNDING: Final = 1e-16
+"""Relative: what doubles lose in a step or two."""
+
+LETTERS_SETTLED: Final = 1e-13
+"""Relative to the largest acceleration: what the equations may miss, in its last step."""
+
+LETTERS_REGULAR: Final = 1e-11
+"""Ratio of singular values below which the unknowns count as dependent: loads are shared."""
+
+LETTERS_ON_CONE: Final = 1e-9
+"""Relative: how far outside of its cone a force that sticks may lie."""
+
+ONE_CONTACT_ON_CONE: Final = 1e-9
+"""Relative: how far outside of its cone a force that sticks may lie. Sliding begins as strictly."""
+
+ONE_CONTACT_ZERO: Final = 1e-13
+"""Relative to the largest acceleration, and to the largest coefficient: rounding."""
+
+ONE_CONTACT_ON_CIRCLE: Final = 1e-3
+"""How far from the unit circle a root may lie before it is polished: double roots are half as exact."""
+
+ONE_CONTACT_SAME_ANGLE: Final = 1e-6
+"""rad, within which two roots are one."""
+
+ROUND_CONE_HELD: Final = 1e-11
+"""Relative to the load: what forces may leave over that hold the contacts."""
+
+ROUND_CONE_NO_HELP: Final = 1e-12
+"""Cosine, of a force's effect to what is left over, below which it is rounding."""
+
+ROUND_CONE_INDEPENDENT: Final = 1e-15
+"""Relative: less is rounding."""
+
+ROUND_CONE_APART: Final = 1e-13
+"""Dimensionless, on rows of unit length: those that differ by more do so by more than rounding."""
+
+ROUND_CONE_ON_CONE: Final = 1e-12
+"""Relative to the largest force."""
+
+ROUND_CONE_REACHED: Final = 1e-10
+"""Relative: what all forces together do less than that in some direction is nothing."""
+
+ROUND_CONE_ROUNDING: Final = 1e-15
+"""Relative: what doubles lose in a step or two."""

@@ -71,6 +71,8 @@ def check_array(field: str, value: ArrayLike, shape: tuple[int | None, ...]) -> 
 
     Where any number of rows is allowed, an error names the first one that is not finite.
     """
+    if getattr(getattr(value, "dtype", None), "kind", "f") == "c":  # NumPy would drop a part and only warn
+        raise InvalidFieldError(field, value, f"real numbers of shape {_in_words(shape)}")
     try:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError):

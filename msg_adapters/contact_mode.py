@@ -35,6 +35,7 @@ def contact_mode_answer_to_msg(
     msg = PredictContactMode.Response() if into is None else into
     margins = repeat(None) if answer.margins is None else answer.margins
     msg.verdict = int(answer.verdict)
+    msg.message = answer.undecided
     msg.modes = [mode_to_msg(mode, margin) for mode, margin in zip(answer.modes, margins, strict=False)]
     msg.approaching_contacts = list(answer.approaching)
     msg.contact_velocities = flat(answer.contact_velocities_W)
@@ -102,6 +103,7 @@ def contact_mode_answer_from_msg(msg: PredictContactMode.Response, *, world: Wor
         distance_tolerance=msg.distance_tolerance,
         friction_facets=msg.friction_facets,
         wrench_facets=msg.wrench_facets,
+        undecided=msg.message,
     )
 
 

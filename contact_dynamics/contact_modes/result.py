@@ -22,6 +22,9 @@ class ModeVerdict(NamedInt):
     """None is: the case is an impact without approach (lectures 26 and 27)."""
     IMPACT = 3
     """A contact approaches. Modes apply only after that impact."""
+    UNDECIDED = 4
+    """The modes that are listed are consistent, if any are; whether others are could not be made out, and the
+    answer says why."""
 
 
 class Refusal(NamedInt):

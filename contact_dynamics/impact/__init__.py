@@ -28,7 +28,7 @@ from contact_dynamics.impact.planar.result import PlanarImpact
 from contact_dynamics.impact.planar.routh import ImpulsePath, InverseInertia
 from contact_dynamics.impact.planar.two_bodies import planar_pair_impact
 from contact_dynamics.impact.several.jamming import jamming_impact
-from contact_dynamics.impact.several.orders import outcomes_over_orders, several_impact
+from contact_dynamics.impact.several.orders import outcomes_at_once, outcomes_over_orders, several_impact
 from contact_dynamics.impact.several.planar import planar_several_impact
 from contact_dynamics.impact.several.result import (
     BodiesImpact,
@@ -67,6 +67,7 @@ __all__ = [
     "impact_sequence",
     "impact_sequence_of",
     "jamming_impact",
+    "outcomes_at_once",
     "outcomes_over_orders",
     "planar_impact",
     "planar_impact_distribution",

@@ -5,22 +5,41 @@ of them is negative, as under a block on a row of feet. Otherwise it returns a s
 does not use SciPy, because SciPy's first import takes tenths of a second, longer than all else in a planar
 answer. Also, it leaves out directions that consist of rounding alone, and SciPy does not.
 
+`exact_combination` calculates with as many digits as it takes, for columns that nearly coincide.
+
 `nearest_combination` uses SciPy, for margins and refusals in space. These need SciPy for hulls anyway.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+import math
+from decimal import Decimal
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 
-from contact_dynamics.tolerances import INDEPENDENT_FORCES, WRENCH_ROUNDING
+from contact_dynamics.numerics.arithmetic import DECIMALS, within
+from contact_dynamics.tolerances import (
+    DECIMALS_MET,
+    DECIMALS_ZERO,
+    INDEPENDENT_FORCES,
+    TARGET_ROUNDING,
+    WRENCH_ROUNDING,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.validation import FloatArray
+
+_LARGEST_SHARE: Final = 1e13
+"""Largest share of the target that one column may have for the target to count as reached."""
+
+_GUESSES: Final = 30
+"""After which a search for the least forces is given up; it takes a few."""
+
+_Decimals: TypeAlias = "list[Decimal]"
 
 _NEAREST_STEPS: Final = 10
 """Bound on the steps for each column in the search for the nearest sum, which takes one or two. SciPy's own
@@ -72,6 +91,118 @@ def _few_forces(matrix: FloatArray, right: FloatArray) -> FloatArray:
             x[~acting] = 0.0
         x = trial
     return x
+
+
+def exact_combination(columns: Sequence[Vector3], target: Vector3) -> tuple[list[float], float]:
+    """Return an x >= 0 whose sum x_i columns_i is nearest to a target, and its distance, in decimals.
+
+    Of all such x the one of least sum of squares, where Newton's method finds it; else one in which at most
+    three act. The columns, unit vectors, may nearly coincide or oppose each other: floats would not do.
+    """
+    with within(DECIMALS.sums):
+        rows = [[Decimal(part) for part in column] for column in columns]
+        right = [Decimal(part) for part in target]
+        few = _few_exact_forces(rows, right)
+        met = [Decimal(0)] * 3
+        for i, share in few.items():
+            met = [a + share * b for a, b in zip(met, rows[i], strict=True)]
+        left = [a - b for a, b in zip(right, met, strict=True)]
+        least = _least_exact_forces(rows, met)
+        acting = few if least is None else least
+        return [float(acting.get(i, 0)) for i in range(len(rows))], float(_inner(left, left).sqrt())
+
+
+def distance_from_cone(columns: Sequence[Vector3], target: Vector3) -> float:
+    """Return how far a target is from the positive combinations of ``columns``; infinite: not known.
+
+    Where only shares of more than `_LARGEST_SHARE` of the target reach it, rounding of the columns decides.
+    """
+    x, distance = exact_combination(columns, target)
+    size = math.sqrt(sum(part * part for part in target))
+    return distance if sum(x) <= _LARGEST_SHARE * size else math.inf
+
+
+def _least_exact_forces(rows: list[_Decimals], right: _Decimals) -> dict[int, Decimal] | None:
+    """Return the forces of least sum of squares that add up to ``right``; None: not found.
+
+    They are the positive parts of rows @ y for some y. Which are positive is guessed, and guessed again from
+    the y that follows.
+    """
+    acting = list(range(len(rows)))
+    for _ in range(_GUESSES):
+        used = [rows[i] for i in acting]
+        y = _solution(
+            [[sum((a[i] * a[j] for a in used), Decimal(0)) for j in range(3)] for i in range(3)], right
+        )
+        sizes = [_inner(row, y) for row in rows]
+        pushing = [i for i, size in enumerate(sizes) if size > 0]
+        if pushing == acting:
+            met = [sum((sizes[i] * rows[i][j] for i in acting), Decimal(0)) for j in range(3)]
+            wrong = max(abs(a - b) for a, b in zip(met, right, strict=True))
+            return (
+                {i: sizes[i] for i in acting} if wrong <= DECIMALS_MET * _inner(right, right).sqrt() else None
+            )
+        acting = pushing
+    return None
+
+
+def _few_exact_forces(rows: list[_Decimals], right: _Decimals) -> dict[int, Decimal]:
+    """Return the forces that act: `_few_forces` where every direction counts, however close to others."""
+    acting: dict[int, Decimal] = {}
+    left = list(right)
+    size = _inner(right, right).sqrt()
+    nothing = DECIMALS_ZERO * size
+    for _ in range(10 * len(rows)):
+        if _inner(left, left).sqrt() <= TARGET_ROUNDING * size:
+            break
+        help_of = [(_inner(row, left), -i) for i, row in enumerate(rows) if i not in acting]
+        most, best = max(help_of, default=(Decimal(0), 0))
+        if most <= nothing:
+            break
+        acting[-best] = Decimal(0)
+        while True:
+            used = [rows[i] for i in acting]
+            solved = _solution(
+                [[_inner(a, b) for b in used] for a in used], [_inner(row, right) for row in used]
+            )
+            trial = dict(zip(acting, solved, strict=True))
+            pulling = [i for i, value in trial.items() if value <= 0]
+            if not pulling:
+                break
+            part = min(acting[i] / (acting[i] - trial[i]) if acting[i] > 0 else Decimal(0) for i in pulling)
+            stepped = {i: x + part * (trial[i] - x) for i, x in acting.items()}
+            acting = {i: x for i, x in stepped.items() if x > nothing or i not in pulling}
+        acting = trial
+        left = list(right)
+        for i, x in acting.items():
+            left = [a - x * b for a, b in zip(left, rows[i], strict=True)]
+    return acting
+
+
+def _solution(matrix: list[_Decimals], right: _Decimals) -> _Decimals:
+    """Return an x with matrix @ x = right for a symmetric matrix, singular ones included."""
+    count = len(right)
+    table = [[*row, value] for row, value in zip(matrix, right, strict=True)]
+    smallest = DECIMALS_ZERO * max((abs(value) for row in matrix for value in row), default=Decimal(0))
+    x = [Decimal(0)] * count
+    pivots: list[tuple[int, int]] = []
+    for column in range(count):
+        free = [i for i in range(count) if i not in {row for row, _ in pivots}]
+        pivot = max(free, key=lambda i: abs(table[i][column]))
+        if abs(table[pivot][column]) <= smallest:
+            continue
+        pivots.append((pivot, column))
+        for i in range(count):
+            if i != pivot:
+                factor = table[i][column] / table[pivot][column]
+                table[i] = [a - factor * b for a, b in zip(table[i], table[pivot], strict=True)]
+    for row, column in pivots:
+        x[column] = table[row][-1] / table[row][column]
+    return x
+
+
+def _inner(a: _Decimals, b: _Decimals) -> Decimal:
+    return sum((x * y for x, y in zip(a, b, strict=True)), Decimal(0))
 
 
 def nearest_combination(columns: FloatArray, target: FloatArray) -> tuple[FloatArray, float] | None:

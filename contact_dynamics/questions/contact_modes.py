@@ -162,6 +162,7 @@ class ContactModeAnswer(Record):
         state: The state that was taken.
         contacts: The contacts.
         verdict: The verdict on the whole contact set.
+        undecided: What could not be made out, and why. Empty unless the verdict is UNDECIDED.
         modes: All consistent modes. In a plane mirrored contacts share their forces equally.
         margins: How far the wrench is from leaving each of these modes, in their order. None: not asked for.
         approaching: Contacts that approach, as indices.
@@ -205,6 +206,7 @@ class ContactModeAnswer(Record):
     distance_tolerance: float
     friction_facets: int
     wrench_facets: int
+    undecided: str = ""
 
 
 def answer(question: ContactModeQuestion, knowledge: Knowledge | None = None) -> ContactModeAnswer:
@@ -344,6 +346,7 @@ def _spatial_answer(question: ContactModeQuestion, case: ModeCase, reason: str) 
         state=state,
         contacts=contacts,
         verdict=found.verdict,
+        undecided=found.undecided,
         modes=found.modes,
         margins=margins,
         approaching=found.approaching,

@@ -58,6 +58,7 @@ VERDICTS: Final = {
     ModeVerdict.INDETERMINATE: "has several consistent modes, and mechanics does not choose",
     ModeVerdict.INCONSISTENT: "has no consistent mode: an impact without approach",
     ModeVerdict.IMPACT: "approaches: no mode before the impact is resolved",
+    ModeVerdict.UNDECIDED: "has modes that could not all be made out",
 }
 """What mechanics says about a contact set."""
 

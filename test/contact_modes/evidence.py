@@ -34,11 +34,23 @@ def check_evidence(
     contacts: Sequence[PlanarContact],
     wrench: PlanarWrench,
 ) -> None:
+    check_forces(answer, body, contacts, wrench)
+    for mode in answer.modes:
+        for i, one in enumerate(contacts):
+            _check_acceleration(mode, i, one, velocity.w)
+
+
+def check_forces(
+    answer: PlanarModeAnswer,
+    body: PlanarBody,
+    contacts: Sequence[PlanarContact],
+    wrench: PlanarWrench,
+) -> None:
+    """Check forces against Newton's law and their letters."""
     for mode in answer.modes:
         _check_newton(mode, body, contacts, wrench)
         for i, one in enumerate(contacts):
             _check_letter(mode, i, one, answer.contact_velocities[i])
-            _check_acceleration(mode, i, one, velocity.w)
 
 
 def _world(contact: PlanarContact, pair: tuple[float, float]) -> tuple[float, float]:

@@ -21,9 +21,11 @@ from contact_dynamics.contact_modes.planar.coincident import coincident
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.judgement import judge_all
 from contact_dynamics.contact_modes.planar.one_contact import single_contact_modes
-from contact_dynamics.contact_modes.planar.problem import planar_case
+from contact_dynamics.contact_modes.planar.problem import beyond_grip, planar_case
 from contact_dynamics.contact_modes.planar.result import PlanarMode, PlanarModeAnswer
 from contact_dynamics.contact_modes.result import ModeVerdict, RefusedMode, verdict_on
+from contact_dynamics.errors import UndecidedError
+from contact_dynamics.tolerances import LARGEST_GRIP
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.planar.problem import PlanarContactProblem
@@ -33,6 +35,9 @@ def planar_contact_modes(problem: PlanarContactProblem) -> PlanarModeAnswer:
     """Return the verdict on a contact set, all consistent modes, and why the others are refused.
 
     Without contacts the one mode is the empty string, free motion.
+
+    Raises:
+        UndecidedError: no mode is consistent with friction up to `LARGEST_GRIP`, and there is more.
 
     Source: lecture 26, table and "Basic approach".
     """
@@ -68,6 +73,11 @@ def planar_contact_modes(problem: PlanarContactProblem) -> PlanarModeAnswer:
                 modes = [same.consistent(mode, accuracy * case.load) for mode in modes]
                 refused = [same.refused(mode) for mode in refused]
             a_tolerance = accuracy * case.load / body.mass
+            if not modes and any(beyond_grip(contact, case.rho) for contact in contacts):
+                raise UndecidedError(
+                    "no mode is consistent with friction of at most "
+                    f"{LARGEST_GRIP:g} over the arm in radii of gyration, and a contact has more"
+                )
     found = tuple(modes)
     return PlanarModeAnswer(
         verdict=ModeVerdict.IMPACT if approaching else verdict_on(found),

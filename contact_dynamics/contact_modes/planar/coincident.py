@@ -1,24 +1,21 @@
 """Contacts that coincide are answered as one, such as those of a body's two sides in a plane of motion.
 
-Contacts of one place, normal, friction and kind have the same letter in every mode. Only the sum of their
-forces is known. Each gets an equal share.
+Contacts of one place and normal, within `SAME_ROWS`, and of one friction and kind have the same letter in
+every mode. Only the sum of their forces is known. Each gets an equal share.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from contact_dynamics.contact_modes.planar.result import PlanarMode
 from contact_dynamics.contact_modes.result import RefusedMode
+from contact_dynamics.tolerances import SAME_ROWS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.plane.types import PlanarContact, Vector2
-
-_STEPS: Final = 1e12
-"""Places, in radii of gyration, and normals that agree to so many steps are one: some thousand roundings, and
-a thousandth of what the enumeration tells apart (`ROW_TOLERANCE`)."""
 
 
 class Coincident(NamedTuple):
@@ -70,32 +67,82 @@ def coincident(
 ) -> Coincident | None:
     """Return which contacts of a body of radius of gyration ``rho``, m, are the same; None: all differ.
 
-    ``velocities``, (v_t, v_n), count by their signs.
+    ``velocities``, (v_t, v_n), count by their signs. Contacts are one, too, where others lead from one to the
+    next, so that the order in which they are listed does not matter.
     """
-    scale = _STEPS / rho
-    groups: dict[tuple[float, ...], int] = {}
+    pairs = _same_pairs(contacts, velocities, rho)
+    if not pairs:
+        return None
+    leaders = list(range(len(contacts)))
+    for one, other in pairs:
+        low, high = sorted((_leader(leaders, one), _leader(leaders, other)))
+        leaders[high] = low
     firsts: list[int] = []
     group: list[int] = []
-    for index, (contact, (v_t, v_n)) in enumerate(zip(contacts, velocities, strict=True)):
-        (x, y), (n_x, n_y) = contact.r, contact.normal
-        key = (
-            (x * scale + 0.5) // 1.0,
-            (y * scale + 0.5) // 1.0,
-            (n_x * _STEPS + 0.5) // 1.0,
-            (n_y * _STEPS + 0.5) // 1.0,
-            contact.friction,
-            contact.body_curvature,
-            contact.surface_curvature,
-            (v_t > 0.0) - (v_t < 0.0),
-            v_n > 0.0,
-        )
-        found = groups.setdefault(key, len(firsts))
-        if found == len(firsts):
+    counts: list[int] = []
+    for index in range(len(contacts)):
+        leader = _leader(leaders, index)
+        if leader == index:
             firsts.append(index)
-        group.append(found)
-    if len(firsts) == len(contacts):
-        return None
-    counts = [0] * len(firsts)
-    for found in group:
-        counts[found] += 1
+            counts.append(0)
+            group.append(len(firsts) - 1)
+        else:
+            group.append(group[leader])
+        counts[group[-1]] += 1
     return Coincident(firsts, group, counts)
+
+
+def _same_pairs(
+    contacts: Sequence[PlanarContact], velocities: Sequence[Vector2], rho: float
+) -> list[tuple[int, int]]:
+    """Return pairs of contacts that are the same, enough to lead from each to all that are."""
+    # What agrees in every coordinate does so in a sum of them, and little else does.
+    far = max(rho, *(abs(x) + abs(y) for x, y in (contact.r for contact in contacts)))
+    sums = sorted(
+        [
+            (
+                0.61 * contact.r[0]
+                + 0.79 * contact.r[1]
+                + far * (contact.normal[0] + 0.37 * contact.normal[1]),
+                i,
+            )
+            for i, contact in enumerate(contacts)
+        ]
+    )
+    window = 6.0 * SAME_ROWS * far
+    pairs = []
+    for k, (value, i) in enumerate(sums):
+        for other, j in sums[k + 1 :]:
+            if other - value > window:
+                break
+            if _same(contacts[i], contacts[j], rho) and _alike(velocities[i], velocities[j]):
+                pairs.append((i, j))
+                if contacts[i].r == contacts[j].r and contacts[i].normal == contacts[j].normal:
+                    break  # the rest is found from there
+    return pairs
+
+
+def _same(one: PlanarContact, other: PlanarContact, rho: float) -> bool:
+    (x, y), (n_x, n_y) = one.r, one.normal
+    (u, v), (m_x, m_y) = other.r, other.normal
+    reach = SAME_ROWS * max(rho, abs(x), abs(y))
+    return (
+        abs(x - u) <= reach
+        and abs(y - v) <= reach
+        and abs(n_x - m_x) <= SAME_ROWS
+        and abs(n_y - m_y) <= SAME_ROWS
+        and one.friction == other.friction
+        and one.body_curvature == other.body_curvature
+        and one.surface_curvature == other.surface_curvature
+    )
+
+
+def _alike(one: Vector2, other: Vector2) -> bool:
+    (v_t, v_n), (u_t, u_n) = one, other
+    return (v_t > 0.0) == (u_t > 0.0) and (v_t < 0.0) == (u_t < 0.0) and (v_n > 0.0) == (u_n > 0.0)
+
+
+def _leader(leaders: list[int], index: int) -> int:
+    while leaders[index] != index:
+        leaders[index] = index = leaders[leaders[index]]
+    return index

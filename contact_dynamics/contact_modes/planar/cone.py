@@ -10,19 +10,25 @@ serves the faces of the accelerations that do not penetrate, and the cones of wr
 
 The code uses plain floats, because the sets are small and most rows change nothing, which takes three
 multiplications for each ray to find out. For many rows, arrays find those that change nothing.
+Floats decide what vanishes to rounding and what is clearly different. Where a case lies in between, as for
+contacts that nearly coincide, the cone is built once more in decimals, with digits enough to make decisions
+exact for the rows given.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, NamedTuple
+from decimal import Decimal
+from typing import TYPE_CHECKING, Final, NamedTuple, cast
 
 import numpy as np
 
-from contact_dynamics.numerics.vectors import AXES, Vector3, cross, dot, normalised, opposite, tangents
+from contact_dynamics.numerics.arithmetic import DECIMALS, within
+from contact_dynamics.numerics.vectors import AXES, Vector3, cross, dot, opposite, tangents
+from contact_dynamics.tolerances import CLEAR_ROWS, SAME_ROWS, SAME_SHARP_ROWS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -31,6 +37,10 @@ if TYPE_CHECKING:
 _WIDE: Final = 0.1  # sine: planes that meet at more serve to start with, without a look at the others
 MANY: Final = 24
 """Rows, from which on arrays are faster."""
+
+
+class _NotClearError(Exception):
+    """Floats do not tell whether something vanishes."""
 
 
 class Sector(NamedTuple):
@@ -50,27 +60,64 @@ class Sector(NamedTuple):
 class PolyhedralCone:
     """The cone {x : row . x >= 0 for every row} as lineality space plus extreme rays."""
 
-    __slots__ = ("_tolerance", "lineality", "rays", "rows", "tight")
+    __slots__ = ("_same", "exact", "lineality", "rays", "rows", "tight")
 
-    rows: Sequence[Vector3]  # unit, as given
+    exact: bool  # whether it was built in decimals
+
+    rows: Sequence[Vector3]  # unit; where it is exact, in decimals
     lineality: list[Vector3]  # orthonormal basis of the lines that the cone contains
     rays: list[Vector3]  # unit extreme rays, orthogonal to the lineality; three or more stand in a cycle
     tight: list[int]  # for each ray, the bit set of the rows that vanish on it
 
-    def __init__(self, rows: Sequence[Vector3], *, tolerance: float) -> None:
-        """Cut with each of ``rows``, which are unit; below ``tolerance`` a row vanishes on a unit vector."""
-        self.lineality = list(AXES)
+    def __init__(
+        self,
+        rows: Sequence[Vector3],
+        *,
+        exact: bool = False,
+        sharp: Callable[[], Sequence[Vector3]] | None = None,
+    ) -> None:
+        """Cut with each of ``rows``, which are unit; within `SAME_ROWS` a row vanishes on a unit vector.
+
+        Args:
+            rows: In floats.
+            exact: Build it in decimals, even where floats tell.
+            sharp: What returns the rows in decimals, not unit, where they are known better than to floats.
+        """
+        self.exact = exact
+        self._same = SAME_ROWS
+        if not exact:
+            try:
+                self._build(rows)
+            except _NotClearError:
+                self.exact = True
+        if self.exact:
+            self._same = SAME_ROWS if sharp is None else SAME_SHARP_ROWS
+            with within(DECIMALS.sums):
+                known = [decimal_vector(row) for row in rows] if sharp is None else sharp()
+                self._build([_unit(row) for row in known])
+                self.lineality = [_rounded(line) for line in self.lineality]
+                self.rays = [_rounded(ray) for ray in self.rays]
+
+    def _build(self, rows: Sequence[Vector3]) -> None:
+        self.lineality = [decimal_vector(axis) for axis in AXES] if self.exact else list(AXES)
         self.rays = []
         self.tight = []
         self.rows = rows
-        self._tolerance = tolerance
         first = self._begin() if len(rows) > 1 else ()
-        if first and len(rows) > MANY:
+        if first and len(rows) > MANY and not self.exact:
             self._cut_many(first)
             return
         for index, row in enumerate(rows):
             if index not in first:
                 self._cut(row, index)
+
+    def _check_clear(self, *sizes: float) -> None:
+        """Leave floats where one of ``sizes``, sines, is neither zero to rounding nor clearly more."""
+        if self.exact:
+            return
+        for size in sizes:
+            if self._same < size < CLEAR_ROWS or self._same < -size < CLEAR_ROWS:
+                raise _NotClearError
 
     @property
     def all_rows(self) -> int:
@@ -122,35 +169,37 @@ class PolyhedralCone:
         """Start from as many independent rows as there are, and return which; none: all are parallel."""
         rows = self.rows
         one = rows[0]
-        second, width, normal = 0, self._tolerance, (0.0, 0.0, 0.0)
+        second, width, normal = 0, self._same, one
         for index in range(1, len(rows)):
             across = cross(one, rows[index])
-            sine = math.sqrt(dot(across, across))
+            sine = _root(dot(across, across))
             if sine > width:
                 second, width, normal = index, sine, across
                 if sine > _WIDE:
                     break
         if second == 0:
             return ()
+        self._check_clear(width)
         two = rows[second]
-        third, height = -1, self._tolerance * width
+        third, height = -1, width * type(width)(self._same)
         for index, row in enumerate(rows):
             above = dot(normal, row)
             if abs(above) > abs(height):
                 third, height = index, above
-                if abs(above) > _WIDE * width:
+                if abs(above) > width * type(width)(_WIDE):
                     break
         if third < 0:
-            line = normalised(normal)
+            line = _unit(normal)
             self.lineality = [line]
             self.rays = [cross(line, one), cross(two, line)]
             self.tight = [1, 1 << second]
             return (0, second)
+        self._check_clear(height / width)
         three = rows[third]
-        if height < 0.0:
+        if height < 0:
             second, third, two, three = third, second, three, two
         self.lineality = []
-        self.rays = [normalised(cross(a, b)) for a, b in ((two, three), (three, one), (one, two))]
+        self.rays = [_unit(cross(a, b)) for a, b in ((two, three), (three, one), (one, two))]
         self.tight = [1 << second | 1 << third, 1 << third | 1, 1 | 1 << second]
         return (0, second, third)
 
@@ -167,7 +216,7 @@ class PolyhedralCone:
             lowest = heights.min(axis=1)
             self._touch(waiting, heights, lowest)
             order = np.argsort(lowest)
-            order = order[: np.searchsorted(lowest[order], -self._tolerance)]
+            order = order[: np.searchsorted(lowest[order], -self._same)]
             cutting = waiting[order]
             for index in cutting[:at_once].tolist():
                 self._cut(self.rows[index], index)
@@ -176,11 +225,14 @@ class PolyhedralCone:
 
     def _touch(self, indices: NDArray[np.int64], heights: FloatArray, lowest: FloatArray) -> None:
         """Remember the rows that touch the cone and do not cut it."""
-        touching = np.flatnonzero(abs(lowest) <= self._tolerance)
+        near = heights[lowest < CLEAR_ROWS]
+        if ((abs(near) > self._same) & (abs(near) < CLEAR_ROWS)).any():
+            raise _NotClearError
+        touching = np.flatnonzero(abs(lowest) <= self._same)
         if len(touching) == 0:
             return
         flags = np.zeros((len(self.rays), len(self.rows)), dtype=bool)
-        flags[:, indices[touching]] = (heights[touching] <= self._tolerance).T
+        flags[:, indices[touching]] = (heights[touching] <= self._same).T
         for ray, packed in enumerate(np.packbits(flags, axis=1, bitorder="little")):
             self.tight[ray] |= int.from_bytes(packed.tobytes(), "little")
 
@@ -191,8 +243,11 @@ class PolyhedralCone:
         heights = [x * ray[0] + y * ray[1] + z * ray[2] for ray in self.rays]
         if not heights:
             return
-        tolerance = self._tolerance
         lowest = min(heights)
+        if lowest >= CLEAR_ROWS:
+            return
+        self._check_clear(*heights)
+        tolerance = self._same
         if lowest > tolerance:
             return
         bit = 1 << index
@@ -206,16 +261,17 @@ class PolyhedralCone:
     def _cut_lineality(self, row: Vector3, index: int) -> bool:
         """Cut a row that does not vanish on the lineality space: one line becomes a ray."""
         parts = [dot(row, line) for line in self.lineality]
-        length = math.sqrt(sum(part * part for part in parts))
-        if length <= self._tolerance:
+        length = _root(sum(part * part for part in parts))
+        if length <= self._same:
             return False
-        ray = normalised(_combination(parts, self.lineality))
+        self._check_clear(length)
+        ray = _unit(_combination(parts, self.lineality))
         self.lineality = _complement(self.lineality, ray)
         rise = dot(row, ray)
         bit = 1 << index
         for i, other in enumerate(self.rays):
             drop = dot(row, other) / rise
-            self.rays[i] = normalised(
+            self.rays[i] = _unit(
                 (other[0] - drop * ray[0], other[1] - drop * ray[1], other[2] - drop * ray[2])
             )
             self.tight[i] |= bit
@@ -225,7 +281,7 @@ class PolyhedralCone:
 
     def _cut_rays(self, heights: list[float], index: int) -> None:
         """Drop the run of rays below the row, and put new ones where its edges cross the row."""
-        tolerance = self._tolerance
+        tolerance = self._same
         bit = 1 << index
         top = heights.index(max(heights))
         heights = heights[top:] + heights[:top]
@@ -252,7 +308,9 @@ class PolyhedralCone:
         common = self.tight[i] & self.tight[j]
         one, two = abs(heights[j]), abs(heights[i])
         a, b = self.rays[i], self.rays[j]
-        rough = normalised((one * a[0] + two * b[0], one * a[1] + two * b[1], one * a[2] + two * b[2]))
+        rough = _unit((one * a[0] + two * b[0], one * a[1] + two * b[1], one * a[2] + two * b[2]))
+        if self.exact:
+            return rough
         if self.lineality:
             edge = self.lineality[0]
         elif common:
@@ -262,8 +320,8 @@ class PolyhedralCone:
         sharp = cross(edge, self.rows[index])
         length = math.sqrt(dot(sharp, sharp))
         along = dot(sharp, rough)
-        if abs(along) < 0.5 * length or length <= self._tolerance:
-            return rough
+        if abs(along) < 0.5 * length or length < CLEAR_ROWS:
+            raise _NotClearError
         length = math.copysign(length, along)
         return (sharp[0] / length, sharp[1] / length, sharp[2] / length)
 
@@ -281,7 +339,7 @@ def bits(mask: int) -> list[int]:
 
 
 def _combination(parts: Sequence[float], vectors: Sequence[Vector3]) -> Vector3:
-    x = y = z = 0.0
+    x = y = z = 0 * parts[0]
     for part, vector in zip(parts, vectors, strict=True):
         x += part * vector[0]
         y += part * vector[1]
@@ -295,5 +353,30 @@ def _complement(basis: list[Vector3], unit: Vector3) -> list[Vector3]:
         return []
     if len(basis) == 2:
         normal = cross(basis[0], basis[1])
-        return [normalised(cross(normal, unit))]
-    return list(tangents(unit))
+        return [_unit(cross(normal, unit))]
+    x, y, z = unit
+    one, _ = tangents((float(x), float(y), float(z)))
+    if isinstance(x, float):
+        return [one, cross(unit, one)]
+    one = _unit(cross(decimal_vector(one), unit))
+    return [one, cross(unit, one)]
+
+
+def decimal_vector(vector: Vector3) -> Vector3:
+    """Return the vector in decimals, which calculate as floats do: the type says what they stand for."""
+    x, y, z = vector
+    return cast("Vector3", (Decimal(x), Decimal(y), Decimal(z)))
+
+
+def _rounded(vector: Vector3) -> Vector3:
+    return (float(vector[0]), float(vector[1]), float(vector[2]))
+
+
+def _root(square: float) -> float:
+    return square.sqrt() if isinstance(square, Decimal) else math.sqrt(square)
+
+
+def _unit(vector: Vector3) -> Vector3:
+    x, y, z = vector
+    size = _root(x * x + y * y + z * z)
+    return (x / size, y / size, z / size)

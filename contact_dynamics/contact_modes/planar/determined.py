@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 from contact_dynamics.contact_modes.planar.enumeration import FIXED, LEFT, RIGHT, Letters
 from contact_dynamics.contact_modes.result import Refusal, RefusedMode
 from contact_dynamics.numerics.vectors import Vector3, dot, norm
-from contact_dynamics.tolerances import ROW_TOLERANCE, SUM_ROUNDING
+from contact_dynamics.tolerances import INDEPENDENT_EQUATIONS, SUM_ROUNDING
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.planar.problem import ContactRow, PlanarCase
@@ -187,7 +187,7 @@ def _solved(equations: list[_Equation]) -> list[Vector4] | None:
     if count == 1:  # most modes
         row, wrench, _ = equations[0]
         gain = row[0] * wrench[0] + row[1] * wrench[1] + row[2] * wrench[2]
-        if abs(gain) <= ROW_TOLERANCE:
+        if abs(gain) <= INDEPENDENT_EQUATIONS:
             return None
         return [(row[0] / gain, row[1] / gain, row[2] / gain, row[3] / gain)]
     wrenches = [wrench for _, wrench, _ in equations]
@@ -196,7 +196,7 @@ def _solved(equations: list[_Equation]) -> list[Vector4] | None:
     ]
     for k in range(count):
         pivot = max(range(k, count), key=lambda i: abs(table[i][k]))
-        if abs(table[pivot][k]) <= ROW_TOLERANCE:
+        if abs(table[pivot][k]) <= INDEPENDENT_EQUATIONS:
             return None
         table[k], table[pivot] = table[pivot], table[k]
         chosen = table[k]

@@ -17,7 +17,7 @@ from contact_dynamics.contact_modes.letters import SEPARATES, SLIDES_LEFT, SLIDE
 from contact_dynamics.contact_modes.planar.cone import PolyhedralCone, Sector, bits
 from contact_dynamics.contact_modes.planar.problem import PlanarCase, lifted
 from contact_dynamics.numerics.vectors import Vector3, dot, normalised
-from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.tolerances import SAME_ROWS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -67,7 +67,7 @@ def kinematic_cells(case: PlanarCase) -> dict[str, Cell]:
             )
             for row in case.rows
         ]
-    cone = PolyhedralCone(normals, tolerance=ROW_TOLERANCE)
+    cone = PolyhedralCone(normals)
     base = bytearray(SEPARATES.encode() * len(case.contacts))
     cells: dict[str, Cell] = {}
     if cone.has_interior:
@@ -102,9 +102,9 @@ def _all_cells(
 def _letter(tangent: _Tangent, height: float) -> int:
     if tangent.letter:
         return tangent.letter
-    if height > ROW_TOLERANCE:
+    if height > SAME_ROWS:
         return RIGHT
-    return LEFT if height < -ROW_TOLERANCE else FIXED
+    return LEFT if height < -SAME_ROWS else FIXED
 
 
 class _Staying(NamedTuple):
@@ -121,7 +121,7 @@ def _sector_cells(sector: Sector, tangents: list[_Tangent]) -> Iterator[tuple[Le
     staying = [_staying(position, tangents[position], sector) for position in bits(sector.tight)]
     stops = [0.0]
     for crossing in sorted(contact.crossing for contact in staying):
-        if crossing - stops[-1] > ROW_TOLERANCE:
+        if crossing - stops[-1] > SAME_ROWS:
             stops.append(crossing)
     stops.append(1.0)
     points = [_between(sector, stop) for stop in stops]
@@ -145,7 +145,7 @@ def _letters(staying: list[_Staying], at: float) -> Letters:
     for position, start, end, crossing in staying:
         if crossing < 0.0:
             letter = end if start == FIXED else start
-        elif abs(at - crossing) <= ROW_TOLERANCE:
+        elif abs(at - crossing) <= SAME_ROWS:
             letter = FIXED
         else:
             letter = start if at < crossing else end

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.planar.cone import MANY
+from contact_dynamics.contact_modes.planar.cone import MANY, decimal_vector
 from contact_dynamics.contact_modes.planar.enumeration import FIXED, RIGHT, Letters
 from contact_dynamics.contact_modes.planar.problem import Lift, lifted
-from contact_dynamics.numerics.vectors import Vector3, norm
+from contact_dynamics.numerics.vectors import Vector3, dot, norm
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
@@ -82,6 +82,28 @@ def reactions(lift: Lift | None, wrenches: Sequence[Vector3]) -> Reactions:
             lengths.append(length)
             units.append((-x / length, -y / length, -z / length))
     return Reactions(edges, lengths, units)
+
+
+def sharp_reactions(
+    lift: Lift | None, rows: Sequence[ContactRow], edges: Edges, acting: Sequence[int]
+) -> list[Vector3]:
+    """Return the reactions to those ``edges`` that are ``acting``, in decimals and of any length."""
+    sharp = []
+    for edge in acting:
+        row = rows[edges.positions[edge]]
+        reaction = sharp_reaction(row.N, row.T, edges.slopes[edge])
+        if lift is not None:
+            one, two = (decimal_vector(axis) for axis in lift.across)
+            reaction = (dot(reaction, one), dot(reaction, two), 0 * reaction[2])
+        sharp.append(reaction)
+    return sharp
+
+
+def sharp_reaction(N: Vector3, T: Vector3, slope: float) -> Vector3:
+    """Return the reaction to N + slope T in decimals: where friction is large, floats lose N in the sum."""
+    (n_x, n_y, n_z), (t_x, t_y, t_z) = decimal_vector(N), decimal_vector(T)
+    factor, _, _ = decimal_vector((slope, 0.0, 0.0))
+    return (-n_x - factor * t_x, -n_y - factor * t_y, -n_z - factor * t_z)
 
 
 def _many_reactions(lift: Lift | None, wrenches: Sequence[Vector3]) -> Reactions:

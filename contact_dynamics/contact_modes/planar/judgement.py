@@ -10,20 +10,24 @@ about (`wrench_cone`), and the forces are some of many.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.contact_modes.planar.determined import IndependentModes
-from contact_dynamics.contact_modes.planar.enumeration import FIXED, Cell
+from contact_dynamics.contact_modes.planar.enumeration import FIXED, RIGHT, Cell
 from contact_dynamics.contact_modes.planar.result import PlanarMode
 from contact_dynamics.contact_modes.planar.wrench_cone import ModeWrenches
 from contact_dynamics.contact_modes.result import Refusal, RefusedMode
-from contact_dynamics.numerics.vectors import Vector3
+from contact_dynamics.numerics.vectors import Vector3, dot, norm
+from contact_dynamics.tolerances import FORCES_ROUNDING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from contact_dynamics.contact_modes.planar.problem import PlanarCase
     from contact_dynamics.plane.types import Vector2
+
+_EVIDENCE: Final = 3.0
+"""By how many tolerances forces may miss what the letters say."""
 
 
 def judge_all(
@@ -50,18 +54,38 @@ def judge_all(
 
 
 def _from_cone(case: PlanarCase, mode: str, cell: Cell, accuracy: float) -> PlanarMode | RefusedMode:
-    """Decide a mode whose equations are not independent by the cone of its wrenches."""
-    wrenches = ModeWrenches(case, cell)
+    """Decide a mode whose equations are not independent by the cone of its wrenches.
+
+    Forces that do not bring about what the letters say are no evidence: then the decision is taken again
+    with more digits.
+    """
+    outcome, certain = _judged(case, mode, cell, accuracy, exact=False)
+    return outcome if certain else _judged(case, mode, cell, accuracy, exact=True)[0]
+
+
+def _judged(
+    case: PlanarCase, mode: str, cell: Cell, accuracy: float, *, exact: bool
+) -> tuple[PlanarMode | RefusedMode, bool]:
+    """Return the decision on a mode, and whether it stands."""
+    wrenches = ModeWrenches(case, cell, exact=exact)
     shortfall = wrenches.shortfall(accuracy)
     if shortfall is not None:
-        return RefusedMode(mode=mode, refusal=Refusal.NO_SOLUTION, contact=-1, amount=shortfall)
+        return RefusedMode(mode=mode, refusal=Refusal.NO_SOLUTION, contact=-1, amount=shortfall), True
     shares, unique = wrenches.solution(accuracy)
     sums = dict.fromkeys(wrenches.edges.positions, (0.0, 0.0))
     for position, slope, share in zip(wrenches.edges.positions, wrenches.edges.slopes, shares, strict=True):
         f_t, f_n = sums[position]
         sums[position] = (f_t + slope * share, f_n + share)
     forces = [sums[position] for position, _ in cell.letters]
-    return _consistent(case, mode, cell, forces, unique=unique)
+    allowed = _EVIDENCE * (accuracy + FORCES_ROUNDING) * (case.load + sum(shares))
+    if wrenches.dual.exact:
+        # So close to the boundary that the strict inequalities are lost in what forces round to.
+        lost = _contradiction(case, cell, forces)
+        if lost is not None:
+            contact, amount = lost
+            return RefusedMode(mode=mode, refusal=Refusal.WRONG_MOTION, contact=contact, amount=amount), True
+    certain = wrenches.dual.exact or _misses(case, cell, forces) <= allowed
+    return _consistent(case, mode, cell, forces, unique=unique), certain
 
 
 def _consistent(
@@ -102,6 +126,37 @@ def _consistent(
         forces_unique=forces_unique,
         motion_unique=motion_unique,
     )
+
+
+def _misses(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> float:
+    """Return by how much, N, contacts that stay do not stay under some forces, and fixed ones slide."""
+    q = _acceleration(case, cell, forces)
+    most = 0.0
+    for position, letter in cell.letters:
+        row = case.rows[position]
+        most = max(most, case.mass * abs(dot(row.unit_n, q) + row.b_n / row.size_n))
+        if letter == FIXED:
+            most = max(most, case.mass * abs(dot(row.unit_t, q) + row.b_t / row.size_t))
+    return most
+
+
+def _contradiction(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> tuple[int, float] | None:
+    """Return the first contact that should separate or start to slide and does not, and its acceleration."""
+    q = _acceleration(case, cell, forces)
+    size = norm(q)
+    staying = dict(cell.letters)
+    for position, row in enumerate(case.rows):
+        letter = staying.get(position)
+        if letter is None:
+            value, length = dot(row.N, q) + row.b_n, row.size_n
+        elif letter != FIXED and row.slides == 0.0:
+            value, length = dot(row.T, q) + row.b_t, row.size_t
+            value = value if letter == RIGHT else -value
+        else:
+            continue
+        if value <= FORCES_ROUNDING * length * size:
+            return row.contact, value
+    return None
 
 
 def _acceleration(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> Vector3:

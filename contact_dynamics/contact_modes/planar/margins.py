@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.contact_modes.letters import PLANAR_LETTERS
+from contact_dynamics.contact_modes.letters import PLANAR_LETTERS, SEPARATES
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.judgement import judge_all
 from contact_dynamics.contact_modes.planar.problem import touching_case
@@ -58,6 +58,9 @@ def planar_mode_margins(
 ) -> tuple[PlanarModeMargin, ...]:
     """Return the margin of the wrench in each of its consistent modes, in the order of their answer.
 
+    Where all contacts separate already no wrench changes the mode: its margin is infinite. Empty where a
+    contact approaches.
+
     Args:
         problem: The question.
         answer: To that question, where it is known: its modes are not sought again.
@@ -72,7 +75,7 @@ def planar_mode_margins(
     )
     case = touching_case(problem)
     if case is None:
-        return ()
+        return _of_free_motion(problem, length)
     cells = kinematic_cells(case)
     consistent = judge_all(case, cells, accuracy)[0] if answer is None else answer.modes
     present = tuple(mode.mode for mode in consistent)
@@ -109,6 +112,23 @@ def planar_mode_margins(
             )
         )
     return tuple(found)
+
+
+def _of_free_motion(problem: PlanarContactProblem, length: float) -> tuple[PlanarModeMargin, ...]:
+    """Return the margin where no contact touches: no wrench changes that. None where one approaches."""
+    if any(v_n < 0.0 for _, v_n in problem.contact_velocities()):
+        return ()
+    mode = SEPARATES * len(problem.contacts)
+    return (
+        PlanarModeMargin(
+            mode=mode,
+            margin=math.inf,
+            length=length,
+            change=_NO_WRENCH,
+            verdict_beyond=ModeVerdict.UNIQUE,
+            modes_beyond=(mode,),
+        ),
+    )
 
 
 def _nearest(

@@ -22,13 +22,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+from contact_dynamics.contact_modes.planar.coincident import coincident
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, tangents, without
 from contact_dynamics.plane.types import PlanarVelocity
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import (
     ACCELERATION_TOLERANCE,
-    LARGEST_NUMBER,
+    LARGEST_GRIP,
     ROW_TOLERANCE,
     VELOCITY_TOLERANCE,
 )
@@ -167,11 +168,18 @@ class PlanarCase(NamedTuple):
 
 
 def touching_case(problem: PlanarContactProblem) -> PlanarCase | None:
-    """Return the case of the contacts that touch; None: none does, or one approaches."""
+    """Return the case of the contacts that touch, the same ones with one place and normal.
+
+    None: none touches, or one approaches.
+    """
     velocities = problem.contact_velocities()
     if any(v_n < 0.0 for _, v_n in velocities) or all(v_n > 0.0 for _, v_n in velocities):
         return None
-    return planar_case(problem, problem.contacts, velocities)
+    contacts = problem.contacts
+    same = coincident(contacts, velocities, problem.body.radius_of_gyration)
+    if same is not None:
+        contacts = [contacts[same.firsts[group]] for group in same.group]
+    return planar_case(problem, contacts, velocities)
 
 
 def planar_case(
@@ -189,10 +197,7 @@ def planar_case(
     for index, (contact, (v_t, v_n)) in enumerate(zip(contacts, contact_velocities, strict=True)):
         if v_n != 0.0:
             continue
-        n_x, n_y = contact.normal
-        r_x, r_y = contact.r
-        N = (n_x, n_y, (r_x * n_y - r_y * n_x) / rho)
-        T = (n_y, -n_x, -(r_x * n_x + r_y * n_y) / rho)
+        N, T = contact_rows(contact, rho)
         touching.append((index, v_t, N, T))
         resting.append(N)
         if v_t == 0.0:
@@ -219,7 +224,7 @@ def planar_case(
         size_n, size_t = norm(N), norm(T)
         unit_n, unit_t = _divided(N, size_n), _divided(T, size_t)
         slides = float((v_t > 0.0) - (v_t < 0.0))
-        friction = min(contact.friction, LARGEST_NUMBER)
+        friction = effective_friction(contact, rho)
         rows.append(ContactRow(index, N, T, unit_n, unit_t, size_n, size_t, b_n, b_t, slides, friction))
     return PlanarCase(
         contacts=contacts,
@@ -230,6 +235,29 @@ def planar_case(
         omega=omega,
         lift=_lift(twist, largest) if largest > 0.0 else None,
     )
+
+
+def contact_rows(contact: PlanarContact, length: float) -> tuple[Vector3, Vector3]:
+    """Return N and T of a contact, with a ``length``, m, as the unit of length of rotations."""
+    n_x, n_y = contact.normal
+    r_x, r_y = contact.r
+    return (
+        (n_x, n_y, (r_x * n_y - r_y * n_x) / length),
+        (n_y, -n_x, -(r_x * n_x + r_y * n_y) / length),
+    )
+
+
+def effective_friction(contact: PlanarContact, length: float) -> float:
+    """Return the coefficient of friction, or the largest that makes a difference, see `LARGEST_GRIP`."""
+    if contact.friction <= 1.0:
+        return contact.friction
+    arms = max(1.0, abs(contact.r[0]) / length, abs(contact.r[1]) / length)
+    return max(1.0, min(contact.friction, LARGEST_GRIP / arms))
+
+
+def beyond_grip(contact: PlanarContact, length: float) -> bool:
+    """Return whether the contact acts with less friction than it has."""
+    return effective_friction(contact, length) < contact.friction
 
 
 def _unhindered(twist: Vector3, resting: list[Vector3]) -> Vector3:

@@ -17,18 +17,19 @@ from typing import TYPE_CHECKING
 
 from contact_dynamics.contact_modes.planar.answer import planar_contact_modes
 from contact_dynamics.contact_modes.planar.cone import PolyhedralCone
-from contact_dynamics.contact_modes.planar.problem import AT_REST
+from contact_dynamics.contact_modes.planar.friction_edges import sharp_reaction
+from contact_dynamics.contact_modes.planar.problem import AT_REST, contact_rows, effective_friction
 from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict
+from contact_dynamics.numerics.nonnegative_least_squares import distance_from_cone
 from contact_dynamics.numerics.vectors import Vector3, dot, normalised
 from contact_dynamics.plane.force_dual import friction_cone
-from contact_dynamics.tolerances import ROW_TOLERANCE
 from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Sequence
 
     from contact_dynamics.contact_modes.planar.problem import PlanarContactProblem
-    from contact_dynamics.plane.types import PlanarWrench
+    from contact_dynamics.plane.types import PlanarContact
 
 
 def planar_statics(problem: PlanarContactProblem, *, margin_length: float | None = None) -> BodyStatics:
@@ -51,8 +52,8 @@ def planar_statics(problem: PlanarContactProblem, *, margin_length: float | None
     )
     answer = planar_contact_modes(replace(problem, velocity=AT_REST))
     target = (wrench.f[0], wrench.f[1], wrench.moment / length)
-    balance = _balance((edge for contact in contacts for edge in friction_cone(contact)), length)
-    smooth = _balance((friction_cone(replace(contact, friction=0.0))[0] for contact in contacts), length)
+    balance = _balance(contacts, length)
+    smooth = _balance([replace(contact, friction=0.0) for contact in contacts], length)
     room = _room(balance, target, accuracy)
     equilibrium = Certainty.NO
     if room >= 0.0:
@@ -68,19 +69,33 @@ def planar_statics(problem: PlanarContactProblem, *, margin_length: float | None
     )
 
 
-def _balance(edges: Iterable[PlanarWrench], length: float) -> PolyhedralCone:
-    """Return the dual of the cone of wrenches that contact forces along ``edges`` can balance."""
+def _balance(contacts: Sequence[PlanarContact], length: float) -> PolyhedralCone:
+    """Return the dual of the cone of wrenches that contact forces can balance."""
+    gripping = [replace(one, friction=effective_friction(one, length)) for one in contacts]
+    pairs = [friction_cone(one) if one.friction > 0.0 else friction_cone(one)[:1] for one in gripping]
+    edges = [edge for pair in pairs for edge in pair]
     reactions = [normalised((-edge.f[0], -edge.f[1], -edge.moment / length)) for edge in edges]
-    return PolyhedralCone(reactions, tolerance=ROW_TOLERANCE)
+
+    def sharp() -> list[Vector3]:
+        return [
+            sharp_reaction(*contact_rows(one, length), slope)
+            for one, pair in zip(gripping, pairs, strict=True)
+            for slope in (one.friction, -one.friction)[: len(pair)]
+        ]
+
+    return PolyhedralCone(reactions, sharp=sharp)
 
 
 def _room(balance: PolyhedralCone, target: Vector3, accuracy: float) -> float:
     """Return how far inside the cone that is dual to ``balance`` the wrench lies, N; < 0: outside."""
     tolerance = accuracy * math.sqrt(dot(target, target))
     heights = [dot(facet, target) for facet in balance.rays]
-    if any(abs(dot(line, target)) > tolerance for line in balance.lineality):
-        return -1.0
-    if heights and min(heights) < -tolerance:
+    if balance.exact:
+        if distance_from_cone(balance.rows, target) > tolerance:
+            return -1.0
+    elif any(abs(dot(line, target)) > tolerance for line in balance.lineality) or (
+        heights and min(heights) < -tolerance
+    ):
         return -1.0
     if balance.lineality:
         return 0.0

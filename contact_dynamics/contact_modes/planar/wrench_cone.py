@@ -14,12 +14,16 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from contact_dynamics.contact_modes.planar.cone import PolyhedralCone, bits
+from contact_dynamics.contact_modes.planar.cone import PolyhedralCone, bits, decimal_vector
 from contact_dynamics.contact_modes.planar.enumeration import Cell
-from contact_dynamics.contact_modes.planar.friction_edges import friction_edges, reactions
+from contact_dynamics.contact_modes.planar.friction_edges import friction_edges, reactions, sharp_reactions
 from contact_dynamics.contact_modes.planar.problem import PlanarCase, lifted
 from contact_dynamics.numerics.linear_spaces import orthonormal
-from contact_dynamics.numerics.nonnegative_least_squares import least_force
+from contact_dynamics.numerics.nonnegative_least_squares import (
+    distance_from_cone,
+    exact_combination,
+    least_force,
+)
 from contact_dynamics.numerics.vectors import Vector3, dot, norm, normalised, opposite
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
@@ -47,16 +51,24 @@ class ModeWrenches:
 
     __slots__ = ("_case", "_common", "_rays", "_reactions", "_target", "dual", "edges")
 
-    def __init__(self, case: PlanarCase, cell: Cell) -> None:
-        """Build the cone; its rays stand first among the rows of ``dual``, then the reactions."""
+    def __init__(self, case: PlanarCase, cell: Cell, *, exact: bool = False) -> None:
+        """Build the cone; its rays stand first among the rows of ``dual``, then the reactions.
+
+        ``exact``: in decimals, even where floats tell all directions apart.
+        """
         lift = case.lift
         self._case = case
         self._rays = cell.rays
         self.edges = friction_edges(case.rows, cell.letters)
         self._reactions = reactions(lift, self.edges.wrenches)
-        self.dual = PolyhedralCone([*cell.rays, *self._reactions.units], tolerance=ROW_TOLERANCE)
+        self.dual = PolyhedralCone([*cell.rays, *self._reactions.units], exact=exact, sharp=self._sharp_rows)
         self._target = lifted(lift, case.w, case.mass * lift.scale * lift.scale if lift else 0.0)
         self._common = self.dual.all_rows
+
+    def _sharp_rows(self) -> list[Vector3]:
+        rays = [decimal_vector(ray) for ray in self._rays]
+        case = self._case
+        return [*rays, *sharp_reactions(case.lift, case.rows, self.edges, self._reactions.edges)]
 
     def generated_by(self) -> tuple[list[Vector3], list[Vector3]]:
         """Return vertices, N, and rays whose averages and positive combinations are the mode's wrenches."""
@@ -95,10 +107,16 @@ class ModeWrenches:
         where the mode's strict inequalities fail; infinite: no wrench brings the mode about.
         """
         tolerance = accuracy * norm(self._target)
-        for line in self.dual.lineality:
-            height = dot(line, self._target)
-            if abs(height) > tolerance:
-                return self._distance(line, height)
+        if self.dual.exact:
+            # Beyond the edge of a narrow cone a wrench is near to its facets and still far from the cone.
+            distance = distance_from_cone(self.dual.rows, self._target)
+            if distance > tolerance:
+                return distance
+        else:
+            for line in self.dual.lineality:
+                height = dot(line, self._target)
+                if abs(height) > tolerance:
+                    return self._distance(line, height)
         lowest, facet = 0.0, None
         strict = True
         rays = (1 << len(self._rays)) - 1
@@ -110,7 +128,7 @@ class ModeWrenches:
             if height <= tolerance:
                 common &= tight
                 strict = strict and tight & rays == rays
-        if facet is not None and lowest < -tolerance:
+        if facet is not None and lowest < -tolerance and not self.dual.exact:
             return self._distance(facet, lowest)
         self._common = common
         return None if strict else 0.0
@@ -136,9 +154,13 @@ class ModeWrenches:
         # Half of the way that the mode's mean acceleration could go keeps every strict inequality.
         share = 0.5 * largest if self._rays else 0.0
         rest = (target[0] - share * inner[0], target[1] - share * inner[1], target[2] - share * inner[2])
-        absent = [_three(unit) for unit in orthonormal(fixed)]
-        used = bits(self._common)
-        found = least_force([self.dual.rows[i] for i in used], rest, absent)
+        if self.dual.exact:
+            used = list(range(len(self.dual.rows)))
+            found, _ = exact_combination(self.dual.rows, rest)
+        else:
+            absent = [_three(unit) for unit in orthonormal(fixed)]
+            used = bits(self._common)
+            found = least_force([self.dual.rows[i] for i in used], rest, absent)
         wrenches = self.edges.wrenches
         shares = [0.0] * len(wrenches)
         idle = set(self._reactions.edges)  # the others act along the line of symmetry: any of them may

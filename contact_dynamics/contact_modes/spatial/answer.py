@@ -7,30 +7,72 @@ the pyramid friction does the most it can against the sliding: a contact that sl
 opposite to an edge has its force on that edge, one that slides on a sector's border has it on the side
 between two edges. Letters are s (separates), f (sticks) and c (stays and slides); the sector or border
 belongs to the mode. All of them are found (`search`); then friction is turned exactly against the
-sliding where that has a solution (`exact_friction`). A contact without friction is one letter, sliding or
-not.
+sliding where that has a solution (`exact_friction`, `exact_letters`), and finer pyramids are tried where it
+has none. One contact at rest is solved exactly (`one_contact`), and round cones decide whether all contacts
+can stick (`round_cones`). A contact without friction is one letter, sliding or not.
 
 Does not cover: margins (`spatial.margins`).
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
 from contact_dynamics.contact_modes.spatial.exact_friction import Sliding, sharpened
+from contact_dynamics.contact_modes.spatial.exact_letters import forces_with_letters, letters_near
 from contact_dynamics.contact_modes.spatial.least_forces import least_forces, misdirection
+from contact_dynamics.contact_modes.spatial.one_contact import modes_of_one
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
-from contact_dynamics.tolerances import SAME_MOTION, STRICT
+from contact_dynamics.contact_modes.spatial.round_cones import (
+    held_by_round_cones,
+    polished,
+    rests_in_one_way,
+    sticking,
+)
+from contact_dynamics.errors import TooLargeError
+from contact_dynamics.tolerances import (
+    MODE_BETTER,
+    MODE_OBLIQUE,
+    MODE_RESTS,
+    MODE_STRAIGHT,
+    SAME_MOTION,
+    STRICT,
+)
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.contact_modes.spatial.search import Found, Search
     from contact_dynamics.validation import FloatArray
+
+
+_MOST_SOUGHT_TWICE: Final = 4
+"""Contacts whose modes are sought with finer pyramids too."""
+
+_FINER: Final = 4
+"""Times as many edges as asked for."""
+
+_MOST_FACETS: Final = 128
+"""Edges of the finest pyramid that is searched where friction could not be turned against the sliding."""
+
+_DOUBT: Final = "rounding decides whether some modes are consistent: contacts or normals are nearly the same"
+
+_AT_REST: Final = "whether all contacts can stick together hangs on rounding"
+
+_TURNED: Final = (
+    "friction could not be turned against the sliding of {}: modes with Coulomb's round cones may be others"
+)
+
+
+class Evidence(NamedTuple):
+    """The modes of a case with what the search found of them; None: what it did not find."""
+
+    modes: list[tuple[SpatialMode, Found | None]]
+    undecided: str  # what could not be made out; empty: nothing
 
 
 def spatial_contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer:
@@ -44,37 +86,180 @@ def spatial_contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer:
     modes: list[SpatialMode] = []
     examined = 0
     approaching: tuple[int, ...] = ()
+    undecided = ""
     if isinstance(case, SpatialCase):
         search = search_of(case, problem.friction_facets)
-        modes = [mode for mode, _ in evidenced(case, search, sharpen=problem.sharpen)]
+        if problem.sharpen:
+            pairs, undecided = evidenced(case, search, facets=problem.friction_facets)
+        else:
+            pairs, undecided = found_by(case, search, sharpen=False), _DOUBT if search.doubtful else ""
+        modes = [mode for mode, _ in pairs]
         examined = search.examined
     else:
         approaching = case
+    verdict = ModeVerdict.UNDECIDED if undecided else verdict_on(modes)
     return SpatialModeAnswer(
-        verdict=ModeVerdict.IMPACT if approaching else verdict_on(modes),
+        verdict=ModeVerdict.IMPACT if approaching else verdict,
         modes=tuple(modes),
         approaching=approaching,
         velocity_tolerance=problem.velocity_tolerance,
         friction_facets=problem.friction_facets,
         examined=examined,
+        undecided=undecided,
     )
 
 
-def evidenced(case: SpatialCase, search: Search, *, sharpen: bool) -> list[tuple[SpatialMode, Found]]:
-    """Return the modes of a case with what the search found of them; of twins, if sharpened, the first.
+def evidenced(case: SpatialCase, search: Search, *, facets: int) -> Evidence:
+    """Return all modes of a case, with Coulomb's round cones.
+
+    Args:
+        case: The body with its contacts.
+        search: The search of that case.
+        facets: Edges of its pyramids.
+    """
+    kept = found_by(case, search, sharpen=True)
+    undecided = _DOUBT if search.doubtful else ""
+    if np.any(case.sliding[case.touching]):
+        return Evidence(kept, undecided)
+    if len(case.touching) == 1 and search.touching[0].friction > 0.0:
+        return Evidence(_of_one_contact(case, search, kept), "")
+    refined = _refined(case, search, Evidence(kept, undecided), facets)
+    if 2 <= len(search.touching) <= _MOST_SOUGHT_TWICE and _are_oblique(search):
+        refined = _with_those_between(case, refined, facets)
+    return _with_rest(case, search, refined)
+
+
+def _are_oblique(search: Search) -> bool:
+    normals = np.array([one.normal for one in search.touching])
+    return bool(np.abs(normals - normals[0]).max() > MODE_OBLIQUE)
+
+
+def _with_those_between(case: SpatialCase, found: Evidence, facets: int) -> Evidence:
+    """Return the modes with those that need friction between the edges of the pyramids."""
+    finer = search_of(case, min(_FINER * facets, _MOST_FACETS))
+    try:
+        further = _by_letters(case, finer, found_by(case, finer, sharpen=True))
+    except TooLargeError:
+        return found
+    exact = [(mode, None) for mode, _ in further if mode.motion_unique and _is_exact(mode)]
+    return found._replace(modes=_without_twins([*found.modes, *exact]))
+
+
+def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[tuple[SpatialMode, Found | None]]:
+    """Return the modes of a case with friction pyramids; of twins, if sharpened, the first.
 
     Twins have the same letters and the same motion. Where the motion with some letters is not unique, all
     with these letters are twins of that mode.
     """
     every = search.run(grouped=sharpen)
-    found = [(_evidence(case, search, one, sharpen=sharpen), one) for one in every]
+    found: list[tuple[SpatialMode, Found | None]] = [
+        (_evidence(case, search, one, sharpen=sharpen), one) for one in every
+    ]
     if not sharpen:
         return found
-    kept: list[tuple[SpatialMode, Found]] = []
-    for mode, one in sorted(found, key=lambda pair: pair[0].motion_unique):
+    return _without_twins(sorted(found, key=lambda pair: pair[0].motion_unique))
+
+
+def _without_twins(
+    found: list[tuple[SpatialMode, Found | None]],
+) -> list[tuple[SpatialMode, Found | None]]:
+    kept: list[tuple[SpatialMode, Found | None]] = []
+    for mode, one in found:
         if not any(_are_twins(mode, other) for other, _ in kept):
             kept.append((mode, one))
     return kept
+
+
+def _is_exact(mode: SpatialMode) -> bool:
+    return not mode.motion_unique or mode.misdirection <= MODE_STRAIGHT
+
+
+def _refined(case: SpatialCase, search: Search, found: Evidence, facets: int) -> Evidence:
+    """Return the modes with those of finer pyramids in place of any whose friction could not be turned."""
+    modes = _by_letters(case, search, found.modes)
+    while not all(_is_exact(mode) for mode, _ in modes):
+        facets *= 2
+        exact = [pair for pair in modes if _is_exact(pair[0])]
+        turned = ", ".join(mode.mode for mode, _ in modes if not _is_exact(mode))
+        if facets > _MOST_FACETS:
+            return Evidence(modes, found.undecided or _TURNED.format(turned))
+        finer = search_of(case, facets)
+        try:
+            further = found_by(case, finer, sharpen=True)
+        except TooLargeError:
+            return Evidence(modes, found.undecided or _TURNED.format(turned))
+        further = [(mode, None) for mode, _ in _by_letters(case, finer, further)]
+        modes = _without_twins([*exact, *further])
+        if finer.doubtful:
+            return Evidence(modes, _DOUBT)
+    return Evidence(modes, found.undecided)
+
+
+def _by_letters(
+    case: SpatialCase, search: Search, found: list[tuple[SpatialMode, Found | None]]
+) -> list[tuple[SpatialMode, Found | None]]:
+    """Return the modes with exact ones in place of those whose friction could not be turned."""
+    kept: list[tuple[SpatialMode, Found | None]] = []
+    for mode, one in found:
+        near: list[tuple[SpatialMode, Found | None]] = []
+        if not _is_exact(mode):
+            own = mode.contact_forces_W[case.touching] / case.motion.scale
+            letters = "".join(mode.mode[i] for i in case.touching.tolist())
+            for trial in letters_near(search, letters):
+                forces = forces_with_letters(search, trial, own)
+                if forces is not None:
+                    near.append((_mode(case, trial, forces, forces_unique=True, motion_unique=True), None))
+        kept += near or [(mode, one)]
+    return _without_twins(kept)
+
+
+def _of_one_contact(
+    case: SpatialCase, search: Search, found: list[tuple[SpatialMode, Found | None]]
+) -> list[tuple[SpatialMode, Found | None]]:
+    """Return all modes of one contact at rest, as they were found where that is exact already."""
+    (contact,) = search.touching
+    G = (
+        case.motion.points[3 * case.touching[0] :][:3]
+        @ case.motion.of_forces[:, 3 * case.touching[0] :][:, :3]
+    )
+    b = case.motion.points_free[case.touching[0]] / case.motion.scale
+    exact = modes_of_one(G, b, contact.normal, contact.friction)
+    kept: list[tuple[SpatialMode, Found | None]] = []
+    for one in exact:
+        mode = _mode(case, one.letter, one.force[None, :], forces_unique=True, motion_unique=True)
+        alike = [
+            pair for pair in found if pair[0].misdirection <= MODE_STRAIGHT and _are_twins(mode, pair[0])
+        ]
+        kept.append(alike[0] if alike else (mode, None))
+    order = [mode for mode, _ in found]
+    return sorted(kept, key=lambda pair: order.index(pair[0]) if pair[1] is not None else len(order))
+
+
+def _all_stick(case: SpatialCase, search: Search, mode: SpatialMode) -> bool:
+    return all(
+        mode.mode[i] == STICKS or (contact.friction == 0.0 and mode.mode[i] == STAYS)
+        for i, contact in zip(case.touching.tolist(), search.touching, strict=True)
+    )
+
+
+def _with_rest(case: SpatialCase, search: Search, found: Evidence) -> Evidence:
+    """Return the modes with the one in which all contacts stick, if the round cones hold it."""
+    letters = "".join(STICKS if one.friction > 0.0 else STAYS for one in search.touching)
+    undecided = found.undecided
+    still = [pair for pair in found.modes if _all_stick(case, search, pair[0])]
+    if len(still) > 1:  # forces that hold a body are convex: one mode
+        found = found._replace(modes=[pair for pair in found.modes if pair not in still[1:]])
+    if not still:
+        rows = sticking(search)
+        held = held_by_round_cones(search, rows)
+        if held.forces is not None:
+            unique = rests_in_one_way(search, rows)
+            own = polished(search, rows, held.forces)
+            mode = _mode(case, letters, own, forces_unique=unique.forces, motion_unique=unique.motion)
+            return Evidence([*found.modes, (mode, None)], undecided)
+        if not held.certain:
+            undecided = _AT_REST
+    return Evidence(found.modes, undecided)
 
 
 def _are_twins(mode: SpatialMode, other: SpatialMode) -> bool:
@@ -88,8 +273,7 @@ def _are_twins(mode: SpatialMode, other: SpatialMode) -> bool:
 
 
 def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool) -> SpatialMode:
-    """Return a mode with accelerations and forces that realise it."""
-    motion, contacts, sliding, touching = case
+    """Return a mode that was found, with accelerations and forces that realise it."""
     count = search.edges.shape[1]
     shares = found.program.shares(count)
     motion_unique, low, high = found.motion
@@ -102,6 +286,37 @@ def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool)
         own, acting = _sharpened(search, found, own, acting)
     if not forces_unique:
         own = least_forces(search.of_forces, own, acting)
+    letters = "".join(one.letter for one in found.letters)
+    if set(letters) == {STICKS}:
+        own = _rested(search, own)
+    unique = motion_unique or forces_unique
+    return _mode(case, letters, own, forces_unique=forces_unique, motion_unique=unique)
+
+
+def _rested(search: Search, forces: FloatArray) -> FloatArray:
+    """Return forces under which a body rests that does so but for what is left of merged conditions."""
+    rows = sticking(search)
+    motion = np.append(search.motion[:, -1] + search.of_forces @ forces.ravel(), 1.0)
+    if float(np.abs(rows @ motion).max()) > STRICT:  # merged contacts: what parts them has been lost
+        held = held_by_round_cones(search, rows)
+        forces = forces if held.forces is None else held.forces
+
+    def left(forces: FloatArray) -> float:
+        """Return the size of the wrench that forces leave over."""
+        return float(np.linalg.norm(search.mass @ (search.motion[:, -1] + search.of_forces @ forces.ravel())))
+
+    before = left(forces)
+    if before <= MODE_RESTS * left(np.zeros_like(forces)):
+        return forces
+    better = polished(search, rows, forces)
+    return better if left(better) <= MODE_BETTER * before else forces
+
+
+def _mode(
+    case: SpatialCase, touching_letters: str, own: FloatArray, *, forces_unique: bool, motion_unique: bool
+) -> SpatialMode:
+    """Return a mode from the letters of the touching contacts and their forces, in the motion's units."""
+    motion, contacts, sliding, touching = case
     forces = np.zeros((len(contacts), 3))
     forces[touching] = own * motion.scale
     body = motion.free + motion.of_forces @ forces.ravel()
@@ -109,12 +324,12 @@ def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool)
     across = points - np.sum(points * contacts.normals_W, axis=1)[:, None] * contacts.normals_W
     letters = [SEPARATES] * len(contacts)
     directions = np.zeros_like(points)
-    for i, letter in zip(touching.tolist(), found.letters, strict=True):
+    for i, letter in zip(touching.tolist(), touching_letters, strict=True):
         way = sliding[i] if np.any(sliding[i]) else across[i]
         size = float(np.linalg.norm(way))
         # Without friction one letter stands for both, and the acceleration says which it is.
-        rests = letter.letter == STAYS and not np.any(sliding[i]) and size <= STRICT * motion.scale
-        letters[i] = STICKS if rests else letter.letter
+        rests = letter == STAYS and not np.any(sliding[i]) and size <= STRICT * motion.scale
+        letters[i] = STICKS if rests else letter
         if letters[i] == STAYS:
             directions[i] = way / size
     return SpatialMode(
@@ -126,7 +341,7 @@ def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool)
         tangential_directions_W=directions,
         misdirection=misdirection(forces, directions, contacts.normals_W),
         forces_unique=forces_unique,
-        motion_unique=motion_unique or forces_unique,
+        motion_unique=motion_unique,
     )
 
 

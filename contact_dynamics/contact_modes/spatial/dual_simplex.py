@@ -13,7 +13,13 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.tolerances import FEASIBLE, ROW_TOLERANCE, SAME_MOTION
+from contact_dynamics.tolerances import (
+    FEASIBLE,
+    ROW_TOLERANCE,
+    SAME_MOTION,
+    TABLE_ROUNDING,
+    TABLE_SMALL_PIVOT,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -35,6 +41,14 @@ _MOST_STEPS: Final = 500
 """Bound on the steps of the primal simplex. From a fifth of it Bland's rule holds, which cannot cycle."""
 
 
+_CLEAR: Final = 1e3
+"""How many times its estimated rounding a condition must be missed by for a refusal to be beyond doubt."""
+
+_MOST_FORCE: Final = 1e4
+"""Times the load: a refusal is beyond doubt if what the table takes for zero could matter only with larger
+edge forces than that."""
+
+
 class Ends(NamedTuple):
     """What a weighted sum of edge forces ranges over.
 
@@ -52,12 +66,19 @@ class Ends(NamedTuple):
 class Program:
     """Edge forces that satisfy some conditions; each narrowing is a new program."""
 
-    __slots__ = ("_columns", "_fixed", "_rows", "_table")
+    __slots__ = ("_columns", "_fixed", "_noise", "_rows", "_table", "doubtful")
 
     def __init__(
-        self, table: FloatArray, rows: list[int], columns: list[int], fixed: NDArray[np.float64]
+        self,
+        table: FloatArray,
+        rows: list[int],
+        columns: list[int],
+        fixed: NDArray[np.float64],
+        noise: float = TABLE_ROUNDING,
     ) -> None:
         """Take a table whose columns are the variables that are zero, and constants; see `stated`."""
+        self._noise = noise  # estimated rounding of the table's entries
+        self.doubtful = False  # whether rounding may have decided that nothing satisfies the conditions
         self._table = table
         self._rows = rows  # name of each condition's variable, after the head
         self._columns = columns
@@ -77,6 +98,12 @@ class Program:
         rows = _rows_of(named, motion)
         table = np.vstack([weights[None, :], motion, rows])
         return Program(table, list(names), list(range(count)), np.zeros(len(rows)))
+
+    def renamed(self, columns: list[int], equalities: int) -> Program:
+        """Return the program with other names of its edge forces, and its first rows zero."""
+        fixed = self._fixed.copy()
+        fixed[:equalities] = 1.0
+        return Program(self._table, self._rows, columns, fixed, self._noise)
 
     def narrowed(
         self,
@@ -125,7 +152,7 @@ class Program:
             added = np.zeros(len(rows))
             added[:equalities] = 1.0
             fixed = np.concatenate([fixed, added])
-        return Program(table, names, columns, fixed)
+        return Program(table, names, columns, fixed, self._noise)
 
     def allows_any(self, weights: FloatArray, constants: FloatArray, least: float) -> bool:
         """Return whether some edge forces satisfy all conditions and one, any one, further condition.
@@ -148,8 +175,10 @@ class Program:
             table = np.concatenate([self._table, row[None, :]])
             fixed = np.append(self._fixed, 0.0)
             # Only solved, not narrowed again: the name is not asked for.
-            if Program(table, [*self._rows, _DEAD], list(self._columns), fixed).solve():
+            trial = Program(table, [*self._rows, _DEAD], list(self._columns), fixed, self._noise)
+            if trial.solve():
                 return True
+            self.doubtful |= trial.doubtful
         return False
 
     @property
@@ -158,8 +187,12 @@ class Program:
         found: FloatArray = self._table[1:_HEAD, -1]
         return found
 
-    def solve(self) -> bool:
-        """Return whether some edge forces satisfy all conditions, and make the table theirs."""
+    def solve(self, least_pivot: float = ROW_TOLERANCE) -> bool:
+        """Return whether some edge forces satisfy all conditions, and make the table theirs.
+
+        Args:
+            least_pivot: Entries of the table up to it count as zero.
+        """
         table, fixed = self._table, self._fixed
         if len(fixed) == 0:
             return True
@@ -171,8 +204,10 @@ class Program:
                 return True
             row = table[_HEAD + worst, :-1]
             helps = row if values[worst] < 0.0 else -row
-            able = (helps > ROW_TOLERANCE).nonzero()[0]
+            able = (helps > least_pivot).nonzero()[0]
             if able.size == 0:
+                least = _MOST_FORCE * float(helps.max(initial=0.0))
+                self.doubtful = bool(missed[worst] <= max(least, _CLEAR * self._noise))
                 return False
             enters = able[(table[0, able] / helps[able]).argmin()]
             self._pivot(worst, int(enters))
@@ -182,6 +217,8 @@ class Program:
         table = self._table
         column = table[:, enters].copy()
         pivot = column[_HEAD + leaves]
+        if abs(pivot) < TABLE_SMALL_PIVOT:
+            self._noise *= TABLE_SMALL_PIVOT / abs(float(pivot))
         row = table[_HEAD + leaves] / -pivot
         row[enters] = 1.0 / pivot
         table[:, enters] = 0.0
@@ -209,7 +246,9 @@ class Program:
         Args:
             weights: (K,).
         """
-        work = Program(self._table.copy(), list(self._rows), list(self._columns), self._fixed.copy())
+        work = Program(
+            self._table.copy(), list(self._rows), list(self._columns), self._fixed.copy(), self._noise
+        )
         work._settle_fixed()
         ends = []
         for sign in (1.0, -1.0):

@@ -18,9 +18,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
-from contact_dynamics.contact_modes.spatial.answer import evidenced, spatial_contact_modes
+from contact_dynamics.contact_modes.spatial.answer import evidenced, found_by
 from contact_dynamics.contact_modes.spatial.margins_of_sliding import union_margin
-from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of_few_edges, spatial_case
+from contact_dynamics.contact_modes.spatial.problem import (
+    SpatialCase,
+    search_of,
+    search_of_few_edges,
+    spatial_case,
+)
 from contact_dynamics.contact_modes.spatial.wrenches import Way, supports, wrench_generators
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import BEYOND_MARGIN, ROW_TOLERANCE
@@ -85,9 +90,11 @@ def spatial_mode_margins(
     metric = np.array([1.0, 1.0, 1.0, length, length, length])
     present = None if answer is None or not problem.sharpen else tuple(one.mode for one in answer.modes)
     margins = []
-    for mode, found in evidenced(case, search, sharpen=True):
+    for mode, found in evidenced(case, search, facets=friction_facets).modes:
         beyond = None
-        if any(letters.item >= 0 for letters in found.letters):
+        if found is None:
+            margin, way = math.nan, np.zeros(6)
+        elif any(letters.item >= 0 for letters in found.letters):
             margin, way, beyond = union_margin(case, search, found, metric, friction_facets)
         else:
             margin, way = _nearest(case, search, found, metric)
@@ -125,8 +132,12 @@ def _beyond(
 
 
 def _modes_under(problem: SpatialContactProblem, wrench_W: FloatArray) -> tuple[str, ...]:
-    there = replace(problem, force_W=wrench_W[:3], torque_W=wrench_W[3:], sharpen=True)
-    return tuple(one.mode for one in spatial_contact_modes(there).modes)
+    """Return the modes that another wrench brings about with friction pyramids, as the margin has them."""
+    case = spatial_case(replace(problem, force_W=wrench_W[:3], torque_W=wrench_W[3:]))
+    if not isinstance(case, SpatialCase):
+        return ()
+    found = found_by(case, search_of(case, problem.friction_facets), sharpen=True)
+    return tuple(mode.mode for mode, _ in found)
 
 
 def _nearest(case: SpatialCase, search: Search, found: Found, metric: FloatArray) -> tuple[float, FloatArray]:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.spatial.answer import evidenced
+from contact_dynamics.contact_modes.spatial.answer import found_by
 from contact_dynamics.contact_modes.spatial.cone import nearest_sum
 from contact_dynamics.contact_modes.spatial.problem import search_of
 from contact_dynamics.contact_modes.spatial.wrenches import Way, distinct, supports, wrench_generators
@@ -151,7 +151,8 @@ class _Union:
     def modes_at(self, wrench: FloatArray) -> tuple[str, ...]:
         """Return the letters of all modes that a wrench brings about."""
         case = self._under(wrench)
-        return tuple(mode.mode for mode, _ in evidenced(case, search_of(case, self._facets), sharpen=True))
+        found = found_by(case, search_of(case, self._facets), sharpen=True)
+        return tuple(mode.mode for mode, _ in found)
 
     def _under(self, wrench: FloatArray) -> SpatialCase:
         """Return the case under another wrench, with the friction pyramids that it has."""

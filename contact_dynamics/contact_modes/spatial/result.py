@@ -53,6 +53,7 @@ class SpatialModeAnswer(Record):
         velocity_tolerance: m/s, below which a contact's velocity counted as zero.
         friction_facets: Edges of the pyramids.
         examined: Letters, and groups of them, that were tried.
+        undecided: What could not be made out, and why. Empty unless the verdict is UNDECIDED.
     """
 
     verdict: ModeVerdict
@@ -61,3 +62,4 @@ class SpatialModeAnswer(Record):
     velocity_tolerance: float
     friction_facets: int
     examined: int
+    undecided: str = ""

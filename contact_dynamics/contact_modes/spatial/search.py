@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS
+from contact_dynamics.contact_modes.spatial.careful_program import CarefulProgram
 from contact_dynamics.contact_modes.spatial.dual_simplex import Ends, Program
 from contact_dynamics.contact_modes.spatial.options import any_letter, pyramid_of, ways_of_sliding
 from contact_dynamics.contact_modes.spatial.regions import Image, Region, flat_of, whole
@@ -44,9 +45,15 @@ MOST_EXAMINED: Final = 30_000
 """Trials, of some 0.1 ms each, after which a search is given up: where the motion of a body on many feet is
 not unique, hundreds of combinations of their sectors may be consistent, and all are asked for."""
 
+AnyProgram = Program | CarefulProgram
+
 _REGION_TAG = -2
 _CONTACT_TAG = -3
 """The tag of contact 0. Each further contact's tag is one less."""
+
+
+class _DoubtError(Exception):
+    """Rounding may have decided a trial."""
 
 
 class Touching(NamedTuple):
@@ -77,7 +84,7 @@ class Found(NamedTuple):
     """
 
     letters: list[Option]
-    program: Program
+    program: AnyProgram
     motion: Ends
 
 
@@ -157,12 +164,14 @@ class Search:
         self._normals = np.array([c.normal @ c.point for c in touching]).reshape(-1, 7)
         named = self._normals
         names = [first + i for i in range(len(touching))]
-        self._mass = mass
+        self.mass = mass
         self._power = mass @ free if at_rest and np.any(free) else None
         if self._power is not None:
             named = np.vstack([named, np.append(self._power / np.linalg.norm(self._power), 0.0)])
             names.append(first + len(touching))
-        self._root = Program.stated(self.motion, named, names)
+        self._root: AnyProgram = Program.stated(self.motion, named, names)
+        self._careful_root = CarefulProgram(self.motion, named, names)
+        self.doubtful = False  # whether rounding may have hidden a mode
         self._trials = [
             any_letter(pyramid, contact.point, first + i)
             for i, (contact, pyramid) in enumerate(zip(touching, self.pyramids, strict=True))
@@ -170,6 +179,7 @@ class Search:
         self._ways: dict[tuple[int, tuple[int, int] | None], tuple[Option, ...]] = {}
         self._found: dict[tuple[tuple[str, int], ...], Found] = {}
         self._grouped = False
+        self.careful = False  # whether the modes were sought with care, contacts being nearly the same
         self._goal = ""  # the letters that are sought, where all are known
         self._settled: set[str] = set()  # letters that need no further mode
 
@@ -181,9 +191,19 @@ class Search:
                 motion of one of them is not unique. Otherwise each is found.
         """
         self._grouped = grouped
+        try:
+            self._search()
+        except _DoubtError:
+            self._found.clear()
+        if not self._found and not self.careful:
+            self.careful, self._root, self._goal = True, self._careful_root, ""
+            self._settled.clear()
+            self._search()
+        return list(self._found.values())
+
+    def _search(self) -> None:
         if self._holds(self._root):
             self._decide_who_stays(self._root, self._trials, 0)
-        return list(self._found.values())
 
     def acting(self, found: Found) -> list[FloatArray]:
         """Return the edges of each contact's pyramid that its letter allows to act."""
@@ -192,7 +212,7 @@ class Search:
             for p, letter in zip(self.pyramids, found.letters, strict=True)
         ]
 
-    def _holds(self, program: Program) -> bool:
+    def _holds(self, program: AnyProgram) -> bool:
         self.examined += 1
         if self.examined > MOST_EXAMINED:
             raise TooLargeError(
@@ -200,9 +220,19 @@ class Search:
                 f"{len(self.touching)} whose modes take more than {MOST_EXAMINED} trials",
                 "fewer contacts, or other friction_facets",
             )
-        return program.solve()
+        return self._trusted(program, holds=program.solve())
 
-    def _narrowed(self, program: Program, at: int, letters: Option, *, staying: bool = False) -> Program:
+    def _trusted(self, program: AnyProgram, *, holds: bool) -> bool:
+        """Return what a program came to; if that is in doubt, all starts again with care."""
+        if program.doubtful:
+            if not self.careful:
+                raise _DoubtError
+            self.doubtful = True
+        return holds
+
+    def _narrowed(
+        self, program: AnyProgram, at: int, letters: Option, *, staying: bool = False
+    ) -> AnyProgram:
         zeroed = letters.zeroed
         if staying:
             zeroed |= {self._first_normal + at}
@@ -215,7 +245,7 @@ class Search:
             tag=_CONTACT_TAG - at,
         )
 
-    def _decide_who_stays(self, program: Program, trials: list[Option], at: int) -> None:
+    def _decide_who_stays(self, program: AnyProgram, trials: list[Option], at: int) -> None:
         if at == len(trials):
             self._decide_common_motion(program, trials)
             return
@@ -224,7 +254,7 @@ class Search:
             if self._holds(narrower):
                 self._decide_who_stays(narrower, [*trials[:at], part, *trials[at + 1 :]], at + 1)
 
-    def _decide_common_motion(self, program: Program, trials: list[Option]) -> None:
+    def _decide_common_motion(self, program: AnyProgram, trials: list[Option]) -> None:
         open_ones = [i for i, letters in enumerate(trials) if letters.parts]
         frames = np.array([trials[i].parts[0].rows for i in open_ones]).reshape(-1, 2, 7)
         if len(open_ones) < 2 or np.any(frames[:, :, -1]):
@@ -253,11 +283,11 @@ class Search:
                         seen.add(further.stuck)
                         flats.append(further)
 
-    def _within(self, program: Program, flat: Flat) -> Program:
+    def _within(self, program: AnyProgram, flat: Flat) -> AnyProgram:
         rows = np.column_stack([flat.rows, np.zeros(len(flat.rows))])
         return program.narrowed(rows=rows, equalities=len(rows), tag=_CONTACT_TAG - len(self.touching))
 
-    def _decide_flat(self, program: Program, trials: list[Option], image: Image) -> bool:
+    def _decide_flat(self, program: AnyProgram, trials: list[Option], image: Image) -> bool:
         """Find the modes in which all contacts that are not decided slide; False: nor if some of them stick.
 
         But for all of them, at rest.
@@ -279,14 +309,16 @@ class Search:
         gains = None
         if self._power is not None:
             # Seen motions with which unseen ones have no kinetic energy in common: those gain on their own.
-            unseen = image.unseen @ self._mass
+            unseen = image.unseen @ self.mass
             rest = np.linalg.solve(unseen @ image.unseen.T, image.unseen @ self._power)
             gains = image.coordinates @ (self._power - rest @ unseen)
         pyramids = [self.pyramids[i] for i in open_ones]
         names = np.array([one.first for one in pyramids])[:, None] + np.arange(len(pyramids[0].edges))
         return Common(image, open_ones, pyramids, names, gains)
 
-    def _decide_within(self, region: Region, program: Program, trials: list[Option], common: Common) -> bool:
+    def _decide_within(
+        self, region: Region, program: AnyProgram, trials: list[Option], common: Common
+    ) -> bool:
         """Find the modes within a region; False: there is none, whichever of the contacts slide."""
         if self._goal in self._settled:
             return True
@@ -307,7 +339,7 @@ class Search:
         self._decide_letters(narrower, fewer, [0] * len(trials))
         return True
 
-    def _dissipates(self, region: Region, program: Program, common: Common) -> bool:
+    def _dissipates(self, region: Region, program: AnyProgram, common: Common) -> bool:
         """Return whether friction may take no more power than the applied wrench has.
 
         Friction takes the most that it can, so at least what the same normal forces would with any fixed
@@ -324,7 +356,8 @@ class Search:
             weights[:, own] = of_contact[:, None] / self._sizes[own]
         gains = region.rays @ common.gains
         scale = max(float(np.abs(weights).max()), float(np.abs(gains).max()))
-        return program.allows_any(weights / scale, gains / scale, -STRICT)
+        holds = program.allows_any(weights / scale, gains / scale, -STRICT)
+        return self._trusted(program, holds=holds)
 
     def _ways_of(self, at: int, acting: NDArray[np.bool_]) -> tuple[Option, ...]:
         """Return the ways of sliding of a contact against neighbouring edges, laid out once for a range."""
@@ -333,7 +366,7 @@ class Search:
             self._ways[at, arc] = ways_of_sliding(self.pyramids[at], self.touching[at].point, arc)
         return self._ways[at, arc]
 
-    def _decide_letters(self, program: Program, trials: list[Option], depths: list[int]) -> None:
+    def _decide_letters(self, program: AnyProgram, trials: list[Option], depths: list[int]) -> None:
         if self._goal in self._settled:
             return
         open_ones = [i for i, letters in enumerate(trials) if letters.parts]

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -19,13 +19,14 @@ from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
 from contact_dynamics.contact_modes.spatial.cone import cone_of
-from contact_dynamics.contact_modes.spatial.problem import MOST_EDGES
-from contact_dynamics.errors import TooLargeError
+from contact_dynamics.contact_modes.spatial.problem import MOST_EDGES, search_of, spatial_case
+from contact_dynamics.contact_modes.spatial.round_cones import held_by_round_cones
+from contact_dynamics.errors import TooLargeError, UndecidedError
 from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, ROW_TOLERANCE
 from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
-    from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
+    from contact_dynamics.contact_modes.spatial.problem import SpatialCase, SpatialContactProblem
     from contact_dynamics.validation import FloatArray
 
 
@@ -61,19 +62,32 @@ def spatial_statics(problem: SpatialContactProblem, *, margin_length: float | No
     target = np.concatenate([force, torque / length])
     room, wedged = _room(_rows(arms, pyramids, length), target)
     smooth, _ = _room(_rows(arms, [normal[None, :] for normal in contacts.normals_W], length), target)
+    at_rest = replace(problem, state=replace(state, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)), sharpen=True)
+    balanced = _is_balanced(at_rest)
     equilibrium = Certainty.NO
-    if room >= 0.0:
-        at_rest = replace(state, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3))
-        answer = spatial_contact_modes(replace(problem, state=at_rest, sharpen=True))
+    if balanced:
+        answer = spatial_contact_modes(at_rest)
         alone = answer.verdict == ModeVerdict.UNIQUE and answer.modes[0].motion_unique
         equilibrium = Certainty.CERTAIN if alone else Certainty.POSSIBLE
     return BodyStatics(
         equilibrium=equilibrium,
         jammed=Certainty.NO if smooth >= 0.0 else equilibrium,
         wedged=wedged,
-        stable_disturbance=room if room >= 0.0 else math.nan,
+        stable_disturbance=max(0.0, room) if balanced else math.nan,
         margin_length=length,
     )
+
+
+def _is_balanced(problem: SpatialContactProblem) -> bool:
+    """Return whether contact forces within round cones balance the wrench on a body at rest."""
+    case = cast("SpatialCase", spatial_case(problem))  # at rest no contact approaches
+    held = held_by_round_cones(search_of(case, problem.friction_facets), np.eye(6, 7))
+    if held.forces is None and not held.certain:
+        raise UndecidedError(
+            "contacts: found forces whose balance with the wrench hangs on rounding, allowed are "
+            "wrenches that are clearly balanced or clearly not"
+        )
+    return held.forces is not None
 
 
 def _rows(arms: FloatArray, pyramids: list[FloatArray], length: float) -> FloatArray:

@@ -7,8 +7,9 @@
   needs the work at each contact along the path, which complementarity of the ends does not know.
 
 `outcomes_over_orders` gives the set that the sequential law reaches over its admissible orders, and its
-spread, which says how far the answer is undecided. `planar` has the same in the plane, `sequential` has
-several bodies, and `impact.in_time` has contacts that strike one after the other.
+spread, which says how far the answer is undecided. `outcomes_at_once` does so for the solutions of
+SIMULTANEOUS. `planar` has the same in the plane, `sequential` has several bodies, and `impact.in_time` has
+contacts that strike one after the other.
 
 Not covered: moments at the contacts, and resting contacts that their own sliding would jam (`impact.spatial`
 answers that for one).
@@ -21,6 +22,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import (
     OrderedOutcomes,
@@ -28,7 +30,13 @@ from contact_dynamics.impact.several.result import (
     SeveralImpact,
     SeveralVerdict,
 )
-from contact_dynamics.impact.several.sequential import Touching, bodies_impact, check_touching, strike_in_turn
+from contact_dynamics.impact.several.sequential import (
+    Touching,
+    bodies_impact,
+    check_touching,
+    strike_at_once,
+    strike_in_turn,
+)
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_choice, check_positive
 
@@ -97,7 +105,8 @@ def outcomes_over_orders(
     """Return the outcomes of the sequential law over its admissible orders.
 
     An order follows a priority of the contacts: each time, the first in it that approaches is struck.
-    Different priorities can come to the same order, which is listed once.
+    Different priorities can come to the same order, which is listed once. The order of `several_impact`, the
+    fastest approach first, follows no priority where that changes on the way; it is always among them.
 
     Args:
         body: Mass and angular inertia.
@@ -118,16 +127,65 @@ def outcomes_over_orders(
     found: dict[tuple[int, ...], FloatArray] = {}
     lost = 0
     priorities = permutations(range(len(contacts)))
-    for priority in islice(priorities, most_orders):
+    for priority in (*islice(priorities, most_orders), None):
         strikes, (after,), verdict = strike_in_turn(touching, [state], priority=priority)
         if verdict == SeveralVerdict.RESOLVED:
             order = tuple(contact for contact, _ in strikes)
             found[order] = np.concatenate([after.v_WB_W, after.w_WB_W])
-        else:
+        elif priority is not None:
             lost += 1
     return OrderedOutcomes(
         orders=tuple(found),
         velocities_W=np.array(list(found.values())).reshape(-1, 6),
         complete=next(priorities, None) is None,
+        not_converged=lost,
+    )
+
+
+def outcomes_at_once(
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    *,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+    most_orders: int = MOST_ORDERS,
+) -> OrderedOutcomes:
+    """Return the outcomes of SIMULTANEOUS that its solutions come to: where they differ, it is not unique.
+
+    Each order of the contacts leads to a solution. The one of `several_impact` depends on no order; it comes
+    first, as the empty one. Solutions that no order leads to are not among them.
+
+    Args:
+        body: Mass and angular inertia.
+        state: Pose and velocities just before.
+        contacts: All that touch; at least one.
+        restitution_law: Poisson's or Newton's.
+        velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
+        most_orders: How many orders to try; `complete` says whether that was all of them.
+
+    Raises:
+        SeparatingContactError: every contact separates.
+        InvalidFieldError: no contacts, a tolerance that is not > 0, or the energetic law.
+    """
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
+    if restitution_law == RestitutionLaw.ENERGETIC:
+        raise InvalidFieldError("restitution_law", "ENERGETIC", "POISSON or NEWTON for SIMULTANEOUS")
+    tolerance = check_positive("velocity_tolerance", velocity_tolerance)
+    touching = Touching([body], contacts, [(0, None)] * len(contacts), restitution_law, tolerance)
+    check_touching(touching, [state])
+    found: dict[tuple[int, ...], FloatArray] = {}
+    lost = 0
+    orders = permutations(range(len(contacts)))
+    for order in (None, *islice(orders, most_orders)):
+        _, (after,), verdict = strike_at_once(touching, [state], order=order)
+        if verdict == SeveralVerdict.RESOLVED:
+            found[order or ()] = np.concatenate([after.v_WB_W, after.w_WB_W])
+        else:
+            lost += 1
+    return OrderedOutcomes(
+        orders=tuple(found),
+        velocities_W=np.array(list(found.values())).reshape(-1, 6),
+        complete=next(orders, None) is None,
         not_converged=lost,
     )

@@ -83,7 +83,7 @@ def bodies_impact(
     elif restitution_law not in {RestitutionLaw.POISSON, RestitutionLaw.NEWTON}:
         raise InvalidFieldError("restitution_law", restitution_law.name, "POISSON or NEWTON for SIMULTANEOUS")
     else:
-        impulses, after, verdict = _strike_at_once(touching, states)
+        impulses, after, verdict = strike_at_once(touching, states)
     return BodiesImpact(
         several_contacts_law=several_contacts_law,
         restitution_law=restitution_law,
@@ -173,10 +173,13 @@ def _strike(touching: Touching, states: list[BodyState], contact: int) -> Spatia
     return impact
 
 
-def _strike_at_once(
-    touching: Touching, states: Sequence[BodyState]
+def strike_at_once(
+    touching: Touching, states: Sequence[BodyState], *, order: tuple[int, ...] | None = None
 ) -> tuple[FloatArray, list[BodyState], SeveralVerdict]:
-    """Return impulses, (n, 3), N s, and states afterwards, by one complementarity problem."""
+    """Return impulses, (n, 3), N s, and states afterwards, by one complementarity problem.
+
+    ``order`` of the contacts: for the solution that it leads to; None: the one that depends on no order.
+    """
     bodies, contacts, pairs, restitution_law, tolerance = touching
     size = 6 * len(bodies)
     jacobian = np.zeros((len(contacts), 3, size))  # contact velocity = jacobian @ (v, w of each body)
@@ -197,6 +200,7 @@ def _strike_at_once(
         inverse_mass=inverse_mass,
         twist=twist,
         tolerance=tolerance,
+        order=order,
     )
     change = inverse_mass @ np.einsum("ijk,ij->k", jacobian, impulses)
     after = [

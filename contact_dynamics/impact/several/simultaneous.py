@@ -11,25 +11,42 @@ compression (Anitescu and Potra 1997). Friction acts on the velocity at the end 
 of them sliding does not reverse.
 
 Method: block Gauss-Seidel over the contacts on the exact (round) friction cones, each block by projection,
-until no impulse changes. Redundant contacts leave the share of each undetermined; the bodies' velocities are
-what converges.
+until no impulse changes. With friction, and where contacts are redundant, there may be several solutions, and
+which one that ends at depends on the order in which contacts are listed. So all contacts are projected at
+once as well, which knows no order: where the two disagree, that is the answer. It is the same for every
+listing, and symmetric where the contacts are.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from contact_dynamics.impact.law import RestitutionLaw
-from contact_dynamics.tolerances import SWEEPS_CONVERGED
+from contact_dynamics.tolerances import SAME_IMPULSES, SWEEPS_CONVERGED
+from contact_dynamics.validation import FloatArray
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.validation import FloatArray
 
 MOST_SWEEPS: Final = 5000
 """Sweeps after which the problem counts as not converged."""
+
+_MOST_STEPS: Final = 20_000
+"""Steps of all contacts at once, which are smaller than those of one after the other, and cheaper."""
+
+
+class _Problem(NamedTuple):
+    """One complementarity problem."""
+
+    jacobian: FloatArray  # (n, 3, 6 k)
+    inverse_mass: FloatArray  # (6 k, 6 k)
+    twist: FloatArray  # (6 k,)
+    normals: FloatArray  # (n, 3)
+    frictions: FloatArray  # (n,)
+    least: FloatArray  # (n,), N s, of the normal impulses
+    bounce: FloatArray  # (n,), m/s, of the normal velocities afterwards
 
 
 def simultaneous_impulses(
@@ -40,6 +57,7 @@ def simultaneous_impulses(
     inverse_mass: FloatArray,
     twist: FloatArray,
     tolerance: float,
+    order: tuple[int, ...] | None = None,
 ) -> tuple[FloatArray, bool]:
     """Return the impulses, (n, 3), N s, world axes, and whether the iteration converged.
 
@@ -53,6 +71,7 @@ def simultaneous_impulses(
         inverse_mass: (6 k, 6 k), 1/kg and 1/(kg m^2), takes impulses and their moments into velocities.
         twist: (6 k,), m/s and rad/s, the bodies' velocities just before.
         tolerance: m/s. A contact that approaches less fast does not bounce.
+        order: Order of the contacts that leads to the solution, or None if it depends on no order.
     """
     normals, frictions = contacts.normals_W, contacts.frictions
     approach = np.minimum(np.einsum("ij,ij->i", jacobian @ twist, normals), 0.0)
@@ -63,15 +82,19 @@ def simultaneous_impulses(
     # for impulses, in a second one. The energetic law has neither, and is refused before.
     if law == RestitutionLaw.NEWTON:
         bounce = -contacts.restitutions * approach
-        return _solve(jacobian, inverse_mass, twist, normals, frictions, least=none, bounce=bounce)
+        return _solve(
+            jacobian, inverse_mass, twist, normals, frictions, least=none, bounce=bounce, order=order
+        )
     compression, converged = _solve(
-        jacobian, inverse_mass, twist, normals, frictions, least=none, bounce=none
+        jacobian, inverse_mass, twist, normals, frictions, least=none, bounce=none, order=order
     )
     twist = twist + inverse_mass @ np.einsum("ijk,ij->k", jacobian, compression)
     least = contacts.restitutions * np.einsum("ij,ij->i", compression, normals)
     if not least.any():
         return compression, converged
-    restitution, also = _solve(jacobian, inverse_mass, twist, normals, frictions, least=least, bounce=none)
+    restitution, also = _solve(
+        jacobian, inverse_mass, twist, normals, frictions, least=least, bounce=none, order=order
+    )
     return compression + restitution, converged and also
 
 
@@ -84,8 +107,59 @@ def _solve(
     *,
     least: FloatArray,
     bounce: FloatArray,
+    order: tuple[int, ...] | None,
 ) -> tuple[FloatArray, bool]:
     """Return impulses of at least ``least`` that leave velocities of at least ``bounce``, along normals."""
+    problem = _Problem(jacobian, inverse_mass, twist, normals, frictions, least, bounce)
+    if order is not None:
+        return _in_turn(problem, order)
+    listed = tuple(range(len(normals)))
+    impulses, converged = _in_turn(problem, listed)
+    if len(normals) == 1:
+        return impulses, converged
+    together, also = _together(problem)
+    if not also:
+        # Then an order that does not depend on the list: by what the contacts are.
+        values = np.column_stack([np.round(np.einsum("ijk,k->ij", jacobian, twist), 9), frictions, normals])
+        canonical = tuple(sorted(listed, key=lambda i: values[i].tolist()))
+        together, also = _in_turn(problem, canonical)
+    size = float(np.abs(together).max())
+    if converged and (not also or float(np.abs(impulses - together).max()) <= SAME_IMPULSES * size):
+        return impulses, converged
+    return together, also
+
+
+def _together(problem: _Problem) -> tuple[FloatArray, bool]:
+    """Return impulses by projecting all contacts at once, and whether that converged."""
+    jacobian, inverse_mass, twist, normals, frictions, least, bounce = problem
+    n = len(normals)
+    rows = jacobian.reshape(3 * n, -1)
+    response = rows @ inverse_mass @ rows.T
+    step_size = 1.0 / float(np.linalg.eigvalsh(response)[-1])
+    free = rows @ twist
+    impulses = least[:, None] * normals
+    scale = float(abs(free + response @ impulses.ravel()).max())
+    for _ in range(_MOST_STEPS):
+        velocity = (free + response @ impulses.ravel()).reshape(n, 3)
+        v_n = np.einsum("ij,ij->i", velocity, normals)
+        p = np.maximum(np.einsum("ij,ij->i", impulses, normals) - step_size * (v_n - bounce), least)
+        trial = impulses - step_size * velocity
+        tangential = trial - np.einsum("ij,ij->i", trial, normals)[:, None] * normals
+        sizes = np.sqrt(np.einsum("ij,ij->i", tangential, tangential))
+        edge = frictions * p
+        beyond = sizes > edge
+        tangential[beyond] *= (edge[beyond] / sizes[beyond])[:, None]
+        after = p[:, None] * normals + tangential
+        change = float(abs(after - impulses).max())
+        impulses = after
+        if change <= SWEEPS_CONVERGED * scale * step_size:
+            return impulses, True
+    return impulses, False
+
+
+def _in_turn(problem: _Problem, order: tuple[int, ...]) -> tuple[FloatArray, bool]:
+    """Return impulses by projecting one contact after the other, and whether that converged."""
+    jacobian, inverse_mass, twist, normals, frictions, least, bounce = problem
     response = inverse_mass @ jacobian.transpose(0, 2, 1)  # (n, 6 k, 3)
     blocks = jacobian @ response  # (n, 3, 3)
     impulses = least[:, None] * normals
@@ -95,7 +169,8 @@ def _solve(
     steps = 1.0 / np.linalg.eigvalsh(blocks)[:, -1]
     for _ in range(MOST_SWEEPS):
         change = 0.0
-        for i, n in enumerate(normals):
+        for i in order:
+            n = normals[i]
             velocity = jacobian[i] @ twist
             v_n = velocity @ n
             trial = impulses[i] - steps[i] * velocity

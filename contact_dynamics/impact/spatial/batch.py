@@ -31,7 +31,7 @@ from contact_dynamics.tolerances import (
     TRIANGLE_TOLERANCE,
     VELOCITY_TOLERANCE,
 )
-from contact_dynamics.validation import FloatArray, check_not_negative
+from contact_dynamics.validation import FloatArray, check_magnitude, check_not_negative
 from contact_dynamics.validation_batches import (
     check_not_negative_rows,
     check_positive_rows,
@@ -97,9 +97,9 @@ class StrikingBodies(Record):
                 _possible_inertias,
             ),
             "q_WB": check_unit_rows("q_WB", self.q_WB, 4),
-            "v_WB_W": check_rows("v_WB_W", self.v_WB_W, (3,)),
-            "w_WB_W": check_rows("w_WB_W", self.w_WB_W, (3,)),
-            "r_W": check_rows("r_W", self.r_W, (3,)),
+            "v_WB_W": check_magnitude("v_WB_W", check_rows("v_WB_W", self.v_WB_W, (3,))),
+            "w_WB_W": check_magnitude("w_WB_W", check_rows("w_WB_W", self.w_WB_W, (3,))),
+            "r_W": check_magnitude("r_W", check_rows("r_W", self.r_W, (3,))),
         }
         for field, rows in checked.items():
             object.__setattr__(self, field, rows)

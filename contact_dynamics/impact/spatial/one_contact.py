@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.errors import SeparatingContactError
+from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
 from contact_dynamics.impact.spatial.path import trace
@@ -33,7 +33,7 @@ from contact_dynamics.impact.spatial.response import (
 )
 from contact_dynamics.impact.spatial.result import SpatialImpact
 from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
-from contact_dynamics.tolerances import VELOCITY_TOLERANCE
+from contact_dynamics.tolerances import LARGEST_NUMBER, VELOCITY_TOLERANCE
 from contact_dynamics.validation import (
     check_choice,
     check_not_negative,
@@ -66,7 +66,8 @@ def spatial_impact(
 
     Raises:
         SeparatingContactError: the contact's normal velocity is above the tolerance.
-        InvalidFieldError: the tolerance is negative.
+        InvalidFieldError: the tolerance is negative, or a velocity or the contact's distance from a centre of
+            mass is beyond `LARGEST_NUMBER`.
     """
     return _impact(
         body, state, None, None, contact, law=restitution_law, velocity_tolerance=velocity_tolerance
@@ -96,7 +97,8 @@ def spatial_pair_impact(
 
     Raises:
         SeparatingContactError: the contact's relative normal velocity is above the tolerance.
-        InvalidFieldError: the tolerance is negative.
+        InvalidFieldError: the tolerance is negative, or a velocity or the contact's distance from a centre of
+            mass is beyond `LARGEST_NUMBER`.
     """
     return _impact(
         body, state, other, other_state, contact, law=restitution_law, velocity_tolerance=velocity_tolerance
@@ -179,11 +181,8 @@ def contact_inverse_inertia(body: MassProperties, state: BodyState, arm: FloatAr
 
 
 def _responding(body: MassProperties, state: BodyState, point: FloatArray) -> Responding:
-    return responding(
-        body.mass,
-        body.I_B.tolist(),
-        state.q_WB.tolist(),
-        tuple((point - state.p_WB_W).tolist()),
-        tuple(state.v_WB_W.tolist()),
-        tuple(state.w_WB_W.tolist()),
-    )
+    arm, v, w = (point - state.p_WB_W).tolist(), state.v_WB_W.tolist(), state.w_WB_W.tolist()
+    for field, numbers in (("contact position", arm), ("linear_velocity", v), ("angular_velocity", w)):
+        if max(numbers) > LARGEST_NUMBER or min(numbers) < -LARGEST_NUMBER:
+            raise InvalidFieldError(field, numbers, f"numbers of at most {LARGEST_NUMBER:g}, by size")
+    return responding(body.mass, body.I_B.tolist(), state.q_WB.tolist(), tuple(arm), tuple(v), tuple(w))

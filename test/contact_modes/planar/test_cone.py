@@ -12,7 +12,6 @@ import pytest
 from contact_dynamics.contact_modes.planar.cone import PolyhedralCone
 from contact_dynamics.numerics.linear_spaces import orthonormal
 from contact_dynamics.numerics.nonnegative_least_squares import least_force
-from contact_dynamics.tolerances import ROW_TOLERANCE
 
 Whole = tuple[int, int, int]
 
@@ -31,7 +30,7 @@ def unit(vector: Whole) -> tuple[float, float, float]:
 
 
 def build(rows: list[Whole]) -> PolyhedralCone:
-    return PolyhedralCone([unit(row) for row in rows], tolerance=ROW_TOLERANCE)
+    return PolyhedralCone([unit(row) for row in rows])
 
 
 def rank(vectors: list) -> int:

@@ -14,6 +14,7 @@ from contact_dynamics.impact import (
     SeveralContactsLaw,
     SeveralVerdict,
     bodies_impact,
+    outcomes_at_once,
     outcomes_over_orders,
     several_impact,
     spatial_impact,
@@ -241,7 +242,7 @@ def test_orders_matter_where_contacts_couple() -> None:
     assert outcomes.spread.max() > 0.1
     few = outcomes_over_orders(CUBE, falling(0.05, [0.5, 0.0, -1.0]), contacts, most_orders=2)
     assert not few.complete
-    assert len(few.orders) <= 2
+    assert len(few.orders) <= 3  # the two, and the one of `several_impact`
 
 
 def test_refusals() -> None:
@@ -308,3 +309,54 @@ def test_bodies_that_touch_no_world_keep_their_momenta(
 
 def about_origin(body: MassProperties, state: BodyState) -> np.ndarray:
     return angular_momentum(body, state) + np.cross(state.p_WB_W, momentum(body, state))
+
+
+def corners(seed: int, order: tuple[int, ...]) -> tuple[MassProperties, BodyState, ContactSet]:
+    """Return a box that falls on its four corners, listed in some order, with frictions of their own."""
+    chance = np.random.default_rng(seed)
+    frictions = chance.uniform(0.1, 1.0, size=4) if seed % 2 else np.full(4, 0.5)
+    state = BodyState(
+        p_WB_W=np.zeros(3),
+        q_WB=np.array([0.0, 0.0, 0.0, 1.0]),
+        v_WB_W=chance.normal(size=3) - (0.0, 0.0, 1.5),
+        w_WB_W=3.0 * chance.normal(size=3),
+    )
+    places = np.array([[x, y, -0.1] for x in (-0.2, 0.2) for y in (-0.15, 0.15)])
+    chosen = list(order)
+    contacts = ContactSet(
+        p_WC_W=places[chosen],
+        normals_W=np.tile([0.0, 0.0, 1.0], (4, 1)),
+        frictions=frictions[chosen],
+        restitutions=np.full(4, 0.3),
+    )
+    return MassProperties(mass=1.0, I_B=np.diag([0.02, 0.03, 0.04])), state, contacts
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_simultaneous_outcome_does_not_depend_on_the_list(seed: int) -> None:
+    outcomes = []
+    for order in ((0, 1, 2, 3), (3, 2, 1, 0), (2, 0, 3, 1)):
+        answer = several_impact(*corners(seed, order), several_contacts_law=SeveralContactsLaw.SIMULTANEOUS)
+        assert answer.verdict == SeveralVerdict.RESOLVED
+        outcomes.append(np.concatenate([answer.state.v_WB_W, answer.state.w_WB_W]))
+    assert np.ptp(outcomes, axis=0).max() < 1e-6
+
+
+def test_solutions_at_once_are_told_with_their_spread() -> None:
+    body, state, contacts = corners(1, (0, 1, 2, 3))
+    solutions = outcomes_at_once(body, state, contacts)
+    answer = several_impact(body, state, contacts, several_contacts_law=SeveralContactsLaw.SIMULTANEOUS)
+    assert solutions.orders[0] == ()
+    np.testing.assert_array_equal(
+        solutions.velocities_W[0], np.concatenate([answer.state.v_WB_W, answer.state.w_WB_W])
+    )
+    assert solutions.complete
+    assert solutions.spread.max() > 0.01
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_default_order_is_among_the_orders(seed: int) -> None:
+    body, state, contacts = corners(seed, (0, 1, 2, 3))
+    answer = several_impact(body, state, contacts)
+    outcomes = outcomes_over_orders(body, state, contacts)
+    assert answer.order in outcomes.orders

@@ -1,0 +1,130 @@
+"""Whether some edge forces satisfy conditions that nearly coincide: solved anew each time, from merged rows.
+
+`dual_simplex` goes on from table to table, and where two contacts or normals are nearly the same it divides
+by what parts them, again and again. Here all conditions that are equations are gathered first. Their rows
+are about unit, and an orthonormal basis of what these see takes their place: rows that agree within
+`ROW_TOLERANCE` are one condition, and those that differ by more are as well conditioned as any other. The
+table is then made from nothing, in NumPy's longest floating-point numbers.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from contact_dynamics.contact_modes.spatial.dual_simplex import Ends, Program
+from contact_dynamics.tolerances import CAREFUL_LEAST_PIVOT, CAREFUL_UNMET, ROW_TOLERANCE
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+    from contact_dynamics.validation import FloatArray
+
+
+class CarefulProgram:
+    """Edge forces that satisfy some conditions, with the methods of `Program`."""
+
+    __slots__ = ("_motion", "_named", "_names", "_raised", "_solved", "_tagged", "_zeroed", "doubtful")
+
+    def __init__(self, motion: FloatArray, named: FloatArray, names: Sequence[int]) -> None:
+        """Take what `Program.stated` takes."""
+        self._motion, self._named, self._names = motion, named, tuple(names)
+        self._zeroed: frozenset[int] = frozenset()
+        self._raised: dict[int, float] = {}
+        self._tagged: dict[int, tuple[FloatArray, int]] = {}
+        self._solved: Program | None = None
+        self.doubtful = False  # as in `Program`
+
+    def narrowed(
+        self,
+        *,
+        zeroed: Collection[int] = (),
+        raised: Collection[int] = (),
+        least: float = 0.0,
+        rows: FloatArray | None = None,
+        equalities: int = 0,
+        tag: int = -1,
+    ) -> CarefulProgram:
+        """Return a program with further conditions; arguments are those of `Program.narrowed`."""
+        found = CarefulProgram(self._motion, self._named, self._names)
+        found._zeroed = self._zeroed.union(zeroed)
+        found._raised = self._raised | dict.fromkeys(raised, least)
+        found._tagged = self._tagged
+        if rows is not None:
+            found._tagged = {key: value for key, value in self._tagged.items() if key != tag}
+            if len(rows):
+                found._tagged[tag] = (rows, equalities)
+        return found
+
+    def solve(self) -> bool:
+        """Return whether some edge forces satisfy all conditions."""
+        program = self._stated()
+        if program is None:
+            return False
+        self._solved = program
+        holds = program.solve(CAREFUL_LEAST_PIVOT)
+        self.doubtful = program.doubtful
+        return holds
+
+    def allows_any(self, weights: FloatArray, constants: FloatArray, least: float) -> bool:
+        """Return whether they allow one further condition; see `Program.allows_any`."""
+        program = self._table
+        holds = program.allows_any(weights, constants, least)
+        self.doubtful = program.doubtful
+        return holds
+
+    def shares(self, count: int) -> FloatArray:
+        """Return the edge forces, (count,), that were found."""
+        return self._table.shares(count)
+
+    def ends(self, weights: FloatArray) -> Ends:
+        """Return whether a weighted sum of edge forces is the same for all; see `Program.ends`."""
+        return self._table.ends(weights)
+
+    @property
+    def _table(self) -> Program:
+        if self._solved is None:
+            raise AssertionError("a program is solved before it is asked for its forces")
+        return self._solved
+
+    def _stated(self) -> Program | None:
+        """Return the table, with equations merged; None: they contradict each other."""
+        zero, positive = [np.zeros((0, 7))], [np.zeros((0, 7))]
+        for name, row in zip(self._names, self._named, strict=True):
+            if name in self._zeroed:
+                zero.append(row[None, :])
+            else:
+                lowered = row.copy()
+                lowered[-1] -= self._raised.get(name, 0.0)
+                positive.append(lowered[None, :])
+        for rows, equalities in self._tagged.values():
+            zero.append(rows[:equalities])
+            positive.append(rows[equalities:])
+        equations = merged(np.vstack(zero))
+        if equations is None:
+            return None
+        count = self._motion.shape[1] - 1
+        keep = [j for j in range(count) if j not in self._zeroed]
+        motion = cast("FloatArray", self._motion[:, [*keep, count]].astype(np.longdouble))
+        rows = np.vstack([equations, *positive])
+        program = Program.stated(motion, rows, range(count, count + len(rows)))
+        return program.renamed(keep, len(equations))
+
+
+def merged(rows: FloatArray, tolerance: float = ROW_TOLERANCE) -> FloatArray | None:
+    """Return equations, (k, 7), with orthonormal rows of a motion; None: there is no such motion.
+
+    Args:
+        rows: (m, 7), about unit; each says that it vanishes on the motion and 1.
+        tolerance: Rows that differ by no more are one.
+    """
+    if len(rows) == 0:
+        return rows
+    left, sizes, basis = np.linalg.svd(rows[:, :-1], full_matrices=False)
+    seen = int((sizes > tolerance * max(1.0, float(sizes.max(initial=0.0)))).sum())
+    left = left[:, :seen]
+    constants = left.T @ rows[:, -1]
+    if np.abs(rows[:, -1] - left @ constants).max() > CAREFUL_UNMET:
+        return None
+    return np.column_stack([basis[:seen], constants / sizes[:seen]])

@@ -1,0 +1,196 @@
+"""Whether forces within Coulomb's round cones keep contacts from moving: yes with forces, no with a motion.
+
+Contacts that stick ask the motion to vanish on some rows; with these merged (`careful_program.merged`) that
+is one equation in at most six dimensions, whose left side is a sum of linear images of round cones. The point
+of that sum nearest to the right side is found by Wolfe's method: the cones are stood for by few of their
+edges, and where what is left over still has a positive product with some force of a cone, the one with the
+largest becomes an edge. What is left over in the end is nothing, or a direction that separates the right side
+from all that the cones can do: a virtual motion on which the load has power and no contact force takes it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.contact_modes.spatial.careful_program import merged
+from contact_dynamics.numerics.linear_spaces import row_space
+from contact_dynamics.tolerances import (
+    ROUND_CONE_APART,
+    ROUND_CONE_HELD,
+    ROUND_CONE_INDEPENDENT,
+    ROUND_CONE_NO_HELP,
+    ROUND_CONE_ON_CONE,
+    ROUND_CONE_REACHED,
+    ROUND_CONE_ROUNDING,
+    ROW_TOLERANCE,
+)
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact_modes.spatial.search import Search
+    from contact_dynamics.validation import FloatArray
+
+_MOST_FORCE: Final = 1e3
+"""Times the load: a motion separates if only larger forces could take its power."""
+
+_MOST_EDGES: Final = 400
+"""Edges of cones that are tried. Some dozen are enough but on a cone's very border."""
+
+
+class Held(NamedTuple):
+    """What came of the question."""
+
+    forces: (
+        FloatArray | None
+    )  # (n, 3), in the units of the motion, that hold the contacts; None: there are none
+    certain: bool  # False: rounding, or too slow a search, hides whether there are any
+
+
+def sticking(search: Search) -> FloatArray:
+    """Return rows, (k, 7), that vanish where all contacts stay, and stick if they have friction."""
+    rows = [
+        contact.point if contact.friction > 0.0 else (contact.normal @ contact.point)[None, :]
+        for contact in search.touching
+    ]
+    return np.vstack([np.zeros((0, 7)), *rows])
+
+
+def held_by_round_cones(search: Search, rows: FloatArray) -> Held:
+    """Return forces at all touching contacts, within their round cones, that make rows of the motion vanish.
+
+    Args:
+        search: The case. What slides already counts as at rest.
+        rows: (k, 7), about unit.
+    """
+    demand = _demand(search, rows)
+    return Held(None, certain=True) if demand is None else _nearest(demand, search)
+
+
+def polished(search: Search, rows: FloatArray, forces: FloatArray) -> FloatArray:
+    """Return forces, (n, 3), that do to rounding what some in round cones do to a tolerance, as theirs allow.
+
+    Args:
+        search: The search, as for `held_by_round_cones`.
+        rows: The rows, as for `held_by_round_cones`.
+        forces: (n, 3), in the units of the motion.
+    """
+    demand = _demand(search, rows, ROUND_CONE_APART)
+    if demand is None or demand.images.size == 0:
+        return forces
+    effects = np.hstack(list(demand.images))
+    found = forces
+    for _ in range(2):
+        rest = demand.target - effects @ found.ravel()
+        found = found + np.linalg.lstsq(effects, rest, rcond=ROUND_CONE_INDEPENDENT)[0].reshape(-1, 3)
+    for contact, force in zip(search.touching, found, strict=True):
+        pressing = float(contact.normal @ force)
+        across = float(np.linalg.norm(force - pressing * contact.normal))
+        if across > contact.friction * pressing + ROUND_CONE_ON_CONE * float(np.abs(found).max()):
+            return forces
+    return found
+
+
+class Unique(NamedTuple):
+    """Whether the forces and the motion are the only ones."""
+
+    forces: bool
+    motion: bool
+
+
+def rests_in_one_way(search: Search, rows: FloatArray) -> Unique:
+    """Return whether forces that make rows of the motion vanish are the only ones, and their motion."""
+    of_forces = search.of_forces
+    seen, moved = (len(row_space(of)) for of in (rows[:, :-1] @ of_forces, of_forces))
+    return Unique(forces=seen == of_forces.shape[1], motion=seen == moved)
+
+
+class _Demand(NamedTuple):
+    """What forces must sum to, in units in which all contacts together do as much in every direction."""
+
+    images: FloatArray  # (n, k, 3), of unit forces
+    target: FloatArray  # (k,)
+    sizes: FloatArray  # (k,), of the units, in parts of the load
+
+
+def _demand(search: Search, rows: FloatArray, tolerance: float = ROW_TOLERANCE) -> _Demand | None:
+    """Return what makes rows of the motion vanish, merged within a tolerance; None: no forces do."""
+    equations = merged(rows, tolerance)
+    if equations is None:
+        return None
+    n = len(search.touching)
+    start = search.motion[:, -1] + equations[:, :-1].T @ equations[:, -1]
+    # Where the whole motion vanishes, wrenches are compared, and not accelerations of very unequal size.
+    units = search.mass if len(equations) == len(start) else equations[:, :-1]
+    target, effects = -(units @ start), units @ search.of_forces
+    load = float(np.linalg.norm(target))
+    # Nearly the same contacts do little in some directions, and are asked for little there.
+    units, sizes, _ = np.linalg.svd(effects, full_matrices=False)
+    reached = sizes > ROUND_CONE_REACHED * sizes.max(initial=0.0)
+    units, sizes = units[:, reached], sizes[reached]
+    if float(np.linalg.norm(target - units @ (units.T @ target))) > ROUND_CONE_HELD * load:
+        return None
+    images = ((units.T / sizes[:, None]) @ effects).reshape(len(sizes), n, 3).transpose(1, 0, 2)
+    return _Demand(
+        np.ascontiguousarray(images), units.T @ target / sizes, sizes / load if load > 0.0 else sizes
+    )
+
+
+def _nearest(demand: _Demand, search: Search) -> Held:
+    """Return forces within the round cones whose images sum to the target, or are nearest to it."""
+    images, target, sizes = demand
+    load = float(np.linalg.norm(target))
+    normals = np.array([one.normal for one in search.touching]).reshape(-1, 3)
+    frictions = np.array([one.friction for one in search.touching])
+    owners: list[int] = []
+    edges: list[FloatArray] = []
+    spans, shares = np.zeros((len(target), 0)), np.zeros(0)
+    rest = target
+    for _ in range(_MOST_EDGES):
+        left = float(np.linalg.norm(rest))
+        if left <= ROUND_CONE_ROUNDING * load or float(np.linalg.norm(sizes * rest)) <= ROUND_CONE_HELD:
+            forces = np.zeros_like(normals)
+            for i, edge, share in zip(owners, edges, shares.tolist(), strict=True):
+                forces[i] += share * edge
+            return Held(forces, certain=True)
+        power = (rest / left) @ images  # (n, 3), of unit forces on what is left over
+        along = (power * normals).sum(axis=1)
+        across = power - along[:, None] * normals
+        slopes = np.sqrt((across * across).sum(axis=1))
+        best_of_each = normals + across * (frictions / np.where(slopes > 0.0, slopes, 1.0))[:, None]
+        effects = np.sqrt(((images @ best_of_each[:, :, None]) ** 2).sum(axis=(1, 2)))
+        cosines = (along + frictions * slopes) / np.where(effects > 0.0, effects, 1.0)
+        best = int(cosines.argmax()) if len(cosines) else -1
+        helps = float(cosines[best]) if len(cosines) else 0.0
+        if helps * _MOST_FORCE * load <= left:
+            return Held(None, certain=True)
+        if helps <= ROUND_CONE_NO_HELP:
+            break
+        owners.append(best)
+        edges.append(best_of_each[best] / effects[best])
+        spans = np.column_stack([spans, images[best] @ edges[-1]])
+        shares = _shares(spans, target, np.append(shares, 0.0))
+        if shares[-1] <= 0.0:
+            break
+        acting = (shares > 0.0).nonzero()[0].tolist()
+        owners, edges = [owners[k] for k in acting], [edges[k] for k in acting]
+        spans, shares = spans[:, acting], shares[acting]
+        rest = target - spans @ shares
+        rest = rest - spans @ np.linalg.lstsq(spans, rest, rcond=ROUND_CONE_INDEPENDENT)[0]
+    return Held(None, certain=False)
+
+
+def _shares(spans: FloatArray, target: FloatArray, shares: FloatArray) -> FloatArray:
+    """Return shares >= 0 of spans nearest to a target, from those without the last span."""
+    acting = np.ones(len(shares), dtype=bool)
+    while True:
+        trial = np.zeros_like(shares)
+        trial[acting] = np.linalg.lstsq(spans[:, acting], target, rcond=ROUND_CONE_INDEPENDENT)[0]
+        pulling = (acting & (trial <= 0.0)).nonzero()[0]
+        if pulling.size == 0:
+            return trial
+        parts = shares[pulling] / np.maximum(shares[pulling] - trial[pulling], np.finfo(float).tiny)
+        shares = shares + float(parts.min()) * (trial - shares)
+        ends = pulling[parts <= parts.min()]
+        acting[ends] = False
+        shares[~acting] = 0.0

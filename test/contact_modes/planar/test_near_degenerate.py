@@ -1,0 +1,245 @@
+"""Contacts as estimators give them, next to degeneracy, with loads that friction can hold by construction.
+
+Offsets of points and normals are drawn on logarithmic scales of their own. All questions of one problem are
+asked, and must not contradict each other.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from fractions import Fraction
+
+import pytest
+
+from contact_dynamics.contact_modes import (
+    Certainty,
+    ModeVerdict,
+    PlanarContactProblem,
+    PlanarModeAnswer,
+    contact_modes,
+    mode_margins,
+    statics,
+    wrench_sets,
+)
+from contact_dynamics.errors import UndecidedError
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_modes.evidence import check_forces
+from oracles.contact_modes import ExactCase, ExactContact, consistent_modes, kinematic_modes
+
+
+def near(chance: random.Random) -> float:
+    return float(10.0 ** chance.uniform(-14.0, -3.0)) * chance.choice([-1.0, 1.0])
+
+
+def drawn(seed: int) -> PlanarContactProblem:
+    """Return contacts of which some nearly coincide or pinch, under a load that they hold."""
+    chance = random.Random(seed)
+    body = PlanarBody(mass=10.0 ** chance.uniform(-1.0, 1.0), inertia=10.0 ** chance.uniform(-2.0, 1.0))
+    rho = body.radius_of_gyration
+
+    def place() -> float:
+        return rho * chance.choice([chance.randint(-2, 2), chance.uniform(-2.0, 2.0)])
+
+    drawn = []
+    for _ in range(chance.choice([1, 1, 2, 2, 3])):
+        angle = chance.choice([0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi, chance.uniform(-3.2, 3.2)])
+        drawn.append((place(), place(), angle, chance.choice([0.0, 0.2, 0.5, 1.0, 2.0])))
+    for _ in range(chance.choice([1, 1, 2])):
+        x, y, angle, friction = chance.choice(drawn)
+        angle += chance.choice([0.0, 0.0, math.pi])
+        kind = chance.random()
+        if kind < 0.8:
+            x, y = x + near(chance) * rho, y + near(chance) * rho * chance.choice([0, 1])
+        if kind > 0.3:
+            angle += near(chance)
+        drawn.append((x, y, angle, friction))
+    chance.shuffle(drawn)
+    return held(body, drawn, chance)
+
+
+def gripping(seed: int) -> PlanarContactProblem:
+    """Return contacts of large friction and of arms far from the radius of gyration, that hold a load."""
+    chance = random.Random(seed)
+    body = PlanarBody(mass=1.0, inertia=10.0 ** chance.uniform(-2.0, 1.0))
+    arm = body.radius_of_gyration * 10.0 ** chance.choice([0.0, chance.uniform(-2.0, 4.0)])
+    turned, kind = chance.choice([0.0, chance.uniform(-3.2, 3.2)]), chance.choice(["floor", "slot", "any"])
+    places = []
+    for _ in range(chance.choice([1, 2, 2, 3, 4])):
+        up = chance.choice([-1.0, 1.0]) if kind == "slot" else 1.0
+        x, y, angle = chance.uniform(-2.0, 2.0), -up, turned + up * 0.5 * math.pi
+        if kind == "any":
+            y, angle = chance.uniform(-2.0, 2.0), chance.uniform(-3.2, 3.2)
+        c, s = math.cos(turned), math.sin(turned)
+        friction = 10.0 ** chance.uniform(-1.0, 6.0)
+        places.append((arm * (c * x - s * y), arm * (s * x + c * y), angle, friction))
+    return held(body, places, chance)
+
+
+def held(
+    body: PlanarBody, places: list[tuple[float, float, float, float]], chance: random.Random
+) -> PlanarContactProblem:
+    contacts = [
+        PlanarContact(r=(x, y), normal=(math.cos(angle), math.sin(angle)), friction=friction)
+        for x, y, angle, friction in places
+    ]
+    f_x = f_y = moment = 0.0
+    for contact in contacts:
+        f_n = chance.choice([0, 1, 1, 1]) * 10.0 ** chance.uniform(-1.0, 1.0)
+        f_t = chance.uniform(-0.95, 0.95) * min(contact.friction, chance.choice([3.0, 1e6])) * f_n
+        (n_x, n_y), (x, y) = contact.normal, contact.r
+        c_x, c_y = f_t * n_y + f_n * n_x, f_n * n_y - f_t * n_x
+        f_x, f_y, moment = f_x - c_x, f_y - c_y, moment - (x * c_y - y * c_x)
+    return PlanarContactProblem(
+        body=body, contacts=contacts, wrench=PlanarWrench(f=(f_x, f_y), moment=moment)
+    )
+
+
+def check(problem: PlanarContactProblem) -> PlanarModeAnswer:
+    answer = contact_modes(problem)
+    modes = {mode.mode for mode in answer.modes}
+    resting = "f" * len(problem.contacts)
+    assert resting in modes
+    check_forces(answer, problem.body, problem.contacts, problem.wrench)
+    rho = problem.body.radius_of_gyration
+    load = math.hypot(*problem.wrench.f, problem.wrench.moment / rho)
+    rests = next(mode for mode in answer.modes if mode.mode == resting)
+    size = math.hypot(*rests.acceleration, rests.angular_acceleration * rho) * problem.body.mass
+    forces = sum(abs(f_t) + f_n for f_t, f_n in rests.contact_forces)
+    assert size <= 3e-9 * load + 1e-13 * forces
+    held = statics(problem)
+    assert held.equilibrium != Certainty.NO
+    assert held.equilibrium == Certainty.POSSIBLE or answer.verdict == ModeVerdict.UNIQUE
+    assert held.stable_disturbance >= 0.0
+    assert {margin.mode for margin in mode_margins(problem, answer)} == modes
+    sets = {found.mode: found for found in wrench_sets(problem)}
+    assert set(sets) == set(answer.kinematic_modes)
+    return answer
+
+
+@pytest.mark.parametrize("block", range(8))
+def test_a_load_that_contacts_hold_is_held(block: int) -> None:
+    for seed in range(40 * block, 40 * block + 40):
+        check(drawn(seed))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("block", range(60))
+def test_many_loads_that_contacts_hold_are_held(block: int) -> None:
+    for seed in range(10_000 + 100 * block, 10_100 + 100 * block):
+        check(drawn(seed))
+
+
+@pytest.mark.parametrize("block", range(4))
+def test_friction_up_to_a_million_and_arms_up_to_ten_thousand_hold_their_load(block: int) -> None:
+    for seed in range(20 * block, 20 * block + 20):
+        check(gripping(seed))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("block", range(30))
+def test_many_frictions_and_arms_hold_their_load(block: int) -> None:
+    for seed in range(5_000 + 50 * block, 5_050 + 50 * block):
+        check(gripping(seed))
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_the_order_of_contacts_does_not_matter(seed: int) -> None:
+    problem = drawn(seed)
+    order = list(range(len(problem.contacts)))
+    random.Random(seed).shuffle(order)
+    shuffled = PlanarContactProblem(
+        body=problem.body, contacts=[problem.contacts[i] for i in order], wrench=problem.wrench
+    )
+    answer, other = contact_modes(problem), contact_modes(shuffled)
+    assert {"".join(mode[i] for i in order) for mode in answer.kinematic_modes} == set(other.kinematic_modes)
+    assert {"".join(mode.mode[i] for i in order) for mode in answer.modes} == {
+        one.mode for one in other.modes
+    }
+
+
+@pytest.mark.parametrize("offset", [1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4])
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_what_differs_by_more_than_the_tolerance_is_told_apart_exactly(
+    offset: float, friction: float
+) -> None:
+    body = PlanarBody(mass=1.0, inertia=0.5)
+    normals = [(0.0, 1.0), (-offset, 1.0), (0.0, 1.0)]
+    contacts = [
+        PlanarContact(r=(x, -0.5), normal=normal, friction=friction)
+        for x, normal in zip((0.2, 0.2 + offset, -0.3), normals, strict=True)
+    ]
+    wrench = PlanarWrench(f=(0.0, -9.8))
+    exact = ExactCase(
+        Fraction(1),
+        Fraction(1, 2),
+        (Fraction(0), Fraction(0)),
+        Fraction(0),
+        tuple(
+            ExactContact(
+                (Fraction(one.r[0]), Fraction(one.r[1])),
+                (Fraction(one.normal[0]), Fraction(one.normal[1])),
+                Fraction(one.friction),
+            )
+            for one in contacts
+        ),
+        (Fraction(0), Fraction(wrench.f[1])),
+        Fraction(0),
+    )
+    kinematic = kinematic_modes(exact)
+    problem = PlanarContactProblem(body=body, contacts=contacts, wrench=wrench, acceleration_tolerance=1e-14)
+    answer = contact_modes(problem)
+    assert set(answer.kinematic_modes) == kinematic
+    assert {mode.mode for mode in answer.modes} == consistent_modes(exact, kinematic)
+
+
+def test_two_detections_of_one_corner() -> None:
+    contacts = [PlanarContact(r=(x, -0.5), normal=(0.6, 0.8), friction=0.5) for x in (0.2, 0.200000002)]
+    answer = contact_modes(
+        PlanarContactProblem(
+            body=PlanarBody(mass=1.0, inertia=0.5), contacts=contacts, wrench=PlanarWrench(f=(0.0, -9.8))
+        )
+    )
+    single = contact_modes(
+        PlanarContactProblem(
+            body=PlanarBody(mass=1.0, inertia=0.5), contacts=contacts[:1], wrench=PlanarWrench(f=(0.0, -9.8))
+        )
+    )
+    assert answer.verdict == single.verdict == ModeVerdict.UNIQUE
+    assert answer.modes[0].acceleration == pytest.approx(single.modes[0].acceleration, rel=1e-6)
+
+
+@pytest.mark.parametrize("friction", [1e3, 1e6, 1e9, 1e10, 1e300])
+def test_a_box_that_never_slips_rests(friction: float) -> None:
+    feet = [PlanarContact(r=(x, -0.05), normal=(0.0, 1.0), friction=friction) for x in (-0.1, 0.0, 0.1)]
+    problem = PlanarContactProblem(
+        body=PlanarBody(mass=1.0, inertia=0.01), contacts=feet, wrench=PlanarWrench(f=(3.0, -9.81))
+    )
+    assert "fff" in {mode.mode for mode in contact_modes(problem).modes}
+    assert statics(problem).equilibrium != Certainty.NO
+
+
+def test_more_friction_than_can_be_told_from_less_is_not_called_inconsistent() -> None:
+    """Forces of 1e-14 along the normal hold 1 N along the tangent, by friction of 1e14."""
+    feet = [PlanarContact(r=(x, -1e4), normal=(0.0, 1.0), friction=1e14) for x in (-1e4, 1e4)]
+    wrench = PlanarWrench(f=(-1.0, -1e-14), moment=-1e4)
+    problem = PlanarContactProblem(
+        body=PlanarBody(mass=1.0, inertia=1.0), contacts=feet, wrench=wrench, acceleration_tolerance=1e-16
+    )
+    try:
+        answer = contact_modes(problem)
+    except UndecidedError:
+        return
+    assert answer.verdict != ModeVerdict.INCONSISTENT
+
+
+def test_where_everything_separates_no_wrench_changes_that() -> None:
+    problem = PlanarContactProblem(
+        body=PlanarBody(mass=1.0, inertia=1.0),
+        velocity=PlanarVelocity(v=(0.0, 1.0), w=0.0),
+        contacts=[PlanarContact(r=(x, -1.0), normal=(0.0, 1.0), friction=0.5) for x in (-1.0, 1.0)],
+        wrench=PlanarWrench(f=(0.0, -9.8)),
+    )
+    (margin,) = mode_margins(problem)
+    assert (margin.mode, margin.margin) == ("ss", math.inf)
+    assert margin.modes_beyond == ("ss",)

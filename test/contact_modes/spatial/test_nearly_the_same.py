@@ -1,0 +1,146 @@
+"""Contacts in space that are nearly the same: equilibria by construction, whose sticking is never missed."""
+
+from __future__ import annotations
+
+import contextlib
+
+import numpy as np
+import pytest
+
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact_modes import (
+    Certainty,
+    ModeVerdict,
+    SpatialContactProblem,
+    contact_modes,
+    mode_margins,
+    statics,
+    wrench_sets,
+)
+from contact_dynamics.errors import TooLargeError, UndecidedError
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from oracles.equilibria_in_space import KINDS, Resting, resting, rough
+
+AT_REST = BodyState(
+    p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
+)
+BODY = MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5]))
+BOX = MassProperties(mass=1.0, I_B=np.diag([0.0043, 0.0043, 0.0053]))
+FEET = np.array([[x, y, -0.1] for x in (-0.1, 0.1) for y in (-0.1, 0.1)])
+HELD = 1e-9  # relative to the forces: what may be left of an equilibrium
+
+
+def problem_of(case: Resting, body: MassProperties = BODY) -> SpatialContactProblem:
+    return SpatialContactProblem(
+        body=body,
+        state=AT_REST,
+        contacts=ContactSet(p_WC_W=case.points, normals_W=case.normals, frictions=case.frictions),
+        force_W=case.wrench[:3],
+        torque_W=case.wrench[3:],
+    )
+
+
+def check_sticking(problem: SpatialContactProblem) -> None:
+    """Check that sticking is among the modes, with forces within the cones that leave nothing over."""
+    n = len(problem.contacts)
+    still = [mode for mode in contact_modes(problem).modes if mode.mode == "f" * n]
+    assert len(still) == 1
+    forces, normals = still[0].contact_forces_W, problem.contacts.normals_W
+    size = float(np.abs(forces).max())
+    pressing = np.sum(forces * normals, axis=1)
+    across = np.linalg.norm(forces - pressing[:, None] * normals, axis=1)
+    assert np.all(across <= problem.contacts.frictions * pressing + HELD * size)
+    # Contacts that are merged rest to what parts them: relative to what the forces alone would bring about.
+    reach = float(np.linalg.norm(problem.contacts.p_WC_W, axis=1).max())
+    alone = size * (1.0 / problem.body.mass + reach**2 / float(np.diag(problem.body.I_B).min()))
+    assert np.abs(still[0].contact_accelerations_W).max() <= HELD * alone
+
+
+@pytest.mark.parametrize("seed", range(36))
+def test_a_body_at_rest_by_construction_may_stick(seed: int) -> None:
+    check_sticking(problem_of(resting(seed)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("block", range(60))
+def test_thousands_of_bodies_at_rest_by_construction_may_stick(block: int) -> None:
+    for seed in range(100 * block, 100 * block + 100):
+        check_sticking(problem_of(resting(seed)))
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_friction_up_to_a_million_and_arms_of_ten_thousand_radii_of_gyration(seed: int) -> None:
+    case, gyration = rough(seed)
+    body = MassProperties(mass=1.0, I_B=gyration**2 * np.diag([0.6, 0.8, 1.0]))
+    check_sticking(problem_of(case, body))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("block", range(20))
+def test_any_friction_and_any_arms(block: int) -> None:
+    for seed in range(50 * block, 50 * block + 50):
+        case, gyration = rough(seed)
+        body = MassProperties(mass=1.0, I_B=gyration**2 * np.diag([0.6, 0.8, 1.0]))
+        check_sticking(problem_of(case, body))
+
+
+@pytest.mark.parametrize("angle", [1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4])
+def test_a_box_under_its_weight_sticks_whatever_the_noise_of_its_normals(angle: float) -> None:
+    chance = np.random.default_rng(4)
+    normals = np.tile([0.0, 0.0, 1.0], (4, 1))
+    for _ in range(3):
+        normals[:, :2] = angle * chance.normal(size=(4, 2))
+        contacts = ContactSet(
+            p_WC_W=FEET, normals_W=normals / np.linalg.norm(normals, axis=1)[:, None], frictions=0.5
+        )
+        answer = contact_modes(
+            SpatialContactProblem(body=BOX, state=AT_REST, contacts=contacts, force_W=(0, 0, -9.8))
+        )
+        assert (answer.verdict, [mode.mode for mode in answer.modes]) == (ModeVerdict.UNIQUE, ["ffff"])
+
+
+@pytest.mark.parametrize("gap", [1e-9, 1e-7, 1e-5, 1e-3])
+def test_two_contacts_side_by_side_far_from_the_centre(gap: float) -> None:
+    points = np.array([[1.0, 0.0, -0.1], [1.0, gap, -0.1], [-1.0, 0.3, -0.1], [-1.0, -0.3, -0.1]])
+    contacts = ContactSet(p_WC_W=points, normals_W=[0.0, 0.0, 1.0], frictions=0.5)
+    check_sticking(
+        SpatialContactProblem(body=BODY, state=AT_REST, contacts=contacts, force_W=(0.5, 0.2, -9.8))
+    )
+
+
+@pytest.mark.parametrize("seed", range(2 * len(KINDS)))
+def test_questions_about_one_case_do_not_contradict_each_other(seed: int) -> None:
+    problem = problem_of(resting(seed, most_friction=1.0))
+    n = len(problem.contacts)
+    answer = contact_modes(problem)
+    letters = [mode.mode for mode in answer.modes]
+    assert "f" * n in letters
+    assert answer.verdict != ModeVerdict.INCONSISTENT
+    with contextlib.suppress(UndecidedError):
+        held = statics(problem)
+        assert held.equilibrium != Certainty.NO
+        assert held.stable_disturbance >= 0.0
+        if held.equilibrium == Certainty.CERTAIN:
+            assert answer.verdict == ModeVerdict.UNIQUE
+    with contextlib.suppress(UndecidedError):
+        assert [margin.mode for margin in mode_margins(problem, answer)] == letters
+    with contextlib.suppress(UndecidedError, TooLargeError):
+        # The wrench is held by the round cones: outside of the pyramids' set by what these leave out at most.
+        (still,) = wrench_sets(problem, modes=["f" * n])
+        short = 1.0 - np.cos(np.pi / problem.friction_facets)
+        forces = next(mode for mode in answer.modes if mode.mode == "f" * n).contact_forces_W
+        assert still.depth(problem.wrench_W, 1.0) >= -2.0 * short * float(np.abs(forces).sum())
+
+
+@pytest.mark.parametrize("seed", range(len(KINDS)))
+def test_contacts_in_another_order_have_the_same_modes(seed: int) -> None:
+    case = resting(seed)
+    order = np.random.default_rng(seed).permutation(len(case.points))
+    moved = case._replace(
+        points=case.points[order], normals=case.normals[order], frictions=case.frictions[order]
+    )
+    before, after = (contact_modes(problem_of(one)) for one in (case, moved))
+    assert "f" * len(order) in [mode.mode for mode in before.modes]
+    if ModeVerdict.UNDECIDED not in (before.verdict, after.verdict):
+        renamed = sorted({"".join(mode.mode[i] for i in order) for mode in before.modes})
+        assert sorted({mode.mode for mode in after.modes}) == renamed
