@@ -357,8 +357,8 @@ HELD_INDEPENDENT: Final = 1e-9
 """Ratio of singular values. Below it, the directions in which jammed contacts are held count as the same."""
 
 ESCAPE_ARRIVED: Final = 1e-16
-"""Relative. Newton's method has found the direction in which a contact leaves its stop when its step is
-smaller, which is below the last bit."""
+"""Relative. The last of Newton's steps towards the direction in which a contact leaves its stop: below the
+last bit."""
 
 MODE_STRAIGHT: Final = 1e-8
 """rad, misdirection of friction that is rounding."""

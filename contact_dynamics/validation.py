@@ -104,7 +104,7 @@ def _in_words(shape: tuple[int | None, ...]) -> str:
 def check_magnitude(field: str, value: FloatArray, most: float = LARGEST_NUMBER) -> FloatArray:
     """Return ``value`` if no number in it is larger than ``most`` in magnitude."""
     largest = float(np.abs(value).max(initial=0.0))
-    if largest > most:
+    if not largest <= most:
         raise InvalidFieldError(field, f"{largest:g}", f"numbers of at most {most:g}, by size")
     return value
 

@@ -10,6 +10,7 @@ import numpy as np
 from contact_dynamics.contact.found import check_has_shape, find_contacts
 from contact_dynamics.landing.obstacle_arrival import first_touch
 from contact_dynamics.landing.plane_arrival import first_contact
+from contact_dynamics.landing.search_work import SearchWork
 from contact_dynamics.records import Record
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, VELOCITY_TOLERANCE
@@ -52,17 +53,19 @@ def next_landing(
     distance_tolerance: float = DISTANCE_TOLERANCE,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     motion: Motion | None = None,
+    work: SearchWork | None = None,
 ) -> Landing | None:
     """Return where a body's flight ends within ``horizon`` (s), or None if it flies at least until then.
 
     A point within ``distance_tolerance`` (m) of a surface touches it. A body that touches flies only if each
-    of its contacts leaves faster than ``velocity_tolerance`` (m/s). Then the next landing is returned.
-    ``motion`` is the flight, in closed form or under forces. The default is the flight from the state in the
-    world's gravity.
+    of its contacts leaves faster than ``velocity_tolerance`` (m/s); what counts then is where it comes down.
+    ``motion`` is the flight, in closed form or under forces; None: that of the state in the world's gravity.
+    ``work`` counts the steps of the search, and of others; None: those of this one alone.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
-        InvalidFieldError: the horizon or a tolerance is negative or not finite.
+        InvalidFieldError: a horizon or a tolerance that is negative or not finite.
+        TooLargeError: the search takes too many steps: the body spins too fast for the horizon.
     """
     check_has_shape(body)
     check_not_negative("horizon", horizon)
@@ -73,10 +76,11 @@ def next_landing(
         return now.landing(0.0, state, velocity_tolerance)
     if motion is None:
         motion = free_motion(body.mass_properties, state, gravity_W=world.gravity_W)
+    spent = SearchWork() if work is None else work
     arrivals = [
         seconds
         for surface in world.surfaces
-        if (seconds := _arrival(motion, body, surface, horizon)) is not None
+        if (seconds := _arrival(motion, body, surface, horizon, spent)) is not None
     ]
     if not arrivals:
         return None
@@ -86,10 +90,12 @@ def next_landing(
     return None if touching is None else touching.landing(seconds, then, velocity_tolerance)
 
 
-def _arrival(motion: Motion, body: Body, surface: Surface | Obstacle, horizon: float) -> float | None:
+def _arrival(
+    motion: Motion, body: Body, surface: Surface | Obstacle, horizon: float, work: SearchWork
+) -> float | None:
     if isinstance(surface, Obstacle):
-        return first_touch(motion, body.shape, surface, horizon=horizon)
-    found = first_contact(motion, body.shape, surface.p_WS_W, surface.normal_W, horizon=horizon)
+        return first_touch(motion, body.shape, surface, horizon=horizon, work=work)
+    found = first_contact(motion, body.shape, surface.p_WS_W, surface.normal_W, horizon=horizon, work=work)
     return None if found is None else found.seconds
 
 

@@ -20,6 +20,7 @@ import numpy as np
 from contact_dynamics.contact.on_obstacles import site_of, touches_of
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.landing.plane_arrival import Descent
+from contact_dynamics.landing.search_work import OBSTACLE_STEP, SearchWork
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, GRAZING_DEPTH, LEAVING_STEP
 from contact_dynamics.validation import check_not_negative
@@ -33,22 +34,32 @@ MOST_STEPS: Final = 5_000
 """Bound on the steps of a search, about a second of computing. A toss takes ten to a hundred steps."""
 
 
-def first_touch(motion: Motion, shape_B: ConvexShape, obstacle: Obstacle, *, horizon: float) -> float | None:
+def first_touch(
+    motion: Motion,
+    shape_B: ConvexShape,
+    obstacle: Obstacle,
+    *,
+    horizon: float,
+    work: SearchWork | None = None,
+) -> float | None:
     """Return the first time in [0, horizon], s, at which a body touches an obstacle and does not leave it.
 
     If it touches at time 0 and does not leave, the time is 0. If it leaves, it is the time at which it comes
     back. The function returns None if the body does not touch.
 
     Raises:
-        InvalidFieldError: the horizon is < 0, the shape is empty, or an integrated motion does not reach as
-            far as the search has to.
-        NotSupportedError: a rim comes to an edge or a corner, or the body hovers.
+        InvalidFieldError: horizon < 0, an empty shape, or an integrated motion that does not get as far as
+            the search has to.
+        NotSupportedError: a rim that comes to an edge or a corner, or a body that hovers.
+        TooLargeError: this search, and others that ``work`` counts, take too many steps together.
     """
     until = check_not_negative("horizon", horizon)
     if shape_B.is_empty:
         raise InvalidFieldError("shape_B", "nothing", "a shape, which can touch")
     now = 0.0
     for _ in range(MOST_STEPS):
+        if work is not None:
+            work.spend(OBSTACLE_STEP, now)
         sample = motion.sample(now)
         p_WB_W, R_WB = np.array(sample.p_WB_W), rotation_matrix(np.array(sample.q_WB))
         site = site_of(shape_B, p_WB_W, R_WB, obstacle)

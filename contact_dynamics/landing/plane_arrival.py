@@ -22,6 +22,7 @@ import numpy as np
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.landing.acceleration_bounds import Bound, all_free_for, bounds_of, free_for
 from contact_dynamics.landing.rim_descent import RimAbove
+from contact_dynamics.landing.search_work import SEARCH_BEGUN, SearchWork
 from contact_dynamics.records import Record
 from contact_dynamics.rotations.one import conjugate, rotated
 from contact_dynamics.shapes.convex import ConvexShape
@@ -65,6 +66,7 @@ def first_contact(
     normal_W: ArrayLike,
     *,
     horizon: float,
+    work: SearchWork | None = None,
 ) -> FirstContact | None:
     """Return the first time in [0, horizon] at which a body is on or below a plane and not rising, or None.
 
@@ -78,11 +80,14 @@ def first_contact(
         p_WS_W: (3,), m, a point of the plane, world.
         normal_W: (3,), unit normal into the free side, world axes.
         horizon: s after the state's stamp, how far to search.
+        work: counts the steps, of other searches too. None: this one alone may take `MOST_SEARCH_STEPS`.
 
     Raises:
-        InvalidFieldError: an array has another shape, a number is not finite, the normal is not unit, the
-            shape has no corners or rims, the horizon is < 0, or an integrated motion does not reach as far as
-            the search has to.
+        TooLargeError: the search takes too many steps: the body spins too fast, or is too large, for the
+            horizon.
+        InvalidFieldError: an array of another shape, a number that is not finite, a normal that is not unit,
+            a shape without corners or rims,
+            or horizon < 0; an integrated motion that does not get as far as the search has to go.
     """
     search = Descent(
         motion,
@@ -92,7 +97,7 @@ def first_contact(
     )
     if search.shape.is_empty:
         raise InvalidFieldError("shape_B", "nothing", "a shape or at least one corner, which can arrive")
-    return search.run(check_not_negative("horizon", horizon))
+    return search.run(check_not_negative("horizon", horizon), SearchWork() if work is None else work)
 
 
 class Above(NamedTuple):
@@ -128,10 +133,12 @@ class Descent:
         self.reach = max([float(self.arms.max(initial=0.0)), *(rim.reach for rim in self.rims)])  # m
         self.newest: tuple[float, Above] | None = None  # what `at` has last returned, and its time
 
-    def run(self, horizon: float) -> FirstContact | None:
+    def run(self, horizon: float, work: SearchWork) -> FirstContact | None:
         """Return the first contact within a horizon, s, or None."""
         now, before = 0.0, None
+        work.spend(SEARCH_BEGUN, now)
         while True:
+            work.spend(1, now)
             at = self.at(now)
             down = at.heights <= 0.0
             if down.any():

@@ -27,6 +27,7 @@ SERVER_PARAMETERS: Final = {
     "world_frame": "frame of states and answers",
     "state_timeout": "age, s, from which on the newest state is too old",
     "state_history": "how long states are kept, s",
+    "future_tolerance": "how far a state's stamp may be ahead of the clock, s",
     "velocity_tolerance": "speed below which a contact counts as at rest, m/s",
     "distance_tolerance": "gap below which a body counts as touching, m",
     "out_of_plane_tolerance": "speed out of the plane that still counts as planar, m/s",

@@ -15,6 +15,7 @@ from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.nodes.body_shapes import DESCRIPTIONS, ShapeParameters
 from contact_dynamics.questions.knowledge import Defaults
+from contact_dynamics.questions.state_store import FUTURE_TOLERANCE
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.validation import check_array, check_positive
@@ -81,6 +82,7 @@ class ServerParameters:
     Attributes:
         state_timeout: s.
         state_history: s.
+        future_tolerance: s.
         defaults: What holds where a question says nothing.
     """
 
@@ -89,6 +91,7 @@ class ServerParameters:
     world_frame: str
     state_timeout: float
     state_history: float
+    future_tolerance: float
     defaults: Defaults
     log: bool
     log_directory: str
@@ -129,6 +132,12 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
         ),
         state_history=reader.read(
             "state_history", 5.0, "How long states are kept for questions about the past, s.", (0.0, 1e4)
+        ),
+        future_tolerance=reader.read(
+            "future_tolerance",
+            FUTURE_TOLERANCE,
+            "How far a state's stamp may be ahead of the node's clock, s. A state farther ahead is refused.",
+            (0.0, 1e6),
         ),
         defaults=_read_defaults(reader),
         log=reader.read("log", default=True, description="Log every state, request and response to MCAP."),

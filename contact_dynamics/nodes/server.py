@@ -67,7 +67,11 @@ class Server(Node):
         parameters = read_server_parameters(source)
         # One file may configure both nodes.
         refuse_unknown_parameters(self, also_known=VISUALIZER_PARAMETERS)
-        states = StateStore(history=parameters.state_history, timeout=parameters.state_timeout)
+        states = StateStore(
+            history=parameters.state_history,
+            timeout=parameters.state_timeout,
+            future_tolerance=parameters.future_tolerance,
+        )
         # A simulation or a log that is played again: without this its new states would count as old ones.
         set_back = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
         self._jumps = self.get_clock().create_jump_callback(set_back, post_callback=lambda _: states.clear())
@@ -76,7 +80,7 @@ class Server(Node):
             world=parameters.world,
             states=states,
             defaults=parameters.defaults,
-            now_ns=lambda: self._asked_ns,
+            now_ns=lambda: self._asked_ns or None,  # zero before a simulation tells the time
         )
         self._world_frame = parameters.world_frame
         self._log = Log(

@@ -13,6 +13,7 @@ from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.serialization import deserialize_message
 
 from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.nodes.refused_messages import RefusedMessages
 from contact_dynamics.nodes.state_sources import state_sources
 from contact_dynamics.recording.decoding import message_class
 
@@ -29,8 +30,6 @@ if TYPE_CHECKING:
 STATE_QOS = QoSProfile(depth=1000)
 """Reliable, and deep: a second of states at 1 kHz may wait for a stalled process, and the log loses none."""
 
-_WARN_EVERY_S = 5.0
-
 
 def subscribe_to_states(
     node: Node,
@@ -41,18 +40,19 @@ def subscribe_to_states(
     states: StateStore,
     record: Callable[[str, bytes], None],
 ) -> dict[str, str]:
-    """Subscribe to a body's states, record every message, keep every state; return topics and their types."""
+    """Subscribe to a body's states, record every message, keep every state; return topics and their types.
+
+    A message that is no state, or whose stamp is from the future, is recorded, counted and told, not kept.
+    """
+    refused = RefusedMessages(node.get_logger().warning)
 
     def keep(make_state: Callable[[], BodyState | None], topic: str) -> None:
         try:
             state = make_state()
+            if state is not None:
+                states.add(topics.body_name, state, now_ns=present_ns(node))
         except (ContactDynamicsError, RuntimeError) as error:  # the latter of bytes that are no message
-            node.get_logger().warning(
-                f"{topic}: message ignored: {error}", throttle_duration_sec=_WARN_EVERY_S
-            )
-            return
-        if state is not None:
-            states.add(topics.body_name, state)
+            refused.add(topic, error)
 
     def subscribe(msg_type: type[Any], topic: str, state_from: Callable[[Any], BodyState | None]) -> str:
         def receive(data: bytes) -> None:
@@ -70,3 +70,10 @@ def subscribe_to_states(
     for source in state_sources(topics, world_frame=world_frame, p_FB_F=p_FB_F):
         types[subscribe(message_class(source.type_name), source.topic, source.state_from)] = source.type_name
     return types
+
+
+def present_ns(node: Node) -> int | None:
+    """Return the present time, ns; None where a simulation's clock has not told it yet."""
+    clock = node.get_clock()
+    now_ns: int = clock.now().nanoseconds
+    return None if now_ns == 0 and clock.ros_time_is_active else now_ns

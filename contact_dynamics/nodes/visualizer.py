@@ -219,7 +219,8 @@ class _WaitingStates(StateStore):
         super().__init__(history=0.0, timeout=0.0)
         self._waiting: dict[str, list[BodyState]] = {}
 
-    def add(self, body_name: str, state: BodyState) -> None:
+    def add(self, body_name: str, state: BodyState, *, now_ns: int | None = None) -> None:  # noqa: ARG002
+        """Keep a state whatever its stamp: those of a log are not of this clock."""
         self._waiting.setdefault(body_name, []).append(state)
 
     def take(self) -> dict[str, list[BodyState]]:

@@ -7,7 +7,7 @@ answer. Also, it leaves out directions that consist of rounding alone, and SciPy
 
 `exact_combination` calculates with as many digits as it takes, for columns that nearly coincide.
 
-`nearest_combination` uses SciPy, for margins and refusals in space. These need SciPy for hulls anyway.
+`nearest_combination` is SciPy's, for margins and refusals in space, which need SciPy for hulls anyway.
 """
 
 from __future__ import annotations

@@ -8,9 +8,9 @@ Each kind has a file with its question, its answer and a function ``answer``: `t
 body be: lectures 24, 25), `impact` (which velocities follow: lecture 27; the question stands in
 `which_impact`), `contact_modes` (which contacts separate, slide or stay: lecture 26). They share `knowledge`
 (the world, defaults, and in a `state_store` what was published), `subject` (which body, in which state),
-`sample_times` (when), `touching` (which contacts) and `problem` (in a plane or in space). Answers tell every
-impact alike (`resolved_impact`), modes of a plane in world axes (`lifted_modes`) and back (`planar_view`),
-and what follows an inconsistency (`settled_impact`).
+`sample_times` (when), `touching` (which contacts), `extent` (how large numbers may be) and `problem` (in a
+plane or in space). Answers tell every impact alike (`resolved_impact`), modes of a plane in world axes
+(`lifted_modes`) and back (`planar_view`), and what follows an inconsistency (`settled_impact`).
 """
 
 from contact_dynamics.questions.asking import ask

@@ -31,6 +31,7 @@ from contact_dynamics.contact_modes.spatial.wrench_sets import WRENCH_FACETS
 from contact_dynamics.errors import InvalidFieldError, OutOfPlaneError, TooLargeError
 from contact_dynamics.plane.lifting import check_mirrored, mirror_partners
 from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions.extent import check_contacts, check_extent, check_wrench
 from contact_dynamics.questions.knowledge import Knowledge, check_optional, or_default
 from contact_dynamics.questions.lifted_modes import (
     lifted_margin,
@@ -225,16 +226,20 @@ def answer(question: ContactModeQuestion, knowledge: Knowledge | None = None) ->
 def _case(question: ContactModeQuestion, knowledge: Knowledge) -> ModeCase:
     """Look up all that a question names."""
     subject = subject_of(question.body, question.state, knowledge)
+    check_extent(subject.body.mass_properties, subject.state)
     defaults, world = knowledge.defaults, knowledge.world
     distance_tolerance = or_default(question.distance_tolerance, defaults.distance_tolerance)
     contacts = contacts_of(question.contacts, subject, world, distance_tolerance=distance_tolerance)
     if len(contacts) > MOST_PLANAR_CONTACTS:
         raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MOST_PLANAR_CONTACTS}")
+    check_contacts(contacts)
     gravity_W = world.gravity_W if question.gravity_W is None else question.gravity_W
+    force_W = question.force_W + subject.body.mass_properties.mass * gravity_W
+    check_wrench(force_W, question.torque_W)
     return ModeCase(
         subject=subject,
         contacts=contacts,
-        force_W=question.force_W + subject.body.mass_properties.mass * gravity_W,
+        force_W=force_W,
         torque_W=question.torque_W,
         velocity_tolerance=or_default(question.velocity_tolerance, defaults.velocity_tolerance),
         distance_tolerance=distance_tolerance,

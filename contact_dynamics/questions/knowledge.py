@@ -49,13 +49,14 @@ class Knowledge(Record):
         states: The states that were published, by body. A question about the newest one reads them here.
         defaults: What holds where a question says nothing itself.
         now_ns: Returns the present time, ns, on the clock of the states' stamps, so that an old state is
-            refused. None: there is no clock, and the newest state counts as fresh.
+            refused. None, or where it returns None: there is no clock yet, and the newest state counts as
+            fresh.
     """
 
     world: World = field(default_factory=World)
     states: StateStore = field(default_factory=lambda: StateStore(history=5.0, timeout=0.5))
     defaults: Defaults = field(default_factory=Defaults)
-    now_ns: Callable[[], int] | None = None
+    now_ns: Callable[[], int | None] | None = None
 
 
 def or_default(asked: float | None, default: float) -> float:

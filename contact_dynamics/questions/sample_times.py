@@ -13,6 +13,7 @@ from contact_dynamics.constants import seconds_between
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.landing.earliest import next_landing
 from contact_dynamics.landing.plane_arrival import first_contact
+from contact_dynamics.landing.search_work import SearchWork
 from contact_dynamics.motion.integrated import ForcedMotion
 from contact_dynamics.questions.knowledge import check_optional, or_default
 from contact_dynamics.questions.touching import check_has_shape
@@ -249,6 +250,7 @@ def _contact(
         distance_tolerance=knowledge.defaults.distance_tolerance,
         velocity_tolerance=knowledge.defaults.velocity_tolerance,
         motion=motion,
+        work=SearchWork("duration"),
     )
     if landing is None:
         return None
@@ -266,7 +268,12 @@ def _plane_reached(
 ) -> Event | None:
     point_B = sampling.body_point - subject.body.p_FB_F
     found = first_contact(
-        motion, point_B[None, :], sampling.plane_point, sampling.plane_normal, horizon=duration
+        motion,
+        point_B[None, :],
+        sampling.plane_point,
+        sampling.plane_normal,
+        horizon=duration,
+        work=SearchWork("duration"),
     )
     if found is None:
         return None

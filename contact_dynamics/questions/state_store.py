@@ -3,26 +3,52 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right, insort
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.constants import to_ns, to_seconds
-from contact_dynamics.errors import NoStateError, StaleStateError
+from contact_dynamics.errors import InvalidFieldError, NoStateError, StaleStateError
 
 if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
+
+FUTURE_TOLERANCE: Final = 0.5
+"""s. How far a stamp may be ahead of the clock, where nothing else is said: clocks of two machines that NTP
+keeps differ by far less."""
 
 
 class StateStore:
     """States by body, sorted by their stamps; older ones than the history are dropped as new ones come."""
 
-    def __init__(self, *, history: float, timeout: float) -> None:
-        """Keep ``history`` seconds of states; refuse one older than ``timeout`` seconds when asked about."""
+    def __init__(self, *, history: float, timeout: float, future_tolerance: float = FUTURE_TOLERANCE) -> None:
+        """Begin without states.
+
+        Args:
+            history: s, for how long states are kept.
+            timeout: s. A state that is older when it is asked about is refused.
+            future_tolerance: s. A state whose stamp is farther ahead of the clock is refused.
+        """
+        self._history = history
         self._history_ns = to_ns(history)
         self._timeout_ns = to_ns(timeout)
+        self._future_tolerance_ns = to_ns(future_tolerance)
         self._states: dict[str, list[BodyState]] = {}
 
-    def add(self, body_name: str, state: BodyState) -> None:
-        """Keep a state."""
+    def add(self, body_name: str, state: BodyState, *, now_ns: int | None = None) -> None:
+        """Keep a state; without the present time, ns, whatever its stamp.
+
+        Raises:
+            InvalidFieldError: its stamp is ahead of the present time by more than the tolerance. Kept, it
+                would be the newest state until the clock came to it.
+        """
+        if now_ns is not None:
+            ahead_ns = state.stamp_ns - now_ns
+            if ahead_ns > self._future_tolerance_ns:
+                raise InvalidFieldError(
+                    "header.stamp",
+                    f"{to_seconds(ahead_ns):.3f} s ahead of the clock",
+                    f"at most {to_seconds(self._future_tolerance_ns):g} s (parameter future_tolerance)",
+                )
+            self._forget_future(body_name, now_ns)
         states = self._states.setdefault(body_name, [])
         insort(states, state, key=_stamp)
         oldest = states[-1].stamp_ns - self._history_ns
@@ -40,6 +66,8 @@ class StateStore:
             NoStateError: none was published yet.
             StaleStateError: it is older than the timeout.
         """
+        if now_ns is not None:
+            self._forget_future(body_name, now_ns)
         states = self._states.get(body_name)
         if not states:
             message = f"state of {body_name!r}: none was published yet"
@@ -49,7 +77,8 @@ class StateStore:
     def window(self, body_name: str, newest: BodyState, seconds: float) -> list[BodyState]:
         """Return the states of the last ``seconds`` up to ``newest``, in order of time, one a stamp."""
         states = self._states.get(body_name, [])
-        first = bisect_left(states, newest.stamp_ns - to_ns(seconds), key=_stamp)
+        # No more is kept than the history, so that a longer window, however long, is that one.
+        first = bisect_left(states, newest.stamp_ns - to_ns(min(seconds, self._history)), key=_stamp)
         last = bisect_right(states, newest.stamp_ns, key=_stamp)
         return list({state.stamp_ns: state for state in states[first:last]}.values())
 
@@ -67,6 +96,13 @@ class StateStore:
             message = f"state of {body_name!r} at {stamp_ns} ns: {kept}"
             raise NoStateError(message)
         return self._fresh(body_name, states[index - 1], stamp_ns)
+
+    def _forget_future(self, body_name: str, now_ns: int) -> None:
+        """Forget what is ahead of the clock by too much: it came before the clock began or was set back."""
+        states = self._states.get(body_name, [])
+        latest = now_ns + self._future_tolerance_ns
+        if states and states[-1].stamp_ns > latest:
+            del states[bisect_right(states, latest, key=_stamp) :]
 
     def _fresh(self, body_name: str, state: BodyState, asked_ns: int) -> BodyState:
         age_ns = asked_ns - state.stamp_ns

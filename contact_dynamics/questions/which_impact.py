@@ -9,6 +9,7 @@ from contact_dynamics.errors import NoContactError, NotSupportedError
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.landing.earliest import next_landing
 from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions.extent import check_contacts, check_extent
 from contact_dynamics.questions.knowledge import Knowledge, check_optional, or_default
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.resolved_impact import Before
@@ -135,6 +136,9 @@ def strike_of(question: ImpactQuestion, knowledge: Knowledge) -> Strike:
     """
     subject = subject_of(question.body, question.state, knowledge)
     other = None if question.other is None else subject_of(question.other, question.other_state, knowledge)
+    for one in (subject, other):
+        if one is not None:
+            check_extent(one.body.mass_properties, one.state)
     velocity_tolerance = or_default(question.velocity_tolerance, knowledge.defaults.velocity_tolerance)
     distance_tolerance = or_default(question.distance_tolerance, knowledge.defaults.distance_tolerance)
     seconds, state = 0.0, subject.state
@@ -153,6 +157,7 @@ def strike_of(question: ImpactQuestion, knowledge: Knowledge) -> Strike:
             velocity_tolerance=velocity_tolerance,
             distance_tolerance=distance_tolerance,
         )
+    check_contacts(contacts)
     _check_supported(question, contact_count=len(contacts))
     return Strike(
         subject=subject,

@@ -6,6 +6,7 @@ answers, the same writing of responses.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.errors import ContactDynamicsError
@@ -41,13 +42,18 @@ class ServerAgain:
         logged = LoggedParameters(run)
         self._asked_ns = 0
         self._clock_ns = 0
-        self._states = StateStore(history=parameters.state_history, timeout=parameters.state_timeout)
+        self._is_simulated = run.get("use_sim_time") == str(True)
+        self._states = StateStore(
+            history=parameters.state_history,
+            timeout=parameters.state_timeout,
+            future_tolerance=parameters.future_tolerance,
+        )
         self._world_frame = parameters.world_frame
         self._knowledge = Knowledge(
             world=parameters.world,
             states=self._states,
             defaults=parameters.defaults,
-            now_ns=lambda: self._asked_ns,
+            now_ns=lambda: self._asked_ns or None,  # zero before a simulation tells the time
         )
         self._sources: dict[str, tuple[str, Callable[[Any], BodyState | None]]] = {}
         for topics in parameters.topics:
@@ -67,12 +73,11 @@ class ServerAgain:
             self._tick(leading_stamp_ns(message.data))
             return
         body_name, state_from = self._sources[message.topic]
-        try:
+        now_ns = self._clock_ns or None if self._is_simulated else message.log_time_ns
+        with suppress(ContactDynamicsError):
             state = state_from(decode_without_ros(message))
-        except ContactDynamicsError:
-            return
-        if state is not None:
-            self._states.add(body_name, state)
+            if state is not None:
+                self._states.add(body_name, state, now_ns=now_ns)
 
     def answer(
         self, service_type: str, request: object, make_response: Callable[[], Any], *, asked_ns: int

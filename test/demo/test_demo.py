@@ -96,6 +96,16 @@ def demo(*arguments: str, output: Path) -> Iterator[tuple[subprocess.Popen[str],
         process.communicate()
 
 
+@contextlib.contextmanager
+def inherited(number: signal.Signals, handling: signal.Handlers) -> Iterator[None]:
+    """Let processes that are started meanwhile inherit how a signal is handled: `nohup` ignores SIGHUP."""
+    before = signal.signal(number, handling)
+    try:
+        yield
+    finally:
+        signal.signal(number, before)
+
+
 def finished(process: subprocess.Popen[str], mark: str, *, toss: Toss, output: Path) -> Run:
     """Wait for the end of a demo; say what it left."""
     printed, errors = process.communicate(timeout=TIMEOUT_S)
@@ -335,7 +345,7 @@ def test_a_viewer_that_does_not_open_is_told_where_the_demo_was_started(
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP], ids=lambda number: number.name)
 def test_stopped_at_the_start_it_stops_all(tmp_path: Path, number: signal.Signals) -> None:
     """While its processes start, by `kill` or by a terminal that is closed."""
-    with demo(output=tmp_path) as (process, mark):
+    with inherited(number, signal.SIG_DFL), demo(output=tmp_path) as (process, mark):
         assert process.stdout is not None
         assert process.stdout.readline().startswith("playing ")
         process.send_signal(number)
@@ -343,6 +353,16 @@ def test_stopped_at_the_start_it_stops_all(tmp_path: Path, number: signal.Signal
     assert run.exit_code == 130, run.errors
     assert run.left_over == []
     assert run.errors.strip() == "stopped"
+
+
+def test_under_nohup_a_closed_terminal_stops_nothing(tmp_path: Path) -> None:
+    with inherited(signal.SIGHUP, signal.SIG_IGN), demo(output=tmp_path) as (process, mark):
+        assert process.stdout is not None
+        assert process.stdout.readline().startswith("playing ")
+        process.send_signal(signal.SIGHUP)
+        run = finished(process, mark, toss=read_toss(), output=tmp_path)
+    assert run.exit_code == 0, run.errors
+    assert run.left_over == []
 
 
 @pytest.mark.parametrize("verb", VERBS)

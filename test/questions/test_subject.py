@@ -117,3 +117,28 @@ def test_constructors_refuse_what_makes_no_sense() -> None:
         Defaults(horizon=-1.0)
     with pytest.raises(InvalidFieldError, match="rate: found 0"):
         Defaults(rate=0.0)
+
+
+def test_a_state_from_the_future_never_becomes_the_newest() -> None:
+    """Kept, it would be answered with until the clock came to it."""
+    states = StateStore(history=10.0, timeout=0.5, future_tolerance=0.1)
+    states.add("cube", rising(0), now_ns=0)
+    states.add("cube", rising(100 * MS), now_ns=0)
+    with pytest.raises(
+        InvalidFieldError, match=r"stamp: found 0\.101 s ahead of the clock, allowed is at most"
+    ):
+        states.add("cube", rising(101 * MS), now_ns=0)
+    assert states.newest("cube", now_ns=0).stamp_ns == 100 * MS
+
+
+def test_states_that_the_clock_falls_behind_are_forgotten() -> None:
+    """It was set back, or it had not begun when they came."""
+    hour_ns = 3600 * 1000 * MS
+    states = StateStore(history=10.0, timeout=0.5, future_tolerance=0.1)
+    states.add("cube", rising(hour_ns))
+    states.add("cube", rising(1 * MS), now_ns=1 * MS)
+    assert states.newest("cube", now_ns=1 * MS).stamp_ns == 1 * MS
+    states = StateStore(history=10.0, timeout=0.5, future_tolerance=0.1)
+    states.add("cube", rising(hour_ns))
+    with pytest.raises(NoStateError):
+        states.newest("cube", now_ns=0)

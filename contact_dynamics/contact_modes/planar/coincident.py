@@ -1,7 +1,7 @@
 """Contacts that coincide are answered as one, such as those of a body's two sides in a plane of motion.
 
 Contacts of one place and normal, within `SAME_ROWS`, and of one friction and kind have the same letter in
-every mode. Only the sum of their forces is known. Each gets an equal share.
+every mode. Their force is known only in sum, and told in equal shares.
 """
 
 from __future__ import annotations

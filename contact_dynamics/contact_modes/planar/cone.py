@@ -8,11 +8,10 @@ out as such, because ties are decided by one tolerance and remembered as bits, n
 A cone's dual has the rows as generators: the rays found here are then its facets. So this one construction
 serves the faces of the accelerations that do not penetrate, and the cones of wrenches.
 
-The code uses plain floats, because the sets are small and most rows change nothing, which takes three
-multiplications for each ray to find out. For many rows, arrays find those that change nothing.
-Floats decide what vanishes to rounding and what is clearly different. Where a case lies in between, as for
-contacts that nearly coincide, the cone is built once more in decimals, with digits enough to make decisions
-exact for the rows given.
+Plain floats: the sets are small, and most rows change nothing, which costs three multiplications a ray. Of
+many rows, arrays tell those that change nothing. Floats decide what vanishes to rounding and what is clearly
+different. Where something lies between the two, as for contacts that nearly coincide, the cone is built once
+more in decimals of so many digits that every decision is the one of the rows as they are given.
 """
 
 from __future__ import annotations

@@ -18,6 +18,7 @@ from contact_dynamics.tolerances import DISTANCE_TOLERANCE
 from contact_dynamics.tumbling import free_motion
 
 if TYPE_CHECKING:
+    from contact_dynamics.landing.search_work import SearchWork
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
@@ -41,9 +42,15 @@ class FoundMeetings:
     """Contacts from a body's shape and the world's surfaces, numbered as they are met."""
 
     def __init__(
-        self, body: Body, world: World, *, distance_tolerance: float, velocity_tolerance: float
+        self,
+        body: Body,
+        world: World,
+        *,
+        distance_tolerance: float,
+        velocity_tolerance: float,
+        work: SearchWork,
     ) -> None:
-        self._body, self._world = body, world
+        self._body, self._world, self._work = body, world, work
         self._distance_tolerance, self._velocity_tolerance = distance_tolerance, velocity_tolerance
         self._points_B: list[FloatArray] = []
         self._met: list[ContactSet] = []
@@ -57,6 +64,7 @@ class FoundMeetings:
             horizon=horizon,
             distance_tolerance=self._distance_tolerance,
             velocity_tolerance=self._velocity_tolerance,
+            work=self._work,
         )
 
     def index(self, landing: Landing, row: int) -> int:
@@ -105,8 +113,9 @@ class NamedMeetings:
         gravity_W: FloatArray,
         distance_tolerance: float,
         velocity_tolerance: float,
+        work: SearchWork,
     ) -> None:
-        self._body, self._gravity_W = body, gravity_W
+        self._body, self._gravity_W, self._work = body, gravity_W, work
         self._contacts = contacts
         self._points_B = (contacts.p_WC_W - state.p_WB_W) @ state.R_WB
         self._distance_tolerance, self._velocity_tolerance = distance_tolerance, velocity_tolerance
@@ -123,7 +132,11 @@ class NamedMeetings:
             for point_B, plane_W, normal_W in zip(
                 self._points_B, self._contacts.p_WC_W, self._contacts.normals_W, strict=True
             )
-            if (found := first_contact(motion, point_B[None], plane_W, normal_W, horizon=horizon))
+            if (
+                found := first_contact(
+                    motion, point_B[None], plane_W, normal_W, horizon=horizon, work=self._work
+                )
+            )
         ]
         if not arrivals:
             return None

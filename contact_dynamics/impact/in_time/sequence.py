@@ -34,6 +34,7 @@ from contact_dynamics.impact.in_time.meetings import FoundMeetings, NamedMeeting
 from contact_dynamics.impact.in_time.result import ImpactSequence, SequenceEnd, TimedStrike
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.spatial.one_contact import spatial_impact
+from contact_dynamics.landing.search_work import SearchWork
 from contact_dynamics.rotations.one import cross_matrix
 from contact_dynamics.tolerances import (
     CHATTER_HEIGHT,
@@ -69,6 +70,10 @@ faster, something else struck."""
 MOST_HELD: Final = 100
 """Impulses that hold contacts at one instant. Two ends of a rod need four, the corners of a face some ten."""
 
+ROUND: Final = 20
+"""Steps of the search that a strike, or a step over contacts that stay, counts for besides its own search: a
+sequence comes to an end within some 2500 of them."""
+
 STILL: Final = 0.1
 """Speed of a held body after a step below which it rests, relative to the speed that a step of free motion
 gives it. A body that begins to fall over is faster, unless it is balanced to within some degrees."""
@@ -100,17 +105,20 @@ def impact_sequence(
         hold_step: s, > 0. Where a contact stays, go on in steps of this length. None: end there.
 
     Raises:
+        TooLargeError: the sequence takes too long: too many strikes, or steps over contacts that stay.
         InvalidFieldError: a number that is not allowed.
         NoContactError: the body has no shape that could touch anything.
     """
     check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     held = None if hold_step is None else check_positive("hold_step", hold_step)
+    work = SearchWork("strike_window")
     meetings = FoundMeetings(
         body,
         world,
         distance_tolerance=check_not_negative("distance_tolerance", distance_tolerance),
         velocity_tolerance=tolerance,
+        work=work,
     )
     sequence = _Sequence(
         body.mass_properties,
@@ -119,6 +127,7 @@ def impact_sequence(
         restitution_law,
         tolerance=tolerance,
         hold_step=held,
+        work=work,
     )
     return sequence.run(state, check_positive("window", window), most_strikes)
 
@@ -153,6 +162,7 @@ def impact_sequence_of(
         hold_step: s, > 0. Where a contact stays, go on in steps of this length. None: end there.
 
     Raises:
+        TooLargeError: the sequence takes too long: too many strikes, or steps over contacts that stay.
         InvalidFieldError: a number that is not allowed, or a contact with curvature: it is no fixed point.
     """
     check_choice("restitution_law", restitution_law, RestitutionLaw)
@@ -161,6 +171,7 @@ def impact_sequence_of(
     if contacts.body_curvatures is not None or contacts.surface_curvatures is not None:
         raise InvalidFieldError("contacts.curvatures", "some", "none: a point of the body on a plane")
     gravity = check_array("gravity_W", gravity_W, (3,))
+    work = SearchWork("strike_window")
     meetings = NamedMeetings(
         body,
         state,
@@ -168,8 +179,11 @@ def impact_sequence_of(
         gravity_W=gravity,
         distance_tolerance=check_not_negative("distance_tolerance", distance_tolerance),
         velocity_tolerance=tolerance,
+        work=work,
     )
-    sequence = _Sequence(body, gravity, meetings, restitution_law, tolerance=tolerance, hold_step=held)
+    sequence = _Sequence(
+        body, gravity, meetings, restitution_law, tolerance=tolerance, hold_step=held, work=work
+    )
     return sequence.run(state, check_positive("window", window), most_strikes)
 
 
@@ -185,7 +199,9 @@ class _Sequence:
         *,
         tolerance: float,
         hold_step: float | None,
+        work: SearchWork,
     ) -> None:
+        self.work = work
         self.body, self.gravity_W, self.meetings = body, gravity_W, meetings
         self.law, self.tolerance, self.hold_step = law, tolerance, hold_step
         self.strikes: list[TimedStrike] = []
@@ -214,6 +230,7 @@ class _Sequence:
         now, until = 0.0, window  # s since the beginning
         lifts = held = 0  # since the beginning; at this instant
         while True:
+            self.work.spend(ROUND, now)
             landing = self.meetings.next(state, until - now)
             if self.chattering is not None and not self._strikes_elsewhere(landing, now):
                 self._stay((self.chattering[0],), self.chattering[1])

@@ -7,9 +7,8 @@
   needs the work at each contact along the path, which complementarity of the ends does not know.
 
 `outcomes_over_orders` gives the set that the sequential law reaches over its admissible orders, and its
-spread, which says how far the answer is undecided. `outcomes_at_once` does so for the solutions of
-SIMULTANEOUS. `planar` has the same in the plane, `sequential` has several bodies, and `impact.in_time` has
-contacts that strike one after the other.
+spread: how far the answer is undecided. `outcomes_at_once` does so for the solutions of SIMULTANEOUS. In the
+plane: `several_planar`.
 
 Not covered: moments at the contacts, and resting contacts that their own sliding would jam (`impact.spatial`
 answers that for one).
@@ -22,7 +21,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import (
     OrderedOutcomes,
@@ -47,6 +46,10 @@ if TYPE_CHECKING:
 
 MOST_ORDERS: Final = 120
 """Orders that `outcomes_over_orders` tries: all of them up to five contacts."""
+
+MOST_STRIKES_OVER_ORDERS: Final = 6000
+"""Strikes of all these orders together, some 2 s of computing. An order takes ten or twenty, and more only
+where contacts throw each other back for long."""
 
 
 def several_impact(
@@ -119,16 +122,21 @@ def outcomes_over_orders(
     Raises:
         SeparatingContactError: every contact separates.
         InvalidFieldError: no contacts, or a tolerance that is not > 0.
+        TooLargeError: the orders take more strikes together than `MOST_STRIKES_OVER_ORDERS`.
     """
     check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     touching = Touching([body], contacts, [(0, None)] * len(contacts), restitution_law, tolerance)
     check_touching(touching, [state])
     found: dict[tuple[int, ...], FloatArray] = {}
-    lost = 0
+    lost = struck = 0
     priorities = permutations(range(len(contacts)))
     for priority in (*islice(priorities, most_orders), None):
         strikes, (after,), verdict = strike_in_turn(touching, [state], priority=priority)
+        struck += len(strikes)
+        if struck > MOST_STRIKES_OVER_ORDERS:
+            count = f"{len(contacts)} contacts, over whose orders there are more strikes"
+            raise TooLargeError("contacts", count, f"at most {MOST_STRIKES_OVER_ORDERS} over all orders")
         if verdict == SeveralVerdict.RESOLVED:
             order = tuple(contact for contact, _ in strikes)
             found[order] = np.concatenate([after.v_WB_W, after.w_WB_W])

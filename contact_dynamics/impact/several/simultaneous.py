@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.errors import TooLargeError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.tolerances import SAME_IMPULSES, SWEEPS_CONVERGED
 from contact_dynamics.validation import FloatArray
@@ -33,8 +34,15 @@ if TYPE_CHECKING:
 MOST_SWEEPS: Final = 5000
 """Sweeps after which the problem counts as not converged."""
 
+MOST_PROJECTIONS: Final = 100_000
+"""Projections of one contact's impulse in one problem, some 2 s of computing. Up to 20 contacts,
+`MOST_SWEEPS` come before."""
+
 _MOST_STEPS: Final = 20_000
 """Steps of all contacts at once, which are smaller than those of one after the other, and cheaper."""
+
+_MOST_PRODUCTS: Final = 2_000_000_000
+"""Products in all these steps, some 2 s of computing. Up to 105 contacts, `_MOST_STEPS` come before."""
 
 
 class _Problem(NamedTuple):
@@ -71,7 +79,10 @@ def simultaneous_impulses(
         inverse_mass: (6 k, 6 k), 1/kg and 1/(kg m^2), takes impulses and their moments into velocities.
         twist: (6 k,), m/s and rad/s, the bodies' velocities just before.
         tolerance: m/s. A contact that approaches less fast does not bounce.
-        order: Order of the contacts that leads to the solution, or None if it depends on no order.
+        order: Of the contacts, for the solution that it leads to; None: the one that depends on no order.
+
+    Raises:
+        TooLargeError: so many contacts that `MOST_PROJECTIONS` do not settle their impulses.
     """
     normals, frictions = contacts.normals_W, contacts.frictions
     approach = np.minimum(np.einsum("ij,ij->i", jacobian @ twist, normals), 0.0)
@@ -139,7 +150,7 @@ def _together(problem: _Problem) -> tuple[FloatArray, bool]:
     free = rows @ twist
     impulses = least[:, None] * normals
     scale = float(abs(free + response @ impulses.ravel()).max())
-    for _ in range(_MOST_STEPS):
+    for _ in range(min(_MOST_STEPS, max(_MOST_PRODUCTS // (3 * n) ** 2, 1))):
         velocity = (free + response @ impulses.ravel()).reshape(n, 3)
         v_n = np.einsum("ij,ij->i", velocity, normals)
         p = np.maximum(np.einsum("ij,ij->i", impulses, normals) - step_size * (v_n - bounce), least)
@@ -167,7 +178,8 @@ def _in_turn(problem: _Problem, order: tuple[int, ...]) -> tuple[FloatArray, boo
     scale = float(abs(jacobian @ twist).max())
     # Projection steps that are safe for each block: 1 over its largest eigenvalue.
     steps = 1.0 / np.linalg.eigvalsh(blocks)[:, -1]
-    for _ in range(MOST_SWEEPS):
+    sweeps = min(MOST_SWEEPS, max(MOST_PROJECTIONS // len(normals), 1))
+    for _ in range(sweeps):
         change = 0.0
         for i in order:
             n = normals[i]
@@ -185,4 +197,8 @@ def _in_turn(problem: _Problem, order: tuple[int, ...]) -> tuple[FloatArray, boo
             change = max(change, float(abs(blocks[i] @ step).max()))
         if change <= SWEEPS_CONVERGED * scale:
             return impulses, True
+    if sweeps < MOST_SWEEPS:
+        found = f"{len(normals)} contacts at once, whose impulses do not settle in {sweeps} sweeps"
+        allowed = f"{MOST_PROJECTIONS // MOST_SWEEPS} contacts or fewer, or SEQUENTIAL (0)"
+        raise TooLargeError("contacts", found, allowed)
     return impulses, False

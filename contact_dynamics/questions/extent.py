@@ -1,0 +1,58 @@
+"""How large the numbers of a question about contacts may be, so that no sum or product of them overflows."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.validation import FloatArray
+
+MOST_IN_CONTACT: Final = 1e15
+"""In SI units: m, m/s, rad/s, N, N m. Beside larger numbers a metre, or a newton, is rounding."""
+
+MOST_INERTIA: Final = 1e30
+"""kg, kg m^2. Masses and moments are at most this, and at least its inverse."""
+
+
+def check_extent(body: MassProperties, state: BodyState) -> None:
+    """Refuse a body or a state whose numbers are too large for the mechanics of contacts, by name.
+
+    Raises:
+        InvalidFieldError: a number is beyond `MOST_IN_CONTACT`, or a mass or moment beyond `MOST_INERTIA`.
+    """
+    for name, vector in (
+        ("position", state.p_WB_W),
+        ("linear_velocity", state.v_WB_W),
+        ("angular_velocity", state.w_WB_W),
+    ):
+        _check_vector(name, vector)
+    moments = body.I_B.diagonal().tolist()
+    for name, value in (("mass", body.mass), *(("inertia", moment) for moment in moments)):
+        if not 1.0 / MOST_INERTIA <= value <= MOST_INERTIA:
+            allowed = f"a number from {1.0 / MOST_INERTIA:g} to {MOST_INERTIA:g} for contacts"
+            raise InvalidFieldError(name, f"{value:g}", allowed)
+
+
+def check_contacts(contacts: ContactSet) -> None:
+    """Refuse contacts that are too far away, by name."""
+    largest = float(np.abs(contacts.p_WC_W).max(initial=0.0))
+    if not largest <= MOST_IN_CONTACT:
+        raise InvalidFieldError("contacts.positions", f"{largest:g} m", f"at most {MOST_IN_CONTACT:g} m")
+
+
+def check_wrench(force_W: FloatArray, torque_W: FloatArray) -> None:
+    """Refuse a force or a torque, (3,), that is too large, by name."""
+    _check_vector("force", force_W)
+    _check_vector("torque", torque_W)
+
+
+def _check_vector(name: str, vector: FloatArray) -> None:
+    largest = max(map(abs, vector.tolist()))
+    if not largest <= MOST_IN_CONTACT:
+        raise InvalidFieldError(name, f"{largest:g}", f"numbers of at most {MOST_IN_CONTACT:g} for contacts")

@@ -1,0 +1,139 @@
+"""Questions that once silenced the server, over real DDS: each is refused by name, the next one answered."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from nav_msgs.msg import Odometry
+
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
+from running_server import Client, server_and_client
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
+    with server_and_client(Path(tmp_path_factory.mktemp("log"))) as client:
+        yield client
+
+
+def put_fast_spin(vector: Any) -> None:
+    vector.x, vector.y, vector.z = 1e9, 1e8, 1e8
+
+
+def fast_spin() -> Any:
+    request = explicit(PredictImpact)
+    request.state.pose.position.z = 1.0
+    put_fast_spin(request.state.angular_velocity)
+    return request
+
+
+def tiny_steps() -> Any:
+    request = explicit(PredictImpact)
+    request.state.linear_velocity.x, request.state.linear_velocity.z = 0.5, -0.1
+    request.state.angular_velocity.y = 0.3
+    request.several_contacts_law, request.hold_step = request.SEQUENTIAL_IN_TIME, 1e-6
+    return request
+
+
+def thousand_contacts() -> Any:
+    request = explicit(PredictImpact)
+    request.state.linear_velocity.x, request.state.linear_velocity.z = 1.0, -1.0
+    velocity = request.state.angular_velocity
+    velocity.x, velocity.y, velocity.z = 1.0, 2.0, 3.0
+    request.contact_source, request.several_contacts_law = request.CONTACTS_EXPLICIT, request.SIMULTANEOUS
+    angles = np.linspace(0.0, 2.0 * np.pi, 1000, endpoint=False)
+    points = np.column_stack([0.05 * np.cos(angles), 0.04 * np.sin(angles), 0.0 * angles])
+    request.contacts.positions = points.ravel().tolist()
+    request.contacts.normals = [0.0, 0.0, 1.0] * 1000
+    request.contacts.frictions, request.contacts.restitutions = [0.3] * 1000, [0.5] * 1000
+    return request
+
+
+def point_far_away() -> Any:
+    request = explicit(PredictTumbling)
+    request.state.pose.position.z, request.state.angular_velocity.z = 1.0, 3.0
+    request.sampling, request.plane_normal.z, request.body_point.x = request.UNTIL_PLANE, 1.0, 1e16
+    return request
+
+
+def carried_under_strong_drag() -> Any:
+    request = explicit(PredictTumbling)
+    request.state.angular_velocity.x = 1.0
+    request.state.covariance = (1e-6 * np.eye(12)).ravel().tolist()
+    request.linear_drag, request.want_covariance = 1000.0, True
+    request.sampling, request.duration, request.rate = request.AT_RATE, 10.0, 10.0
+    return request
+
+
+def explicit(service: Any) -> Any:
+    """A question about the brick on the floor."""
+    request = service.Request(body_name="brick")
+    request.state_source = request.STATE_EXPLICIT
+    request.state.pose.position.z = 0.025
+    return request
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (fast_spin, "horizon: found more than 50000 steps of the search"),
+        (tiny_steps, "strike_window: found more than 50000 steps of the search"),
+        (thousand_contacts, "contacts: found 1000 contacts at once"),
+        (point_far_away, "duration: found more than 50000 steps of the search"),
+        (carried_under_strong_drag, "times: found 10 s, in which neighbours"),
+    ],
+)
+def test_a_question_without_end_is_refused_and_the_next_is_answered(
+    client: Client, make: Callable[[], Any], words: str
+) -> None:
+    answer = client.ask(make())
+    assert answer.status == answer.TOO_LARGE, answer.message
+    assert answer.message.startswith(words)
+    after = client.ask(explicit(PredictTumbling))
+    assert after.status == after.OK, after.message
+
+
+def test_a_published_spin_without_sense_silences_nobody(client: Client) -> None:
+    states = client.publisher(Odometry, "/brick/odometry")
+    msg = Odometry(child_frame_id="brick")
+    msg.header.frame_id = "world"
+    msg.pose.pose.position.z = 1.0
+    put_fast_spin(msg.twist.twist.angular)
+    answers: list[Any] = []
+
+    def came() -> bool:
+        """Publish until it is the newest one: a search of seconds makes it old."""
+        now_ns = time.time_ns()
+        msg.header.stamp = stamp_to_msg(now_ns)
+        states.publish(msg)
+        answers.append(client.ask(PredictImpact.Request(body_name="brick")))
+        return answers[-1].status == answers[-1].TOO_LARGE
+
+    client.spin_until(came)
+    assert answers[-1].message.startswith("horizon: found more than 50000 steps of the search")
+    after = client.ask(explicit(PredictTumbling))
+    assert after.status == after.OK, after.message
+    assert stamp_ns_from_msg(after.state.header.stamp) == 0
+
+
+def test_valid_questions_that_were_internal_errors_are_answered_or_refused(client: Client) -> None:
+    leaving = explicit(PredictContactMode)
+    leaving.state.linear_velocity.z, leaving.want_margins = 0.5, True
+    answer = client.ask(leaving)
+    assert answer.status == answer.OK, answer.message
+    window = client.ask(PredictTumbling.Request(body_name="brick", fit_window=1e300))
+    assert window.status != window.INTERNAL_ERROR, window.message
+    far = explicit(PredictImpact)
+    far.contact_source = far.CONTACTS_EXPLICIT
+    far.state.linear_velocity.z = -1.0
+    far.contacts.positions, far.contacts.normals = [1.7e308, 0.0, 0.0], [0.0, 0.0, 1.0]
+    far.contacts.frictions, far.contacts.restitutions = [0.3], [0.5]
+    refused = client.ask(far)
+    assert refused.status == refused.INVALID_FIELD, refused.message
+    assert refused.message.startswith("contacts.positions: found 1.7e+308 m")

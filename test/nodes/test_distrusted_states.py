@@ -1,0 +1,100 @@
+"""States that a server must not believe, over real DDS: refused, counted and told, each kind by itself."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Any
+
+import yaml
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
+
+from contact_dynamics.nodes.refused_messages import TELL_EVERY_S, RefusedMessages
+from contact_dynamics_interfaces.srv import PredictTumbling
+from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
+from running_server import ROOT, Client, process, wait_for
+
+HOUR_NS = 3_600_000_000_000
+
+
+def odometry(body_name: str, stamp_ns: int) -> Odometry:
+    msg = Odometry(child_frame_id=body_name)
+    msg.header.frame_id, msg.header.stamp = "world", stamp_to_msg(stamp_ns)
+    msg.pose.pose.position.z = 1.0
+    return msg
+
+
+def newest_ns(client: Client, body_name: str) -> int:
+    answer = client.ask(PredictTumbling.Request(body_name=body_name, times=[0.0]))
+    return stamp_ns_from_msg(answer.state.header.stamp) if answer.status == answer.OK else -1
+
+
+def two_bodies(folder: Path) -> Path:
+    """Write a configuration with a brick and a second one, whose states come on a topic of their own."""
+    settings: dict[str, Any] = yaml.safe_load((ROOT / "config" / "server.yaml").read_text(encoding="utf-8"))
+    parameters = settings["/**"]["ros__parameters"]
+    parameters["bodies"] = ["brick", "other"]
+    parameters |= {
+        "body.other.mass": 1.0,
+        "body.other.inertia": [0.001, 0.001, 0.001, 0.0, 0.0, 0.0],
+        "body.other.odometry_topic": "/other/odometry",
+        "state_timeout": 1000.0,
+        "log": False,
+    }
+    path = folder / "server.yaml"
+    path.write_text(yaml.safe_dump(settings), encoding="utf-8")
+    return path
+
+
+def test_a_stamp_from_the_future_poisons_no_body_and_is_told_by_topic(tmp_path: Path) -> None:
+    with process("server", "--params-file", str(two_bodies(tmp_path)), ready="ready") as server:
+        client = Client()
+        try:
+            topics = {name: client.publisher(Odometry, f"/{name}/odometry") for name in ("brick", "other")}
+            for name, states in topics.items():
+                now_ns = time.time_ns()
+                states.publish(odometry(name, now_ns + HOUR_NS))
+                states.publish(odometry(name, now_ns))
+                told = wait_for(server, f"/{name}/odometry: message ignored: header.stamp: found")
+                assert "allowed is at most 0.5 s (parameter future_tolerance)" in told
+                client.spin_until(lambda name=name, now_ns=now_ns: newest_ns(client, name) == now_ns)
+        finally:
+            client.close()
+
+
+def test_before_the_first_clock_nothing_is_from_the_future_and_after_it_is(tmp_path: Path) -> None:
+    arguments = ("--params-file", str(two_bodies(tmp_path)), "--ros-args", "-p", "use_sim_time:=true")
+    with process("server", *arguments, ready="ready") as server:
+        client = Client()
+        try:
+            states = client.publisher(Odometry, "/brick/odometry")
+            clock = client.publisher(Clock, "/clock")
+            states.publish(odometry("brick", 5 * HOUR_NS))
+            client.spin_until(lambda: newest_ns(client, "brick") == 5 * HOUR_NS)
+            clock.publish(Clock(clock=stamp_to_msg(HOUR_NS)))
+            client.spin_until(lambda: newest_ns(client, "brick") == -1)  # it is ahead of the clock now
+            states.publish(odometry("brick", 5 * HOUR_NS))
+            states.publish(odometry("brick", HOUR_NS))
+            client.spin_until(lambda: newest_ns(client, "brick") == HOUR_NS)
+            wait_for(server, "header.stamp: found 14400.000 s ahead of the clock")
+        finally:
+            client.close()
+
+
+def test_each_topic_and_kind_of_fault_has_a_throttle_of_its_own() -> None:
+    told: list[str] = []
+    now = [0.0]
+    refused = RefusedMessages(told.append, clock=lambda: now[0])
+    for _ in range(3):
+        refused.add("/a", ValueError("bad"))
+    refused.add("/b", ValueError("bad"))
+    refused.add("/a", RuntimeError("worse"))
+    now[0] = TELL_EVERY_S
+    refused.add("/a", ValueError("bad"))
+    assert told == [
+        "/a: message ignored: bad (1 such so far)",
+        "/b: message ignored: bad (1 such so far)",
+        "/a: message ignored: worse (1 such so far)",
+        "/a: message ignored: bad (4 such so far)",
+    ]

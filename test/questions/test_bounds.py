@@ -1,0 +1,162 @@
+"""Questions that would take too long, or too much memory, are refused by name."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, TooLargeError
+from contact_dynamics.impact import SeveralContactsLaw
+from contact_dynamics.motion.forces import Drag
+from contact_dynamics.questions import (
+    AtRate,
+    ContactModeQuestion,
+    ImpactQuestion,
+    InTime,
+    Knowledge,
+    PublishedState,
+    StateStore,
+    TumblingQuestion,
+    UncertainState,
+    UntilPlane,
+    ask,
+)
+from contact_dynamics.rigid_body.body import MassProperties
+from contact_dynamics.world import Body
+from questions.known_world import KNOWLEDGE, SIDE, WORLD, state
+
+FAST_SPIN = (1e9, 1e8, 1e8)  # rad/s, as a broken driver sends
+
+
+BRICK = Body(
+    name="brick",
+    mass_properties=MassProperties(mass=0.4, I_B=np.diag([0.000353333, 0.000833333, 0.00102])),
+)
+
+
+def ring(count: int) -> ContactSet:
+    """Contacts around the lower face of a body."""
+    angles = np.linspace(0.0, 2.0 * math.pi, count, endpoint=False)
+    points = np.column_stack([0.05 * np.cos(angles), 0.04 * np.sin(angles), np.zeros(count)])
+    return ContactSet(
+        p_WC_W=points,
+        normals_W=np.tile([0.0, 0.0, 1.0], (count, 1)),
+        frictions=np.full(count, 0.3),
+        restitutions=np.full(count, 0.5),
+    )
+
+
+TOO_LARGE = {
+    "a spin that no search keeps up with": (
+        ImpactQuestion(body="cube", state=state(1.0, w=FAST_SPIN)),
+        "horizon: found more than 50000 steps of the search",
+    ),
+    "steps of a microsecond over contacts that stay": (
+        ImpactQuestion(
+            body="cube",
+            state=state(0.5 * SIDE, v=(0.5, 0.0, -0.1), w=(0.0, 0.3, 0.1)),
+            several_contacts_law=InTime(hold_step=1e-6),
+        ),
+        "strike_window: found more than 50000 steps of the search",
+    ),
+    "a point of the body far away": (
+        TumblingQuestion(
+            body="cube",
+            state=state(1.0, w=(0.0, 0.0, 3.0)),
+            sampling=UntilPlane(plane_point=[0, 0, 0], plane_normal=[0, 0, 1], body_point=[1e16, 0, 0]),
+        ),
+        "duration: found more than 50000 steps",
+    ),
+    "a thousand contacts at once": (
+        ImpactQuestion(
+            body=BRICK,
+            state=state(0.025, v=(1.0, 0.3, -1.0), w=(1.0, 2.0, 3.0)),
+            contacts=ring(1000),
+            several_contacts_law=SeveralContactsLaw.SIMULTANEOUS,
+        ),
+        "contacts: found 1000 contacts at once",
+    ),
+    "covariances under a drag that stops the body in a millisecond": (
+        TumblingQuestion(
+            body="cube",
+            state=UncertainState(state=state(w=(1.0, 2.0, 3.0)), covariance=1e-6 * np.eye(12)),
+            drag=Drag(linear=5000.0),
+            sampling=AtRate(duration=3.0, rate=10.0),
+            want_covariance=True,
+        ),
+        "times: found 3 s, in which neighbours",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", TOO_LARGE)
+def test_what_takes_too_long_is_refused_by_name(name: str) -> None:
+    question, words = TOO_LARGE[name]
+    messages = []
+    for _ in range(1 if "thousand" in name else 2):  # counted, not timed: the same question ends alike
+        with pytest.raises(TooLargeError) as refused:
+            ask(question, KNOWLEDGE)
+        messages.append(str(refused.value))
+    assert messages[0].startswith(words)
+    assert len(set(messages)) == 1
+
+
+@pytest.mark.parametrize(
+    ("question", "words"),
+    [
+        (ImpactQuestion(body="cube", state=state(1e300)), "position: found 1e+300"),
+        (
+            ContactModeQuestion(
+                body="cube", state=state(v=(0.0, 0.0, 1e200)), contacts=ring(3), want_margins=True
+            ),
+            "linear_velocity: found 1e+200",
+        ),
+        (
+            ContactModeQuestion(body="cube", state=state(), contacts=ring(3), force_W=[-1e100, 0, 0]),
+            "force: found 1e+100",
+        ),
+        (
+            ImpactQuestion(
+                body="cube",
+                state=state(v=(0.0, 0.0, -1.0)),
+                contacts=ContactSet(
+                    p_WC_W=[[1.7e308, 0, 0]], normals_W=[[0, 0, 1]], frictions=[0.3], restitutions=[0.0]
+                ),
+            ),
+            "contacts.positions: found 1.7e+308 m",
+        ),
+    ],
+)
+def test_numbers_that_no_contact_has_are_refused_by_name(question: Any, words: str) -> None:
+    with pytest.raises(InvalidFieldError) as refused:
+        ask(question, KNOWLEDGE)
+    assert str(refused.value).startswith(words)
+
+
+def test_a_window_of_any_length_takes_what_is_kept() -> None:
+    """1e300 s is more nanoseconds than a double holds."""
+    states = StateStore(history=5.0, timeout=0.5)
+    for stamp_ns in range(0, 50_000_000, 10_000_000):
+        states.add(
+            "cube",
+            state(1.0 - 0.5 * 9.80665e-18 * stamp_ns**2, v=(0, 0, -9.80665e-9 * stamp_ns), stamp_ns=stamp_ns),
+        )
+    known = Knowledge(world=WORLD, states=states)
+    answers = [
+        ask(TumblingQuestion(body="cube", state=PublishedState(fit_window=window)), known)
+        for window in (5.0, 1e300)
+    ]
+    assert [answer.fit.count for answer in answers if answer.fit is not None] == [5, 5]
+
+
+def test_a_body_that_leaves_all_contacts_has_margins() -> None:
+    leaving = state(0.5 * SIDE, v=(0.0, 0.0, 0.5))
+    try:
+        answer = ask(ContactModeQuestion(body="cube", state=leaving, want_margins=True), KNOWLEDGE)
+    except ContactDynamicsError as error:
+        pytest.fail(str(error))
+    assert [mode.mode for mode in answer.modes] == ["ssss"]
