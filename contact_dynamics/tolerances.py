@@ -380,7 +380,7 @@ CAREFUL_LEAST_PIVOT: Final = 1e-13
 """Entries of the table up to it may be rounding of the doubles that it is made from."""
 
 TABLE_SMALL_PIVOT: Final = 1e-3
-"""Division by a larger one counts as harmless: what rounding it adds is in `_FEASIBLE`."""
+"""Division by a larger one counts as harmless: the rounding that it adds is within `FEASIBLE`."""
 
 TABLE_ROUNDING: Final = 1e-16
 """Relative: what doubles lose in a step or two."""

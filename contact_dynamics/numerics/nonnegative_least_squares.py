@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 _LARGEST_SHARE: Final = 1e13
-"""Of the target, that one column may have for the target to count as reached."""
+"""Largest share of the target that one column may have for the target to count as reached."""
 
 _GUESSES: Final = 30
 """After which a search for the least forces is given up; it takes a few."""

@@ -114,7 +114,7 @@ def evidenced(case: SpatialCase, search: Search, *, facets: int) -> Evidence:
 
     Args:
         case: The body with its contacts.
-        search: Of that case.
+        search: The search of that case.
         facets: Edges of its pyramids.
     """
     kept = found_by(case, search, sharpen=True)

@@ -71,8 +71,8 @@ def polished(search: Search, rows: FloatArray, forces: FloatArray) -> FloatArray
     """Return forces, (n, 3), that do to rounding what some in round cones do to a tolerance, as theirs allow.
 
     Args:
-        search: As for `held_by_round_cones`.
-        rows: Likewise.
+        search: The search, as for `held_by_round_cones`.
+        rows: The rows, as for `held_by_round_cones`.
         forces: (n, 3), in the units of the motion.
     """
     demand = _demand(search, rows, ROUND_CONE_APART)
@@ -92,7 +92,7 @@ def polished(search: Search, rows: FloatArray, forces: FloatArray) -> FloatArray
 
 
 class Unique(NamedTuple):
-    """Of what there is only one."""
+    """Whether the forces and the motion are the only ones."""
 
     forces: bool
     motion: bool

@@ -8,7 +8,7 @@
 
 `outcomes_over_orders` gives the set that the sequential law reaches over its admissible orders, and its
 spread: how far the answer is undecided. `outcomes_at_once` does so for the solutions of SIMULTANEOUS. In the
-plane: `several_planar`.
+plane: `impact.several.planar`.
 
 Not covered: moments at the contacts, and resting contacts that their own sliding would jam (`impact.spatial`
 answers that for one).

@@ -79,7 +79,7 @@ def simultaneous_impulses(
         inverse_mass: (6 k, 6 k), 1/kg and 1/(kg m^2), takes impulses and their moments into velocities.
         twist: (6 k,), m/s and rad/s, the bodies' velocities just before.
         tolerance: m/s. A contact that approaches less fast does not bounce.
-        order: Of the contacts, for the solution that it leads to; None: the one that depends on no order.
+        order: Order of the contacts that leads to the solution, or None if it depends on no order.
 
     Raises:
         TooLargeError: so many contacts that `MOST_PROJECTIONS` do not settle their impulses.
