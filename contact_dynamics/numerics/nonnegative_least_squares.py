@@ -10,6 +10,7 @@ else in the answer. And it leaves out directions that are no more than rounding,
 
 from __future__ import annotations
 
+import contextlib
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.validation import FloatArray
+
+_NEAREST_ROUNDING: Final = 1e-9
+"""Rounding in the nearest sum, relative to its terms. SciPy's is some 1e-13, or above 1e-3 if wrong."""
 
 _NEAREST_STEPS: Final = 10
 """Steps for each span in the search for the nearest sum. It takes one or two; SciPy alone stops at three."""
@@ -78,10 +82,27 @@ def nearest_combination(columns: FloatArray, target: FloatArray) -> tuple[FloatA
 
     ``columns`` is (d, k). None: they are so nearly dependent that the search did not end.
     """
-    from scipy.optimize import nnls
+    from scipy.optimize import lsq_linear, nnls
 
-    try:
-        x, left = nnls(columns, target, maxiter=_NEAREST_STEPS * max(1, columns.shape[1]))
-    except RuntimeError:
-        return None
-    return x, float(left)
+    steps = _NEAREST_STEPS * max(1, columns.shape[1])
+    # SciPy 1.15, the last for Python 3.10, at times ends elsewhere, with a distance that is not this x's,
+    # or does not end (https://github.com/scipy/scipy/issues/25389).
+    with contextlib.suppress(RuntimeError):
+        x, left = nnls(columns, target, maxiter=steps)
+        if _is_nearest(columns, target, x, left):
+            return x, float(left)
+    x = lsq_linear(columns, target, (0.0, np.inf), method="bvls", tol=0.0, max_iter=steps).x.clip(0.0)
+    distance = float(np.linalg.norm(columns @ x - target))
+    return (x, distance) if _is_nearest(columns, target, x, distance) else None
+
+
+def _is_nearest(columns: FloatArray, target: FloatArray, x: FloatArray, left: float) -> bool:
+    """Return whether no column leads nearer, the rest is normal to the sum, and ``left`` is the distance."""
+    rest = target - columns @ x
+    sizes = np.linalg.norm(columns, axis=0)
+    terms = float(np.linalg.norm(target) + sizes @ x)
+    gains = columns.T @ rest
+    nearest = (gains <= _NEAREST_ROUNDING * terms * sizes).all() and abs(
+        gains @ x
+    ) <= _NEAREST_ROUNDING * terms**2
+    return bool(nearest) and abs(float(np.linalg.norm(rest)) - left) <= _NEAREST_ROUNDING * terms
