@@ -12,6 +12,7 @@ answer. Also, it leaves out directions that consist of rounding alone, and SciPy
 
 from __future__ import annotations
 
+import contextlib
 import math
 from decimal import Decimal
 from typing import TYPE_CHECKING, Final, TypeAlias
@@ -40,6 +41,9 @@ _GUESSES: Final = 30
 """After which a search for the least forces is given up; it takes a few."""
 
 _Decimals: TypeAlias = "list[Decimal]"
+
+_NEAREST_ROUNDING: Final = 1e-9
+"""Rounding in the nearest sum, relative to its terms. SciPy's is some 1e-13, or above 1e-3 if wrong."""
 
 _NEAREST_STEPS: Final = 10
 """Bound on the steps for each column in the search for the nearest sum, which takes one or two. SciPy's own
@@ -210,10 +214,27 @@ def nearest_combination(columns: FloatArray, target: FloatArray) -> tuple[FloatA
 
     ``columns`` is (d, k). It returns None if they are so nearly dependent that the search did not end.
     """
-    from scipy.optimize import nnls
+    from scipy.optimize import lsq_linear, nnls
 
-    try:
-        x, left = nnls(columns, target, maxiter=_NEAREST_STEPS * max(1, columns.shape[1]))
-    except RuntimeError:
-        return None
-    return x, float(left)
+    steps = _NEAREST_STEPS * max(1, columns.shape[1])
+    # SciPy 1.15, the last for Python 3.10, at times ends elsewhere, with a distance that is not this x's,
+    # or does not end (https://github.com/scipy/scipy/issues/25389).
+    with contextlib.suppress(RuntimeError):
+        x, left = nnls(columns, target, maxiter=steps)
+        if _is_nearest(columns, target, x, left):
+            return x, float(left)
+    x = lsq_linear(columns, target, (0.0, np.inf), method="bvls", tol=0.0, max_iter=steps).x.clip(0.0)
+    distance = float(np.linalg.norm(columns @ x - target))
+    return (x, distance) if _is_nearest(columns, target, x, distance) else None
+
+
+def _is_nearest(columns: FloatArray, target: FloatArray, x: FloatArray, left: float) -> bool:
+    """Return whether no column leads nearer, the rest is normal to the sum, and ``left`` is the distance."""
+    rest = target - columns @ x
+    sizes = np.linalg.norm(columns, axis=0)
+    terms = float(np.linalg.norm(target) + sizes @ x)
+    gains = columns.T @ rest
+    nearest = (gains <= _NEAREST_ROUNDING * terms * sizes).all() and abs(
+        gains @ x
+    ) <= _NEAREST_ROUNDING * terms**2
+    return bool(nearest) and abs(float(np.linalg.norm(rest)) - left) <= _NEAREST_ROUNDING * terms

@@ -7,7 +7,7 @@ is least: one non-negative least-squares problem.
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import nnls
+from scipy.optimize import lsq_linear
 
 HEAVY = 1e4  # how much a load's sum counts beside the motion; its error is then about 1e-8
 
@@ -55,5 +55,7 @@ def motion_under(
             columns.append(np.array([f_x, f_y, x * f_y - y * f_x]) / roots)
             sums.append(np.eye(len(corners))[i])
     system = np.vstack([np.array(columns).T, HEAVY * np.array(sums).T])
-    shares, _ = nnls(system, np.concatenate([-wrench / roots, HEAVY * loads]), maxiter=10_000)
+    right = np.concatenate([-wrench / roots, HEAVY * loads])
+    # SciPy 1.15's `nnls` at times ends elsewhere (its issue 25389).
+    shares = lsq_linear(system, right, bounds=(0.0, np.inf), method="bvls", tol=1e-14, max_iter=10_000).x
     return (wrench / roots + np.array(columns).T @ shares) / roots
