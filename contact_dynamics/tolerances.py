@@ -49,6 +49,10 @@ COVERED: Final = 1e-12
 WRENCH_ROUNDING: Final = 1e-13
 """Relative to the wrench that contact forces balance. A remainder up to this is rounding."""
 
+NEAREST_SUM_ROUNDING: Final = 1e-9
+"""Relative to the terms of a nearest non-negative sum. SciPy's rounding is some 1e-13. Where SciPy 1.15 is
+wrong, it is wrong by more than 1e-3."""
+
 INDEPENDENT_FORCES: Final = 1e-12
 """Ratio of singular values. Below it, directions of contact forces count as the same."""
 

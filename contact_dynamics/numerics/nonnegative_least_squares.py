@@ -24,6 +24,7 @@ from contact_dynamics.tolerances import (
     DECIMALS_MET,
     DECIMALS_ZERO,
     INDEPENDENT_FORCES,
+    NEAREST_SUM_ROUNDING,
     TARGET_ROUNDING,
     WRENCH_ROUNDING,
 )
@@ -41,9 +42,6 @@ _GUESSES: Final = 30
 """After which a search for the least forces is given up; it takes a few."""
 
 _Decimals: TypeAlias = "list[Decimal]"
-
-_NEAREST_ROUNDING: Final = 1e-9
-"""Rounding in the nearest sum, relative to its terms. SciPy's is some 1e-13, or above 1e-3 if wrong."""
 
 _NEAREST_STEPS: Final = 10
 """Bound on the steps for each column in the search for the nearest sum, which takes one or two. SciPy's own
@@ -234,7 +232,7 @@ def _is_nearest(columns: FloatArray, target: FloatArray, x: FloatArray, left: fl
     sizes = np.linalg.norm(columns, axis=0)
     terms = float(np.linalg.norm(target) + sizes @ x)
     gains = columns.T @ rest
-    nearest = (gains <= _NEAREST_ROUNDING * terms * sizes).all() and abs(
+    nearest = (gains <= NEAREST_SUM_ROUNDING * terms * sizes).all() and abs(
         gains @ x
-    ) <= _NEAREST_ROUNDING * terms**2
-    return bool(nearest) and abs(float(np.linalg.norm(rest)) - left) <= _NEAREST_ROUNDING * terms
+    ) <= NEAREST_SUM_ROUNDING * terms**2
+    return bool(nearest) and abs(float(np.linalg.norm(rest)) - left) <= NEAREST_SUM_ROUNDING * terms
