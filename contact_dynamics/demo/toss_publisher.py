@@ -51,10 +51,10 @@ class TossPublisher(Node):
         return True
 
     def play(self) -> None:
-        """Publish the first sample at once, and every other one at its time. Each has its own time as stamp.
+        """Publish every sample at its time, which is its stamp.
 
         A listener that this process has found may take some tenths of a second longer to find this process.
-        The first sample covers that time, so that all others come on time.
+        The toss begins after that time.
         """
         toss = self._toss
         lead_ns = to_ns(_LEAD_S - float(toss.times[0]))
@@ -65,7 +65,7 @@ class TossPublisher(Node):
                 state, world_frame=WORLD_FRAME, child_frame=toss.body.name, p_FB_F=toss.body.p_FB_F
             )
             wait_ns = state.stamp_ns - self.get_clock().now().nanoseconds
-            if wait_ns > 0 and sample > 0:
+            if wait_ns > 0:
                 time.sleep(to_seconds(wait_ns))
             self._publisher.publish(msg)
 
