@@ -44,6 +44,8 @@ def judge_all(
             outcome = _from_cone(case, mode, cell, accuracy)
         elif isinstance(forces, RefusedMode):
             outcome = forces
+        elif _misses(case, cell, forces) > _allowed(case, accuracy, forces):
+            outcome = _judged(case, mode, cell, accuracy, exact=True)[0]
         else:
             outcome = _consistent(case, mode, cell, forces, unique=(True, True))
         if isinstance(outcome, PlanarMode):
@@ -78,14 +80,19 @@ def _judged(
         sums[position] = (f_t + slope * share, f_n + share)
     forces = [sums[position] for position, _ in cell.letters]
     allowed = _EVIDENCE * (accuracy + FORCES_ROUNDING) * (case.load + sum(shares))
-    if wrenches.dual.exact:
-        # So close to the boundary that the strict inequalities are lost in what forces round to.
-        lost = _contradiction(case, cell, forces)
-        if lost is not None:
-            contact, amount = lost
-            return RefusedMode(mode=mode, refusal=Refusal.WRONG_MOTION, contact=contact, amount=amount), True
+    # A mode may be so close to the boundary that its strict inequalities are lost in what forces round to.
+    lost = _contradiction(case, cell, forces)
+    if lost is not None:
+        contact, amount = lost
+        refused = RefusedMode(mode=mode, refusal=Refusal.WRONG_MOTION, contact=contact, amount=amount)
+        return refused, wrenches.dual.exact
     certain = wrenches.dual.exact or _misses(case, cell, forces) <= allowed
     return _consistent(case, mode, cell, forces, unique=unique), certain
+
+
+def _allowed(case: PlanarCase, accuracy: float, forces: list[Vector2]) -> float:
+    """Return what the forces of a mode may miss of what its letters say."""
+    return _EVIDENCE * (accuracy + FORCES_ROUNDING) * (case.load + sum(f_n for _, f_n in forces))
 
 
 def _consistent(
