@@ -24,7 +24,7 @@ import numpy as np
 
 from contact_dynamics.numerics.arithmetic import DECIMALS, within
 from contact_dynamics.numerics.vectors import AXES, Vector3, cross, dot, opposite, tangents
-from contact_dynamics.tolerances import CLEAR_ROWS, SAME_ROWS, SAME_SHARP_ROWS
+from contact_dynamics.tolerances import CLEAR_ROWS, CLEAR_ROWS_OF_MANY, SAME_ROWS, SAME_SHARP_ROWS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -56,10 +56,14 @@ class Sector(NamedTuple):
     tight: int
 
 
+_MANY: Final = 150
+"""Rows above which `CLEAR_ROWS_OF_MANY` holds."""
+
+
 class PolyhedralCone:
     """The cone {x : row . x >= 0 for every row} as lineality space plus extreme rays."""
 
-    __slots__ = ("_same", "exact", "lineality", "rays", "rows", "tight")
+    __slots__ = ("_clear", "_same", "exact", "lineality", "rays", "rows", "tight")
 
     exact: bool  # whether it was built in decimals
 
@@ -84,6 +88,7 @@ class PolyhedralCone:
         """
         self.exact = exact
         self._same = SAME_ROWS
+        self._clear = CLEAR_ROWS if len(rows) <= _MANY else CLEAR_ROWS_OF_MANY
         if not exact:
             try:
                 self._build(rows)
@@ -115,7 +120,7 @@ class PolyhedralCone:
         if self.exact:
             return
         for size in sizes:
-            if self._same < size < CLEAR_ROWS or self._same < -size < CLEAR_ROWS:
+            if self._same < size < self._clear or self._same < -size < self._clear:
                 raise _NotClearError
 
     @property
@@ -224,8 +229,8 @@ class PolyhedralCone:
 
     def _touch(self, indices: NDArray[np.int64], heights: FloatArray, lowest: FloatArray) -> None:
         """Remember the rows that touch the cone and do not cut it."""
-        near = heights[lowest < CLEAR_ROWS]
-        if ((abs(near) > self._same) & (abs(near) < CLEAR_ROWS)).any():
+        near = heights[lowest < self._clear]
+        if ((abs(near) > self._same) & (abs(near) < self._clear)).any():
             raise _NotClearError
         touching = np.flatnonzero(abs(lowest) <= self._same)
         if len(touching) == 0:
@@ -243,7 +248,7 @@ class PolyhedralCone:
         if not heights:
             return
         lowest = min(heights)
-        if lowest >= CLEAR_ROWS:
+        if lowest >= self._clear:
             return
         self._check_clear(*heights)
         tolerance = self._same
@@ -319,7 +324,7 @@ class PolyhedralCone:
         sharp = cross(edge, self.rows[index])
         length = math.sqrt(dot(sharp, sharp))
         along = dot(sharp, rough)
-        if abs(along) < 0.5 * length or length < CLEAR_ROWS:
+        if abs(along) < 0.5 * length or length < self._clear:
             raise _NotClearError
         length = math.copysign(length, along)
         return (sharp[0] / length, sharp[1] / length, sharp[2] / length)
