@@ -5,7 +5,6 @@ set -eu
 
 here=$(cd "$(dirname "$0")/.." && pwd -P)
 venv=$(cd "$1" && pwd -P)
-source=$here/contact_dynamics_interfaces
 build=$venv/build/contact_dynamics_interfaces
 log=$build/build.log
 
@@ -43,17 +42,36 @@ mkdir -p "$build"
 : >"$log"
 show_progress &
 heart=$!
-trap 'kill "$heart" 2>/dev/null || true' EXIT
+links=""
+trap 'kill "$heart" 2>/dev/null || true; [ -z "$links" ] || rm -r "$links"' EXIT
+
+# ament and the generators do not quote paths. Where a shell would take a path apart, the build sees links with plain names.
+case $here$venv in
+    *[!A-Za-z0-9_./+@-]*)
+        links=$(mktemp -d /tmp/contact_dynamics.XXXXXX)
+        ln -s "$here" "$links/package"
+        ln -s "$venv" "$links/environment"
+        case $cmake in "$venv"/*) cmake=$links/environment/bin/cmake ;; esac
+        case $ninja in "$venv"/*) ninja=$links/environment/bin/ninja ;; esac
+        here=$links/package
+        venv=$links/environment
+        # The names of the links are new each time, and CMake refuses a folder that was configured under another name.
+        find "$build" -mindepth 1 ! -name build.log ! -name installed.txt -delete
+        build=$venv/build/contact_dynamics_interfaces
+        ;;
+esac
+
 export AMENT_PREFIX_PATH="$venv" CMAKE_PREFIX_PATH="$venv"
-run "$cmake" -G Ninja -S "$source" -B "$build" \
+run "$cmake" -G Ninja -S "$here/contact_dynamics_interfaces" -B "$build" \
     -DCMAKE_MAKE_PROGRAM="$ninja" \
     -DCMAKE_PROJECT_INCLUDE="$here/cmake/wheel_paths.cmake" \
     -DCMAKE_INSTALL_PREFIX="$venv" \
     -DPython3_EXECUTABLE="$venv/bin/python" \
     -DBUILD_TESTING=OFF
 run "$cmake" --build "$build"
-# What a former version of the interfaces installed must not stay behind it.
-if [ -e "$build/install_manifest.txt" ]; then
-    xargs -d '\n' rm -f <"$build/install_manifest.txt"
+# What a former version of the interfaces installed must not stay behind it. The list's names are relative to the environment.
+if [ -e "$build/installed.txt" ]; then
+    (cd "$venv" && xargs -d '\n' rm -f) <"$build/installed.txt"
 fi
 run "$cmake" --install "$build"
+cut -c $((${#venv} + 2))- "$build/install_manifest.txt" >"$build/installed.txt"

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
+import sys
 from pathlib import Path
 
-BUILD = Path(__file__).parents[2] / "setup" / "build_interfaces.sh"
+import pytest
+
+REPOSITORY = Path(__file__).parents[2]
+BUILD = REPOSITORY / "setup" / "build_interfaces.sh"
 
 
 def build(folder: Path, building: str) -> subprocess.CompletedProcess[str]:
@@ -18,7 +23,8 @@ def build(folder: Path, building: str) -> subprocess.CompletedProcess[str]:
     for name in ("cmake", "ninja"):
         program = programs / name
         program.write_text(
-            f'#!/bin/sh\ncase $1 in --version) echo "version 3.28";; --build) {building};; esac\n',
+            f'#!/bin/sh\ncase $1 in --version) echo "version 3.28";; --build) {building};; '
+            '--install) : >"$2/install_manifest.txt";; esac\n',
             encoding="utf-8",
         )
         program.chmod(0o755)
@@ -39,3 +45,54 @@ def test_a_build_that_fails_shows_the_compilers_words(tmp_path: Path) -> None:
     assert answer.returncode == 1
     assert "fatal error: no such header" in answer.stderr
     assert str(tmp_path / "an environment" / "build") in answer.stderr
+
+
+@pytest.mark.skipif(
+    not (Path(sys.prefix) / "share" / "rosidl_default_generators").is_dir(),
+    reason="NOT RUN: the build, because this environment has no rosidl generators",
+)
+def test_a_folder_that_a_shell_would_take_apart_builds_and_is_cleared(tmp_path: Path) -> None:
+    """With the real generators. One message is enough, because what breaks is the folder's name."""
+    folder = tmp_path / "Bob's work (new) & more"
+    package = folder / "contact_dynamics_interfaces"
+    for name in ("setup", "cmake"):
+        shutil.copytree(REPOSITORY / name, folder / name)
+    (package / "msg").mkdir(parents=True)
+    for name in ("CMakeLists.txt", "package.xml"):
+        shutil.copy(REPOSITORY / "contact_dynamics_interfaces" / name, package)
+    shutil.copy(REPOSITORY / "LICENSE", folder)
+    (package / "msg" / "First.msg").write_text("float64 value\n", encoding="utf-8")
+    venv = folder / ".venv"
+    libraries = Path("lib", f"python{sys.version_info[0]}.{sys.version_info[1]}", "site-packages")
+    links_to_all_but_ours(
+        Path(sys.prefix), venv, inside=("bin", "include", "lib", libraries.parent, libraries, "share")
+    )
+    shutil.copytree(Path(sys.prefix) / "share" / "ament_index", venv / "share" / "ament_index")
+
+    def installed() -> set[str]:
+        program = [folder / "setup" / "build_interfaces.sh", venv]
+        answer = subprocess.run(program, capture_output=True, text=True, timeout=300, check=False)
+        assert answer.returncode == 0, answer.stderr
+        return {
+            each.stem
+            for each in (venv / libraries / "contact_dynamics_interfaces" / "msg").glob("_[a-z]*.py")
+        }
+
+    assert installed() == {"_first"}
+    (package / "msg" / "First.msg").rename(package / "msg" / "Second.msg")
+    assert installed() == {"_second"}
+
+
+def links_to_all_but_ours(environment: Path, view: Path, inside: tuple[Path | str, ...]) -> None:
+    """Make an environment of links to another. What is built goes into the folders inside, which are real."""
+    real = {Path(), *map(Path, inside)}
+    for folder in sorted(real):
+        (view / folder).mkdir()
+        for each in (environment / folder).iterdir():
+            name = folder / each.name
+            if (
+                name not in real
+                and each.name not in ("ament_index", "build")
+                and "contact_dynamics" not in each.name
+            ):
+                (view / name).symlink_to(each)
