@@ -1,11 +1,11 @@
 """Impact (Mason, lecture 27): what a body's velocity is after it strikes.
 
-`law` has the laws of restitution and the outcomes, `energy` judges what they do to energy. `planar` and
-`spatial` have one contact (`one_contact`), many cases at once (`batch`), and what they return (`result`).
-`several` has several contacts at once and `in_time` strikes one after the other, with flight between.
-`distribution` is for uncertain states.
+`law` has the laws of restitution and the outcomes. `energy` judges what these laws do to energy. `planar` and
+`spatial` treat one contact (`one_contact`) and many cases at once (`batch`), and each has a file for what its
+functions return (`result`). `several` treats several contacts at once. `in_time` treats strikes one after the
+other, with flight between them. `distribution` is for uncertain states.
 
-- In the plane, the impulse path is Routh's construction (`routh`); `two_bodies` may both move.
+- In the plane, the impulse path is Routh's construction (`routh`). In `two_bodies`, both bodies may move.
 - In space, a contact responds in all directions (`response`) and slides by its `sliding_law`, so that the
   `path` bends. The path is a `taylor` series up to where sliding comes to a `stop`, and `restitution` says
   where it ends. Batches do the same for many at once (`batch_paths`, `batch_restitution`).

@@ -1,9 +1,9 @@
-"""The impact of an uncertain state, by sampling: mean, covariance, probability of each outcome.
+"""The impact of an uncertain state: its mean, its covariance and the probability of each outcome.
 
-An impact is not smooth in the state: sliding stops or does not, and turns. So nothing is linearised. States
-are drawn from the normal distribution in opposite pairs (a linear law would keep mean and covariance of the
-draw). The impact of each is worked out, and the results are counted. The error of a probability P is
-sqrt(P (1 - P) / samples).
+An impact is not smooth in the state, because sliding may stop or turn. So nothing is linearised. States are
+drawn from the normal distribution in opposite pairs. A linear law would keep the mean and the covariance of
+such a draw. The impact of each state is worked out, and the results are counted. The error of a probability P
+is sqrt(P (1 - P) / samples).
 
 Draws whose contact separates do not strike. They keep their velocity and count as *missed*. Only the state is
 uncertain. Body, friction, restitution, normal and the time of the impact are known.
@@ -40,9 +40,12 @@ class ImpactDistribution(Record):
     """Where the velocities after an impact lie, for a state with a covariance.
 
     Attributes:
-        mean: (3,) plane: v_x, v_y, w; (6,) space: linear, angular, world axes; m/s and rad/s.
-        covariance: (3, 3) plane, of the same; (12, 12) space: position, rotation vector, velocities.
-        probabilities: (7,), of each ImpactOutcome, by its value; with `missed` they sum to 1.
+        mean: m/s and rad/s, the mean velocity afterwards. In the plane it is (3,) and holds v_x, v_y, w. In
+            space it is (6,) and holds linear and angular velocity, world axes.
+        covariance: In the plane it is (3, 3), of the numbers in ``mean``. In space it is (12, 12), of
+            position, rotation vector, linear and angular velocity.
+        probabilities: (7,), the probability of each ImpactOutcome, by its value. Together with ``missed``
+            they sum to 1.
         missed: Probability that the contact separates, so that nothing strikes.
         samples: How many states were drawn.
     """
@@ -70,12 +73,12 @@ def planar_impact_distribution(
     Args:
         body: Mass and angular inertia.
         velocity: Mean of the velocity just before.
-        contact: Where, along which normal, with which friction and restitution.
-        covariance: (3, 3), of v_x, v_y (m/s) and w (rad/s) before.
+        contact: The contact, with its normal, friction and restitution.
+        covariance: (3, 3), the covariance of v_x, v_y (m/s) and w (rad/s) before.
         restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A component of the contact's velocity within it counts as zero.
-        samples: How many states to draw, an even number; about 0.2 us each.
-        seed: Seed of the draw, so that the same question has the same answer.
+        samples: How many states to draw, an even number. Each takes about 0.2 us.
+        seed: Seed of the draw. The same question with the same seed has the same answer.
 
     Raises:
         InvalidFieldError: the covariance is not symmetric and positive semidefinite, or the number of samples
@@ -85,7 +88,8 @@ def planar_impact_distribution(
     v, w = draws[:, :2], draws[:, 2]
     arm, normal = np.array(contact.r), np.array(contact.normal)
     v_n = (v + w[:, None] * np.array([-arm[1], arm[0]])) @ normal
-    # Half, since the approach is judged again by another sum with other rounding.
+    # Half the tolerance counts here, because the impact judges the approach again by a sum that rounds
+    # differently.
     strikes = v_n <= 0.5 * velocity_tolerance
     after = draws.copy()
     outcomes = np.zeros(0, dtype=np.int64)
@@ -125,18 +129,20 @@ def spatial_impact_distribution(
     Args:
         body: Mass and angular inertia.
         state: Mean of the state just before.
-        contact: Where it is at the mean pose, along which normal into the body, friction and restitution.
-        covariance: (12, 12), of the state before: position (m), rotation vector (rad, world axes, applied
-            after the attitude), linear velocity (m/s), angular velocity (rad/s), each x y z.
+        contact: The contact as it is at the mean pose, with its normal into the body, friction and
+            restitution.
+        covariance: (12, 12), the covariance of the state before. Rows are position (m), rotation vector (rad,
+            world axes, applied after the attitude), linear velocity (m/s) and angular velocity (rad/s), each
+            as x, y, z.
         restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A normal or tangential velocity of the contact within it counts as
             zero.
-        samples: How many states to draw, an even number; 2000 take some 20 ms, 10 000 some 60 ms.
-        seed: Seed of the draw, so that the same question has the same answer.
+        samples: How many states to draw, an even number. 2000 take some 20 ms, 10 000 some 60 ms.
+        seed: Seed of the draw. The same question with the same seed has the same answer.
 
     Raises:
-        InvalidFieldError: as `spatial_impact`; or the covariance is not symmetric and positive semidefinite,
-            or the number of samples is odd or outside [2, 1 000 000].
+        InvalidFieldError: `spatial_impact` refuses a number, the covariance is not symmetric and positive
+            semidefinite, or the number of samples is odd or outside [2, 1 000 000].
     """
     check_choice("restitution_law", restitution_law, RestitutionLaw)
     draws = _draw(covariance, 12, samples, seed)
@@ -144,7 +150,7 @@ def spatial_impact_distribution(
     arms, normal = rotated(turns, contact.p_WC_W - state.p_WB_W), contact.normal_W
     after = np.concatenate((state.v_WB_W, state.w_WB_W)) + draws[:, 6:]
     v_n = (after[:, :3] + np.cross(after[:, 3:], arms)) @ normal
-    # Half, as in the plane.
+    # Half the tolerance counts here too, for the same reason as in the plane.
     strikes = v_n <= 0.5 * velocity_tolerance
     outcomes = np.zeros(0, dtype=np.int64)
     if strikes.any():
@@ -170,7 +176,7 @@ def spatial_impact_distribution(
 
 
 def _draw(covariance: ArrayLike, size: int, samples: int, seed: int) -> FloatArray:
-    """Return deviations, (samples, size), in opposite pairs."""
+    """Return drawn deviations from the mean, (samples, size), in opposite pairs."""
     matrix = check_array("covariance", covariance, (size, size))
     if not 2 <= samples <= MOST_SAMPLES or samples % 2:
         raise InvalidFieldError("samples", samples, f"an even number in [2, {MOST_SAMPLES}]")

@@ -1,7 +1,7 @@
-"""The energy that an impact takes or gives, and the one judgement whether its law created some.
+"""How an impact changes the kinetic energy, and whether the law of restitution created energy.
 
 The change of kinetic energy is the impulse times the mean of the contact's velocities before and after. The
-energies of the bodies give it too, but their difference has lost the digits of a small change.
+difference of the bodies' energies gives it too, but it loses the digits of a small change.
 """
 
 from __future__ import annotations
@@ -26,15 +26,16 @@ def energy_change(impulse: Sequence[Real], before: Sequence[Real], after: Sequen
     """Return the change of kinetic energy, J, by an impulse at one contact.
 
     Args:
-        impulse: N s, by components along any axes; each is a number, or an array with a case an element.
+        impulse: N s, by components along any axes. Each component is a number, or an array with one element
+            for each case.
         before: m/s, the contact's velocity before, relative to what it touches, along the same axes.
-        after: m/s, afterwards.
+        after: m/s, the contact's velocity afterwards, likewise.
     """
     return 0.5 * _inner(impulse, [v + w for v, w in zip(before, after, strict=True)])
 
 
 def law_created(impulse: Sequence[Real], before: Sequence[Real], after: Sequence[Real]) -> Any:
-    """Return whether an impulse, as in `energy_change`, gave energy: a bool, or an array of them."""
+    """Return whether an impulse gave energy: a bool, or an array of them. The arguments are as above."""
     sizes = [abs(v) + abs(w) for v, w in zip(before, after, strict=True)]
     return created(energy_change(impulse, before, after), _inner([abs(i) for i in impulse], sizes))
 
@@ -51,20 +52,20 @@ class ManyEnergies(Record):
 
     @property
     def creates_energy(self) -> NDArray[np.bool_]:
-        """Return which of them the law gave energy, (N,), beyond rounding. Only Newton's can."""
+        """Return which impacts gain energy by their law, (N,), beyond rounding. Only Newton's can do that."""
         found: NDArray[np.bool_] = law_created(*self._at_contacts())
         return found
 
     @abstractmethod
     def _at_contacts(self) -> tuple[list[FloatArray], ...]:
-        """Return impulses, velocities before and afterwards, each by components, (N,)."""
+        """Return the impulses and the velocities before and afterwards, each by components, (N,)."""
 
 
 def created(change: Real, exchanged: Real) -> Any:
-    """Return whether a change of energy, J, is more than rounding, beside the energy it is summed from, J.
+    """Return whether a change of energy, J, is more than the rounding of the energy that was exchanged, J.
 
-    At one contact that is what the impulse exchanges; at several, where impulses in turn give and take
-    what does not remain, the kinetic energy before.
+    At one contact, the impulse exchanges its work. At several contacts, impulses in turn give energy and take
+    it again, so there the kinetic energy before the impact counts as exchanged.
     """
     return change > ENERGY_TOLERANCE * exchanged
 

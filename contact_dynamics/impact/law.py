@@ -40,10 +40,11 @@ class RestitutionLaw(NamedInt):
 
 
 class RestitutionRule:
-    """Poisson's law: what compression collects, what of it restitution owes, and where it is done.
+    """The rule of Poisson's law: it says what compression collects and where restitution ends.
 
-    Numbers are floats, or arrays with an impact an element, to the same bits.  ``due`` is what restitution
-    still owes, in the unit of the amount, and ``final`` Newton's velocity at the end, m/s.
+    Numbers are floats, or arrays with one element for each impact. Both give the same bits. ``due`` is what
+    restitution still owes, in the unit of the amount. ``final`` is the velocity at which Newton's law ends
+    the impact, m/s.
     """
 
     law = RestitutionLaw.POISSON
@@ -55,24 +56,27 @@ class RestitutionRule:
         return restitution
 
     def amount(self, p: Real, work: Real) -> Real:
-        """Return what a normal impulse, N s, that did some work, J, collects or gives back."""
+        """Return the amount that a normal impulse, N s, collects or gives back while it does some work, J."""
         del work
         return p
 
     def is_done(self, *, p: Real, v_n: Real, work: Real, due: Real, final: Real) -> Any:
-        """Return whether restitution is over by the time that an impulse and its work have led to v_n."""
+        """Return whether restitution is over once an impulse, with its work, has led to v_n."""
         del v_n, final
         return self.amount(p, work) >= due
 
     def distance(self, v_n: float, lifting: float, due: float, final: float) -> float:
-        """Return the normal impulse, N s, until restitution is over; v_n grows by ``lifting`` per N s."""
+        """Return the normal impulse, N s, that is left until restitution is over.
+
+        The normal velocity grows by ``lifting`` for each N s.
+        """
         del v_n, lifting, final
         return due
 
     def distances(
         self, v_n: FloatArray, lifting: FloatArray, due: FloatArray, final: FloatArray
     ) -> FloatArray:
-        """Return `distance` for many: with selections where one impact branches, so that it stands twice."""
+        """Return `distance` for many impacts. Where one impact branches, this selects elements instead."""
         del v_n, lifting, final
         return due
 
@@ -82,7 +86,10 @@ class RestitutionRule:
         return impulse
 
     def level(self, first: Real, due: Real, final: Real) -> Real:
-        """Return at which value of the meter it is, from the meter's value where one looks from."""
+        """Return the value that the meter has when restitution is over.
+
+        ``first`` is the value of the meter at the beginning of the stretch.
+        """
         del final
         return first + due
 
@@ -166,20 +173,20 @@ class ImpactOutcome(NamedInt):
     NO_IMPULSE = 0
     """The contact does not approach, and its sliding does not drive it into compression."""
     SLIDES = 1
-    """It slides until the end without having stopped; from rest, it slides at once, because friction cannot
-    hold it."""
+    """The contact slides until the end and never stops. A contact that is at rest at first slides at once if
+    friction cannot hold it."""
     STICKS_IN_COMPRESSION = 2
     """Sliding stops during compression, and friction holds the contact until the end."""
     STICKS_IN_RESTITUTION = 3
     """Sliding stops during restitution, and friction holds the contact until the end."""
     REVERSES_IN_COMPRESSION = 4
-    """Sliding stops during compression; friction cannot hold the contact, which slides on another way (in the
-    plane: back)."""
+    """Sliding stops during compression. Friction cannot hold the contact, so it slides on in another
+    direction, which is back in the plane."""
     REVERSES_IN_RESTITUTION = 5
-    """Sliding stops during restitution; friction cannot hold the contact, which slides on another way (in the
-    plane: back)."""
+    """Sliding stops during restitution. Friction cannot hold the contact, so it slides on in another
+    direction, which is back in the plane."""
     STICKS_THROUGHOUT = 6
-    """It does not slide at first, and friction holds it until the end."""
+    """The contact does not slide at first, and friction holds it until the end."""
 
     @property
     def sticks(self) -> bool:
@@ -195,7 +202,7 @@ class PathEvent(NamedInt):
     COMPRESSION_ENDS = 2
     RESTITUTION_ENDS = 3
     SAMPLE = 4
-    """A point on a curved part (space)."""
+    """A point on a curved part of the path, which only paths in space have."""
 
 
 _STICKING = frozenset(
@@ -208,7 +215,10 @@ _STICKING = frozenset(
 
 
 def check_law_rows(field: str, value: ArrayLike) -> FloatArray:
-    """Return values of `RestitutionLaw`, (N,); each may be a member or, in an array of numbers, its value."""
+    """Return values of `RestitutionLaw`, (N,).
+
+    Each may be given as a member or, in an array of numbers, as the member's value.
+    """
     if not (isinstance(value, np.ndarray) and value.dtype.kind in "iuf"):
         several = isinstance(value, (list, tuple, np.ndarray)) and np.ndim(value) > 0
         given: Any = value if several else [value]

@@ -1,6 +1,6 @@
-"""The next contacts of a body: those found from its shape and the world, or points that the caller gives.
+"""The next contacts of a body, found from its shape and the world, or among points that the caller gives.
 
-Both return a `Landing`, and recognise a contact when it comes back: a corner, a ball, a given point. On a rim
+Both ways return a `Landing`. They recognise a corner, a ball or a given point when it comes back. On a rim,
 each point is a contact of its own.
 """
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class Meetings(Protocol):
-    """Where a flight ends, and the contacts that it ended at so far."""
+    """A way to find where a flight ends, which remembers the contacts that were met so far."""
 
     def next(self, state: BodyState, horizon: float) -> Landing | None:
         """Return where free flight from a state ends within ``horizon``, s, or None."""
@@ -39,7 +39,7 @@ class Meetings(Protocol):
 
 
 class FoundMeetings:
-    """Contacts from a body's shape and the world's surfaces, numbered as they are met."""
+    """Contacts found from a body's shape and the world's surfaces. They are numbered as they are met."""
 
     def __init__(
         self,
@@ -68,7 +68,7 @@ class FoundMeetings:
         )
 
     def index(self, landing: Landing, row: int) -> int:
-        """Return the number of a contact; the first time, it gets the next one."""
+        """Return the number of a contact. A contact that is met for the first time gets the next number."""
         contact = landing.contacts.subset([row])
         point_B = landing.state.R_WB.T @ (_feature(contact) - landing.state.p_WB_W)
         for i, (met, known_B) in enumerate(zip(self._met, self._points_B, strict=True)):
@@ -80,7 +80,7 @@ class FoundMeetings:
 
     @property
     def contacts(self) -> ContactSet:
-        """All contacts met, each where it was when it was met first."""
+        """All contacts that were met, each where it was when it was met first."""
         return ContactSet(
             p_WC_W=np.concatenate([np.zeros((0, 3)), *(contact.p_WC_W for contact in self._met)]),
             normals_W=np.concatenate([np.zeros((0, 3)), *(contact.normals_W for contact in self._met)]),
@@ -91,7 +91,7 @@ class FoundMeetings:
 
 
 def _feature(contact: ContactSet) -> FloatArray:
-    """Return by what, (3,), m, a contact of the body is known again: its point, or its ball's centre."""
+    """Return the point, (3,), m, by which a contact is known again. On a ball, it is the ball's centre."""
     point: FloatArray = contact.p_WC_W[0]
     round_there = contact.body_curvatures
     if round_there is not None:
@@ -102,7 +102,7 @@ def _feature(contact: ContactSet) -> FloatArray:
 
 
 class NamedMeetings:
-    """Points of a body that touch at a state, each with the plane it touches there and no other."""
+    """Points of a body that touch at a state. Each can only touch the plane that it touches there."""
 
     def __init__(
         self,
@@ -119,7 +119,7 @@ class NamedMeetings:
         self._contacts = contacts
         self._points_B = (contacts.p_WC_W - state.p_WB_W) @ state.R_WB
         self._distance_tolerance, self._velocity_tolerance = distance_tolerance, velocity_tolerance
-        self._rows: list[int] = []  # of the newest landing
+        self._rows: list[int] = []  # which contacts touch at the newest landing
 
     def next(self, state: BodyState, horizon: float) -> Landing | None:
         """Return where free flight from a state ends within ``horizon``, s, or None."""

@@ -1,4 +1,4 @@
-"""The result of a landing over several strikes: each strike with its time, and why the sequence ends."""
+"""The result of a landing over several strikes, with the time of each and why the sequence ends."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ class SequenceEnd(NamedInt):
     """Why a sequence of strikes has no further one."""
 
     NOTHING_STRIKES = 0
-    """Nothing strikes within the window after the last strike: the body flies, and may come down later."""
+    """Nothing strikes within the window after the last strike. The body flies, and may come down later."""
     STAYS = 1
-    """A contact neither approaches nor leaves, and the free motion would press it in: the flight is over."""
+    """A contact neither approaches nor leaves, and free motion would press it in. So the flight is over."""
     CHATTERS = 2
-    """A contact's rebounds shrink by a ratio and have no height any more: infinitely many strikes end at the
-    limit time, from which on the contact stays."""
+    """A contact's rebounds shrink by a ratio and have no height any more. Infinitely many strikes end at the
+    limit time, and from then on the contact stays."""
     MOST_STRIKES = 3
     """The bound on the number of strikes was reached."""
     WINDOW_ENDED = 4
-    """Nothing has struck before the window ended, which began with the state: the body may land later."""
+    """Nothing has struck within the window after the given state. The body may land later."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -36,8 +36,8 @@ class TimedStrike(Record):
         seconds: s after the stamp of the state that the sequence began with.
         contact: Index into the sequence's contacts.
         p_WC_W: (3,), m, where the contact is then, world.
-        state_before: Just before, stamped with the time of the strike.
-        impact: Its single-contact impact; `impact.state` is the state just after.
+        state_before: The state just before, stamped with the time of the strike.
+        impact: The impact at this one contact. Its ``state`` is the state just after.
     """
 
     seconds: float
@@ -54,12 +54,13 @@ class ImpactSequence(Record):
     Attributes:
         restitution_law: The law of each strike.
         window: s, the longest flight that was followed.
-        contacts: Those given; from geometry: those that struck or stay, where they first did.
-        strikes: In the order of time; those of one instant in the order of resolution.
-        end: Why there is no further one.
-        state: Just after the last strike; without a strike the state that it began with.
-        staying: Contacts that stay, where `end` is STAYS or CHATTERS.
-        limit_seconds: s after the first state's stamp: from when on they stay.
+        contacts: The contacts that were given. If they were found from geometry, those that struck or stay,
+            each where it first did.
+        strikes: The strikes in the order of time. Those of one instant are in the order of resolution.
+        end: Why there is no further strike.
+        state: The state just after the last strike, or the first state if there is no strike.
+        staying: Indices of the contacts that stay, if ``end`` is STAYS or CHATTERS.
+        limit_seconds: s after the first state's stamp, the time from which on they stay, or None.
     """
 
     restitution_law: RestitutionLaw
@@ -73,12 +74,12 @@ class ImpactSequence(Record):
 
     @property
     def seconds(self) -> float:
-        """Return the time of the last strike, s after the first state's stamp; without one 0."""
+        """Return the time of the last strike, s after the first state's stamp, or 0 if there is no strike."""
         return self.strikes[-1].seconds if self.strikes else 0.0
 
     @property
     def message(self) -> str:
-        """Return in words why there is no further strike, and what would tell more."""
+        """Return in words why there is no further strike, and which question would tell more."""
         stay = ", ".join(map(str, self.staying))
         return {
             SequenceEnd.NOTHING_STRIKES: f"no further strike within the window of {self.window:g} s after "
@@ -98,10 +99,10 @@ class ImpactSequence(Record):
 
     @property
     def energy_change(self) -> float:
-        """Return what the strikes changed of the energy, J; flights between them keep it."""
+        """Return the change of energy by all strikes, J. Flights between them keep the energy."""
         return sum(strike.impact.energy_change for strike in self.strikes)
 
     @property
     def creates_energy(self) -> bool:
-        """Return whether a strike gave the body energy, beyond rounding. Only Newton's law can."""
+        """Return whether a strike gave the body energy, beyond rounding. Only Newton's law can do that."""
         return any(strike.impact.creates_energy for strike in self.strikes)

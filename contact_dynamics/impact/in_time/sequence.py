@@ -1,10 +1,10 @@
 """A landing in time: corners that strike some milliseconds apart, with free flight between the strikes.
 
-In recordings of real bodies, contacts that look simultaneous are mostly this: one corner strikes, the body
-flies on, another corner strikes. Each strike is Routh's impact at one contact (`impact.spatial`), each flight
-is free motion in closed form (`tumbling`), and the next strike is found to rounding (`landing`). Nothing is
-stepped. Contacts of one instant are struck one after the other, the fastest approach first, as in the
-sequential law (`impact.several`). Their order is a choice. The order of different instants is not.
+In recordings of real bodies, contacts that look simultaneous are mostly not. One corner strikes, the body
+flies on, and another corner strikes. Each strike is Routh's impact at one contact (`impact.spatial`). Each
+flight is free motion in closed form (`tumbling`). The next strike is found to rounding (`landing`), and
+nothing is stepped. Contacts of one instant are struck one after the other, the fastest approach first, as in
+the sequential law (`impact.several`). Their order is a choice. The order of different instants is not.
 
 The sequence ends where nothing strikes within a window, where a contact stays, or where strikes accumulate.
 Rebounds that shrink by a ratio r < 1 have all ended d / (1 - r) after a strike whose rebound takes d (Zeno).
@@ -16,7 +16,7 @@ until the contact leaves. Only this part is an approximation, of first order in 
 step, the contact sinks by half a step's fall each time, and other contacts that approach by at most two
 steps' fall are held too.
 
-Not covered: a resting contact that its own sliding jams.
+A resting contact that its own sliding jams is not covered.
 """
 
 from __future__ import annotations
@@ -61,18 +61,19 @@ STRIKE_WINDOW: Final = 0.05
 """s. A cube of 0.1 m whose first corner has struck at 1 m/s lands with the others within it."""
 
 MOST_STRIKES: Final = 200
-"""Strikes after which a sequence ends unfinished: rebounds of e = 0.9 have lost their height by then."""
+"""Strikes after which a sequence ends unfinished. Rebounds of e = 0.9 have lost their height by then."""
 
 HELD: Final = 2.0
 """Largest approach of a held contact, relative to the speed that a step of free motion gives it. If it is
 faster, something else struck."""
 
 MOST_HELD: Final = 100
-"""Impulses that hold contacts at one instant. Two ends of a rod need four, the corners of a face some ten."""
+"""Bound on the impulses that hold contacts at one instant. Two ends of a rod need four, the corners of a face
+some ten."""
 
 ROUND: Final = 20
-"""Steps of the search that a strike, or a step over contacts that stay, counts for besides its own search: a
-sequence comes to an end within some 2500 of them."""
+"""Steps of the search that a strike counts for besides its own search. A step over contacts that stay counts
+for as many. So a sequence comes to an end within some 2500 of both."""
 
 STILL: Final = 0.1
 """Speed of a held body after a step below which it rests, relative to the speed that a step of free motion
@@ -95,18 +96,19 @@ def impact_sequence(
 
     Args:
         body: Mass properties and corners.
-        state: Pose and velocities; the first strike, too, must come within the window.
+        state: Pose and velocities. The first strike, too, must come within the window.
         world: Surfaces and gravity.
         restitution_law: What the coefficients of restitution mean.
         window: s, > 0. The longest flight after which a strike still belongs to the landing.
         most_strikes: How many strikes to resolve at most, >= 1.
         distance_tolerance: m, >= 0. A corner within it of a surface touches.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
-        hold_step: s, > 0. Where a contact stays, go on in steps of this length. None: end there.
+        hold_step: s, > 0. Where a contact stays, the sequence goes on in steps of this length. If it is None,
+            the sequence ends there.
 
     Raises:
-        TooLargeError: the sequence takes too long: too many strikes, or steps over contacts that stay.
-        InvalidFieldError: a number that is not allowed.
+        TooLargeError: the sequence has too many strikes, or too many steps over contacts that stay.
+        InvalidFieldError: a number is not allowed.
         NoContactError: the body has no shape that could touch anything.
     """
     check_choice("restitution_law", restitution_law, RestitutionLaw)
@@ -145,25 +147,27 @@ def impact_sequence_of(
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     hold_step: float | None = None,
 ) -> ImpactSequence:
-    """Return the strikes at contacts that touch now: each a point of the body, and the plane it touches.
+    """Return the strikes at contacts that touch now. Each is a point of the body on the plane it touches.
 
-    Each point strikes its own plane alone: now if it approaches, and whenever it comes back.
+    Each point strikes its own plane alone. It strikes now if it approaches, and again whenever it comes back.
 
     Args:
         body: Mass and angular inertia.
         state: Pose and velocities.
-        contacts: All that touch, approaching or not.
+        contacts: All contacts that touch, approaching or not.
         gravity_W: (3,), m/s^2, world axes.
         restitution_law: What the coefficients of restitution mean.
         window: s, > 0. The longest flight after which a strike still belongs to the landing.
         most_strikes: How many strikes to resolve at most, >= 1.
         distance_tolerance: m, >= 0. A point within it of its plane touches.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
-        hold_step: s, > 0. Where a contact stays, go on in steps of this length. None: end there.
+        hold_step: s, > 0. Where a contact stays, the sequence goes on in steps of this length. If it is None,
+            the sequence ends there.
 
     Raises:
-        TooLargeError: the sequence takes too long: too many strikes, or steps over contacts that stay.
-        InvalidFieldError: a number that is not allowed, or a contact with curvature: it is no fixed point.
+        TooLargeError: the sequence has too many strikes, or too many steps over contacts that stay.
+        InvalidFieldError: a number is not allowed, or a contact has curvature, so that it is no fixed point
+            of the body.
     """
     check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
@@ -188,7 +192,7 @@ def impact_sequence_of(
 
 
 class _Sequence:
-    """Strikes so far, and the search for the next one."""
+    """The strikes so far, and the search for the next one."""
 
     def __init__(
         self,
@@ -228,7 +232,8 @@ class _Sequence:
 
     def _strike_on(self, state: BodyState, window: float, most: int) -> SequenceEnd:
         now, until = 0.0, window  # s since the beginning
-        lifts = held = 0  # since the beginning; at this instant
+        lifts = 0  # times, since the beginning, that free motion took resting contacts off
+        held = 0  # impulses, at this instant, that hold contacts
         while True:
             self.work.spend(ROUND, now)
             landing = self.meetings.next(state, until - now)
@@ -263,7 +268,10 @@ class _Sequence:
             state = motion.state_at(wait)
 
     def _wait(self, landing: Landing, now: float, *, may_leave: bool) -> tuple[SequenceEnd, float | None]:
-        """Return for how long to wait where nothing strikes, s, None: not at all; and the end after that."""
+        """Return why the sequence may end where nothing strikes, and how long to wait before it goes on, s.
+
+        If the second is None, the sequence ends here.
+        """
         wait = self._time_to_leave(landing)
         if wait is not None and may_leave:
             return SequenceEnd.NOTHING_STRIKES, wait
@@ -282,13 +290,13 @@ class _Sequence:
         return speed <= STILL * pressing * (self.hold_step or 0.0)
 
     def _stay(self, contacts: tuple[int, ...], since: float) -> None:
-        """Note that contacts stay; one that stayed before keeps the time."""
+        """Note that contacts stay. If contacts stayed before, the time since when is kept."""
         if self.limit is None:
             self.limit = since
         self.staying = contacts
 
     def _approaches_by(self, landing: Landing, share: float) -> bool:
-        """Return whether a contact stays, and what approaches does so by a share of a step's fall."""
+        """Return whether a contact stays and the fastest approach is within a share of a step's fall."""
         if self.hold_step is None or self.limit is None:
             return False
         row = _fastest(landing)
@@ -296,7 +304,7 @@ class _Sequence:
         return speed <= share * self.hold_step * -float(self._lifting(landing)[row])
 
     def _strike(self, landing: Landing, now: float) -> BodyState:
-        """Resolve the strike at the contact that approaches fastest; return the state after it."""
+        """Resolve the strike at the contact that approaches fastest, and return the state after it."""
         contacts, row = landing.contacts, _fastest(landing)
         contact = self.meetings.index(landing, row)
         normal = contacts.normals_W[row]
@@ -324,7 +332,7 @@ class _Sequence:
             landing.state,
             replace(landing.contacts[row], restitution=restitution),
             restitution_law=self.law,
-            # Half, since the approach was judged by another sum with other rounding.
+            # Half the tolerance counts, because the approach was judged by a sum that rounds differently.
             velocity_tolerance=0.5 * self.tolerance,
         )
 

@@ -1,7 +1,8 @@
-"""Many planar impacts at once: the operations of `routh` and `one_contact`, in the same order, on arrays.
+"""Many planar impacts at once.
 
-Every number equals the scalar call's to the last bit, because each is formed from the same operations and all
-of them (sums, products, quotients, square roots) are rounded correctly by both. Branches become masks.
+The operations of `routh` and `one_contact` are repeated in the same order on arrays. Every number equals that
+of the single call to the last bit, because both round all these operations correctly: sums, products,
+quotients and square roots. Branches become masks.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 
 _CHUNK: Final = 4096
 
-# Indexed by whether sliding stops early, stops late (2), and friction holds (4).
+# The index of an outcome is a sum: 1 if sliding stops early, 2 if it stops late, 4 if friction holds.
 _OUTCOMES: Final = np.array(
     [
         ImpactOutcome.SLIDES,
@@ -49,7 +50,7 @@ _OUTCOMES: Final = np.array(
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class PlanarImpacts(ManyEnergies):
-    """The answers to N planar impacts; row i belongs to case i. Meanings as in `PlanarImpact`.
+    """The answers to N planar impacts. Row i belongs to case i, and `PlanarImpact` explains the fields.
 
     Attributes:
         restitution_law: The restitution law of all of them.
@@ -88,7 +89,7 @@ def planar_impacts(
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> PlanarImpacts:
-    """Return what N planar impacts do; the same as `planar_impact` for each.
+    """Return what N planar impacts do. Each answer is that of `planar_impact`.
 
     Args:
         masses: (N,) or one number, kg.
@@ -123,7 +124,7 @@ def planar_impacts(
     columns = [np.broadcast_to(column, count) for rows in fields.values() for column in np.atleast_2d(rows.T)]
     outcomes = np.empty(count, dtype=np.int64)
     results = np.empty((11, count))
-    # Columns that stay in the cache make it about twice as fast.
+    # Chunks whose columns stay in the cache make this about twice as fast.
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for first in range(0, count, _CHUNK):
             chunk = slice(first, first + _CHUNK)
@@ -145,7 +146,7 @@ def planar_impacts(
 def _strike(
     columns: list[FloatArray], results: FloatArray, law: RestitutionLaw, tolerance: float, first: int
 ) -> NDArray[np.int64]:
-    """Repeat `planar_impact` for some cases: fill their ``results``, (11, n), and return the outcomes."""
+    """Fill ``results``, (11, n), with the planar impacts of some cases, and return the outcomes."""
     mass, inertia, friction, restitution, v_x, v_y, w, r_x, r_y, n_x, n_y = columns
     c_x = v_x - w * r_y
     c_y = v_y + w * r_x
@@ -181,7 +182,7 @@ def _strike(
 def _response(
     mass: FloatArray, inertia: FloatArray, r_t: FloatArray, r_n: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Repeat `routh.inverse_inertia`."""
+    """Return `routh.inverse_inertia` of each case, by its four numbers."""
     per_mass = 1.0 / mass
     return (
         per_mass + r_n * r_n / inertia,
@@ -202,7 +203,11 @@ def _paths(  # noqa: PLR0917 - the columns of one table
     e: FloatArray,
     law: RestitutionLaw,
 ) -> tuple[NDArray[np.int64], FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Repeat `routh.impulse_path`; return outcomes, (I_t, p) at the end of compression and in all, v."""
+    """Return what `routh.impulse_path` finds in each case.
+
+    After the outcomes come the impulses at the end of compression (tangential, normal), those at the end of
+    the impact, and the velocities afterwards.
+    """
     mu = np.minimum(friction, LARGEST_FRICTION)
     holds = abs(b) <= mu * a
     rests = v_t == 0.0

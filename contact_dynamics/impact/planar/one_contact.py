@@ -1,11 +1,11 @@
 """Impact of one planar body at one contact with the fixed world (Mason, lecture 27).
 
-Model: Routh's analysis in impulse space (`routh`), with Poisson's, Newton's or the energetic restitution law.
-Bodies are rigid, the impact takes no time, friction is Coulomb's with one coefficient, and only the contact
-acts. A contact that rests (zero normal velocity) gets an impulse only where its own sliding drives it into
-compression, which is how an inconsistent contact mode (lecture 26) is settled.
+The model is Routh's analysis in impulse space (`routh`), with Poisson's, Newton's or the energetic law of
+restitution. Bodies are rigid, the impact takes no time, friction is Coulomb's with one coefficient, and only
+the contact acts. A contact that rests (its normal velocity is zero) gets an impulse only if its own sliding
+drives it into compression. In this way an inconsistent contact mode (lecture 26) is settled.
 
-Not covered here: several contacts at once (`impact.several`), two moving bodies (`two_bodies`), space
+Other files treat several contacts at once (`impact.several`), two moving bodies (`two_bodies`) and space
 (`impact.spatial`).
 """
 
@@ -33,14 +33,14 @@ def planar_impact(
     Args:
         body: Mass and angular inertia.
         velocity: The velocity of the body just before.
-        contact: Where, along which normal, with which friction and restitution.
+        contact: The contact, with its normal, friction and restitution.
         restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A component of the contact's velocity within it counts as zero.
 
     Raises:
         SeparatingContactError: the contact's normal velocity is above the tolerance.
-        InvalidFieldError: the law is none, the tolerance is negative, or the numbers are so large that the
-            velocity overflows.
+        InvalidFieldError: the law is no member of RestitutionLaw, the tolerance is negative, or the numbers
+            are so large that the velocity overflows.
 
     Source: lecture 27, eqs. 2 to 10; Routh 1860; Stronge 1990 for the energetic law.
     """
@@ -74,7 +74,7 @@ def planar_impact(
 
 
 def approach(v_t: float, v_n: float, tolerance: float) -> Vector2:
-    """Return the contact's velocity with components within ``tolerance`` as 0; refuse one that separates.
+    """Return the contact's velocity, in which components within ``tolerance`` count as 0.
 
     Raises:
         SeparatingContactError: ``v_n`` is above the tolerance.

@@ -1,4 +1,4 @@
-"""The result of an impact at one planar contact: velocities afterwards, and the impulse path as evidence."""
+"""The result of an impact at one planar contact: the velocities afterwards, and the impulse path."""
 
 from __future__ import annotations
 
@@ -13,15 +13,16 @@ from contact_dynamics.records import Record
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class PlanarImpact(Record):
-    """The answer to one planar impact; contact axes are tangent, normal, and impulses act on the body.
+    """The answer to one planar impact. Contact axes are tangent, then normal. Impulses act on the body.
 
     Attributes:
         restitution_law: The restitution law that was asked for.
-        velocity: m/s, rad/s, of the body afterwards, axes of the plane.
-        velocity_before_C: m/s, of the contact before, relative, contact axes; 0: within tolerance.
+        velocity: m/s and rad/s, the velocity of the body afterwards, axes of the plane.
+        velocity_before_C: m/s, the contact's velocity before, relative to what it touches, contact axes. A
+            component within the tolerance is 0.
         inverse_inertia: 1/kg, the contact's response to impulse.
-        contact_path: Impulse path and the contact's velocity afterwards, contact axes.
-        impulse: N s, total, on the body, axes of the plane.
+        contact_path: The impulse path and the contact's velocity afterwards, contact axes.
+        impulse: N s, the total impulse on the body, axes of the plane.
         other_velocity: The velocity of the second body afterwards, or None for the fixed world.
     """
 
@@ -66,9 +67,9 @@ class PlanarImpact(Record):
 
     @property
     def path(self) -> tuple[tuple[PathEvent, Vector2], ...]:
-        """Return the vertices of the impulse path in order, each with what it stands for, N s, contact axes.
+        """Return the vertices of the impulse path in order, each with its meaning, N s, contact axes.
 
-        Without an impulse the path is its start alone. Vertices that coincide are all listed.
+        Without an impulse, the path is its start alone. Vertices that coincide are all listed.
         """
         path = self.contact_path
         vertices: list[tuple[PathEvent, Vector2]] = [(PathEvent.START, (0.0, 0.0))]
@@ -92,5 +93,5 @@ class PlanarImpact(Record):
 
     @property
     def creates_energy(self) -> bool:
-        """Return whether the law gave the body energy, beyond rounding. Only Newton's can."""
+        """Return whether the law gave the body energy, beyond rounding. Only Newton's law can do that."""
         return bool(law_created(self.impulse_C, self.velocity_before_C, self.velocity_after_C))

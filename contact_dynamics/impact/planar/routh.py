@@ -1,21 +1,22 @@
 """Routh's construction of a planar impact in impulse space, in closed form (Mason, lecture 27; Routh 1860).
 
-Model: one contact with Coulomb friction; position does not change during the impact; the normal impulse p
-grows from 0 and plays the part of time. The contact's velocity is affine in the impulse (lecture 27, eq. 8),
+The model has one contact with Coulomb friction. Positions do not change during the impact. The normal
+impulse p grows from 0 and plays the part of time. The contact's velocity is affine in the impulse (lecture
+27, eq. 8),
 
     v_t = v_t0 + a I_t + b p,        v_n = v_n0 + b I_t + c p,
 
-so the path (I_t, p) is straight while the contact slides one way or sticks, and bends at most once: where it
-meets the sticking line v_t = 0 (eq. 9) it goes on along that line if friction can hold it there, |b| <= mu a,
-and slides back if not. Compression ends on the line v_n = 0 (eq. 10). After the bend v_n always grows,
-because a c > b^2, so every path ends.
+so the path (I_t, p) is straight while the contact slides one way or sticks. It bends at most once, where it
+meets the sticking line v_t = 0 (eq. 9). From there it goes on along that line if friction can hold the
+contact, |b| <= mu a. If not, the contact slides back. Compression ends on the line v_n = 0 (eq. 10). After
+the bend v_n always grows, because a c > b^2, so every path ends.
 
-Where sliding itself drives the contact into compression (c < s mu b, s the sign of v_t: the lecture's sliding
-rod, after Painleve 1895) v_n falls first; such a path always meets the sticking line, and needs no approach
-speed to begin with.
+Sliding itself may drive the contact into compression: c < s mu b, where s is the sign of v_t (the lecture's
+sliding rod, after Painleve 1895). Then v_n falls first. Such a path always meets the sticking line, and it
+needs no approach to begin with.
 
-One slip in the lecture: the compression impulse of an approaching particle is -m v_n, which its formulas
-write as m v_n.
+The lecture has one slip: the compression impulse of an approaching particle is -m v_n, but its formulas write
+m v_n.
 
 All numbers here are plain floats in contact axes, tangent and normal. `one_contact` and `two_bodies` apply
 this to bodies, and `batch` repeats the same operations in the same order on arrays.
@@ -29,17 +30,18 @@ from typing import Final, NamedTuple
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 
 LARGEST_FRICTION: Final = 1e100
-"""A coefficient above it is taken as equal to it: no path differs in any digit, and mu a cannot overflow."""
+"""A larger coefficient of friction counts as this one. No path differs in any digit, and mu a cannot
+overflow."""
 
 
 class InverseInertia(NamedTuple):
-    """The contact's response to impulse: the symmetric matrix [[a, b], [b, c]] of lecture 27, eq. 8.
+    """The contact's response to an impulse, as the symmetric matrix [[a, b], [b, c]] of lecture 27, eq. 8.
 
     Attributes:
         a: 1/kg, tangential velocity per tangential impulse, > 0.
-        b: 1/kg, either per the other.
+        b: 1/kg, tangential velocity per normal impulse, and normal velocity per tangential impulse.
         c: 1/kg, normal velocity per normal impulse, > 0.
-        det: 1/kg^2, a c - b^2 > 0, formed without that subtraction.
+        det: 1/kg^2, the determinant a c - b^2 > 0. It is formed without that subtraction.
     """
 
     a: float
@@ -49,17 +51,17 @@ class InverseInertia(NamedTuple):
 
 
 class ImpulsePath(NamedTuple):
-    """One impulse path in contact axes; a tangential impulse belongs to the normal one before it.
+    """One impulse path in contact axes. Each tangential impulse belongs to the normal one listed before it.
 
     Attributes:
         outcome: What the contact did.
         jams: Whether sliding drove the contact into compression.
-        p_stop: N s, normal impulse at which sliding stops; infinite: never.
-        t_stop: N s.
+        p_stop: N s, normal impulse at which sliding stops. It is infinite if sliding never stops.
+        t_stop: N s, tangential impulse at which sliding stops.
         p_compression: N s, normal impulse at the end of compression.
-        t_compression: N s.
+        t_compression: N s, tangential impulse at the end of compression.
         p_end: N s, total normal impulse.
-        t_end: N s.
+        t_end: N s, total tangential impulse.
         v_t: m/s, tangential velocity of the contact afterwards.
         v_n: m/s, normal velocity of the contact afterwards, >= 0.
     """
@@ -90,9 +92,10 @@ def inverse_inertia(mass: float, inertia: float, r_t: float, r_n: float) -> Inve
 def pair_inverse_inertia(
     body: tuple[float, float, float, float], other: tuple[float, float, float, float]
 ) -> InverseInertia:
-    """Return the response of the relative velocity of two bodies; each is its mass, inertia, r_t and r_n.
+    """Return how the relative velocity of two bodies responds. Each body is its mass, inertia, r_t and r_n.
 
-    Impulses are opposite, so responses add; the determinant is expanded into terms that cannot cancel.
+    The impulses on the two are opposite, so their responses add. The determinant is expanded into terms that
+    cannot cancel.
     """
     (m_1, i_1, t_1, n_1), (m_2, i_2, t_2, n_2) = body, other
     a_1, b_1, c_1, det_1 = inverse_inertia(m_1, i_1, t_1, n_1)
@@ -109,7 +112,8 @@ def impulse_path(  # noqa: C901, PLR0912, PLR0915, PLR0917 - one computation; ea
 ) -> ImpulsePath:
     """Return the path of a contact that starts at (``v_t``, ``v_n``), m/s, with ``v_n`` <= 0.
 
-    An exact 0 means a contact that does not slide or does not approach; tolerances are the caller's.
+    A velocity of exactly 0 means that the contact does not slide, or does not approach. The caller has
+    applied the tolerances.
     """
     a, b, c, det = response
     mu = min(friction, LARGEST_FRICTION)
@@ -125,7 +129,7 @@ def impulse_path(  # noqa: C901, PLR0912, PLR0915, PLR0917 - one computation; ea
     if v_n == 0.0 and not jams:
         return ImpulsePath(ImpactOutcome.NO_IMPULSE, jams, math.inf, 0.0, 0.0, 0.0, 0.0, 0.0, v_t, 0.0)
 
-    # After the stop: the rate of v_n, and v_n at the stop.
+    # rate_2 is the rate of v_n after the stop, and v_stop is v_n at the stop.
     rate_2 = det / a if holds else c + s * mu * b
     v_stop = v_n + rate_1 * p_stop if p_stop < math.inf else math.inf
     stops_early = v_stop <= 0.0
@@ -136,7 +140,8 @@ def impulse_path(  # noqa: C901, PLR0912, PLR0915, PLR0917 - one computation; ea
         p_c = -v_n / rate_1
         rate = rate_1
 
-    # The end, if the path does not bend during restitution: the laws' closed forms (see `impact.law`).
+    # These are the closed forms of the laws for a path that does not bend during restitution (see
+    # `impact.law`).
     taken = 0.0
     if law == RestitutionLaw.POISSON:
         gain = restitution * p_c
@@ -145,7 +150,7 @@ def impulse_path(  # noqa: C901, PLR0912, PLR0915, PLR0917 - one computation; ea
         v_end = restitution * -v_n
         gain = v_end / rate
     else:
-        # Twice the work that compression took: the area under the path of v_n over p.
+        # This is twice the work that compression took, which is the area between v_n over p and zero.
         taken = -(v_n + v_stop) * p_stop - v_stop * (p_c - p_stop) if stops_early else -v_n * p_c
         gain = restitution * math.sqrt(taken / rate)
         v_end = rate * gain
@@ -163,7 +168,7 @@ def impulse_path(  # noqa: C901, PLR0912, PLR0915, PLR0917 - one computation; ea
             p_end = p_stop + after
             v_end = v_stop + rate_2 * after
 
-    # The tangential impulse: on the cone's edge, on the sticking line, or on the way back.
+    # The tangential impulse follows the cone's edge, then the sticking line or the way back.
     s_mu = s * mu
     t_stop = 0.0
     t_c = -s_mu * p_c

@@ -1,9 +1,10 @@
-"""Impact of two moving planar bodies: one relative problem (Routh 1860; Stronge 2000, ch. 3 and 4).
+"""Impact of two moving planar bodies, as one problem in their relative velocity.
 
-The impulses on the two bodies are opposite, so that the contact's relative velocity responds with the sum of
-the two inverse inertias, and the laws of one body and the fixed world apply as they are. The *first* body is
-the one that the normal points into; velocities and impulses in the answer are its own, relative to the second
-where they are the contact's. Linear and angular momentum of the two together stay as they are, to rounding.
+The impulses on the two bodies are opposite. So the contact's relative velocity responds with the sum of the
+two inverse inertias, and the laws for one body and the fixed world apply unchanged (Routh 1860; Stronge 2000,
+ch. 3 and 4). The *first* body is the one that the normal points into. Velocities and impulses in the answer
+are those of the first body. Velocities of the contact are those of the first body relative to the second. The
+linear and the angular momentum of both together are conserved to rounding.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ def planar_pair_impact(
         velocity: The velocity of the first body just before.
         other: The second body.
         other_velocity: The velocity of the second body just before.
-        contact: Where on the first body (from its centre of mass), normal, friction, restitution.
+        contact: The contact, given from the first body's centre of mass, with normal, friction, restitution.
         other_r: m, from the second body's centre of mass to the contact.
         restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A component of the relative velocity within it counts as zero.

@@ -1,1 +1,1 @@
-"""Impacts at several contacts at once."""
+"""Impacts at several contacts at once, of one body or of several."""

@@ -1,18 +1,19 @@
 """The impact of contacts that jam: none approaches, and yet no mode is consistent (lecture 26's last remark).
 
 The applied wrench then cannot act for any time, however short, without an impulse. So it acts for a short
-time h, contact impulses p_i keep the body out of the world at its end, and h goes to zero,
+time h, after which contact impulses p_i keep the body out of the world, and h goes to zero,
 
     v' = v + h a + impulses,  0 <= p_i,  v_n' + h b_n >= 0,  one of the two zero,
 
-with Coulomb's law for impulses against the sliding at the end (Stewart, Rigid-body dynamics with friction and
-impact, SIAM Review 42, 2000: this limit exists, and settles Painleve's paradox). The centripetal terms b_n
-are those of arms that have turned by h, and of the shapes that meet there (`contact.curvature`). A second
-problem of the same kind gives back Poisson's restitution (Anitescu and Potra, Nonlinear Dynamics 14, 1997).
+with Coulomb's law for impulses against the sliding at the end. This limit exists, and it settles Painleve's
+paradox (Stewart, Rigid-body dynamics with friction and impact, SIAM Review 42, 2000). The centripetal terms
+b_n come from arms that have turned for the time h, and from the shapes that meet there (`contact.curvature`).
+A second problem of the same kind gives back Poisson's restitution (Anitescu and Potra, Nonlinear Dynamics 14,
+1997).
 
-Does not cover: the way there. Friction acts against the sliding at the end of compression, and of
-restitution, so that a contact which stops before that and slides back is not seen; Routh's path (`impact`)
-sees it at one contact.
+The way to the end of the impact is not followed. Friction acts against the sliding at the end of compression,
+and against that at the end of restitution. So a contact that stops before and slides back is not seen. At one
+contact, Routh's path (`impact.spatial`) sees it.
 """
 
 from __future__ import annotations
@@ -40,29 +41,30 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 MOST_JAMMED_CONTACTS: Final = 64
-"""Longest list of contacts accepted: the pivots of their complementarity problem take a second or so."""
+"""Longest list of contacts accepted. Its complementarity problem takes a second or so."""
 
 _ZERO: Final = 100.0
-"""Velocities relative to that change, and impulses relative to mass times it, that count as zero."""
+"""A speed counts as zero up to this multiple of the change of velocity in the short time. An impulse counts
+as zero up to the mass times such a speed."""
 
 
 class _Contacts(NamedTuple):
-    """What the contacts see of the body's twist (v, w), (6,), and of impulses."""
+    """The contacts, with what links their velocities to the body's twist (v, w) and to impulses."""
 
-    rows: FloatArray  # (n, 3, 6), velocity of each contact
+    rows: FloatArray  # (n, 3, 6), take the twist into the velocity of each contact
     normals: FloatArray  # (n, 3), unit
-    directions: FloatArray  # (n, d, 3), unit, in which friction can push
-    frictions: FloatArray  # (n,)
+    directions: FloatArray  # (n, d, 3), unit, the directions in which friction can push
+    frictions: FloatArray  # (n,), coefficients of friction
     mass: float  # kg
-    inverse: FloatArray  # (6, 6), of the mass matrix
-    speed: float  # m/s, the largest
-    zero: float  # m/s, what counts as none
+    inverse: FloatArray  # (6, 6), inverse of the mass matrix
+    speed: float  # m/s, the largest speed
+    zero: float  # m/s, a speed up to it counts as zero
 
 
 class _Impulses(NamedTuple):
-    normal: FloatArray  # (n,), N s
-    friction: FloatArray  # (n, d), N s
-    sliding: FloatArray  # (n,), m/s, 0 where a pressed contact does not slide
+    normal: FloatArray  # (n,), N s, normal impulses
+    friction: FloatArray  # (n, d), N s, impulses of friction in each direction
+    sliding: FloatArray  # (n,), m/s, sliding speeds, 0 where a pressed contact does not slide
 
 
 def jamming_impact(
@@ -78,17 +80,17 @@ def jamming_impact(
 ) -> SeveralImpact:
     """Return the impact of contacts of which none approaches and for which no mode is consistent.
 
-    Its verdict is NOT_CONVERGED where no impulses were found that keep the body out of the world.
+    The verdict is NOT_CONVERGED if no impulses were found that keep the body out of the world.
 
     Args:
         body: Mass and angular inertia.
         state: Pose and velocities just before.
-        contacts: All that touch, at least one.
-        force_W: (3,), N, applied besides contact forces, gravity included, world axes.
-        torque_W: (3,), N m, applied about the centre of mass, world axes.
-        plane_normal_W: (3,), unit: friction acts at right angles to it, and exactly. None: in space, in a
-            number of directions.
-        friction_facets: That number, >= 3; the first opposes the sliding.
+        contacts: All contacts that touch. There is at least one.
+        force_W: (3,), N, the force applied besides contact forces, gravity included, world axes.
+        torque_W: (3,), N m, the torque applied about the centre of mass, world axes.
+        plane_normal_W: (3,), unit, the normal of a plane of motion. Friction then acts in that plane, where
+            its two directions are exact. If it is None, friction acts in space, in a number of directions.
+        friction_facets: The number of directions of friction in space, >= 3. The first opposes the sliding.
         velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero.
 
     Raises:
@@ -164,7 +166,7 @@ def _two_phases(
 ) -> tuple[FloatArray, FloatArray] | None:
     """Return the impulses, (n, 3), and the directions, (k, 3 n), in which contacts are held afterwards.
 
-    None: no impulses keep the body out of the world.
+    The answer is None if no impulses keep the body out of the world.
     """
     none = np.zeros(len(start))
     phase = _compress(seen, start, none)
@@ -189,13 +191,13 @@ def _two_phases(
 
 
 def _compress(seen: _Contacts, start: FloatArray, least: FloatArray) -> _Impulses | None:
-    """Return impulses, along normals at least ``least``, that leave no contact approaching."""
+    """Return impulses that leave no contact approaching. Along the normals they are at least ``least``."""
     n, d = seen.directions.shape[:2]
     normal_rows = np.einsum("ij,ijk->ik", seen.normals, seen.rows)
     friction_rows = np.einsum("imj,ijk->imk", seen.directions, seen.rows).reshape(n * d, 6)
     rows = np.vstack([normal_rows, friction_rows])
     response = seen.mass * rows @ seen.inverse @ rows.T
-    group = np.kron(np.eye(n), np.ones((d, 1)))  # which contact a direction belongs to
+    group = np.kron(np.eye(n), np.ones((d, 1)))  # says which contact a direction belongs to
     M = np.zeros((n * (d + 2), n * (d + 2)))
     M[: n * (d + 1), : n * (d + 1)] = response
     M[n : n * (d + 1), n * (d + 1) :] = group
@@ -228,7 +230,7 @@ def _made_exact(
     after: FloatArray,
     held: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Take what the short time has left out of the velocities of contacts that are held."""
+    """Return impulses and twist without the velocities that the short time has left at held contacts."""
     if len(held) == 0:
         return impulses, after
     held_rows = held @ rows.reshape(-1, 6)

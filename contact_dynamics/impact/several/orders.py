@@ -1,17 +1,18 @@
 """Several contacts of one body at once. No single law is accepted for them, so laws have names here.
 
-* SEQUENTIAL (Routh 1860; Ivanov 1995; Smith et al. 2012): the single-contact law at one contact after the
-  other, the one that approaches fastest first (the first in the list where they tie), until none approaches.
-* SIMULTANEOUS: complementarity of impulses and velocities over all contacts (`simultaneous`), with Newton's
-  hypothesis (Moreau 1988) or Poisson's (Anitescu and Potra 1997). The energetic law has no such form here: it
-  needs the work at each contact along the path, which complementarity of the ends does not know.
+* SEQUENTIAL (Routh 1860; Ivanov 1995; Smith et al. 2012) applies the law for one contact to one contact after
+  the other, until none approaches. The contact that approaches fastest comes first. Where contacts tie, the
+  first in the list comes first.
+* SIMULTANEOUS demands that impulses and velocities are complementary over all contacts (`simultaneous`), with
+  Newton's hypothesis (Moreau 1988) or Poisson's (Anitescu and Potra 1997). The energetic law has no such form
+  here, because it needs the work at each contact along the path, and this law only knows the path's ends.
 
-`outcomes_over_orders` gives the set that the sequential law reaches over its admissible orders, and its
-spread: how far the answer is undecided. `outcomes_at_once` does so for the solutions of SIMULTANEOUS. In the
-plane: `impact.several.planar`.
+`outcomes_over_orders` gives the outcomes that the sequential law reaches over its admissible orders. Their
+spread says how far the answer is undecided. `outcomes_at_once` does the same for the solutions of
+SIMULTANEOUS. `impact.several.planar` has the laws in the plane.
 
-Not covered: moments at the contacts, and resting contacts that their own sliding would jam (`impact.spatial`
-answers that for one).
+Moments at the contacts are left out. So are resting contacts that their own sliding would jam, which
+`impact.spatial` answers for one contact.
 """
 
 from __future__ import annotations
@@ -45,11 +46,11 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 MOST_ORDERS: Final = 120
-"""Orders that `outcomes_over_orders` tries: all of them up to five contacts."""
+"""Number of orders that `outcomes_over_orders` tries. These are all orders of up to five contacts."""
 
 MOST_STRIKES_OVER_ORDERS: Final = 6000
-"""Strikes of all these orders together, some 2 s of computing. An order takes ten or twenty, and more only
-where contacts throw each other back for long."""
+"""Bound on the strikes of all these orders together, which take some 2 s. An order takes ten or twenty
+strikes, and more only where contacts throw each other back for long."""
 
 
 def several_impact(
@@ -66,14 +67,15 @@ def several_impact(
     Args:
         body: Mass and angular inertia.
         state: Pose and velocities just before.
-        contacts: All that touch, approaching or not; at least one.
+        contacts: All contacts that touch, approaching or not. There is at least one.
         several_contacts_law: The law for several contacts.
-        restitution_law: What the coefficients of restitution mean; ENERGETIC only with SEQUENTIAL.
+        restitution_law: What the coefficients of restitution mean. ENERGETIC only goes with SEQUENTIAL.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
 
     Raises:
         SeparatingContactError: every contact separates.
-        InvalidFieldError: no contacts, a tolerance that is not > 0, or ENERGETIC with SIMULTANEOUS.
+        InvalidFieldError: there are no contacts, the tolerance is not > 0, or ENERGETIC and SIMULTANEOUS are
+            asked for together.
     """
     answer = bodies_impact(
         [body],
@@ -107,21 +109,22 @@ def outcomes_over_orders(
 ) -> OrderedOutcomes:
     """Return the outcomes of the sequential law over its admissible orders.
 
-    An order follows a priority of the contacts: each time, the first in it that approaches is struck.
-    Different priorities can come to the same order, which is listed once. The order of `several_impact`, the
-    fastest approach first, follows no priority where that changes on the way; it is always among them.
+    An order follows a priority of the contacts. Each time, the first contact in it that approaches is struck.
+    Different priorities can come to the same order, which is listed once. The order of `several_impact`
+    strikes the fastest approach first. It follows no priority if the fastest contact changes on the way, and
+    it is always among the outcomes.
 
     Args:
         body: Mass and angular inertia.
         state: Pose and velocities just before.
-        contacts: All that touch; at least one.
+        contacts: All contacts that touch. There is at least one.
         restitution_law: What the coefficients of restitution mean.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
-        most_orders: How many priorities to try; `complete` says whether that was all of them.
+        most_orders: How many priorities to try. The answer's ``complete`` says whether these were all.
 
     Raises:
         SeparatingContactError: every contact separates.
-        InvalidFieldError: no contacts, or a tolerance that is not > 0.
+        InvalidFieldError: there are no contacts, or the tolerance is not > 0.
         TooLargeError: the orders take more strikes together than `MOST_STRIKES_OVER_ORDERS`.
     """
     check_choice("restitution_law", restitution_law, RestitutionLaw)
@@ -159,22 +162,22 @@ def outcomes_at_once(
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     most_orders: int = MOST_ORDERS,
 ) -> OrderedOutcomes:
-    """Return the outcomes of SIMULTANEOUS that its solutions come to: where they differ, it is not unique.
+    """Return the outcomes of several solutions of SIMULTANEOUS. If they differ, the law has no unique answer.
 
-    Each order of the contacts leads to a solution. The one of `several_impact` depends on no order; it comes
-    first, as the empty one. Solutions that no order leads to are not among them.
+    Each order of the contacts leads to a solution. The solution of `several_impact` depends on no order. It
+    comes first, with an empty order. Solutions that no order leads to are not found.
 
     Args:
         body: Mass and angular inertia.
         state: Pose and velocities just before.
-        contacts: All that touch; at least one.
-        restitution_law: Poisson's or Newton's.
+        contacts: All contacts that touch. There is at least one.
+        restitution_law: Poisson's or Newton's law.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
-        most_orders: How many orders to try; `complete` says whether that was all of them.
+        most_orders: How many orders to try. The answer's ``complete`` says whether these were all.
 
     Raises:
         SeparatingContactError: every contact separates.
-        InvalidFieldError: no contacts, a tolerance that is not > 0, or the energetic law.
+        InvalidFieldError: there are no contacts, the tolerance is not > 0, or the law is the energetic one.
     """
     check_choice("restitution_law", restitution_law, RestitutionLaw)
     if restitution_law == RestitutionLaw.ENERGETIC:

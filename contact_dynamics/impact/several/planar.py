@@ -1,6 +1,6 @@
-"""Several contacts of one planar body at once: the laws of `orders`, in the plane.
+"""Several contacts of one planar body at once, under the laws of `orders`.
 
-The plane is put into space, where the body has equal moments about all axes. Such a body moves in the plane
+The plane is put into space, where the body gets equal moments about all axes. Such a body moves in the plane
 as the planar one does, so the laws are the same and are written once.
 """
 
@@ -39,16 +39,17 @@ def planar_several_impact(
     Args:
         body: Mass and angular inertia.
         velocity: The velocity of the body just before.
-        contacts: All that touch, approaching or not; at least one.
+        contacts: All contacts that touch, approaching or not. There is at least one.
         several_contacts_law: The law for several contacts.
-        restitution_law: What the coefficients of restitution mean; ENERGETIC only with SEQUENTIAL.
+        restitution_law: What the coefficients of restitution mean. ENERGETIC only goes with SEQUENTIAL.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
-        axes_W: (2, 3), the plane's x and y in world axes, in which the answer is given; the centre of mass is
-            its origin.
+        axes_W: (2, 3), the plane's x and y axes in world axes. The answer is in world axes, and the centre
+            of mass is at the world's origin.
 
     Raises:
         SeparatingContactError: every contact separates.
-        InvalidFieldError: as `several_impact`.
+        InvalidFieldError: `several_impact` refuses a field, or the axes are not two unit vectors at right
+            angles.
     """
     spatial = planar_in_space(body, velocity, contacts, axes_W=axes_W)
     return several_impact(

@@ -26,22 +26,22 @@ class SeveralVerdict(NamedInt):
     RESOLVED = 0
     """No contact approaches afterwards."""
     NOT_CONVERGED = 1
-    """The bound on strikes or iterations was reached; the state is the last one."""
+    """The bound on strikes or iterations was reached. The answer's state is the last one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SeveralImpact(Record):
-    """The answer for several contacts; contact i is row i, impulses act on the body, axes are the world's.
+    """The answer for several contacts of one body. Contact i is row i, and axes are the world's.
 
     Attributes:
         several_contacts_law: The law for several contacts.
         restitution_law: The law of restitution.
         verdict: Whether the answer holds.
-        state: Afterwards: the pose of before, new velocities.
-        impulses_W: (n, 3), N s, total.
-        velocities_before_W: (n, 3), m/s, of the contacts.
-        velocities_after_W: (n, 3), m/s, of the contacts.
-        strikes: Sequential: each contact struck, in order, its impact.
+        state: The state afterwards. It has the pose of before and new velocities.
+        impulses_W: (n, 3), N s, total impulses on the body.
+        velocities_before_W: (n, 3), m/s, velocities of the contacts before.
+        velocities_after_W: (n, 3), m/s, velocities of the contacts afterwards.
+        strikes: Each contact that was struck, in order, with its impact. SIMULTANEOUS has none.
     """
 
     several_contacts_law: SeveralContactsLaw
@@ -55,23 +55,23 @@ class SeveralImpact(Record):
 
     @property
     def order(self) -> tuple[int, ...]:
-        """Return the contacts that were struck, in order; empty for a simultaneous law."""
+        """Return the contacts that were struck, in order. SIMULTANEOUS strikes none in turn."""
         return tuple(contact for contact, _ in self.strikes)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class BodiesImpact(Record):
-    """The answer for several contacts of several bodies; contact i is row i, axes are the world's.
+    """The answer for several contacts of several bodies. Contact i is row i, and axes are the world's.
 
     Attributes:
         several_contacts_law: The law for several contacts.
         restitution_law: The law of restitution.
         verdict: Whether the answer holds.
-        states: The state of each body afterwards, with the pose of before and new velocities.
-        impulses_W: (n, 3), N s, total, on the first body of each contact.
-        velocities_before_W: (n, 3), m/s, of the first body's point relative to the second's.
-        velocities_after_W: (n, 3), m/s, likewise.
-        strikes: Sequential: each contact struck, in order, its impact.
+        states: The state of each body afterwards. It has the pose of before and new velocities.
+        impulses_W: (n, 3), N s, total impulses on the first body of each contact.
+        velocities_before_W: (n, 3), m/s, velocities of the first body's points relative to the second's.
+        velocities_after_W: (n, 3), m/s, the same velocities afterwards.
+        strikes: Each contact that was struck, in order, with its impact. SIMULTANEOUS has none.
     """
 
     several_contacts_law: SeveralContactsLaw
@@ -85,19 +85,19 @@ class BodiesImpact(Record):
 
     @property
     def order(self) -> tuple[int, ...]:
-        """Return the contacts that were struck, in order; empty for a simultaneous law."""
+        """Return the contacts that were struck, in order. SIMULTANEOUS strikes none in turn."""
         return tuple(contact for contact, _ in self.strikes)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class OrderedOutcomes(Record):
-    """What the sequential law comes to over its admissible orders; row i belongs to order i.
+    """The outcomes that a law for several contacts reaches over orders. Row i belongs to order i.
 
     Attributes:
-        orders: The contacts struck, in order.
+        orders: The contacts struck in each sequence, or the order that led to a simultaneous solution.
         velocities_W: (m, 6), m/s and rad/s, linear then angular velocity afterwards, world axes.
-        complete: Whether every priority of the contacts was tried.
-        not_converged: How many sequences were left out because they reached the bound on strikes.
+        complete: Whether every order of the contacts was tried.
+        not_converged: How many orders were left out because they reached the bound on strikes or iterations.
     """
 
     orders: tuple[tuple[int, ...], ...]

@@ -56,17 +56,17 @@ def bodies_impact(
     Args:
         bodies: Mass and angular inertia of each.
         states: Pose and velocities of each just before.
-        contacts: All that touch, approaching or not; at least one.
-        pairs: For each contact the body that its normal points into, and the other one, None for the world;
-            indices into ``bodies``.
+        contacts: All contacts that touch, approaching or not. There is at least one.
+        pairs: For each contact, the body that its normal points into and the other one. Both are indices into
+            ``bodies``, and the second is None for the world.
         several_contacts_law: The law for several contacts.
-        restitution_law: What the coefficients of restitution mean; ENERGETIC only with SEQUENTIAL.
+        restitution_law: What the coefficients of restitution mean. ENERGETIC only goes with SEQUENTIAL.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
 
     Raises:
         SeparatingContactError: every contact separates.
-        InvalidFieldError: no contacts, lists of unequal length, an index that is none, a tolerance that is
-            not > 0, or ENERGETIC with SIMULTANEOUS.
+        InvalidFieldError: there are no contacts, lists differ in length, an index has no body, the tolerance
+            is not > 0, or ENERGETIC and SIMULTANEOUS are asked for together.
     """
     check_choice("several_contacts_law", several_contacts_law, SeveralContactsLaw)
     check_choice("restitution_law", restitution_law, RestitutionLaw)
@@ -100,8 +100,11 @@ class Touching(NamedTuple):
     """Bodies in contact, and the laws of their strikes.
 
     Attributes:
-        pairs: As in `bodies_impact`.
-        tolerance: m/s.
+        bodies: Mass and angular inertia of each.
+        contacts: All contacts that touch.
+        pairs: For each contact, the body that its normal points into and the other one, or None.
+        restitution_law: What the coefficients of restitution mean.
+        tolerance: m/s. A contact that approaches less fast does not strike.
     """
 
     bodies: Sequence[MassProperties]
@@ -112,7 +115,7 @@ class Touching(NamedTuple):
 
 
 def check_touching(touching: Touching, states: Sequence[BodyState]) -> FloatArray:
-    """Return the contacts' velocities, (n, 3), m/s; refuse a set in which nothing touches or approaches."""
+    """Return the contacts' velocities, (n, 3), m/s. Refuse sets in which none touches or approaches."""
     contacts, tolerance = touching.contacts, touching.tolerance
     if len(contacts) == 0:
         raise InvalidFieldError("contacts", "none", "at least one contact")
@@ -130,10 +133,11 @@ def check_touching(touching: Touching, states: Sequence[BodyState]) -> FloatArra
 def strike_in_turn(
     touching: Touching, states: Sequence[BodyState], *, priority: tuple[int, ...] | None = None
 ) -> tuple[tuple[tuple[int, SpatialImpact], ...], list[BodyState], SeveralVerdict]:
-    """Strike one contact after the other: by ``priority``, or the fastest approach first.
+    """Strike one contact after the other, by ``priority`` or, if that is None, the fastest approach first.
 
     Returns:
-        Each contact struck, in order, with its impact; the states afterwards; whether none approaches then.
+        Each contact struck, in order, with its impact. Then the states afterwards, and whether no contact
+        approaches then.
     """
     now = list(states)
     strikes: list[tuple[int, SpatialImpact]] = []
@@ -147,11 +151,11 @@ def strike_in_turn(
 
 
 def _strike(touching: Touching, states: list[BodyState], contact: int) -> SpatialImpact:
-    """Return the impact at one contact, and put the states after it in place."""
+    """Return the impact at one contact, and replace the states of its bodies by those after it."""
     bodies, contacts = touching.bodies, touching.contacts
     first, second = touching.pairs[contact]
     touch, law = contacts[contact], touching.restitution_law
-    # Half, since the approach was judged by another sum with other rounding.
+    # Half the tolerance counts here, because the approach was judged by a sum that rounds differently.
     tolerance = 0.5 * touching.tolerance
     if second is None:
         impact = spatial_impact(
@@ -178,7 +182,8 @@ def strike_at_once(
 ) -> tuple[FloatArray, list[BodyState], SeveralVerdict]:
     """Return impulses, (n, 3), N s, and states afterwards, by one complementarity problem.
 
-    ``order`` of the contacts: for the solution that it leads to; None: the one that depends on no order.
+    The solution is the one that an ``order`` of the contacts leads to. If ``order`` is None, it depends on no
+    order.
     """
     bodies, contacts, pairs, restitution_law, tolerance = touching
     size = 6 * len(bodies)

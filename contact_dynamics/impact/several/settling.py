@@ -1,7 +1,7 @@
 """Jammed contacts go through jamming impacts until some contact mode is consistent.
 
-After one jamming impact (`jamming`) contacts may slide on in another direction, and jam again. Each impact
-takes energy, so this ends. In hundreds of drawn sets it ended after at most three.
+After one jamming impact (`jamming`), contacts may slide on in another direction and jam again. Each impact
+takes energy, so this ends. In hundreds of drawn sets it ended after at most three impacts.
 """
 
 from __future__ import annotations
@@ -40,24 +40,25 @@ def settling_impact(
     friction_facets: int = 8,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SeveralImpact:
-    """Return the impact of jammed contacts after which ``is_settled`` holds of the state, as one.
+    """Return one impact that stands for all jamming impacts until ``is_settled`` holds of the state.
 
-    Its impulses are the sums over the impacts. Its verdict is NOT_CONVERGED where it does not come to that.
+    Its impulses are the sums over the impacts. The verdict is NOT_CONVERGED if the contacts are not settled
+    after `MOST_JAMS` impacts. The arguments without a word here mean what they mean in `jamming_impact`.
 
     Args:
-        body: As for `jamming_impact`.
-        state: As for `jamming_impact`.
-        contacts: As for `jamming_impact`.
-        is_settled: Whether some mode of a state is consistent, or a contact approaches.
-        force_W: As for `jamming_impact`.
-        torque_W: As for `jamming_impact`.
-        plane_normal_W: As for `jamming_impact`.
-        friction_facets: As for `jamming_impact`.
-        velocity_tolerance: As for `jamming_impact`.
+        body: Mass and angular inertia.
+        state: Pose and velocities just before.
+        contacts: All contacts that touch. There is at least one.
+        is_settled: A function that says whether some mode of a state is consistent, or a contact approaches.
+        force_W: (3,), N, the force applied besides contact forces, gravity included, world axes.
+        torque_W: (3,), N m, the torque applied about the centre of mass, world axes.
+        plane_normal_W: (3,), unit, the normal of a plane of motion, or None in space.
+        friction_facets: The number of directions of friction in space, >= 3.
+        velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero.
 
     Raises:
-        InvalidFieldError: as `jamming_impact`.
-        TooLargeError: as `jamming_impact`.
+        InvalidFieldError: there are no contacts, or `jamming_impact` refuses a number.
+        TooLargeError: there are more than `MOST_JAMMED_CONTACTS` contacts.
     """
     jam = partial(
         jamming_impact,

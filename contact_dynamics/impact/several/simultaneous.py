@@ -1,20 +1,22 @@
 """Impulses at several contacts at once, by complementarity of impulses and velocities.
 
-Compression or Newton's whole impact: for every contact, with the velocity v after and v0 before,
+In compression, or in the whole impact under Newton's law, every contact with the velocity v after and v0
+before obeys
 
     0 <= p,   v_n + e v_n0 >= 0 (e = 0 in compression),   one of the two zero,
     |I_t| <= mu p, and I_t opposes v_t with mu p where v_t is not zero.
 
-This is Moreau's impact law with e (Newton's hypothesis; Moreau 1988). With Poisson's, a second problem of the
-same kind follows the compression, in which each contact gives back at least e times its normal impulse of
-compression (Anitescu and Potra 1997). Friction acts on the velocity at the end of each problem, so within one
-of them sliding does not reverse.
+This is Moreau's impact law with e (Newton's hypothesis; Moreau 1988). Under Poisson's hypothesis, a second
+problem of the same kind follows the compression. In it each contact gives back at least e times its normal
+impulse of compression (Anitescu and Potra 1997). Friction acts on the velocity at the end of each problem, so
+within one of them sliding does not reverse.
 
-Method: block Gauss-Seidel over the contacts on the exact (round) friction cones, each block by projection,
-until no impulse changes. With friction, and where contacts are redundant, there may be several solutions, and
-which one that ends at depends on the order in which contacts are listed. So all contacts are projected at
-once as well, which knows no order: where the two disagree, that is the answer. It is the same for every
-listing, and symmetric where the contacts are.
+The method is block Gauss-Seidel over the contacts with the exact (round) friction cones. It projects the
+impulse of one contact after the other onto its cone until no impulse changes. With friction, and where
+contacts are redundant, there may be several solutions, and the order in which contacts are listed then
+decides which one this method ends at. So all contacts are projected at once as well, which knows no order.
+Where the two disagree, the second is the answer. It is the same for every listing, and it is symmetric if the
+contacts are.
 """
 
 from __future__ import annotations
@@ -32,17 +34,19 @@ if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
 
 MOST_SWEEPS: Final = 5000
-"""Sweeps after which the problem counts as not converged."""
+"""Number of sweeps after which the problem counts as not converged."""
 
 MOST_PROJECTIONS: Final = 100_000
-"""Projections of one contact's impulse in one problem, some 2 s of computing. Up to 20 contacts,
-`MOST_SWEEPS` come before."""
+"""Bound on the projections of single impulses in one problem, which take some 2 s. Up to 20 contacts,
+`MOST_SWEEPS` ends the problem before."""
 
 _MOST_STEPS: Final = 20_000
-"""Steps of all contacts at once, which are smaller than those of one after the other, and cheaper."""
+"""Bound on the steps of all contacts at once. They are smaller than those of one contact after the other,
+and cheaper."""
 
 _MOST_PRODUCTS: Final = 2_000_000_000
-"""Products in all these steps, some 2 s of computing. Up to 105 contacts, `_MOST_STEPS` come before."""
+"""Bound on the products in all these steps, which take some 2 s. Up to 105 contacts, `_MOST_STEPS` ends the
+problem before."""
 
 
 class _Problem(NamedTuple):
@@ -53,8 +57,8 @@ class _Problem(NamedTuple):
     twist: FloatArray  # (6 k,)
     normals: FloatArray  # (n, 3)
     frictions: FloatArray  # (n,)
-    least: FloatArray  # (n,), N s, of the normal impulses
-    bounce: FloatArray  # (n,), m/s, of the normal velocities afterwards
+    least: FloatArray  # (n,), N s, lower bounds of the normal impulses
+    bounce: FloatArray  # (n,), m/s, lower bounds of the normal velocities afterwards
 
 
 def simultaneous_impulses(
@@ -69,28 +73,30 @@ def simultaneous_impulses(
 ) -> tuple[FloatArray, bool]:
     """Return the impulses, (n, 3), N s, world axes, and whether the iteration converged.
 
-    Contacts whose normal velocity is above ``tolerance``, m/s, take part with it: they strike if the others
-    turn the bodies into them.
+    Contacts that separate faster than ``tolerance``, m/s, take part too. They strike if the others turn the
+    bodies into them.
 
     Args:
         contacts: Normals, frictions and restitutions.
         law: Poisson's or Newton's.
-        jacobian: (n, 3, 6 k), takes the k bodies' velocities, v then w of each, into those of the contacts.
+        jacobian: (n, 3, 6 k), a matrix for each contact. It takes the velocities of the k bodies (v then w
+            of each) into the contact's velocity.
         inverse_mass: (6 k, 6 k), 1/kg and 1/(kg m^2), takes impulses and their moments into velocities.
         twist: (6 k,), m/s and rad/s, the bodies' velocities just before.
         tolerance: m/s. A contact that approaches less fast does not bounce.
-        order: Order of the contacts that leads to the solution, or None if it depends on no order.
+        order: The order of the contacts that leads to the solution. If it is None, the solution depends on no
+            order.
 
     Raises:
-        TooLargeError: so many contacts that `MOST_PROJECTIONS` do not settle their impulses.
+        TooLargeError: there are so many contacts that `MOST_PROJECTIONS` do not settle their impulses.
     """
     normals, frictions = contacts.normals_W, contacts.frictions
     approach = np.minimum(np.einsum("ij,ij->i", jacobian @ twist, normals), 0.0)
     approach[approach >= -tolerance] = 0.0
 
     none = np.zeros(len(contacts))
-    # `RestitutionRule` is for a path. Here Newton's law asks for velocities, in one problem, and Poisson's
-    # for impulses, in a second one. The energetic law has neither, and is refused before.
+    # `RestitutionRule` needs a path, and there is none here. Newton's law asks for velocities, in one
+    # problem, and Poisson's for impulses, in a second one. The energetic law was refused before.
     if law == RestitutionLaw.NEWTON:
         bounce = -contacts.restitutions * approach
         return _solve(
@@ -130,7 +136,7 @@ def _solve(
         return impulses, converged
     together, also = _together(problem)
     if not also:
-        # Then an order that does not depend on the list: by what the contacts are.
+        # Then the contacts are taken in an order that depends on what they are, and not on the list.
         values = np.column_stack([np.round(np.einsum("ijk,k->ij", jacobian, twist), 9), frictions, normals])
         canonical = tuple(sorted(listed, key=lambda i: values[i].tolist()))
         together, also = _in_turn(problem, canonical)
@@ -176,7 +182,7 @@ def _in_turn(problem: _Problem, order: tuple[int, ...]) -> tuple[FloatArray, boo
     impulses = least[:, None] * normals
     twist = twist + np.einsum("ijk,ik->j", response, impulses)
     scale = float(abs(jacobian @ twist).max())
-    # Projection steps that are safe for each block: 1 over its largest eigenvalue.
+    # One over the largest eigenvalue of a block is a step for which its projection converges.
     steps = 1.0 / np.linalg.eigvalsh(blocks)[:, -1]
     sweeps = min(MOST_SWEEPS, max(MOST_PROJECTIONS // len(normals), 1))
     for _ in range(sweeps):

@@ -1,8 +1,8 @@
-"""Many impacts in space at once: arrays in, arrays out, with the numbers of `one_contact` to the last bit.
+"""Many impacts in space at once, from arrays to arrays, with the numbers of `one_contact` to the last bit.
 
-Contacts slide in lock-step (`batch_paths`). Those whose direction is invariant (spheres, central impacts,
-plane problems, no friction) have closed forms, as in `one_contact`. The vertices of the impulse paths are not
-kept.
+Contacts slide in lock-step (`batch_paths`). As in `one_contact`, there are closed forms where the direction
+is invariant: for spheres, central impacts, planar problems and contacts without friction. The vertices of the
+impulse paths are not kept.
 """
 
 from __future__ import annotations
@@ -45,19 +45,20 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 _CHUNK: Final = 8192
-"""Cases that go together. More save little and take 2 kB each while they slide."""
+"""Cases that are worked out together. A larger number saves little, and each case takes 2 kB while it slides.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class StrikingBodies(Record):
-    """Bodies that strike, at their contacts; each field has a row a case, or one for all cases.
+    """Bodies that strike, at their contacts. Each field has a row for each case, or one row for all cases.
 
     Attributes:
         masses: (N,) or (), kg, > 0.
         inertias_B: (N, 3, 3) or (3, 3), kg m^2, about the centres of mass, body axes.
-        q_WB: (N, 4) or (4,), unit quaternions x, y, z, w: body into world coordinates.
-        v_WB_W: (N, 3) or (3,), m/s, of the centres of mass, world axes.
-        w_WB_W: (N, 3) or (3,), rad/s, world axes.
+        q_WB: (N, 4) or (4,), unit quaternions x, y, z, w, which take body into world coordinates.
+        v_WB_W: (N, 3) or (3,), m/s, velocities of the centres of mass, world axes.
+        w_WB_W: (N, 3) or (3,), rad/s, angular velocities, world axes.
         r_W: (N, 3) or (3,), m, from the centres of mass to the contacts, world axes.
 
     Raises:
@@ -112,19 +113,20 @@ class StrikingBodies(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SpatialImpacts(ManyEnergies):
-    """The answers to N impacts in space; row i belongs to case i. Meanings as in `SpatialImpact`.
+    """The answers to N impacts in space. Row i belongs to case i, and `SpatialImpact` explains the fields.
 
     Attributes:
         restitution_laws: (N,), values of RestitutionLaw.
         outcomes: (N,), values of ImpactOutcome.
-        v_WB_W: (N, 3), m/s, of the centres of mass afterwards, world axes.
-        w_WB_W: (N, 3), rad/s, afterwards, world axes.
-        impulses_W: (N, 3), N s, total.
-        compressions_W: (N, 3), N s, up to the end of compression.
-        velocities_before_W: (N, 3), m/s, of the contacts, relative to what they touch.
-        velocities_after_W: (N, 3), m/s, of the contacts, relative to what they touch.
-        other_v_WB_W: (N, 3), m/s, of the second bodies; None: the fixed world.
-        other_w_WB_W: (N, 3), rad/s, of the second bodies; None: the fixed world.
+        v_WB_W: (N, 3), m/s, velocities of the centres of mass afterwards, world axes.
+        w_WB_W: (N, 3), rad/s, angular velocities afterwards, world axes.
+        impulses_W: (N, 3), N s, total impulses.
+        compressions_W: (N, 3), N s, impulses up to the end of compression.
+        velocities_before_W: (N, 3), m/s, velocities of the contacts before, relative to what they touch.
+        velocities_after_W: (N, 3), m/s, velocities of the contacts afterwards, relative to what they touch.
+        other_v_WB_W: (N, 3), m/s, velocities of the second bodies' centres of mass, or None if the bodies
+            strike the fixed world.
+        other_w_WB_W: (N, 3), rad/s, angular velocities of the second bodies, or None likewise.
     """
 
     restitution_laws: NDArray[np.int64]
@@ -152,14 +154,14 @@ def spatial_impacts(
     restitution_laws: ArrayLike = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SpatialImpacts:
-    """Return what N impacts in space do; the same as `spatial_impact`, or `spatial_pair_impact`, of each.
+    """Return what N impacts in space do. Each answer is that of `spatial_impact` or `spatial_pair_impact`.
 
     Args:
         bodies: The bodies that the normals point into, just before.
         normals_W: (N, 3) or (3,), unit, world axes.
         frictions: (N,) or one number, >= 0.
         restitutions: (N,) or one number, in [0, 1].
-        others: What they strike, where it is not the fixed world.
+        others: The bodies that they strike, or None if they strike the fixed world.
         restitution_laws: (N,) or one, values of RestitutionLaw.
         velocity_tolerance: m/s, >= 0. A normal or tangential velocity of a contact within it counts as zero.
 
@@ -182,7 +184,7 @@ def spatial_impacts(
     every_law = np.broadcast_to(fields["restitution_laws"], count)
     outcomes = np.empty(count, dtype=np.int64)
     results = np.empty((18 if others is None else 24, count))
-    # Lanes that a formula is not meant for are computed too, and not used.
+    # Formulas are also evaluated for cases that they are not meant for. Those values are not used.
     with np.errstate(all="ignore"):
         for law in RestitutionLaw:
             cases = np.flatnonzero(every_law == law)
@@ -210,7 +212,7 @@ def spatial_impacts(
 def _strike(
     rows: dict[str, FloatArray], cases: NDArray[np.intp], law: RestitutionLaw, tolerance: float
 ) -> tuple[NDArray[np.int64], list[FloatArray]]:
-    """Repeat `spatial_impact` for some ``cases``; return outcomes, and the answers component by component."""
+    """Return the outcomes of `spatial_impact` for some ``cases``, and the answers component by component."""
     count = len(cases)
     first = _responding(rows, "bodies", count)
     second = _responding(rows, "others", count) if "others.masses" in rows else None

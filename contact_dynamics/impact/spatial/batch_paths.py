@@ -1,8 +1,8 @@
-"""The impulse paths of many contacts in space at once: `path`, `stop` and `restitution` in lock-step.
+"""The impulse paths of many contacts in space at once, which do the work of `path`, `stop` and `restitution`.
 
 Each contact is a lane. All lanes that still slide take their next stretch together. Lanes drop out when they
 have stopped or their impact is over. Within a stretch, branches become selections of lanes. The arithmetic is
-that of the single path in the same order, partly by the same lines (`taylor`, `sliding_law`, `stop`), so that
+that of the single path in the same order, partly by the same lines (`taylor`, `sliding_law`, `stop`). So
 every number is the same to the last bit. Vertices of the paths are not kept.
 """
 
@@ -38,16 +38,17 @@ if TYPE_CHECKING:
     Lanes = NDArray[np.intp]
 
 FEW: Final = 32
-"""Lanes that are left to the scalar path one by one: for fewer, calling NumPy costs more than it saves."""
+"""When no more lanes than this are left, each is followed as a single path, because calling NumPy for so few
+costs more than it saves."""
 
 
 class SpatialPaths(NamedTuple):
-    """Many impulse paths, in contact axes; element i of each array belongs to contact i.
+    """Many impulse paths, in contact axes. Element i of each array belongs to contact i.
 
     Attributes:
         outcomes: Values of ImpactOutcome.
-        compression: N s, at the end of compression.
-        impulse: N s, total.
+        compression: N s, impulses at the end of compression.
+        impulse: N s, total impulses.
         u: m/s, sliding velocities afterwards.
         v_n: m/s, normal velocities afterwards.
     """
@@ -107,7 +108,7 @@ def taken_law(sliding: SlidingLaw, lanes: Lanes) -> SlidingLaw:
 
 
 class _Slide:
-    """Many contacts that slide: the loop of `path.trace` for many."""
+    """Many contacts that slide. This is the loop of `path.slide` for many."""
 
     def __init__(self, sliding: SlidingLaw, u: tuple[FloatArray, FloatArray], progress: ManyProgress) -> None:
         self.sliding = sliding
@@ -177,7 +178,7 @@ class _Slide:
         speeding: FloatArray,
         lifting: FloatArray,
     ) -> None:
-        """Go straight on, at most to the stop."""
+        """Take lanes straight on, at most to the stop."""
         mu = self.sliding.mu[lanes]
         length = np.where(speeding < 0.0, speed / -speeding, math.inf)
         gone = self.progress.go_straight(lanes, length, (-mu * d[0], -mu * d[1]), lifting)
@@ -185,7 +186,7 @@ class _Slide:
         self.u1[lanes], self.u2[lanes] = d[0] * final, d[1] * final
 
     def _jump(self, lanes: Lanes, lifting: FloatArray) -> Lanes:
-        """Go to the stop ahead at once where nothing ends before it; return the positions that did."""
+        """Take lanes to the stop ahead if nothing ends before it. Return the positions that have jumped."""
         law = taken_law(self.sliding, lanes)
         found, stop = _stops_ahead(
             law, (self.u1[lanes], self.u2[lanes]), self.first_speed[lanes], with_work=self.with_work
@@ -203,7 +204,7 @@ class _Slide:
         return jumped
 
     def _stretch(self, lanes: Lanes, lifting: FloatArray) -> None:
-        """Advance along one stretch each, split where v_n turns."""
+        """Advance each lane along one stretch, in two parts if v_n turns from falling to rising or back."""
         if lanes.size == 0:
             return
         series = SlidingSeries(
@@ -224,7 +225,7 @@ class _Slide:
 
 
 def _after_stop(sliding: SlidingLaw) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return what stopped contacts do: `SlidingLaw.after_stop` for many."""
+    """Return `SlidingLaw.after_stop` for many stopped contacts."""
     i1, i2, lifting = sliding.while_held()
     speeding = np.zeros(len(sliding.mu))
     free = np.flatnonzero(~sliding.holds)
@@ -248,7 +249,7 @@ def _after_stop(sliding: SlidingLaw) -> tuple[FloatArray, FloatArray, FloatArray
 def _stops_ahead(
     sliding: SlidingLaw, u: tuple[FloatArray, FloatArray], first_speed: FloatArray, *, with_work: bool
 ) -> tuple[Lanes, Stop]:
-    """Return the positions that have a stop ahead, and those stops: `stop.stop_ahead` for many."""
+    """Return the positions that have a stop ahead, and those stops, as `stop.stop_ahead` for one."""
     speed = np.sqrt(u[0] * u[0] + u[1] * u[1])
     d1, d2 = u[0] / speed, u[1] / speed
     slow = np.flatnonzero(turns_slowly(sliding, d1, d2, speed, first_speed))
@@ -305,7 +306,7 @@ def _near_stops(
 def _regular_solutions(
     g: list[FloatArray], h: list[FloatArray], x: FloatArray, power: float
 ) -> tuple[NDArray[np.bool_], FloatArray]:
-    """Return where the series has converged, and F(x) there: `stop._regular_solution` for many."""
+    """Return where the series has converged, and F(x) there, as `stop._regular_solution` for one."""
     f = [-1.0 / (power * g[0])]
     slope: list[FloatArray] = []
     total, x_n = f[0].copy(), np.ones(len(x))

@@ -1,6 +1,6 @@
-"""How far many impacts have come while their normal impulses grow: `restitution` for many, in lock-step.
+"""How far many impacts have come while their normal impulses grow, as `restitution` does for one.
 
-The operations are those of one impact in the same order, and branches are selections of lanes, so that every
+The operations are those of one impact in the same order, and branches are selections of lanes. So every
 number is the same to the last bit.
 """
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class ManyProgress:
-    """States of impacts on their way; element i of each array belongs to lane i."""
+    """The states of many impacts on their way. Element i of each array belongs to lane i."""
 
     def __init__(self, law: RestitutionLaw, restitution: FloatArray, v_n: FloatArray) -> None:
         count = len(v_n)
@@ -50,7 +50,7 @@ class ManyProgress:
         """Advance lanes ``at`` by at most ``length`` of normal impulse at constant rates.
 
         Returns:
-            The normal impulse gone, N s; less than ``length`` where the impact was over before.
+            The normal impulse gone, N s. It is less than ``length`` where the impact was over before.
         """
         gone = np.zeros(len(at))
         live = np.arange(len(at))
@@ -85,12 +85,12 @@ class ManyProgress:
         *,
         among: Lanes | None = None,
     ) -> FloatArray:
-        """Advance lanes ``at`` along ``series``, between whose ``begin`` and ``end`` v_n rises or falls.
+        """Advance lanes ``at`` along ``series`` from ``begin`` to ``end``, between which v_n is monotone.
 
-        Only the positions ``among`` advance, where given; the others keep ``begin``.
+        If positions ``among`` are given, only they advance, and the others keep ``begin``.
 
         Returns:
-            The parameters reached; less than ``end`` where the impact was over before.
+            The parameters reached. They are less than ``end`` where the impact was over before.
         """
         s = begin.copy()
         live = np.arange(len(at)) if among is None else among
@@ -124,7 +124,7 @@ class ManyProgress:
 
     @contextmanager
     def alone(self, lane: int) -> Iterator[Progress]:
-        """Give one lane as a `Progress`, and take over how far it comes."""
+        """Lend one lane as a `Progress`, and take over how far it has come."""
         one = Progress(self.rule.law, 0.0, float(self.v_n[lane]))
         i1, i2, p = (x.item(lane) for x in self.impulse)
         c1, c2, c = (x.item(lane) for x in self.compression)
@@ -179,7 +179,7 @@ class ManyProgress:
     def _curved_finish(
         self, at: Lanes, series: SlidingSeries, positions: Lanes, begin: FloatArray, end: FloatArray
     ) -> tuple[Mask, FloatArray]:
-        """Return whether restitution is complete before ``end``, and where; ``end`` where not."""
+        """Return which lanes complete restitution before ``end``, and where. The others get ``end``."""
         whole = self.rule.meter(series.normal_velocity, series.normal_impulse, series.normal_work)
         meter = taken(whole, positions)
         first = value(meter, begin)
@@ -201,7 +201,7 @@ class ManyProgress:
             whole[at] += part
 
     def _turn(self, at: Lanes, *, turns: Mask, ends: Mask, falls: Mask) -> None:
-        """End compression where it ``turns``, the impact where it ``ends``; compress again where it falls."""
+        """End the compression of some lanes and the impact of others, and compress again where v_n falls."""
         self.v_n[at[turns | falls]] = 0.0
         ended = at[turns]
         self.compressing[ended] = False
@@ -217,7 +217,7 @@ def taken(arrays: Iterable[FloatArray], lanes: Lanes | Mask) -> Any:
 
 
 def crossings(series: list[FloatArray], level: FloatArray, begin: FloatArray, end: FloatArray) -> FloatArray:
-    """Return where polynomials cross ``level`` between ``begin`` and ``end``: `taylor.crossing` for many."""
+    """Return where polynomials cross ``level`` between ``begin`` and ``end``. `taylor.crossing` does one."""
     low, high = begin.copy(), end.copy()
     first, last = value(series, begin), value(series, end)
     rising = last >= first

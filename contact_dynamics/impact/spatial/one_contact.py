@@ -1,14 +1,14 @@
-"""Impact in space of one body at one contact: with the fixed world, or with a second moving body.
+"""Impact in space of one body at one contact with the fixed world, or with a second moving body.
 
-Model: as in the plane (`impact.planar`), bodies are rigid, the impact has no duration, friction is Coulomb's,
-and only the contact's force acts. In space the sliding direction swerves while the impulse grows. The path
-obeys an ordinary differential equation in the normal impulse (lecture 27 carried to space; Routh 1860; Keller
-1986), which is solved to rounding (`sliding_law`, `taylor`, `path`), and in closed form where the direction
-stays constant. Impulses on two bodies are opposite, so only their relative velocity matters, and the
-contact's inverse inertia is the sum of both (`response`).
+The model is that of the plane (`impact.planar`): bodies are rigid, the impact has no duration, friction is
+Coulomb's, and only the contact's force acts. In space the sliding direction swerves while the impulse grows.
+The path obeys an ordinary differential equation in the normal impulse (lecture 27 carried to space; Routh
+1860; Keller 1986). It is solved to rounding (`sliding_law`, `taylor`, `path`), and in closed form where the
+direction stays constant. The impulses on two bodies are opposite, so only their relative velocity matters,
+and the contact's inverse inertia is the sum of both (`response`).
 
-Not covered: torsional friction and rolling resistance (the contact transmits a force and no moment), several
-contacts (`impact.several`).
+The contact transmits a force and no moment, so torsional friction and rolling resistance are left out.
+`impact.several` treats several contacts.
 """
 
 from __future__ import annotations
@@ -58,8 +58,8 @@ def spatial_impact(
     Args:
         body: Mass and angular inertia.
         state: Pose and velocities just before.
-        contact: Where, along which normal into the body, with which friction and restitution. Curvatures play
-            no part in an impact.
+        contact: The contact, with its normal into the body, friction and restitution. Curvatures play no part
+            in an impact.
         restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A normal or tangential velocity of the contact within it counts as
             zero.
@@ -84,14 +84,14 @@ def spatial_pair_impact(
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SpatialImpact:
-    """Return what the impact of two bodies in space does; no moment passes the contact.
+    """Return what the impact of two bodies in space does. The contact transmits no moment.
 
     Args:
         body: The first body, which the normal points into.
         state: The state of the first body just before.
         other: The second body.
         other_state: The state of the second body just before.
-        contact: Where, along which normal into the first body, with which friction and restitution.
+        contact: The contact, with its normal into the first body, friction and restitution.
         restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A normal or tangential relative velocity within it counts as zero.
 
@@ -115,7 +115,7 @@ def _impact(
     law: RestitutionLaw,
     velocity_tolerance: float,
 ) -> SpatialImpact:
-    """Return the impact of a body on ``other``; None is the fixed world."""
+    """Return the impact of a body on ``other``, or on the fixed world if ``other`` is None."""
     check_choice("restitution_law", law, RestitutionLaw)
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
 
@@ -170,7 +170,7 @@ def contact_inverse_inertia(body: MassProperties, state: BodyState, arm: FloatAr
 
     Args:
         body: Mass and angular inertia.
-        state: Gives the attitude.
+        state: The state of the body, whose attitude alone matters.
         arm: (3,), m, from the centre of mass to the point, world axes.
     """
     axes = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)

@@ -1,9 +1,9 @@
 """The impulse path of one contact in space, from the first touch to the end of restitution.
 
 The contact first slides. It swerves (`taylor`), or slides straight if its direction is invariant. After a
-stop it sticks, or leaves in the one admissible direction, straight in both cases (`sliding_law`). Straight
-phases have closed forms: a central or spherical impact, a planar impact embedded in space, an impact without
-friction, and every impact after its stop.
+stop it sticks, or it leaves in the one admissible direction (`sliding_law`). Its path is straight in both
+cases. Straight paths have closed forms. These are the paths of central and spherical impacts, of planar
+impacts put into space, of impacts without friction, and of every impact after its stop.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ MOST_STRETCHES: Final = 2000
 
 
 class SpatialPath(NamedTuple):
-    """An impulse path in contact axes: the two principal tangents, then the normal.
+    """An impulse path in contact axes, which are the two principal tangents and then the normal.
 
     Attributes:
         outcome: What the contact did.
         jams: Whether sliding drove the contact into compression at first.
-        vertices: N s.
-        compression: N s, at the end of compression.
-        impulse: N s, total.
+        vertices: N s, the points of the path, each with its meaning.
+        compression: N s, the impulse at the end of compression.
+        impulse: N s, the total impulse.
         u: m/s, sliding velocity afterwards.
         v_n: m/s, normal velocity afterwards.
     """
@@ -49,7 +49,8 @@ def trace(
 ) -> SpatialPath:
     """Return the path of a contact that starts with ``u``, tangential, and ``v_n`` <= 0, normal, m/s.
 
-    An exact 0 means a contact that does not slide or does not approach; tolerances are the caller's.
+    A velocity of exactly 0 means that the contact does not slide, or does not approach. The caller has
+    applied the tolerances.
     """
     u1, u2 = u
     speed = math.sqrt(u1 * u1 + u2 * u2)
@@ -94,15 +95,16 @@ def slide(
     started: bool = False,
     ends_before: bool | None = None,
 ) -> tuple[float, float]:
-    """Follow sliding until it stops or the impact is over; return the sliding velocity there, m/s.
+    """Follow sliding until it stops or the impact is over, and return the sliding velocity there, m/s.
 
     Args:
-        sliding: Its law.
+        sliding: The law that the sliding follows.
         u: m/s, the present sliding velocity.
-        progress: How far the impact has come; it is advanced.
-        first_speed: m/s, that of the whole path, which errors are compared with.
+        progress: How far the impact has come. This function advances it.
+        first_speed: m/s, the sliding speed at the beginning of the whole path. Errors are compared with it.
         started: Whether sliding has already swerved.
-        ends_before: The phase, compressing or not, that is known to end before the stop ahead; None: none is.
+        ends_before: The phase (whether it is compression) that is known to end before the stop ahead, or None
+            if neither is known to.
     """
     u1, u2 = u
     slowest = STOPPED * first_speed
@@ -123,7 +125,7 @@ def slide(
             return (u1 + sliding.k1 * p, u2 + sliding.k2 * p)
         if speeding < 0.0 and progress.compressing is not ends_before:
             stop = stop_ahead(sliding, (u1, u2), first_speed, with_work=with_work)
-            # The one direction that v_n goes at both ends is the one all the way.
+            # If v_n rises at both ends it rises all the way, and if it falls at both it falls all the way.
             if stop is not None and (lifting < 0.0) == (sliding.lifting(stop.d1, stop.d2) < 0.0):
                 if progress.jump(*at_stop(sliding, (u1, u2), progress.v_n, stop)):
                     return (0.0, 0.0)
@@ -160,7 +162,7 @@ def _slide_straight(
 
 
 def _slide_along(series: SlidingSeries, progress: Progress, lifting: float) -> tuple[float, float]:
-    """Advance along one stretch, split where v_n turns."""
+    """Advance along one stretch, in two parts if v_n turns from falling to rising or back."""
     end = series.length
     s = 0.0
     if (value(series.lifting, end) < 0.0) != (lifting < 0.0):

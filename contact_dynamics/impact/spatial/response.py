@@ -1,11 +1,11 @@
-"""How a contact in space responds to impulse: axes, inverse inertia, and what an impulse does to a body.
+"""How a contact in space responds to an impulse, and what an impulse does to a body.
 
-Contact axes are two tangents and the normal; the tangents are the principal ones of the tangential block of
+Contact axes are two tangents and the normal. The tangents are the principal ones of the tangential block of
 the inverse inertia, as the sliding equations need them (`sliding_law`). Everything is written by component,
-for one case and for many (`elementwise`).
+so that the same lines serve one case and many (`elementwise`).
 
-The inverse inertia of a pair of bodies is the sum of both: their impulses are opposite, and so are their
-shares of the relative velocity.
+The inverse inertia of a pair of bodies is the sum of both, because their impulses are opposite, and so are
+their shares of the relative velocity.
 """
 
 from __future__ import annotations
@@ -24,15 +24,16 @@ Vector3: TypeAlias = "tuple[Number, Number, Number]"
 
 
 class Responding(NamedTuple):
-    """A body at a contact: what its change of velocity follows from, world axes.
+    """A body at a contact, with everything that its change of velocity follows from, world axes.
 
     Attributes:
-        per_mass: 1/kg.
-        inertia: kg m^2, body axes: pivots d1, d2, d3, then L's l21, l31, l32 (I = L D L^T).
-        rotation: Columns of R_WB: the body's axes in the world.
+        per_mass: 1/kg, one over the mass.
+        inertia: kg m^2, body axes, factored as I = L D L^T. It holds the pivots d1, d2, d3 of D, then l21,
+            l31, l32 of L, which have no unit.
+        rotation: The body's axes in the world, which are the columns of R_WB.
         r: m, from the centre of mass to the contact.
         v: m/s, of the centre of mass.
-        w: rad/s.
+        w: rad/s, angular velocity.
     """
 
     per_mass: Number
@@ -44,7 +45,7 @@ class Responding(NamedTuple):
 
 
 class Response(NamedTuple):
-    """Inverse inertia in axes a, b, n: the change of velocity along one per impulse along another, 1/kg."""
+    """Inverse inertia in axes a, b, n, 1/kg: changes of velocity along one axis per impulse along another."""
 
     aa: Number
     ab: Number
@@ -58,14 +59,14 @@ class ContactAxes(NamedTuple):
     """The principal tangents and the normal, world axes, with the response in them.
 
     Attributes:
-        t1: Unit.
-        t2: Unit.
-        n: Unit.
-        l1: 1/kg, tangential response, first direction.
-        l2: 1/kg, second direction.
-        k1: 1/kg, between the first and the normal.
-        k2: 1/kg, between the second and the normal.
-        kn: 1/kg, normal response.
+        t1: The first tangent, unit.
+        t2: The second tangent, unit.
+        n: The normal, unit.
+        l1: 1/kg, response along the first tangent to an impulse along it.
+        l2: 1/kg, response along the second tangent to an impulse along it.
+        k1: 1/kg, coupling between the first tangent and the normal.
+        k2: 1/kg, coupling between the second tangent and the normal.
+        kn: 1/kg, response along the normal to an impulse along it.
     """
 
     t1: Vector3
@@ -169,7 +170,7 @@ def contact_axes(body: Responding, other: Responding | None, normal: Vector3) ->
 
 
 def pushed(body: Responding, impulse: Vector3) -> tuple[Vector3, Vector3]:
-    """Return velocity and angular velocity, world axes, after an ``impulse`` at the contact, N s."""
+    """Return the body's linear and angular velocity, world axes, after an ``impulse`` at the contact, N s."""
     v, w, per_mass = body.v, body.w, body.per_mass
     d1, d2, d3, l21, l31, l32 = body.inertia
     x, y, z = _in_body(body, cross(body.r, impulse))

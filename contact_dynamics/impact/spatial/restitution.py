@@ -1,10 +1,10 @@
 """How far an impact has come while the normal impulse grows, for paths that are not known in advance.
 
-Compression is wherever the contact approaches, restitution wherever it leaves. What the restitution law
-compares (Poisson: normal impulse; energetic: work of the normal impulse) is collected in compression and
-given back in restitution; Newton's law only looks at the normal velocity. In space the sliding direction
-swerves, so that a contact can approach once more before its restitution is over: what the second compression
-collects is added to what was left of the first.
+The impact is in compression while the contact approaches, and in restitution while it leaves. Compression
+collects an amount, and restitution gives a share of it back. For Poisson's law the amount is the normal
+impulse, and for the energetic law it is the work of the normal impulse. Newton's law only looks at the normal
+velocity. In space the sliding direction swerves, so that a contact can approach once more before its
+restitution is over. Then the amount of the second compression is added to what is left of the first.
 
 This file follows one path, with its vertices. `batch_restitution` repeats the same operations for many.
 """
@@ -24,7 +24,7 @@ Impulse = tuple[float, float, float]  # N s: two tangential components and the n
 
 
 class Progress:
-    """State of an impact on its way: impulse, normal velocity, and what restitution still owes."""
+    """The state of an impact on its way: its impulse, normal velocity and what restitution still owes."""
 
     def __init__(self, law: RestitutionLaw, restitution: float, v_n: float) -> None:
         self.rule = RULES[law]
@@ -39,10 +39,10 @@ class Progress:
         self.due = 0.0  # N s or J, what restitution still owes
 
     def go_straight(self, length: float, rates: Impulse, lifting: float) -> float:
-        """Advance by at most ``length`` of normal impulse at constant ``rates`` of the impulse and of v_n.
+        """Advance by at most ``length`` of normal impulse while the impulse and v_n grow at constant rates.
 
         Returns:
-            The normal impulse gone, N s; less than ``length`` where the impact was over before.
+            The normal impulse gone, N s. It is less than ``length`` if the impact was over before.
         """
         gone = 0.0
         while not self.over:
@@ -73,7 +73,7 @@ class Progress:
         """Advance along ``series`` from ``begin`` to ``end``, between which v_n rises or falls throughout.
 
         Returns:
-            The parameter reached; less than ``end`` where the impact was over before.
+            The parameter reached. It is less than ``end`` if the impact was over before.
         """
         s = begin
         v_n = series.normal_velocity
@@ -100,10 +100,10 @@ class Progress:
     def jump(self, impulse: Impulse, v_n: float, work: float) -> bool:
         """Advance by ``impulse`` at once, to ``v_n``, unless compression or the impact ends on the way.
 
-        On the way v_n rises or falls throughout.
+        The normal velocity must rise all the way, or fall all the way.
 
         Returns:
-            Whether it did.
+            Whether the impact has advanced.
         """
         if self.compressing:
             if v_n > 0.0:
@@ -134,7 +134,7 @@ class Progress:
         return bool(self.rule.is_done(p=p, v_n=v_n, work=work, due=self.due, final=self.final_velocity))
 
     def _curved_step(self, series: SlidingSeries, begin: float, end: float, v_n: float) -> float:
-        """Advance to ``end``, where the normal velocity is ``v_n``; return it."""
+        """Advance to ``end``, where the normal velocity is ``v_n``, and return ``end``."""
         p = gain(series.normal_impulse, begin, end)
         work = gain(series.normal_work, begin, end) if self.rule.needs_work else 0.0
         self._account(p, work)
@@ -148,7 +148,7 @@ class Progress:
         return end
 
     def _curved_finish(self, series: SlidingSeries, begin: float, end: float) -> float | None:
-        """Return the parameter in [begin, end] at which restitution is complete, if it is."""
+        """Return the parameter in [begin, end] at which restitution is complete, or None if it is not."""
         meter = self.rule.meter(series.normal_velocity, series.normal_impulse, series.normal_work)
         first = value(meter, begin)
         level = self.rule.level(first, self.due, self.final_velocity)

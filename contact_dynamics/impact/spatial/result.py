@@ -1,4 +1,4 @@
-"""The result of an impact at one contact in space: the state afterwards, and the impulse path as evidence."""
+"""The result of an impact at one contact in space: the state afterwards, and the impulse path."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from contact_dynamics.validation import FloatArray
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SpatialImpact(Record):
-    """The answer to one impact in space. Impulses act on the body; all arrays are in world axes.
+    """The answer to one impact in space. Impulses act on the body, and all arrays are in world axes.
 
     Attributes:
         restitution_law: The restitution law that was asked for.
         outcome: What the contact did.
         jams: Whether sliding drove the contact into compression at first.
-        state: Afterwards: the pose of before, new velocities.
-        impulse_W: (3,), N s, total.
-        compression_W: (3,), N s, up to the end of compression.
-        path_W: (k, 3), N s, points of the impulse path; those at a SAMPLE lie on a curve.
-        path_events: (k,), what each point stands for.
-        velocity_before_W: (3,), m/s, of the contact before, relative, world axes; what is within the
-            tolerance is 0.
-        velocity_after_W: (3,), m/s, of the contact, relative to what it touches.
+        state: The state of the body afterwards. It has the pose of before and new velocities.
+        impulse_W: (3,), N s, the total impulse.
+        compression_W: (3,), N s, the impulse up to the end of compression.
+        path_W: (k, 3), N s, points of the impulse path. Those at a SAMPLE lie on a curve.
+        path_events: (k,), the meaning of each point.
+        velocity_before_W: (3,), m/s, the contact's velocity before, relative to what it touches. Normal and
+            tangential parts within the tolerance are 0.
+        velocity_after_W: (3,), m/s, the contact's velocity afterwards, relative to what it touches.
         inverse_inertia_W: (3, 3), 1/kg, the contact's change of velocity per impulse.
         other_state: The state of the second body afterwards, or None for the fixed world.
     """
@@ -39,9 +39,7 @@ class SpatialImpact(Record):
     compression_W: FloatArray
     path_W: FloatArray
     path_events: tuple[PathEvent, ...]
-    velocity_before_W: (
-        FloatArray  # (3,), m/s, of the contact, relative to what it touches; 0: within tolerance
-    )
+    velocity_before_W: FloatArray
     velocity_after_W: FloatArray
     inverse_inertia_W: FloatArray
     other_state: BodyState | None = None

@@ -1,20 +1,21 @@
 """How a contact in space slides under a growing normal impulse (Routh 1860; Keller 1986).
 
-Tangential axes are the principal ones of the tangential block of the contact's inverse inertia, so that with
-the normal impulse p, the tangential velocity u and friction -mu u/|u| per unit of normal impulse
+Tangential axes are the principal ones of the tangential block of the contact's inverse inertia. With the
+normal impulse p, the tangential velocity u, and friction -mu u/|u| per unit of normal impulse, this gives
 
     du/dp = k - mu L u/|u|,     dv_n/dp = k_n - mu k . u/|u|,     L = diag(l_1, l_2).
 
-The sliding direction turns at the rate (its component across u)/|u|. That component is the derivative, along
-the circle of directions, of E = k . d - mu/2 d.L d: so directions climb E, there are two or four directions
-that stay as they are (*invariant* ones), every other maximum of E, and no path circles for ever.
+The sliding direction turns at the rate (component of du/dp across u)/|u|. That component is the derivative
+of E = k . d - mu/2 d.L d along the circle of directions d. So directions climb E, and no path circles for
+ever. There are two or four directions that stay as they are (*invariant* ones), and every other one is a
+maximum of E.
 
 A contact that has stopped stays if friction can hold it, |L^-1 k| <= mu. If not, it leaves in the one
-direction d that it can keep while speeding up, (mu L + g) d = k with g > 0: the length of (mu L + g)^-1 k
-falls from above 1 to 0 as g grows from 0, so there is exactly one. In that phase dv_n/dp > mu g > 0, since
-the inverse inertia is positive definite.
+direction d that it can keep while speeding up, (mu L + g) d = k with g > 0. There is exactly one, because the
+length of (mu L + g)^-1 k falls from above 1 to 0 as g grows from 0. While it leaves, dv_n/dp > mu g > 0,
+since the inverse inertia is positive definite.
 
-The law's formulas serve one case as well as many at once (`elementwise`).
+The formulas of the law serve one case as well as many at once (`elementwise`).
 """
 
 from __future__ import annotations
@@ -26,17 +27,17 @@ from contact_dynamics.numerics.elementwise import Number, larger, sqrt
 from contact_dynamics.tolerances import ESCAPE_ARRIVED
 
 ESCAPE_ROUNDS: Final = 60
-"""Bound on the iterations for the direction in which a contact leaves; they converge quadratically."""
+"""Bound on the iterations for the direction in which a contact leaves. They converge quadratically."""
 
 
 class SlidingLaw(NamedTuple):
-    """Coefficients of the equations above, in 1/kg, friction included where named so.
+    """Coefficients of the equations above.
 
     Attributes:
         l1: 1/kg, first principal tangential inverse inertia, > 0.
-        l2: 1/kg, second, > 0.
+        l2: 1/kg, second principal tangential inverse inertia, > 0.
         k1: 1/kg, coupling of the first tangential direction with the normal.
-        k2: 1/kg, coupling of the second.
+        k2: 1/kg, coupling of the second tangential direction with the normal.
         kn: 1/kg, normal inverse inertia, > 0.
         mu: Coulomb's coefficient, >= 0.
     """
@@ -65,15 +66,15 @@ class SlidingLaw(NamedTuple):
         return self.k1 * d1 + self.k2 * d2 - self.mu * (self.l1 * d1 * d1 + self.l2 * d2 * d2)
 
     def turning(self, d1: Number, d2: Number) -> Number:
-        """Return |u| times the rate of turning, 1/kg; zero in an invariant direction."""
+        """Return |u| times the rate of turning, 1/kg. It is zero in an invariant direction."""
         return self.k2 * d1 - self.k1 * d2 + self.mu * (self.l1 - self.l2) * d1 * d2
 
     def attraction(self, d1: Number, d2: Number) -> Number:
-        """Return the derivative of `turning` in the angle; negative where near-by directions come closer."""
+        """Return the derivative of `turning` in the angle. It is negative where neighbours come closer."""
         return self.mu * (self.l1 - self.l2) * (d1 * d1 - d2 * d2) - self.k1 * d1 - self.k2 * d2
 
     def lifting(self, d1: Number, d2: Number) -> Number:
-        """Return dv_n/dp, 1/kg, while sliding in the unit direction (d1, d2); negative where sliding jams."""
+        """Return dv_n/dp, 1/kg, while sliding in the unit direction (d1, d2). It is negative if that jams."""
         return self.kn - self.mu * (self.k1 * d1 + self.k2 * d2)
 
     def while_held(self) -> tuple[Number, Number, Number]:
@@ -84,7 +85,8 @@ class SlidingLaw(NamedTuple):
     def escape_step(self, g: Number) -> tuple[Number, Number, Number]:
         """Return (mu L + g)^-1 k, and the step from ``g`` that makes its length 1.
 
-        Newton's method on 1/|d| - 1, concave and rising: it comes from the left and does not overshoot.
+        This is Newton's method on 1/|d| - 1, which is concave and rises. So the steps come from the left and
+        do not overshoot.
         """
         m1, m2 = self.mu * self.l1 + g, self.mu * self.l2 + g
         d1, d2 = self.k1 / m1, self.k2 / m2
@@ -98,7 +100,7 @@ class SlidingLaw(NamedTuple):
         return larger(g, 0.0)
 
     def after_stop(self) -> tuple[float, float, float, float]:
-        """Return what one stopped contact does: d(I_1, I_2)/dp, dv_n/dp, d|u|/dp (0 if held)."""
+        """Return d(I_1, I_2)/dp, dv_n/dp and d|u|/dp of one stopped contact. If held, the last is 0."""
         if self.holds:
             return (*self.while_held(), 0.0)
         g = self.least_escape()

@@ -1,18 +1,18 @@
 """How much normal impulse brings a swerving contact to its stop, without following it there.
 
-A contact that stops does so in an invariant direction f with g < 0 that attracts its neighbours
-(`sliding_law`; g = d|u|/dp, h = |u| times the rate of turning). Near f, with x the angle from it, the impulse
-that is left until the stop is |u| F(x), and what friction dissipates on the way is mu |u|^2 G(x). Along the
+A contact that stops does so in an invariant direction f with g < 0 that attracts its neighbours. Here g is
+d|u|/dp, and h is |u| times the rate of turning (`sliding_law`). Let x be the angle from f. Near f, the
+impulse that is left until the stop is |u| F(x), and friction dissipates mu |u|^2 G(x) on the way. Along the
 path d|u| : dx : dp = g : h/|u| : 1, so that
 
-    h F' + g F = -1,        h G' + 2 g G = -1,
+    h F' + g F = -1,        h G' + 2 g G = -1.
 
-whose solutions that are regular at f are power series with the recurrence below; both converge as far as the
+The solutions that are regular at f are power series with the recurrence below. Both converge as far as the
 next zero of h.
 
-Where the direction turns slowly beside the slowing down, |h| << |g|, the same solution follows anywhere, far
-from f too, from F = -1/g - (h/g) F' taken as an iteration: its terms fall like (h/g)^n until they are far
-below rounding (the path has all but stopped before its direction turns).
+Where the direction turns slowly in comparison with the slowing down, |h| << |g|, the iteration
+F = -1/g - (h/g) F' gives the same solution anywhere, also far from f. Its terms fall like (h/g)^n until they
+are far below rounding. Then the path has all but stopped before its direction turns.
 """
 
 from __future__ import annotations
@@ -34,20 +34,20 @@ FARTHEST: Final = 0.8
 """rad. Beyond it the series is not tried, since it would not converge."""
 
 ROUNDS: Final = 8
-"""Newton's steps towards f; they converge quadratically."""
+"""Newton's steps towards f. They converge quadratically."""
 
 SLOW_TERMS: Final = 10
-"""Terms of the iteration for slow turning, with derivatives up to this order."""
+"""Terms of the iteration for slow turning. They need derivatives up to this order."""
 
 
 class Stop(NamedTuple):
     """What lies between a sliding contact and its stop.
 
     Attributes:
-        p: N s, normal impulse.
-        dissipated: J, by friction; NaN where it was not asked for.
-        d1: The sliding direction at the stop, first component.
-        d2: Second.
+        p: N s, the normal impulse until the stop.
+        dissipated: J, the energy that friction dissipates until the stop, or NaN if it was not asked for.
+        d1: The first component of the sliding direction at the stop.
+        d2: The second component of the sliding direction at the stop.
     """
 
     p: Number
@@ -59,10 +59,11 @@ class Stop(NamedTuple):
 def stop_ahead(
     sliding: SlidingLaw, u: tuple[float, float], first_speed: float, *, with_work: bool
 ) -> Stop | None:
-    """Return the stop ahead of a contact that slides with ``u``, m/s, slowing down.
+    """Return the stop ahead of a contact that slides with ``u``, m/s, and slows down.
 
-    None where there is none near, or no series converges. Dissipation is only worked out where ``with_work``
-    asks for it. ``first_speed``, m/s, is that of the whole path, which errors are compared with.
+    The answer is None if no stop is near or no series converges. The dissipation is only worked out if
+    ``with_work`` asks for it. Errors are compared with ``first_speed``, m/s, the sliding speed at the
+    beginning of the whole path.
     """
     speed = math.sqrt(u[0] * u[0] + u[1] * u[1])
     d1, d2 = u[0] / speed, u[1] / speed
@@ -76,8 +77,8 @@ def stop_ahead(
 def turns_slowly(sliding: SlidingLaw, d1: Number, d2: Number, speed: Number, first_speed: Number) -> Number:
     """Return whether a contact that slows down in the direction (d1, d2) all but stops before it turns.
 
-    And whether v_n rises, or falls, until then: it does where no direction near by changes the sign of its
-    rate.
+    The answer also demands that v_n rises all the way until then, or falls all the way. It does so if the
+    rate of v_n has the same sign in all directions near by.
     """
     turning, change = abs(sliding.turning(d1, d2)), abs(sliding.attraction(d1, d2))
     ratio = (turning + change) / abs(sliding.speeding(d1, d2))
@@ -89,7 +90,7 @@ def turns_slowly(sliding: SlidingLaw, d1: Number, d2: Number, speed: Number, fir
 
 
 def _near_stop(sliding: SlidingLaw, u: tuple[float, float], *, with_work: bool) -> Stop | None:
-    """Return the stop in the attracting direction close to that of ``u``."""
+    """Return the stop in an attracting direction close to that of ``u``, or None."""
     speed = math.sqrt(u[0] * u[0] + u[1] * u[1])
     d1, d2 = u[0] / speed, u[1] / speed
     angle = fixed = math.atan2(u[1], u[0])
@@ -137,7 +138,7 @@ def slow_stop(
 
 
 def _slow_solution(reciprocal: list[Number], h: list[Number], share: float) -> tuple[Number, Number]:
-    """Return F with h F' + g F / share = -1, for slow turning, and the size of its last terms beside it."""
+    """Return F with h F' + g F / share = -1 for slow turning, and the relative size of its last terms."""
     term = [-share * r for r in reciprocal]
     total = term[0]
     last = previous = abs(total)
@@ -185,9 +186,9 @@ def next_coefficient(
 
     Args:
         g: Coefficients of g.
-        h: Coefficients of h, of which the first is 0.
-        f: Coefficients of F so far, at least one.
-        slope: Coefficients of F' so far, one fewer.
+        h: Coefficients of h. The first is 0.
+        f: Coefficients of F so far. There is at least one.
+        slope: Coefficients of F' so far. There is one fewer.
         power: The power of |u| to which the sought quantity is proportional.
     """
     m = len(f)
@@ -201,7 +202,7 @@ def next_coefficient(
 
 
 def _regular_solution(g: list[float], h: list[float], x: float, power: float) -> float | None:
-    """Return F(x) with h F' + power g F = -1, regular at 0; None where the series has not converged."""
+    """Return F(x) with h F' + power g F = -1, regular at 0, or None if the series has not converged."""
     f = [-1.0 / (power * g[0])]
     slope: list[float] = []
     total, x_n = f[0], 1.0

@@ -1,16 +1,15 @@
-"""A stretch of a swerving impulse path as power series, from its own recurrences.
+"""A stretch of a swerving impulse path as power series, by Taylor's method.
 
-With a parameter s that runs as ds = |law's scale| dp/|u| the sliding equations (`sliding_law`) lose their
-singularity at the stop, and their coefficients are of size 1,
+With a parameter s that runs as ds = |law's scale| dp/|u|, the sliding equations (`sliding_law`) lose their
+singularity at the stop. Their coefficients are then of size 1. Apart from the scale, which divides each,
 
-    du/ds = |u| k - mu L u,    dp/ds = |u|,    dI/ds = -mu u,    dv_n/ds = k_n |u| - mu k . u,
+    du/ds = |u| k - mu L u,    dp/ds = |u|,    dI/ds = -mu u,    dv_n/ds = k_n |u| - mu k . u.
 
-(each divided by the scale), and the series of q = |u| follows from that of q^2 = u.u, term by term. The last
-terms tell how far the series reaches, and it is its own interpolant, so that events are located to rounding
-(Taylor's method; step size after Jorba and Zou 2005).
+The series of q = |u| follows from that of q^2 = u.u, term by term. The last terms tell how far a series
+reaches (after Jorba and Zou 2005). A series is its own interpolant, so that events are located to rounding.
 
-A coefficient is a number, or an array with a case an element (`elementwise`): the stretches of many impacts
-are expanded and evaluated by the same lines, with the same bits.
+A coefficient is a number, or an array with one element for each case (`elementwise`). So the stretches of
+many impacts are expanded and evaluated by the same lines, with the same bits.
 """
 
 from __future__ import annotations
@@ -31,15 +30,15 @@ ORDER: Final = 24
 and over s = 2.6 by 24, for twice the work."""
 
 LONGEST: Final = 16.0
-"""Longest stretch, in s. It matters only where hardly anything changes."""
+"""Longest stretch, in s. It only matters where hardly anything changes."""
 
 SURE: Final = 0.5
 """Length of a stretch, in s, where the last terms underflow to zero, so that they do not say how far the
 series reaches. The direction hardly turns over this length."""
 
 WITH_WORK: Final = 0.85
-"""Part of the length that is used where the work is asked for: as a product of two series, it leaves out more
-at the same degree, by a factor of some 0.85^-24 = 50."""
+"""Part of the length that is used where the work is asked for. The work is a product of two series, so it
+leaves out more at the same degree, by a factor of some 0.85^-24 = 50."""
 
 MOST_ITERATIONS: Final = 100
 
@@ -48,14 +47,14 @@ _SHARES: Final = tuple(1.0 / n for n in range(1, ORDER + 2))
 _STEPS: Final = tuple(
     (n, _SHARES[n - 1], tuple((i, n - i) for i in range(1, (n + 1) // 2))) for n in range(1, ORDER + 1)
 )
-"""For each n: n, 1/n, and the pairs of different numbers from 1 on whose sum it is."""
+"""For each n, the number n itself, 1/n, and the pairs of different numbers >= 1 whose sum is n."""
 
 
 class SlidingSeries:
-    """One stretch of the path: polynomials in the parameter s, from 0 to ``length``.
+    """One stretch of the path as polynomials in the parameter s, from 0 to ``length``.
 
-    Lists hold coefficients of rising powers; `value` evaluates them. Impulses and work count from the start
-    of the stretch.
+    Lists hold coefficients of rising powers, and `value` evaluates them. Impulses and work count from the
+    start of the stretch.
     """
 
     __slots__ = (
@@ -71,7 +70,7 @@ class SlidingSeries:
     )
 
     def __init__(self, law: SlidingLaw, u: tuple[Number, Number], v_n: Number, *, with_work: bool) -> None:
-        """Expand about the state ``u``, ``v_n``, m/s, with |u| > 0; the normal work only on demand."""
+        """Expand about the state ``u``, ``v_n``, m/s, with |u| > 0. The work is expanded on demand only."""
         per_scale = 1.0 / law.scale
         k1, k2, kn, mu = law.k1 * per_scale, law.k2 * per_scale, law.kn * per_scale, law.mu
         m1, m2 = mu * law.l1 * per_scale, mu * law.l2 * per_scale
@@ -141,9 +140,9 @@ def value_and_slope(series: list[Number], s: Number) -> tuple[Number, Number]:
 
 
 def crossing(series: list[float], level: float, begin: float, end: float) -> float:
-    """Return where one polynomial crosses ``level`` between ``begin`` and ``end``; it is monotone there.
+    """Return where one polynomial, which is monotone there, crosses ``level`` between ``begin`` and ``end``.
 
-    Newton's method inside a bracket that bisection keeps.
+    Newton's method works inside a bracket that bisection keeps.
     """
     low, high = begin, end
     first, last = value(series, begin), value(series, end)
@@ -172,8 +171,8 @@ def _integral(series: list[Number]) -> list[Number]:
 def _reach(speed: Number, terms: tuple[Number, Number, Number], n: int) -> Number:
     """Return the length at which the largest of the ``terms`` of degree ``n`` is `TRUNCATION` of ``speed``.
 
-    Those of u and of |u|, which has singularities of its own where the normal does not couple with u; what
-    matters of |u| is its integral.
+    The terms are those of u and of |u|, which has singularities of its own if the normal does not couple with
+    u. Of |u| only the integral matters.
     """
     x, y, q = terms
     if isinstance(x, float):
