@@ -56,6 +56,16 @@ wrong, it is wrong by more than 1e-3."""
 INDEPENDENT_FORCES: Final = 1e-12
 """Ratio of singular values. Below it, directions of contact forces count as the same."""
 
+DECIMALS_ZERO: Final = Decimal("1e-60")
+"""Relative. Decimals of `DECIMALS.sums` leave at most this of a zero, even after products of products."""
+
+TARGET_ROUNDING: Final = Decimal("1e-14")
+"""Relative. This is the rounding of a target itself. Columns that differ by no more would need huge shares to
+meet it."""
+
+DECIMALS_MET: Final = Decimal("1e-30")
+"""Relative. A target counts as met exactly if this much of it is left."""
+
 # rigid_body
 
 SYMMETRY_TOLERANCE: Final = 1e-9
@@ -198,48 +208,6 @@ second order."""
 
 # landing
 
-SAME_ROWS: Final = 1e-11
-"""Dimensionless, in the plane: the sine below which contact planes, and wrenches, are one where modes are
-enumerated, and the part of the radius of gyration (or of the arm, if longer) and of the unit normal within
-which contacts are one. Some 1e5 roundings of the input, and far below what any sensor resolves."""
-
-CLEAR_ROWS: Final = 1e-5
-"""Dimensionless: the sine above which floats tell contact planes, and wrenches, apart, to within `SAME_ROWS`.
-Between the two, what is the case is found with more digits. With 1e-4 the planes of 32 ordinary contacts came
-between too, which took six times as long; with 1e-6 forces at rest missed the load by more than 3e-9."""
-
-CLEAR_ROWS_OF_MANY: Final = 1e-6
-"""Dimensionless, as `CLEAR_ROWS`, for more than 150 planes or wrenches. So many lie closer together without
-being degenerate."""
-
-DECIMALS_ZERO: Final = Decimal("1e-60")
-"""Relative: what decimals of `DECIMALS.sums` leave of zero, with room for products of products."""
-
-TARGET_ROUNDING: Final = Decimal("1e-14")
-"""Relative: the target's own rounding. Columns that differ by no more would need huge shares to meet it."""
-
-DECIMALS_MET: Final = Decimal("1e-30")
-"""Relative: what may be left over where all is met."""
-
-SAME_SHARP_ROWS: Final = 1e-14
-"""The sine below which rows that are known better than to floats are one: friction that never slips leaves of
-a contact's normal no more than 1e-10 of the tangent, and short arms less."""
-
-INDEPENDENT_EQUATIONS: Final = 1e-6
-"""The pivot of unit rows below which equations do not count as independent: their solution would carry more
-rounding than the accuracy asked for."""
-
-FORCES_ROUNDING: Final = 1e-13
-"""Relative to the forces: what sums of them leave."""
-
-SAME_IMPULSES: Final = 1e-8
-"""Relative to the largest impulse: two ways to a solution that differ by less have found the same one."""
-
-LARGEST_GRIP: Final = 1e10
-"""Dimensionless, in the plane: a coefficient of friction above it, or above it divided by the contact's arm
-in radii of gyration, acts as that one does. They differ in forces whose normal part is less than 1e-10 of
-the wrench of the tangential one, below what wrenches are known to."""
-
 GRAZING_DEPTH: Final = 1e-9
 """m. The search for the first contact may miss a point that dips into a plane by less and rises again. It
 never misses a deeper one. Sensors do not resolve this depth, and it keeps the search from creeping."""
@@ -257,6 +225,38 @@ ACCELERATION_TOLERANCE: Final = 1e-9
 """Relative to the applied wrench plus centripetal terms. An acceleration or a force counts as zero if a
 change of the wrench by this share can change its sign. It is far more than rounding of the input, and far
 less than the accuracy to which wrenches are known."""
+
+SAME_ROWS: Final = 1e-11
+"""Dimensionless, in the plane. Contact planes, and wrenches, that meet at a smaller sine are one where modes
+are enumerated. Contacts are one if their unit normals agree within it, and their places within this share of
+the radius of gyration, or of the arm if it is longer. It is some 1e5 roundings of the input, and far below
+what any sensor resolves."""
+
+CLEAR_ROWS: Final = 1e-5
+"""Dimensionless. Floats tell contact planes, and wrenches, apart that meet at a larger sine, to within
+`SAME_ROWS`. Those between the two are told apart with more digits. With 1e-4, the planes of 32 ordinary
+contacts would be between the two, which takes six times as long. With 1e-6, forces at rest missed the load by
+more than 3e-9."""
+
+CLEAR_ROWS_OF_MANY: Final = 1e-6
+"""Dimensionless. It stands in for `CLEAR_ROWS` where there are more than 150 planes or wrenches. So many lie
+closer together without being degenerate."""
+
+SAME_SHARP_ROWS: Final = 1e-14
+"""Sine. Rows that are known to more digits than floats have are one if they meet at a smaller sine. If
+friction never slips, a contact's normal is no more than 1e-10 of its tangent, and less if arms are short."""
+
+INDEPENDENT_EQUATIONS: Final = 1e-6
+"""Pivot of unit rows. Equations with a smaller one do not count as independent, since their solution would
+carry more rounding than the accuracy asked for."""
+
+FORCES_ROUNDING: Final = 1e-13
+"""Relative to the forces. Sums of forces round by this much."""
+
+LARGEST_GRIP: Final = 1e10
+"""Dimensionless, in the plane. A coefficient of friction above it, or above it divided by the contact's arm
+in radii of gyration, acts as that one does. The two differ in forces whose normal part is less than 1e-10 of
+the wrench of the tangential one, and wrenches are not known to that accuracy."""
 
 BEYOND_MARGIN: Final = 1e-5
 """Share of a margin, or of the wrench if the margin is less. The wrench is moved this far beyond the boundary
@@ -304,6 +304,9 @@ NO_DISTANCE: Final = 1e-7
 error that the weight of a wrench's height in that distance leaves."""
 
 # impact
+
+SAME_IMPULSES: Final = 1e-8
+"""Relative to the largest impulse. Two ways to a solution that differ by less have found the same one."""
 
 ENERGY_TOLERANCE: Final = 1e-12
 """Relative to the energy that an impact exchanges. If the gain is larger, the law creates energy. Rounding is

@@ -1,18 +1,22 @@
 """Contact modes (Mason, lecture 26): does the body, at each contact, separate, slide or stay fixed?
 
-State a `PlanarContactProblem` or a `SpatialContactProblem`, and ask it: `contact_modes` for every consistent
-mode, `mode_margins` for how far the wrench is from leaving them, `refused_modes` for why the others are not,
-`wrench_sets` for the wrenches of each mode, `statics` for whether a body at rest stays (`plane_or_space`).
-A mode is a string with one of the `letters` for each contact; what plane and space share is in `result`.
+You state a `PlanarContactProblem` or a `SpatialContactProblem`, and pass it to the functions of
+`plane_or_space`. `contact_modes` finds every consistent mode. `mode_margins` says how far the wrench is from
+leaving each of them, and `refused_modes` says why the other modes are not consistent. `wrench_sets` returns
+the wrenches of each mode. `statics` says whether a body at rest stays at rest.
 
-The files of `planar` and `spatial` have the same names where they do the same. Each begins with `problem`:
-the question, and its case in the coordinates that it is answered in. `answer` gives the verdict with all
-modes, `margins`, `statics` and `wrench_sets` the rest, and `result` holds what they return.
+A mode is a string with one of the `letters` for each contact. The plane and space share the types in
+`result`.
 
-- In the plane, one contact is a closed form (`one_contact`). Of several, those that coincide are taken
-  together (`coincident`), the modes that kinematics allows are enumerated on a `cone` (`enumeration`), and
-  judged (`judgement`): from their own equations where these are independent (`determined`), else by the cone
-  of their wrenches (`wrench_cone`, `friction_edges`), with least forces as evidence (`least_force`).
+Files of `planar` and `spatial` that do the same have the same name. `problem` has the question, and its case:
+the question in the coordinates in which it is answered. `answer` gives the verdict and all modes, and
+`result` has the types that it returns. `margins`, `statics` and `wrench_sets` answer the other questions.
+
+- In the plane, `one_contact` solves a single contact in closed form. For several contacts, `coincident` first
+  takes those together that coincide. `enumeration` then lists the modes that kinematics allows, which are
+  faces of a `cone`, and `judgement` decides which of them mechanics allows. If the equations of a mode are
+  independent, `determined` solves them. If they are not, `wrench_cone` decides by the cone of wrenches that
+  can bring the mode about, which the `friction_edges` of the contacts span.
 - In space, `kinematic` gives the strings of contacting and separating, and `sliding` those with ways of
   sliding. With mechanics, all combinations of `options` are searched (`search`, `regions`, `dual_simplex`),
   and shown with exact friction (`exact_friction`) and shared forces (`least_forces`). `refusals` says why

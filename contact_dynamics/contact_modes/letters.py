@@ -1,7 +1,8 @@
-"""The letters of contact modes (Mason, lecture 26): what one contact does, in the plane as in space.
+"""The letters of contact modes (Mason, lecture 26). A letter says what one contact does.
 
 A mode is a string with one letter for each contact, in the contacts' order, such as "ffs". In the plane a
-contact slides left or right. In space it slides in any direction (`STAYS`), and the answer has the direction.
+contact slides left or right. In space it slides in any direction, its letter is `STAYS`, and the answer gives
+the direction.
 """
 
 from __future__ import annotations
@@ -17,20 +18,21 @@ Letter: TypeAlias = Literal["s", "l", "r", "f", "c"]
 
 SEPARATES: Final = "s"
 SLIDES_LEFT: Final = "l"
-"""Along the tangent, which is the normal turned by -90 degrees, backwards; in the plane."""
+"""The contact slides against its tangent, which is the normal turned by -90 degrees. Only in the plane."""
 SLIDES_RIGHT: Final = "r"
-"""Along the tangent; in the plane."""
+"""The contact slides along its tangent. Only in the plane."""
 STICKS: Final = "f"
-"""Fixed."""
+"""The contact stays, and its point of the body does not slide."""
 STAYS: Final = "c"
-"""In contact. In space: it slides, where mechanics tells sliding from sticking; else either of them."""
+"""The contact stays. Only in space. A mode with forces has this letter for contacts that slide. A mode of
+kinematics alone has it for contacts that slide or stick."""
 
 PLANAR_LETTERS: Final = (SEPARATES, SLIDES_LEFT, SLIDES_RIGHT, STICKS)
 SPATIAL_LETTERS: Final = (SEPARATES, STICKS, STAYS)
 
 
 def check_modes(modes: Collection[str], count: int, letters: tuple[Letter, ...]) -> None:
-    """Raise `InvalidFieldError` for the first mode that is not a string of ``count`` such ``letters``."""
+    """Raise `InvalidFieldError` for the first mode that is not a string of ``count`` of these ``letters``."""
     for mode in modes:
         if len(mode) != count or set(mode) - set(letters):
             allowed = f"{count} letters of {', '.join(letters[:-1])} and {letters[-1]}"

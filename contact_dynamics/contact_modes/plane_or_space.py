@@ -43,8 +43,10 @@ def contact_modes(
     """Return the verdict on a contact set and all consistent modes, with accelerations and forces.
 
     Raises:
-        InvalidFieldError: not a problem.
-        TooLargeError: in space, more contacts touch than are answered, or the search takes too many trials.
+        InvalidFieldError: ``problem`` is not a problem.
+        TooLargeError: the problem is in space, and more contacts touch than are answered, or the search takes
+            too many trials.
+        UndecidedError: the problem is in the plane, and rounding decides whether any mode is consistent.
 
     Source: lecture 26.
     """
@@ -77,19 +79,21 @@ def mode_margins(
 ) -> tuple[PlanarModeMargin, ...] | tuple[SpatialModeMargin, ...]:
     """Return how far the applied wrench is from leaving each of its consistent modes, in their order.
 
-    The margin is the length of the least change of the wrench, in |f|^2 + |torque / length|^2, N. Empty where
-    a contact approaches. In space, margins of sticking are short by the part 1 - cos(pi / friction_facets) of
-    friction: 8 % with the 8 facets that a problem has by itself, 2 % with 16.
+    The margin is the size of the least change of the wrench that leaves the mode, N, where the size is the
+    root of |f|^2 + |torque / length|^2. No margin is returned if a contact approaches. In space, the margins
+    of modes that stick leave out the part 1 - cos(pi / friction_facets) of friction. This is 8 % with the 8
+    facets that a problem has by default, and 2 % with 16.
 
     Args:
         problem: The question.
-        answer: To that question, where it is known, to save a search.
-        margin_length: m, > 0, makes a torque comparable with a force; None: the radius of gyration, in space
-            its root mean square over the axes.
+        answer: The answer to that question, if it is known. It saves a search.
+        margin_length: m, > 0. It makes a torque comparable with a force. If it is None, it is the radius of
+            gyration, and in space the root mean square of the radii about the axes.
 
     Raises:
-        InvalidFieldError: not a problem, or the length is not > 0.
-        TooLargeError: as for `contact_modes`; or, in space, more than 128 edges of all friction pyramids.
+        InvalidFieldError: ``problem`` is not a problem with its answer, or the length is not > 0.
+        TooLargeError: as for `contact_modes`, or the friction pyramids in space have more than 128 edges.
+        UndecidedError: as for `contact_modes`.
     """
     if isinstance(problem, PlanarContactProblem) and not isinstance(answer, SpatialModeAnswer):
         return planar_mode_margins(problem, answer, margin_length=margin_length)
@@ -112,17 +116,18 @@ def refused_modes(
 ) -> tuple[RefusedMode, ...]:
     """Return the modes that kinematics allows and mechanics refuses, each with the first reason found.
 
-    In the plane the answer has them. In space, where letters with a way of sliding are too many to list, they
-    are the strings of contacting (`c`) and separating (`s`), and take a millisecond each.
+    In the plane the answer has them already. In space there are too many letters with a way of sliding to
+    list. The modes are then strings of contacting (`c`) and separating (`s`), and each takes a millisecond.
 
     Args:
         problem: The question.
-        answer: To that question.
-        margin_length: m, > 0, makes a torque comparable with a force where a reason is a distance; None: the
-            radius of gyration, root mean square over the axes. Only in space.
+        answer: The answer to that question.
+        margin_length: m, > 0. It makes a torque comparable with a force where the reason is a distance. If it
+            is None, it is the root mean square of the radii of gyration about the axes. Only in space.
 
     Raises:
-        InvalidFieldError: not a problem with its answer, the length is not > 0, or there is one in the plane.
+        InvalidFieldError: ``problem`` is not a problem with its answer, the length is not > 0, or a length is
+            given in the plane.
         TooLargeError: as for `contact_modes`.
     """
     if isinstance(problem, PlanarContactProblem) and isinstance(answer, PlanarModeAnswer):
@@ -145,21 +150,23 @@ def wrench_sets(
 def wrench_sets(
     problem: PlanarContactProblem | SpatialContactProblem, *, modes: Collection[str] | None = None
 ) -> tuple[PlanarWrenchSet, ...] | tuple[SpatialWrenchSet, ...]:
-    """Return the applied wrenches that can bring each mode about: the map of modes, in alphabetical order.
+    """Return the applied wrenches that can bring each mode about, in alphabetical order of the modes.
 
-    The problem's own wrench plays no part in the plane; in space it says how the friction pyramids lie. In
-    space a mode has a set for each way of sliding, and their number grows as the square or cube of
-    `friction_facets`: a box on four feet has 200 to 350 with 4 facets and some 1300 with 8, a millisecond or
-    two each. Ask for few modes, or of `dataclasses.replace(problem, friction_facets=4)`.
+    Together the sets are the map of modes. In the plane the problem's own wrench plays no part. In space it
+    says how the friction pyramids lie. There a mode has a set for each way of sliding, and their number grows
+    with the square or cube of `friction_facets`. A box on four feet has 200 to 350 sets with 4 facets and
+    some 1300 with 8, and each takes a millisecond or two. You save time if you ask for few modes, or with
+    `dataclasses.replace(problem, friction_facets=4)`.
 
     Args:
         problem: The question.
-        modes: Letters, one a contact, of the modes that are wanted; None: all.
+        modes: The modes that are wanted, with one letter for each contact. If it is None, all are returned.
 
     Raises:
-        InvalidFieldError: not a problem, or modes that are not strings of its letters.
-        UndecidedError: in space, contacts so nearly the same that rounding decides the sets.
-        TooLargeError: in space, too many contacts, edges of friction pyramids, ways of sliding or sets.
+        InvalidFieldError: ``problem`` is not a problem, or a mode is not a string of its letters.
+        UndecidedError: contacts in space are so nearly the same that rounding decides the sets.
+        TooLargeError: A problem in space has too many contacts, edges of friction pyramids, ways of sliding
+            or sets.
 
     Source: lecture 26, "Force dual for dynamic contact problem" and "Contact modes for wrench in tray".
     """
@@ -173,16 +180,16 @@ def wrench_sets(
 def statics(
     problem: PlanarContactProblem | SpatialContactProblem, *, margin_length: float | None = None
 ) -> BodyStatics:
-    """Return whether and how well the body stays, taken at rest: equilibrium, jamming, wedging, disturbances.
+    """Return whether the body stays if it is at rest, and how well.
 
     Args:
-        problem: The question; its velocities play no part.
+        problem: The question. Its velocities play no part.
         margin_length: As for `mode_margins`.
 
     Raises:
-        InvalidFieldError: not a problem, or the length is not > 0.
-        UndecidedError: in space, contacts so nearly the same that rounding decides the answer.
-        TooLargeError: as for `contact_modes`; or, in space, more than 128 edges of all friction pyramids.
+        InvalidFieldError: ``problem`` is not a problem, or the length is not > 0.
+        UndecidedError: contacts are so nearly the same that rounding decides the answer.
+        TooLargeError: as for `contact_modes`, or the friction pyramids in space have more than 128 edges.
     """
     if isinstance(problem, PlanarContactProblem):
         return planar_statics(problem, margin_length=margin_length)

@@ -1,4 +1,4 @@
-"""The parts of answers about contact modes that plane and space share: verdicts, refusals, statics."""
+"""Answers in the plane and in space share these types: verdicts, refused modes and statics."""
 
 from __future__ import annotations
 
@@ -17,32 +17,33 @@ class ModeVerdict(NamedInt):
     UNIQUE = 0
     """One mode is consistent."""
     INDETERMINATE = 1
-    """Several are; mechanics does not choose."""
+    """Several modes are consistent, and mechanics does not choose between them."""
     INCONSISTENT = 2
-    """None is: the case is an impact without approach (lectures 26 and 27)."""
+    """No mode is consistent. An impact without approach settles the case (lectures 26 and 27)."""
     IMPACT = 3
     """A contact approaches. Modes apply only after that impact."""
     UNDECIDED = 4
-    """The modes that are listed are consistent, if any are; whether others are could not be made out, and the
-    answer says why."""
+    """The modes that are listed are consistent. It could not be decided whether others are, and the answer
+    says why. There may be no mode in the list."""
 
 
 class Refusal(NamedInt):
     """Why mechanics refuses a mode that is possible kinematically."""
 
     PENETRATES = 0
-    """Amount: normal acceleration < 0, m/s^2."""
+    """The contact would penetrate. The amount is its normal acceleration, m/s^2, which is negative."""
     PULLS = 1
-    """Amount: normal force < 0, N."""
+    """The contact would have to pull. The amount is its normal force, N, which is negative."""
     OUTSIDE_CONE = 2
-    """Amount: |f_t| - mu f_n > 0, N."""
+    """The contact force would leave the friction cone. The amount is |f_t| - mu f_n, N, which is positive."""
     WRONG_MOTION = 3
-    """Amount: the acceleration that contradicts the contact's letter, m/s^2; 0 where the letter asks for more
-    than 0."""
+    """The contact would not move as its letter says. The amount is the acceleration, m/s^2, that contradicts
+    the letter. It is 0 if the letter demands more than 0."""
     NO_SOLUTION = 4
-    """Amount: for one contact the factor of the normal force (1/kg, lecture 26, eq. 2) that is not > 0; for
-    several the distance, N, of the applied wrench from those that can bring the mode about, a torque being
-    divided by the radius of gyration. No contact forces give the mode's accelerations."""
+    """No contact forces give the mode's accelerations. For one contact the amount is the factor of the normal
+    force (1/kg, lecture 26, eq. 2), which is not positive. For several contacts it is the distance, N, from
+    the applied wrench to the wrenches that can bring the mode about, with torques divided by the radius of
+    gyration."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -50,10 +51,10 @@ class RefusedMode(Record):
     """A mode that is possible kinematically and refused by mechanics.
 
     Attributes:
-        mode: One letter a contact.
-        refusal: The first reason found.
-        contact: The contact whose letter fails; -1: the mode as a whole.
-        amount: By how much, in the unit that the refusal states.
+        mode: The mode, with one letter for each contact.
+        refusal: The first reason that was found.
+        contact: The index of the contact whose letter fails, or -1 if no single contact is the reason.
+        amount: By how much it fails, in the unit that the refusal states.
     """
 
     mode: str
@@ -63,18 +64,18 @@ class RefusedMode(Record):
 
 
 def verdict_on(modes: Sized) -> ModeVerdict:
-    """Return the verdict on a set without approaching contacts from its consistent modes."""
+    """Return the verdict that follows from all consistent modes of contacts that do not approach."""
     if len(modes) == 1:
         return ModeVerdict.UNIQUE
     return ModeVerdict.INDETERMINATE if len(modes) > 0 else ModeVerdict.INCONSISTENT
 
 
 class Certainty(NamedInt):
-    """How far rigid-body mechanics answers yes."""
+    """How surely rigid-body mechanics says yes."""
 
     NO = 1
     POSSIBLE = 2
-    """Consistent, and so is something else."""
+    """It is consistent, and something else is consistent too."""
     CERTAIN = 3
 
 
@@ -83,18 +84,19 @@ class BodyStatics(Record):
     """What holds a body at rest, and how well.
 
     Attributes:
-        equilibrium: Whether it stays at rest.
-        jammed: Whether friction alone keeps it at rest.
+        equilibrium: Whether the body stays at rest.
+        jammed: Whether friction alone keeps the body at rest.
         wedged: Whether the contacts can press against each other without an applied wrench.
-        stable_disturbance: N: equilibrium is possible under every change of the wrench up to this size;.
-        margin_length: m, of the metric |f|^2 + (moment / length)^2 of that size.
+        stable_disturbance: N. Equilibrium stays possible under every change of the wrench up to this size. It
+            is infinite if equilibrium is possible under every wrench (force closure), and NaN if there is no
+            equilibrium.
+        margin_length: m. The size of a change is measured in |f|^2 + (moment / length)^2 with this length.
     """
 
     equilibrium: Certainty
     jammed: Certainty
     wedged: bool
     stable_disturbance: float
-    # infinite: under every change at all (force closure); NaN: no equilibrium
     margin_length: float
 
     def is_stable_against(self, disturbance: float) -> bool:

@@ -1,15 +1,15 @@
-"""Contact modes of one planar body: every mode that is consistent with mechanics (Mason, lecture 26).
+"""This file finds every mode of a planar body that is consistent with mechanics (Mason, lecture 26).
 
-Model: a rigid body in the plane that touches the fixed world with Coulomb friction, under an applied wrench.
-A contact is a point of the body on a flat of the world, unless its curvatures say otherwise
-(`PlanarContact`). A mode hypothesis fixes which contact equations hold; the accelerations that follow are
-kept if they contradict no letter. The lecture's table decides, with its strictness: zero normal force is
-allowed, `s` needs v_n > 0 or a_n > 0.
+The model is a rigid body in the plane that touches the fixed world with Coulomb friction, under an applied
+wrench. A contact is a point of the body on a flat of the world, unless its curvatures say otherwise
+(`PlanarContact`). A mode says which contact equations hold. It is kept if the accelerations that follow
+contradict none of its letters. The lecture's table decides, and is as strict: a normal force may be zero,
+and a contact with the letter `s` needs v_n > 0 or a_n > 0.
 
-A contact's velocity within `velocity_tolerance` counts as zero, and so does an angular velocity that moves no
-contact relative to the centre of mass by more than that.
+A contact's velocity within `velocity_tolerance` counts as zero. An angular velocity counts as zero if it
+moves no contact relative to the centre of mass by more than that.
 
-Does not cover: moving surfaces, elastic contacts.
+Moving surfaces and elastic contacts are not covered.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ if TYPE_CHECKING:
 def planar_contact_modes(problem: PlanarContactProblem) -> PlanarModeAnswer:
     """Return the verdict on a contact set, all consistent modes, and why the others are refused.
 
-    Without contacts the one mode is the empty string, free motion.
+    Without contacts the only mode is the empty string, and the body moves freely.
 
     Raises:
-        UndecidedError: no mode is consistent with friction up to `LARGEST_GRIP`, and there is more.
+        UndecidedError: no mode is consistent with friction up to `LARGEST_GRIP`, and a contact has more.
 
     Source: lecture 26, table and "Basic approach".
     """

@@ -1,7 +1,8 @@
 """Contacts that coincide are answered as one, such as those of a body's two sides in a plane of motion.
 
-Contacts of one place and normal, within `SAME_ROWS`, and of one friction and kind have the same letter in
-every mode. Their force is known only in sum, and told in equal shares.
+Contacts coincide if their places and normals agree within `SAME_ROWS`, and they have the same friction and
+the same curvatures. They have the same letter in every mode. Mechanics determines only the sum of their
+forces, and the answer gives each of them an equal share.
 """
 
 from __future__ import annotations
@@ -19,12 +20,12 @@ if TYPE_CHECKING:
 
 
 class Coincident(NamedTuple):
-    """Which contacts are the same.
+    """The groups of contacts that coincide.
 
     Attributes:
-        firsts: The first contact of each group.
-        group: The group of each contact.
-        counts: Contacts of each group.
+        firsts: The index of the first contact of each group.
+        group: The index of each contact's group.
+        counts: The number of contacts in each group.
     """
 
     firsts: list[int]
@@ -32,11 +33,14 @@ class Coincident(NamedTuple):
     counts: list[int]
 
     def letters_of_all(self, mode: str) -> str:
-        """Return the letters of all contacts from those of the groups."""
+        """Return the letters of all contacts for a mode with one letter for each group."""
         return "".join([mode[group] for group in self.group])
 
     def consistent(self, mode: PlanarMode, negligible: float) -> PlanarMode:
-        """Return a mode of the groups as one of all contacts; a force of up to ``negligible``, N, is none."""
+        """Return a mode of all contacts for a mode of the groups.
+
+        A normal force up to ``negligible``, N, counts as no force, so that its shares are unique.
+        """
         counts = self.counts
         shares: list[Vector2] = [
             (f_t / count, f_n / count) for (f_t, f_n), count in zip(mode.contact_forces, counts, strict=True)
@@ -56,7 +60,7 @@ class Coincident(NamedTuple):
         )
 
     def refused(self, mode: RefusedMode) -> RefusedMode:
-        """Return a refused mode of the groups as one of all contacts."""
+        """Return a refused mode of all contacts for a refused mode of the groups."""
         contact = mode.contact if mode.contact < 0 else self.firsts[mode.contact]
         letters = self.letters_of_all(mode.mode)
         return RefusedMode(mode=letters, refusal=mode.refusal, contact=contact, amount=mode.amount)
@@ -65,10 +69,15 @@ class Coincident(NamedTuple):
 def coincident(
     contacts: Sequence[PlanarContact], velocities: Sequence[Vector2], rho: float
 ) -> Coincident | None:
-    """Return which contacts of a body of radius of gyration ``rho``, m, are the same; None: all differ.
+    """Return the groups of contacts that coincide, or None if all contacts differ.
 
-    ``velocities``, (v_t, v_n), count by their signs. Contacts are one, too, where others lead from one to the
-    next, so that the order in which they are listed does not matter.
+    Two contacts also belong together if a chain of contacts leads from one to the other in which neighbours
+    coincide. So the order in which contacts are listed does not matter.
+
+    Args:
+        contacts: The contacts.
+        velocities: (v_t, v_n) of each contact. Only their signs count.
+        rho: m, the body's radius of gyration.
     """
     pairs = _same_pairs(contacts, velocities, rho)
     if not pairs:
@@ -95,8 +104,8 @@ def coincident(
 def _same_pairs(
     contacts: Sequence[PlanarContact], velocities: Sequence[Vector2], rho: float
 ) -> list[tuple[int, int]]:
-    """Return pairs of contacts that are the same, enough to lead from each to all that are."""
-    # What agrees in every coordinate does so in a sum of them, and little else does.
+    """Return pairs of contacts that coincide. They are enough to connect each group."""
+    # Contacts that agree in every coordinate also agree in a weighted sum of them, and few others do.
     far = max(rho, *(abs(x) + abs(y) for x, y in (contact.r for contact in contacts)))
     sums = sorted(
         [
@@ -118,7 +127,7 @@ def _same_pairs(
             if _same(contacts[i], contacts[j], rho) and _alike(velocities[i], velocities[j]):
                 pairs.append((i, j))
                 if contacts[i].r == contacts[j].r and contacts[i].normal == contacts[j].normal:
-                    break  # the rest is found from there
+                    break  # whatever coincides with contact i coincides with contact j, and is found there
     return pairs
 
 

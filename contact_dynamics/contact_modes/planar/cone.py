@@ -1,17 +1,19 @@
-"""Polyhedral convex cones in R^3: from half-spaces to extreme rays, with what touches what.
+"""Polyhedral convex cones in R^3 are given by half-spaces. This file finds their extreme rays.
 
-The double description method (Motzkin and others 1953), in three dimensions, where the rays of a pointed cone
-stand in a cycle: half-spaces are cut away one by one, and each ray keeps the set of rows on which it lies, as
-the bits of an integer. Degenerate cones (half-spaces, wedges, planes, sectors, single rays, the origin) come
-out as such, because ties are decided by one tolerance and remembered as bits, never recomputed.
+It uses the double description method (Motzkin and others 1953). The cone is cut with one half-space after the
+other. Each ray keeps the set of rows (normals of half-spaces) on which it lies, as the bits of an integer. In
+three dimensions the rays of a pointed cone stand in a cycle, which makes the method simple. Half-spaces,
+wedges, planes, sectors, single rays and the origin are cones too. They come out right because one tolerance
+decides whether a ray lies on a row, and the decision is kept as a bit and never made again.
 
-A cone's dual has the rows as generators: the rays found here are then its facets. So this one construction
-serves the faces of the accelerations that do not penetrate, and the cones of wrenches.
+The dual of a cone has the rows as generators, and the rays that are found here as the normals of its facets.
+So the same class finds the faces of the accelerations that do not penetrate, and the facets of wrench cones.
 
-Plain floats: the sets are small, and most rows change nothing, which costs three multiplications a ray. Of
-many rows, arrays tell those that change nothing. Floats decide what vanishes to rounding and what is clearly
-different. Where something lies between the two, as for contacts that nearly coincide, the cone is built once
-more in decimals of so many digits that every decision is the one of the rows as they are given.
+The sets are small, so plain floats are fast: most rows change nothing, and finding this out takes three
+multiplications for each ray. For many rows, arrays find those that change nothing. Floats decide what is zero
+to rounding, and what clearly is not. If a number lies between the two, as for contacts that nearly coincide,
+the cone is built again in decimals. They have so many digits that every decision is right for the rows as
+they are given.
 """
 
 from __future__ import annotations
@@ -33,22 +35,23 @@ if TYPE_CHECKING:
 
     from contact_dynamics.validation import FloatArray
 
-_WIDE: Final = 0.1  # sine: planes that meet at more serve to start with, without a look at the others
+_WIDE: Final = 0.1
+"""Sine. The search for rows to start with ends at the first pair that makes this angle or more."""
 MANY: Final = 24
-"""Rows, from which on arrays are faster."""
+"""Number of rows above which arrays are faster than loops."""
 
 
 class _NotClearError(Exception):
-    """Floats do not tell whether something vanishes."""
+    """Floats cannot decide whether some number is zero."""
 
 
 class Sector(NamedTuple):
-    """A two-dimensional cone spanned by two rays less than 180 degrees apart, all of it on some rows.
+    """A two-dimensional cone between two rays that are less than 180 degrees apart.
 
     Attributes:
-        start: Unit.
-        end: Unit.
-        tight: Bit set of the rows that vanish on it.
+        start: The first ray, a unit vector.
+        end: The last ray, a unit vector.
+        tight: The bit set of the rows that vanish on the whole sector.
     """
 
     start: Vector3
@@ -57,20 +60,25 @@ class Sector(NamedTuple):
 
 
 _MANY: Final = 150
-"""Rows above which `CLEAR_ROWS_OF_MANY` holds."""
+"""Number of rows above which `CLEAR_ROWS_OF_MANY` is used instead of `CLEAR_ROWS`."""
 
 
 class PolyhedralCone:
-    """The cone {x : row . x >= 0 for every row} as lineality space plus extreme rays."""
+    """The cone {x : row . x >= 0 for every row}, given by its lines and its extreme rays."""
 
     __slots__ = ("_clear", "_same", "exact", "lineality", "rays", "rows", "tight")
 
-    exact: bool  # whether it was built in decimals
+    exact: bool
+    """Whether the cone was built in decimals."""
 
-    rows: Sequence[Vector3]  # unit; where it is exact, in decimals
-    lineality: list[Vector3]  # orthonormal basis of the lines that the cone contains
-    rays: list[Vector3]  # unit extreme rays, orthogonal to the lineality; three or more stand in a cycle
-    tight: list[int]  # for each ray, the bit set of the rows that vanish on it
+    rows: Sequence[Vector3]
+    """The rows as unit vectors. They are decimals if the cone is ``exact``."""
+    lineality: list[Vector3]
+    """An orthonormal basis of the lines that the cone contains."""
+    rays: list[Vector3]
+    """The extreme rays as unit vectors, orthogonal to the lines. Three or more stand in a cycle."""
+    tight: list[int]
+    """For each ray, the bit set of the rows that vanish on it."""
 
     def __init__(
         self,
@@ -79,12 +87,13 @@ class PolyhedralCone:
         exact: bool = False,
         sharp: Callable[[], Sequence[Vector3]] | None = None,
     ) -> None:
-        """Cut with each of ``rows``, which are unit; within `SAME_ROWS` a row vanishes on a unit vector.
+        """Build the cone from ``rows``. A row vanishes on a unit vector if it does within `SAME_ROWS`.
 
         Args:
-            rows: In floats.
-            exact: Build it in decimals, even where floats tell.
-            sharp: What returns the rows in decimals, not unit, where they are known better than to floats.
+            rows: The rows as unit vectors of floats.
+            exact: Whether to build the cone in decimals even if floats could decide everything.
+            sharp: A function that returns the rows as decimals of any length. Give it if the rows are known
+                to more digits than floats have.
         """
         self.exact = exact
         self._same = SAME_ROWS
@@ -116,7 +125,10 @@ class PolyhedralCone:
                 self._cut(row, index)
 
     def _check_clear(self, *sizes: float) -> None:
-        """Leave floats where one of ``sizes``, sines, is neither zero to rounding nor clearly more."""
+        """Raise `_NotClearError` if one of ``sizes``, sines, is neither zero to rounding nor clearly more.
+
+        Decimals are always clear.
+        """
         if self.exact:
             return
         for size in sizes:
@@ -125,7 +137,7 @@ class PolyhedralCone:
 
     @property
     def all_rows(self) -> int:
-        """Return the bit set of all rows: those that vanish on the lineality space and at the origin."""
+        """Return the bit set of all rows. All of them vanish on the lines of the cone, and at the origin."""
         return (1 << len(self.rows)) - 1
 
     @property
@@ -139,9 +151,9 @@ class PolyhedralCone:
         return common == 0
 
     def edges(self) -> list[tuple[Vector3, int]]:
-        """Return rays that contain every one-dimensional face, each with its tight rows.
+        """Return rays that contain every one-dimensional face, each with the rows that vanish on it.
 
-        Lines are given by two opposite rays; a plane by two such lines in it.
+        A line is given by two opposite rays, and a plane by two such lines in it.
         """
         lines = [(sign, self.all_rows) for line in self.lineality for sign in (line, opposite(line))]
         if len(self.lineality) == 3:
@@ -149,7 +161,7 @@ class PolyhedralCone:
         return lines + list(zip(self.rays, self.tight, strict=True))
 
     def sectors(self) -> list[Sector]:
-        """Return sectors that cover every two-dimensional face. Half-planes and planes come in several."""
+        """Return sectors that cover every two-dimensional face. A half-plane or plane has several."""
         lines = self.lineality
         rays = self.rays
         if not lines:
@@ -170,7 +182,7 @@ class PolyhedralCone:
         return []
 
     def _begin(self) -> tuple[int, ...]:
-        """Start from as many independent rows as there are, and return which; none: all are parallel."""
+        """Start with two or three independent rows and return their indices, or () if all are parallel."""
         rows = self.rows
         one = rows[0]
         second, width, normal = 0, self._same, one
@@ -208,7 +220,10 @@ class PolyhedralCone:
         return (0, second, third)
 
     def _cut_many(self, first: tuple[int, ...]) -> None:
-        """Cut with all rows but the ``first``: after the extreme ones most of the others change nothing."""
+        """Cut with all rows except the ``first``.
+
+        The rows with the extreme coordinates come next. After them, most of the others change nothing.
+        """
         matrix = np.array(self.rows)
         extreme = {*matrix.argmin(axis=0).tolist(), *matrix.argmax(axis=0).tolist()}.difference(first)
         for index in extreme:
@@ -228,7 +243,7 @@ class PolyhedralCone:
             at_once *= 2
 
     def _touch(self, indices: NDArray[np.int64], heights: FloatArray, lowest: FloatArray) -> None:
-        """Remember the rows that touch the cone and do not cut it."""
+        """Record the rows that touch the cone and do not cut it, and on which rays they vanish."""
         near = heights[lowest < self._clear]
         if ((abs(near) > self._same) & (abs(near) < self._clear)).any():
             raise _NotClearError
@@ -263,7 +278,10 @@ class PolyhedralCone:
         self._cut_rays(heights, index)
 
     def _cut_lineality(self, row: Vector3, index: int) -> bool:
-        """Cut a row that does not vanish on the lineality space: one line becomes a ray."""
+        """Cut with a row that does not vanish on all lines: one line becomes a ray.
+
+        Returns whether the row did this.
+        """
         parts = [dot(row, line) for line in self.lineality]
         length = _root(sum(part * part for part in parts))
         if length <= self._same:
@@ -284,7 +302,7 @@ class PolyhedralCone:
         return True
 
     def _cut_rays(self, heights: list[float], index: int) -> None:
-        """Drop the run of rays below the row, and put new ones where its edges cross the row."""
+        """Drop the rays on the wrong side of the row, and add one where an edge of the cone crosses it."""
         tolerance = self._same
         bit = 1 << index
         top = heights.index(max(heights))
@@ -308,7 +326,11 @@ class PolyhedralCone:
         self.tight = tight[:first] + common + tight[last + 1 :]
 
     def _crossing(self, i: int, j: int, heights: list[float], index: int) -> Vector3:
-        """Return where the edge between rays i and j meets the row: as a combination, then sharpened."""
+        """Return the ray on which the edge between rays i and j meets the row.
+
+        It is a combination of the two rays. In floats it is then found again from the row and a row on which
+        the edge lies, since this has less rounding.
+        """
         common = self.tight[i] & self.tight[j]
         one, two = abs(heights[j]), abs(heights[i])
         a, b = self.rays[i], self.rays[j]
@@ -367,7 +389,7 @@ def _complement(basis: list[Vector3], unit: Vector3) -> list[Vector3]:
 
 
 def decimal_vector(vector: Vector3) -> Vector3:
-    """Return the vector in decimals, which calculate as floats do: the type says what they stand for."""
+    """Return the vector in decimals. The type says floats, because the formulas here work for both."""
     x, y, z = vector
     return cast("Vector3", (Decimal(x), Decimal(y), Decimal(z)))
 

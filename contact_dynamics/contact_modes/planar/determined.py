@@ -1,9 +1,10 @@
-"""Modes with as many independent equations as unknown forces: solved, then judged (lecture 26).
+"""Some modes have as many independent equations as unknown forces. This file solves and judges them.
 
-Forces and accelerations are then linear in the applied wrench and, with centripetal terms, in their scale:
-in w+ = (w, m scale), see `problem`. What a letter demands is the sign of such a linear function g . w+, and a
-value within ``accuracy`` |g| |w+| counts as zero: a change of the applied wrench by that part of it turns the
-sign. This is the tolerance that `wrench_cone` applies to the modes whose equations are not independent.
+Their forces and accelerations are linear in w+ = (w, m scale). Here w is the applied wrench, m is the mass,
+and the scale stands for the centripetal terms (`problem`). A letter demands the sign of such a linear
+function g . w+. A value within ``accuracy`` |g| |w+| counts as zero, because a change of the applied wrench
+by that share can turn the sign. `wrench_cone` uses the same tolerance for the modes whose equations are not
+independent. The equations are those of lecture 26.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.planar.problem import ContactRow, PlanarCase
     from contact_dynamics.plane.types import Vector2
 
-_MOST_EQUATIONS: Final = 3  # that can be independent: a planar body's freedoms
+_MOST_EQUATIONS: Final = 3
+"""A planar body has three freedoms, so no more equations can be independent."""
 
 _DIRECTION: Final = {LEFT: -1.0, RIGHT: 1.0}
 
@@ -28,39 +30,52 @@ Vector4: TypeAlias = tuple[float, float, float, float]
 
 
 class _Equation(NamedTuple):
-    """An acceleration that is zero, and the force that sees to it."""
+    """An acceleration that must be zero, and the force that keeps it at zero.
 
-    row: Vector4  # of the acceleration, of unit length in its first three parts
-    wrench: Vector3  # of the force, unit
-    length: float  # N, or N m by rho, per N
+    Attributes:
+        row: The acceleration as a linear function of w+. Its first three numbers are a unit vector.
+        wrench: The wrench of the force, as a unit vector.
+        length: The size of the wrench of a unit force, with moments divided by the radius of gyration.
+    """
+
+    row: Vector4
+    wrench: Vector3
+    length: float
 
 
 class _Unknown(NamedTuple):
-    """One unknown force."""
+    """One unknown force.
 
-    wrench: Vector3  # unit
-    length: float  # N, or N m by rho, per N
-    response: Vector4  # its size along the unit wrench is -response . w+
+    Attributes:
+        wrench: The wrench of the force, as a unit vector.
+        length: The size of the wrench of a unit force, with moments divided by the radius of gyration.
+        response: The wrench that solves the equations is -response . w+ times the unit vector.
+    """
+
+    wrench: Vector3
+    length: float
+    response: Vector4
 
 
 class IndependentModes:
-    """Solves and judges the modes of one problem."""
+    """The modes of one problem whose equations are independent. It solves and judges them."""
 
     __slots__ = ("_accuracy", "_case", "_equations", "_load", "_scale", "_wrench")
 
     def __init__(self, case: PlanarCase, accuracy: float) -> None:
-        """Judge with zero as the relative ``accuracy`` has it."""
+        """Prepare to judge modes. Numbers within the relative ``accuracy`` count as zero."""
         self._case = case
         self._scale = case.lift.scale if case.lift else 0.0
         self._wrench: Vector4 = (*case.w, case.mass * self._scale)
         self._load = _size(self._wrench)
         self._accuracy = accuracy
-        self._equations: dict[tuple[int, int], tuple[_Equation, ...]] = {}  # of the letters met so far
+        # The equations of each contact's letter are computed when a mode first has that letter.
+        self._equations: dict[tuple[int, int], tuple[_Equation, ...]] = {}
 
     def forces(self, mode: str, letters: Letters) -> list[Vector2] | RefusedMode | None:
         """Return (f_t, f_n) of each contact that stays, or the first reason against the mode.
 
-        None: its equations are not independent.
+        Returns None if the equations of the mode are not independent.
         """
         unknowns = self._unknowns(letters)
         if unknowns is None:
@@ -167,7 +182,7 @@ class IndependentModes:
         return None
 
     def _tolerance(self, row: Vector4, unknowns: list[_Unknown]) -> float:
-        """Return what counts as zero for the acceleration along a unit row, N."""
+        """Return the force, N, up to which mass times the acceleration along a unit row counts as zero."""
         gradient = row
         terms = 1.0
         for unknown in unknowns:
@@ -177,12 +192,15 @@ class IndependentModes:
         return self._load * (self._accuracy * _size(gradient) + SUM_ROUNDING * terms)
 
     def _offset(self, offset: float, length: float) -> float:
-        """Return the fourth part of a unit row: what the scale adds to its acceleration."""
+        """Return the fourth number of a unit row: how the acceleration depends on the scale."""
         return offset / (length * self._scale) if self._scale else 0.0
 
 
 def _solved(equations: list[_Equation]) -> list[Vector4] | None:
-    """Return B = (A U)^-1 A+ for the unit rows A+ and the unit wrenches U, row by row; None: no inverse."""
+    """Return the rows of B = (A U)^-1 A+, where A+ are the equations' rows and U their unit wrenches.
+
+    A is A+ without its last column. Returns None if A U has no inverse.
+    """
     count = len(equations)
     if count == 1:  # most modes
         row, wrench, _ = equations[0]
@@ -212,12 +230,12 @@ def _solved(equations: list[_Equation]) -> list[Vector4] | None:
 
 
 def _slope(row: ContactRow, letter: int) -> float:
-    """Return f_t / f_n of a sliding contact: friction pushes right where it slides left."""
+    """Return f_t / f_n of a sliding contact. Friction pushes to the right if the contact slides left."""
     return row.friction if letter == LEFT else -row.friction
 
 
 def _edge(row: ContactRow, letter: int) -> Vector3:
-    """Return the wrench of a sliding contact's force of unit normal part."""
+    """Return the wrench of a sliding contact's force whose normal part is 1."""
     slope = _slope(row, letter)
     N, T = row.N, row.T
     return (N[0] + slope * T[0], N[1] + slope * T[1], N[2] + slope * T[2])

@@ -1,12 +1,12 @@
-"""All modes that a planar body's acceleration can realise without penetration (Mason, lecture 26, "5^n?").
+"""This file finds all modes that some acceleration realises without penetration (Mason, lecture 26, "5^n?").
 
-The accelerations that do not penetrate are a polyhedral cone. A contact stays (l, r or f) on its own facet
-only, and there its tangential row cuts the facet in two: a mode is a cell of a face, a piece of it on which
-no letter changes. Faces and cells are a few times the contacts, so that of the 4^n strings about 4 n + 2 at
-most occur; walking the faces finds them all without trying any other.
+The accelerations that do not penetrate are a polyhedral cone. A contact stays (l, r or f) only on its own
+facet of that cone, and its tangential row cuts the facet in two. So a mode is a cell: a piece of a face on
+which no letter changes. There are only a few times as many faces and cells as contacts. Of the 4^n strings at
+most about 4 n + 2 are possible, and a walk over the faces finds them without trying the others.
 
-With centripetal terms the polyhedron misses the origin; it is the section at height one of the cone of
-`problem.lifted`, and the cells below that height do not count.
+With centripetal terms the polyhedron of accelerations misses the origin. It is then the section at height one
+of the cone whose rows `problem.lifted` returns, and cells with height zero do not count.
 """
 
 from __future__ import annotations
@@ -30,14 +30,16 @@ FIXED = ord(STICKS)
 _SLIDING: Final = {-1.0: LEFT, 0.0: 0, 1.0: RIGHT}
 
 Letters: TypeAlias = tuple[tuple[int, int], ...]
-"""Contacts that stay: position in the problem's rows, letter."""
+"""The contacts that stay. Each has its position in the rows of the case, and the code of its letter."""
 
 
 class Cell(NamedTuple):
-    """The accelerations of one mode: positive combinations of rays.
+    """The accelerations of one mode, which are the positive combinations of rays.
 
     Attributes:
-        rays: Unit, in the coordinates of the problem's cone; may repeat; none: the origin.
+        letters: The letters of the contacts that stay.
+        rays: Unit vectors in the coordinates of the problem's cone, some of which may be the same. There is
+            none if the only acceleration is zero.
     """
 
     letters: Letters
@@ -45,12 +47,23 @@ class Cell(NamedTuple):
 
 
 class _Tangent(NamedTuple):
-    row: Vector3  # unit
-    letter: int  # of a contact that already slides; 0: the row decides
+    """The tangential acceleration of a contact.
+
+    Attributes:
+        row: Its row, as a unit vector.
+        letter: The code of the letter of a contact that slides already. It is 0 if the contact is at rest, so
+            that the sign of its acceleration decides.
+    """
+
+    row: Vector3
+    letter: int
 
 
 def kinematic_cells(case: PlanarCase) -> dict[str, Cell]:
-    """Return the mode strings that can occur, each with its accelerations. At least one contact touches."""
+    """Return the modes that are possible, each with its accelerations.
+
+    At least one contact of the case must touch.
+    """
     lift = case.lift
     below = 0
     if lift is None:
@@ -88,7 +101,7 @@ def kinematic_cells(case: PlanarCase) -> dict[str, Cell]:
 def _all_cells(
     cone: PolyhedralCone, tangents: list[_Tangent], below: int
 ) -> Iterator[tuple[Letters, list[Vector3]]]:
-    """Yield letters and rays of every cell of every face but the interior; some come more than once."""
+    """Yield letters and rays of every cell of every face except the interior. Some come more than once."""
     for sector in cone.sectors():
         if not sector.tight & below:
             yield from _sector_cells(sector, tangents)
@@ -108,16 +121,24 @@ def _letter(tangent: _Tangent, height: float) -> int:
 
 
 class _Staying(NamedTuple):
-    """A contact on the whole of a sector."""
+    """A contact that stays on the whole of a sector.
+
+    Attributes:
+        position: Its position in the rows of the case.
+        start: The code of its letter on the sector's first ray.
+        end: The code of its letter on the sector's last ray.
+        crossing: The share of the way from the first ray to the last at which the letter changes from left to
+            right or back. It is -1 if the letter does not change so.
+    """
 
     position: int
-    start: int  # letter on the sector's first ray
-    end: int  # letter on its last
-    crossing: float  # part of the way at which the letter changes from left to right or back; -1: nowhere
+    start: int
+    end: int
+    crossing: float
 
 
 def _sector_cells(sector: Sector, tangents: list[_Tangent]) -> Iterator[tuple[Letters, list[Vector3]]]:
-    """Yield the pieces of a sector between the tangential rows of the contacts that stay on it."""
+    """Yield the pieces into which the tangential rows of the contacts that stay cut a sector."""
     staying = [_staying(position, tangents[position], sector) for position in bits(sector.tight)]
     stops = [0.0]
     for crossing in sorted(contact.crossing for contact in staying):
@@ -140,7 +161,7 @@ def _staying(position: int, tangent: _Tangent, sector: Sector) -> _Staying:
 
 
 def _letters(staying: list[_Staying], at: float) -> Letters:
-    """Return the letters at a point inside the sector."""
+    """Return the letters at a point inside the sector, which is a share of the way from first to last ray."""
     found = []
     for position, start, end, crossing in staying:
         if crossing < 0.0:

@@ -1,4 +1,7 @@
-"""Edges of the friction cones of a mode's contacts, as wrenches: plain floats for a few, arrays for many."""
+"""The wrenches of the edges of friction cones, for the contacts that stay in a mode.
+
+A few edges are computed in plain floats and many in arrays, whichever is faster.
+"""
 
 from __future__ import annotations
 
@@ -21,12 +24,12 @@ if TYPE_CHECKING:
 
 
 class Edges(NamedTuple):
-    """The contact forces of a mode are positive combinations of these.
+    """The edges of friction cones. The contact forces of a mode are their positive combinations.
 
     Attributes:
-        positions: The row of the problem that each belongs to.
+        positions: The position of each edge's contact in the rows of the case.
         slopes: The ratio f_t / f_n of each edge.
-        wrenches: The wrench of a unit f_n along each edge.
+        wrenches: The wrench of a force along each edge whose normal part is 1.
     """
 
     positions: list[int]
@@ -35,11 +38,14 @@ class Edges(NamedTuple):
 
 
 class Reactions(NamedTuple):
-    """Edges turned round, as the cone of applied wrenches sees them.
+    """The negated wrenches of edges, in the coordinates of the cone of applied wrenches.
+
+    If the case has a line of symmetry, only the part of a wrench across that line counts.
 
     Attributes:
-        edges: Those that act across the line of symmetry.
-        lengths: There, per unit f_n.
+        edges: The indices of the edges whose wrenches have such a part.
+        lengths: The size of that part for each of them, for a normal force of 1.
+        units: The negated part of each of them, as a unit vector.
     """
 
     edges: list[int]
@@ -70,7 +76,7 @@ def friction_edges(rows: Sequence[ContactRow], letters: Letters) -> Edges:
 
 
 def reactions(lift: Lift | None, wrenches: Sequence[Vector3]) -> Reactions:
-    """Return the reactions to some wrenches, without those along the line of symmetry."""
+    """Return the reactions to some wrenches. Wrenches along the line of symmetry have none."""
     if len(wrenches) > MANY:
         return _many_reactions(lift, wrenches)
     edges, lengths, units = [], [], []
@@ -87,7 +93,7 @@ def reactions(lift: Lift | None, wrenches: Sequence[Vector3]) -> Reactions:
 def sharp_reactions(
     lift: Lift | None, rows: Sequence[ContactRow], edges: Edges, acting: Sequence[int]
 ) -> list[Vector3]:
-    """Return the reactions to those ``edges`` that are ``acting``, in decimals and of any length."""
+    """Return the reactions to the ``edges`` whose indices are ``acting``, as decimals of any length."""
     sharp = []
     for edge in acting:
         row = rows[edges.positions[edge]]
@@ -100,7 +106,10 @@ def sharp_reactions(
 
 
 def sharp_reaction(N: Vector3, T: Vector3, slope: float) -> Vector3:
-    """Return the reaction to N + slope T in decimals: where friction is large, floats lose N in the sum."""
+    """Return the reaction to N + slope T in decimals.
+
+    If friction is large, floats would lose N in the sum.
+    """
     (n_x, n_y, n_z), (t_x, t_y, t_z) = decimal_vector(N), decimal_vector(T)
     factor, _, _ = decimal_vector((slope, 0.0, 0.0))
     return (-n_x - factor * t_x, -n_y - factor * t_y, -n_z - factor * t_z)

@@ -1,11 +1,11 @@
-"""The mechanics of one planar contact mode: accelerations and forces that realise it, or why there are none.
+"""This file decides whether mechanics allows a mode, and gives accelerations and forces or a reason against.
 
-Each letter of a mode brings as many equations as unknown forces (lecture 26): `l` and `r` the normal
-acceleration and the force along the edge of the friction cone, `f` both accelerations and both forces. Where
-these few equations are independent they are solved, and the letters' inequalities decide (`determined`).
-Where they are not (more contacts stay than a body has freedoms, or friction cancels the response, as for
-Painleve's rod), what matters is whether the applied wrench lies in the cone of those that can bring the mode
-about (`wrench_cone`), and the forces are some of many.
+Each letter of a mode brings as many equations as unknown forces (lecture 26). For `l` and `r` this is one
+equation, of the normal acceleration, and one force, along an edge of the friction cone. For `f` there are two
+of each. If the equations are independent, they are solved, and the inequalities of the letters decide
+(`determined`). They are not independent if more contacts stay than a body has freedoms, or if friction
+cancels the response, as for Painleve's rod. Then a mode is consistent if the applied wrench lies in the cone
+of the wrenches that can bring it about (`wrench_cone`), and its forces are some of many.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from contact_dynamics.plane.types import Vector2
 
 _EVIDENCE: Final = 3.0
-"""By how many tolerances forces may miss what the letters say."""
+"""Forces are evidence if they miss what the letters say by no more than this number of tolerances."""
 
 
 def judge_all(
@@ -58,8 +58,8 @@ def judge_all(
 def _from_cone(case: PlanarCase, mode: str, cell: Cell, accuracy: float) -> PlanarMode | RefusedMode:
     """Decide a mode whose equations are not independent by the cone of its wrenches.
 
-    Forces that do not bring about what the letters say are no evidence: then the decision is taken again
-    with more digits.
+    If the forces do not bring about what the letters say, they are no evidence. Then the mode is decided
+    again with more digits.
     """
     outcome, certain = _judged(case, mode, cell, accuracy, exact=False)
     return outcome if certain else _judged(case, mode, cell, accuracy, exact=True)[0]
@@ -68,7 +68,7 @@ def _from_cone(case: PlanarCase, mode: str, cell: Cell, accuracy: float) -> Plan
 def _judged(
     case: PlanarCase, mode: str, cell: Cell, accuracy: float, *, exact: bool
 ) -> tuple[PlanarMode | RefusedMode, bool]:
-    """Return the decision on a mode, and whether it stands."""
+    """Return the decision on a mode, and whether it is certain."""
     wrenches = ModeWrenches(case, cell, exact=exact)
     shortfall = wrenches.shortfall(accuracy)
     if shortfall is not None:
@@ -80,7 +80,7 @@ def _judged(
         sums[position] = (f_t + slope * share, f_n + share)
     forces = [sums[position] for position, _ in cell.letters]
     allowed = _EVIDENCE * (accuracy + FORCES_ROUNDING) * (case.load + sum(shares))
-    # A mode may be so close to the boundary that its strict inequalities are lost in what forces round to.
+    # Close to the boundary, the rounding of the forces may be larger than the strict inequalities.
     lost = _contradiction(case, cell, forces)
     if lost is not None:
         contact, amount = lost
@@ -91,7 +91,7 @@ def _judged(
 
 
 def _allowed(case: PlanarCase, accuracy: float, forces: list[Vector2]) -> float:
-    """Return what the forces of a mode may miss of what its letters say."""
+    """Return by how much, N, the forces of a mode may miss what its letters say."""
     return _EVIDENCE * (accuracy + FORCES_ROUNDING) * (case.load + sum(f_n for _, f_n in forces))
 
 
@@ -119,9 +119,9 @@ def _consistent(
         row = case.rows[position]
         index = row.contact
         edge = row.friction * f_n
-        if f_n > 0.0:  # rounding at the cone's apex and edges is taken out
+        if f_n > 0.0:  # the force is moved by its rounding, so that it does not leave the friction cone
             all_forces[index] = (max(-edge, min(edge, f_t)), f_n)
-        # What the mode says is zero is zero, without rounding.
+        # The accelerations that the mode says are zero are given as zero, without rounding.
         accelerations[index] = (0.0 if letter == FIXED else accelerations[index][0], 0.0)
     forces_unique, motion_unique = unique
     return PlanarMode(
@@ -136,7 +136,7 @@ def _consistent(
 
 
 def _misses(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> float:
-    """Return by how much, N, contacts that stay do not stay under some forces, and fixed ones slide."""
+    """Return the largest acceleration, times mass, N, that the letters say is zero and the forces do not."""
     q = _acceleration(case, cell, forces)
     most = 0.0
     for position, letter in cell.letters:
@@ -148,7 +148,10 @@ def _misses(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> float:
 
 
 def _contradiction(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> tuple[int, float] | None:
-    """Return the first contact that should separate or start to slide and does not, and its acceleration."""
+    """Return the first contact that should separate or start to slide but does not, and its acceleration.
+
+    Returns None if all contacts move as their letters say.
+    """
     q = _acceleration(case, cell, forces)
     size = norm(q)
     staying = dict(cell.letters)

@@ -1,4 +1,4 @@
-"""The margins of an applied wrench in its contact modes (Mason, lecture 26)."""
+"""Margins say how far an applied wrench is from leaving its contact modes (Mason, lecture 26)."""
 
 from __future__ import annotations
 
@@ -34,11 +34,12 @@ class PlanarModeMargin(Record):
     """How far an applied wrench is from leaving one of its consistent modes, and where it would go.
 
     Attributes:
-        mode: One letter a contact.
-        margin: N, length of the least change in |f|^2 + (moment / length)^2; infinite: none does.
-        length: m, of that metric.
-        change: The least change itself; zero where there is none.
-        verdict_beyond: Just behind the boundary; the present one where there is none.
+        mode: The mode, with one letter for each contact.
+        margin: N, the size of the least change that leaves the mode, in the metric |f|^2 + (moment /
+            length)^2. It is infinite if no change does.
+        length: m, the length in that metric.
+        change: The least change itself, or zero if no change leaves the mode.
+        verdict_beyond: The verdict just behind the boundary, or the present one if there is no boundary.
         modes_beyond: The consistent modes there.
     """
 
@@ -58,13 +59,14 @@ def planar_mode_margins(
 ) -> tuple[PlanarModeMargin, ...]:
     """Return the margin of the wrench in each of its consistent modes, in the order of their answer.
 
-    Where all contacts separate already no wrench changes the mode: its margin is infinite. Empty where a
-    contact approaches.
+    If all contacts separate already, no wrench changes the mode, and its margin is infinite. No margin is
+    returned if a contact approaches.
 
     Args:
         problem: The question.
-        answer: To that question, where it is known: its modes are not sought again.
-        margin_length: m, > 0, makes a moment comparable with a force; None: the radius of gyration.
+        answer: The answer to that question, if it is known. It saves a search.
+        margin_length: m, > 0. It makes a moment comparable with a force. If it is None, it is the radius of
+            gyration.
 
     Raises:
         InvalidFieldError: the length is not > 0.
@@ -80,7 +82,7 @@ def planar_mode_margins(
     consistent = judge_all(case, cells, accuracy)[0] if answer is None else answer.modes
     present = tuple(mode.mode for mode in consistent)
     if len(problem.contacts) == 1:
-        # The order in which `one_contact` tries them.
+        # This is the order in which `one_contact` tries the letters.
         present = tuple(sorted(present, key=PLANAR_LETTERS.index))
     found = []
     for mode in present:
@@ -115,7 +117,7 @@ def planar_mode_margins(
 
 
 def _of_free_motion(problem: PlanarContactProblem, length: float) -> tuple[PlanarModeMargin, ...]:
-    """Return the margin where no contact touches: no wrench changes that. None where one approaches."""
+    """Return the infinite margin of a body without a touching contact, or () if a contact approaches."""
     if any(v_n < 0.0 for _, v_n in problem.contact_velocities()):
         return ()
     mode = SEPARATES * len(problem.contacts)
@@ -134,7 +136,11 @@ def _of_free_motion(problem: PlanarContactProblem, length: float) -> tuple[Plana
 def _nearest(
     wrenches: PlanarWrenchSet, wrench: PlanarWrench, length: float
 ) -> tuple[float, WrenchHalfSpace | None]:
-    """Return the distance to the nearest boundary and that boundary; a consistent wrench is inside."""
+    """Return the distance from a wrench in a set to the nearest boundary of the set, and that boundary.
+
+    A consistent wrench that rounding has put outside has the distance zero. If the set has no boundary, the
+    distance is infinite and the boundary is None.
+    """
     if not wrenches.half_spaces:
         return math.inf, None
     side = min(wrenches.half_spaces, key=lambda half_space: half_space.depth(wrench, length))

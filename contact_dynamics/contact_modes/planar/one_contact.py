@@ -1,15 +1,15 @@
-"""Modes of one planar contact by the lecture's case analysis, in closed form (Mason, lecture 26).
+"""This file finds the modes of one planar contact in closed form, case by case (Mason, lecture 26).
 
-Model: a rigid body touches the fixed world in one point with Coulomb friction. In contact axes
-the contact's acceleration is affine in the contact force,
+The model is a rigid body that touches the fixed world in one point with Coulomb friction. In contact axes the
+contact's acceleration is affine in the contact force,
 
     a_t = w_t + a f_t + b f_n,        a_n = w_n + b f_t + c f_n,
 
-with w the acceleration without contact force, terms of velocities included. Each letter adds its two
-equations; what contradicts the letter's inequalities is discarded. Plain floats throughout: this is the path
-of one answer in microseconds.
+where w is the acceleration without a contact force, with the terms of velocities. Each letter adds two
+equations, and their solution is kept if it contradicts no inequality of the letter. All numbers are plain
+floats, so that an answer takes microseconds.
 
-Does not cover: several contacts (`answer`), moving surfaces.
+Several contacts (`answer`) and moving surfaces are not covered.
 """
 
 from __future__ import annotations
@@ -25,47 +25,77 @@ from contact_dynamics.tolerances import LARGEST_NUMBER, ROW_TOLERANCE, SUM_ROUND
 
 
 class _Solution(NamedTuple):
-    f_t: float  # N
-    f_n: float  # N
-    a_t: float  # m/s^2
-    a_n: float  # m/s^2
-    unique: bool  # whether force and motion are the only ones with this letter
+    """Force and acceleration of the contact that solve the equations of a letter.
+
+    Attributes:
+        f_t: N, the tangential force.
+        f_n: N, the normal force.
+        a_t: m/s^2, the tangential acceleration.
+        a_n: m/s^2, the normal acceleration.
+        unique: Whether force and motion are the only ones with this letter.
+    """
+
+    f_t: float
+    f_n: float
+    a_t: float
+    a_n: float
+    unique: bool
 
 
 class _Failure(NamedTuple):
+    """The reason against a letter, with the amount in the unit that the refusal states."""
+
     refusal: Refusal
-    amount: float  # in the refusal's unit
+    amount: float
 
 
 class _ContactAxes(NamedTuple):
-    """The problem in contact axes."""
+    """The problem in contact axes.
 
-    r_t: float  # m, of the contact from the centre of mass
-    r_n: float  # m
-    per_mass: float  # 1/kg
-    per_inertia: float  # 1/(kg m^2)
-    det: float  # 1/kg^2, of the accelerations per force, > 0
-    w_t: float  # m/s^2, without contact force
-    w_n: float  # m/s^2, without contact force
-    terms: float  # m/s^2, the sizes w_t and w_n are sums of
+    Attributes:
+        r_t: m, the tangential part of the contact's position from the centre of mass.
+        r_n: m, the normal part of that position.
+        per_mass: 1/kg, the inverse mass.
+        per_inertia: 1/(kg m^2), the inverse inertia.
+        det: 1/kg^2, the determinant a c - b^2, which is positive.
+        w_t: m/s^2, the tangential acceleration without a contact force.
+        w_n: m/s^2, the normal acceleration without a contact force.
+        terms: m/s^2, the sum of the absolute terms of w_t and w_n, which bounds their rounding.
+        friction: The coefficient of friction.
+        load: N/kg^(1/2), the size of (f, moment / rho) and of the forces that the centripetal terms need,
+            divided by the root of the mass.
+        accuracy: The relative tolerance.
+    """
+
+    r_t: float
+    r_n: float
+    per_mass: float
+    per_inertia: float
+    det: float
+    w_t: float
+    w_n: float
+    terms: float
     friction: float
-    load: float  # N/kg^(1/2), size of (f, moment / rho), and of what centripetal terms need, per root mass
-    accuracy: float  # dimensionless, the relative tolerance
+    load: float
+    accuracy: float
 
     def along(self, t: float, n: float) -> float:
-        """Return the square of the row of t a_t + n a_n, 1/kg: how a change of the wrench shows in it."""
+        """Return the square of the row of t a_t + n a_n, 1/kg.
+
+        The row says by how much a change of the wrench changes that sum.
+        """
         arm = n * self.r_t - t * self.r_n
         return (t * t + n * n) * self.per_mass + arm * arm * self.per_inertia
 
     def tolerance(self, square: float, terms: float = 0.0) -> float:
-        """Return what counts as zero for a linear function of the wrench.
+        """Return the value up to which a linear function of the wrench counts as zero.
 
-        A change of the wrench by ``accuracy`` of its size turns the sign of such a value, or rounding does,
-        where it is a sum of ``terms``.
+        A change of the wrench by the share ``accuracy`` can turn the sign of such a value, or the rounding of
+        its terms can.
 
         Args:
-            square: The square of the function's row, as `along` has it for accelerations.
-            terms: The sizes that the value is a sum of, in its unit.
+            square: The square of the function's row, which `along` returns for accelerations.
+            terms: The sum of the absolute terms of the function, in its unit.
         """
         return self.accuracy * math.sqrt(square) * self.load + SUM_ROUNDING * terms
 
@@ -79,15 +109,17 @@ def single_contact_modes(
     w: float,
     accuracy: float,
 ) -> tuple[list[PlanarMode], list[RefusedMode], float]:
-    """Return consistent modes, refused modes and the tolerance on accelerations, m/s^2, at v_n = 0.
+    """Return consistent modes, refused modes and the tolerance of accelerations, m/s^2.
+
+    The contact's normal velocity must be zero.
 
     Args:
-        body: Mass and angular inertia.
+        body: The mass and the angular inertia.
         contact: The contact.
-        wrench: Applied to the body besides the contact force.
-        v_t: m/s, tangential velocity of the contact; an exact 0 means at rest.
-        w: rad/s, angular velocity of the body.
-        accuracy: Relative size of what counts as zero.
+        wrench: The wrench on the body besides that of the contact force.
+        v_t: m/s, the tangential velocity of the contact. An exact 0 means that it is at rest.
+        w: rad/s, the angular velocity of the body.
+        accuracy: The relative size up to which a number counts as zero.
     """
     axes = _contact_axes(body, contact, wrench, v_t=v_t, w=w, accuracy=accuracy)
     trials: list[tuple[str, _Solution | _Failure]] = [(SEPARATES, _separating(axes))]
@@ -157,8 +189,8 @@ def _sliding(axes: _ContactAxes, *, direction: float, at_rest: bool) -> _Solutio
     gain = slope * axes.per_mass - axes.r_n * arm * axes.per_inertia  # b + slope a
     unique = abs(factor) > ROW_TOLERANCE * math.sqrt(axes.along(0.0, 1.0) * axes.along(slope, 1.0))
     if axes.w_n == 0.0:
-        # Where the factor is zero too, any f_n keeps a_n at 0; friction then pushes against the sliding, so
-        # that the contact slides with some force only if it does with none.
+        # If the factor is zero too, any f_n keeps a_n at 0. Friction then pushes against the sliding, so the
+        # contact slides with some force only if it slides without any.
         f_n = part = 0.0
     elif not unique or (factor < 0.0 and axes.w_n < 0.0):
         return _Failure(Refusal.NO_SOLUTION, factor)
@@ -188,7 +220,7 @@ def _fixed(axes: _ContactAxes) -> _Solution | _Failure:
     if excess > axes.tolerance(square, terms_t + axes.friction * terms_n):
         return _Failure(Refusal.OUTSIDE_CONE, excess)
     f_n = max(f_n, 0.0)
-    edge = axes.friction * f_n  # rounding at the cone's apex and edges is taken out
+    edge = axes.friction * f_n  # the force is moved by its rounding, so that it does not leave the cone
     return _Solution(max(-edge, min(edge, f_t)), f_n, 0.0, 0.0, unique=True)
 
 

@@ -1,20 +1,20 @@
-"""A question about contact modes in the plane, and its case: the question in coordinates (lecture 26).
+"""A question about contact modes in the plane, and its case, which is the question in coordinates.
 
-In a case accelerations and wrenches live in one space. With the radius of gyration rho as the unit of length
-of rotations, an acceleration is q = (a_x, a_y, rho alpha) and a wrench is w = (f_x, f_y, moment / rho), so
-that Newton's law is m q = w, contact forces included.
-The accelerations of a contact's point along its normal and its tangent are
+In a case, accelerations and wrenches are vectors of one space. The radius of gyration rho is the unit of
+length for rotations. An acceleration is q = (a_x, a_y, rho alpha), and a wrench is w = (f_x, f_y, moment /
+rho). Newton's law is then m q = w, where w includes the contact forces. The accelerations of a contact's
+point along its normal and its tangent are
 
-    a_n = N . q + b_n,  a_t = T . q + b_t,  N = (n, r x n / rho),  T = (t, r x t / rho),  b = -w^2 r . (n, t),
+    a_n = N . q + b_n,  a_t = T . q + b_t,  N = (n, r x n / rho),  T = (t, r x t / rho),  b = -w^2 r . (n, t).
 
-to b_n of which a contact of curved sides adds its own (`PlanarContact.gap_acceleration`). The same rows are
-the wrenches of a unit normal and a unit tangential force.
+A contact of curved sides adds a term to b_n (`PlanarContact.gap_acceleration`). The rows N and T are also the
+wrenches of a unit normal force and a unit tangential force (lecture 26).
 
-A moving body: velocities within tolerance count as zero, and the motion that remains is the velocity's part
-that moves no contact along its normal, nor one at rest along its tangent. Where that part turns, all rows of
-touching contacts are orthogonal to it (their normals meet at the centre of rotation), so that the affine
-problem has a line of symmetry, and what is left is a cone in three dimensions again: two of acceleration and
-one that stands for the centripetal terms.
+Velocities of contacts within tolerance count as zero. So the body moves with that part of its velocity which
+moves no contact along its normal, and no contact at rest along its tangent. If that part turns, the rows of
+all touching contacts are orthogonal to it, because their normals meet at the centre of rotation. The affine
+problem then has a line of symmetry, and what is left is again a cone in three dimensions: two for the
+acceleration, and one for the centripetal terms.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench, Vector2
 
 MOST_PLANAR_CONTACTS: Final = 1000
-"""Longest list of contacts accepted: the mode strings of n contacts are about 4 n^2 letters."""
+"""Largest number of contacts that is accepted. The modes of n contacts have about 4 n^2 letters in all."""
 
 
 AT_REST: Final = PlanarVelocity(v=(0.0, 0.0), w=0.0)
@@ -52,14 +52,14 @@ class PlanarContactProblem(Record):
     """A question about the contact modes of one planar body; its sister in space is `SpatialContactProblem`.
 
     Attributes:
-        body: Mass and angular inertia.
+        body: The mass and the angular inertia.
         velocity: The velocity of the body.
-        contacts: Any may coincide, oppose or repeat another.
-        wrench: On the body besides its contact forces, gravity included.
-        velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero, and so
-            does an angular velocity that moves no contact relative to the centre of mass by more than that.
-        acceleration_tolerance: Relative to the applied wrench and the centripetal terms, >= 0. Forces and
-            accelerations whose sign a change by that part turns count as zero.
+        contacts: The contacts. Any of them may coincide with another or oppose it.
+        wrench: The wrench on the body besides that of its contact forces. It includes gravity.
+        velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero. An
+            angular velocity counts as zero if it moves no contact relative to the centre of mass by more.
+        acceleration_tolerance: >= 0, relative to the applied wrench and the centripetal terms. Forces and
+            accelerations count as zero if a change of the wrench by that share can turn their sign.
 
     Raises:
         InvalidFieldError: a tolerance is negative.
@@ -101,16 +101,17 @@ class ContactRow(NamedTuple):
     """One touching contact.
 
     Attributes:
-        contact: In the caller's order.
-        N: Normal row, not unit.
-        T: Tangent row, not unit.
-        unit_n: Along N.
-        unit_t: Along T.
+        contact: Its index in the caller's order.
+        N: The row of its normal acceleration. It is not a unit vector.
+        T: The row of its tangential acceleration. It is not a unit vector.
+        unit_n: The unit vector along N.
+        unit_t: The unit vector along T.
         size_n: |N|.
         size_t: |T|.
-        b_n: m/s^2.
-        b_t: m/s^2.
-        slides: -1 moves left, +1 right, 0 at rest.
+        b_n: m/s^2, the part of the normal acceleration that is due to velocities.
+        b_t: m/s^2, the part of the tangential acceleration that is due to velocities.
+        slides: -1 if it moves left, +1 if it moves right, and 0 if it is at rest.
+        friction: The coefficient of friction that acts, see `effective_friction`.
     """
 
     contact: int
@@ -130,9 +131,9 @@ class Lift(NamedTuple):
     """The line of symmetry of a body that turns about its contacts, and coordinates across it.
 
     Attributes:
-        line: Unit, the velocity.
-        across: Unit, orthogonal to it and to each other.
-        scale: m/s^2, the largest |b|: the third coordinate's unit.
+        line: The direction of the velocity, as a unit vector.
+        across: Two unit vectors that are orthogonal to the line and to each other.
+        scale: m/s^2, the largest |b|. It is the unit of the third coordinate.
     """
 
     line: Vector3
@@ -141,16 +142,17 @@ class Lift(NamedTuple):
 
 
 class PlanarCase(NamedTuple):
-    """Everything the enumeration and the judgement of modes need.
+    """A question in coordinates. The enumeration and the judgement of modes need no more than this.
 
     Attributes:
-        contacts: Touching or not.
+        contacts: All contacts, also those that do not touch.
         mass: kg.
-        rho: m, radius of gyration.
-        w: N, applied wrench.
+        rho: m, the radius of gyration.
+        w: N, the applied wrench.
         rows: The touching contacts.
-        omega: rad/s, angular velocity that the contacts allow.
-        lift: None: centripetal terms vanish, the problem is a cone as it stands.
+        omega: rad/s, the angular velocity that the contacts allow.
+        lift: The line of symmetry. It is None if there are no centripetal terms, so that the accelerations
+            are a cone already.
     """
 
     contacts: Sequence[PlanarContact]
@@ -163,14 +165,14 @@ class PlanarCase(NamedTuple):
 
     @property
     def load(self) -> float:
-        """Return what forces are compared with, N: the applied wrench plus the centripetal terms."""
+        """Return the size with which forces are compared, N: the applied wrench plus centripetal terms."""
         return norm(self.w) + (self.mass * self.lift.scale if self.lift else 0.0)
 
 
 def touching_case(problem: PlanarContactProblem) -> PlanarCase | None:
-    """Return the case of the contacts that touch, the same ones with one place and normal.
+    """Return the case of the contacts that touch. Those that coincide get the same place and normal.
 
-    None: none touches, or one approaches.
+    Returns None if no contact touches, or if one approaches.
     """
     velocities = problem.contact_velocities()
     if any(v_n < 0.0 for _, v_n in velocities) or all(v_n > 0.0 for _, v_n in velocities):
@@ -187,7 +189,7 @@ def planar_case(
 ) -> PlanarCase:
     """Return the case of those ``contacts`` whose normal velocity in ``contact_velocities`` is an exact 0.
 
-    They are the problem's, or one for each group of them that coincides.
+    The contacts are those of the problem, or one for each group of its contacts that coincide.
     """
     body, velocity, wrench = problem.body, problem.velocity, problem.wrench
     velocity_tolerance = problem.velocity_tolerance
@@ -217,7 +219,8 @@ def planar_case(
         contact = contacts[index]
         b_n = square * T[2] * rho  # T's moment arm is -r.n, N's is r.t
         rolling = contact.gap_acceleration(dot(T, twist), omega)
-        cancels = abs(b_n + rolling) <= ACCELERATION_TOLERANCE * abs(rolling)  # as where a disc rolls
+        # For a disc that rolls on a flat the two terms are opposite, and only rounding is left.
+        cancels = abs(b_n + rolling) <= ACCELERATION_TOLERANCE * abs(rolling)
         b_n = 0.0 if cancels else b_n + rolling
         b_t = -square * N[2] * rho
         largest = max(largest, abs(b_n), abs(b_t))
@@ -238,7 +241,7 @@ def planar_case(
 
 
 def contact_rows(contact: PlanarContact, length: float) -> tuple[Vector3, Vector3]:
-    """Return N and T of a contact, with a ``length``, m, as the unit of length of rotations."""
+    """Return N and T of a contact, with a ``length``, m, as the unit of length for rotations."""
     n_x, n_y = contact.normal
     r_x, r_y = contact.r
     return (
@@ -248,7 +251,7 @@ def contact_rows(contact: PlanarContact, length: float) -> tuple[Vector3, Vector
 
 
 def effective_friction(contact: PlanarContact, length: float) -> float:
-    """Return the coefficient of friction, or the largest that makes a difference, see `LARGEST_GRIP`."""
+    """Return the coefficient of friction, but at most what `LARGEST_GRIP` allows."""
     if contact.friction <= 1.0:
         return contact.friction
     arms = max(1.0, abs(contact.r[0]) / length, abs(contact.r[1]) / length)
@@ -285,7 +288,7 @@ def _divided(a: Vector3, by: float) -> Vector3:
 
 
 def lifted(lift: Lift | None, row: Vector3, offset: float) -> Vector3:
-    """Return the row of ``row . q + offset`` in the coordinates of the problem's cone."""
+    """Return ``row . q + offset`` as a row in the coordinates of the problem's cone."""
     if lift is None:
         return row
     one, two = lift.across

@@ -1,4 +1,4 @@
-"""The answer to a question about contact modes in the plane: a verdict, every consistent mode, and refusals.
+"""The answer to a question about contact modes in the plane has a verdict, modes and refused modes.
 
 A mode is a string with one letter for each contact, in the contacts' order (lecture 26): `s` separates, `l`
 slides left, `r` slides right, `f` stays fixed. Contact axes are (tangent, normal), where the tangent is the
@@ -19,11 +19,11 @@ class PlanarMode(Record):
     """A mode that is consistent with mechanics, with accelerations and forces that realise it.
 
     Attributes:
-        mode: One letter a contact.
-        acceleration: m/s^2, of the centre of mass.
+        mode: The mode, with one letter for each contact.
+        acceleration: m/s^2, the acceleration of the centre of mass.
         angular_acceleration: rad/s^2.
-        contact_forces: N, on the body, (f_t, f_n) of each contact.
-        contact_accelerations: m/s^2, (a_t, a_n) of the body's point at each contact.
+        contact_forces: N, the force (f_t, f_n) on the body at each contact.
+        contact_accelerations: m/s^2, the acceleration (a_t, a_n) of the body's point at each contact.
         forces_unique: Whether the forces above are the only ones with this mode.
         motion_unique: Whether the accelerations above are the only ones with this mode.
     """
@@ -42,13 +42,15 @@ class PlanarModeAnswer(Record):
     """The answer to one question about contact modes.
 
     Attributes:
-        verdict: On the whole contact set.
+        verdict: The verdict on the whole contact set.
         modes: All consistent modes.
-        refused: The kinematically possible rest.
-        approaching: Contacts that approach; not empty exactly where the verdict is IMPACT.
-        contact_velocities: m/s, (v_t, v_n), with values within tolerance as 0.
-        velocity_tolerance: m/s, below which a contact's velocity counted as zero.
-        acceleration_tolerance: m/s^2, below which one of the centre of mass counted as zero.
+        refused: All other modes that are possible kinematically, each with the reason against it.
+        approaching: The indices of the contacts that approach. There are some exactly if the verdict is
+            IMPACT.
+        contact_velocities: m/s, the velocity (v_t, v_n) of the body's point at each contact. Values within
+            tolerance are 0.
+        velocity_tolerance: m/s. Velocities of contacts up to this size counted as zero.
+        acceleration_tolerance: m/s^2. Accelerations of the centre of mass up to this size counted as zero.
     """
 
     verdict: ModeVerdict

@@ -1,12 +1,13 @@
-"""Static questions about a planar body at rest: equilibrium, disturbances, jamming, wedging.
+"""This file answers whether a planar body at rest stays at rest, and what holds it there.
 
-Model: as for `planar_contact_modes`, with the body at rest. Equilibrium is possible where the contact forces
-can cancel the applied wrench, that is, where the wrench lies in the cone of negated contact wrenches; it is
-certain where besides no other motion is consistent. Rigid bodies may be free to do either.
+The model is that of `planar_contact_modes`, with the body at rest. Equilibrium is possible if the contact
+forces can cancel the applied wrench, which means that the wrench lies in the cone of negated contact
+wrenches. It is certain if no other motion is consistent. Otherwise a rigid body may stay or move.
 
-The body is jammed (after Whitney 1982) if friction alone holds it: without friction it would move under the
-same wrench. It is wedged if the contacts can press against each other without any applied wrench. Then the
-wrench does not determine how hard they hold. The model does not say how the body came to be pressed.
+The body is jammed (after Whitney 1982) if friction alone holds it, so that without friction it would move
+under the same wrench. It is wedged if the contacts can press against each other without any applied wrench.
+Then the wrench does not determine how hard they press. The model does not say how the body came to be
+pressed.
 """
 
 from __future__ import annotations
@@ -36,8 +37,9 @@ def planar_statics(problem: PlanarContactProblem, *, margin_length: float | None
     """Return whether and how well a body at rest stays at rest.
 
     Args:
-        problem: The question; its velocity plays no part.
-        margin_length: m, > 0, makes a moment comparable with a force; None: the radius of gyration.
+        problem: The question. Its velocity plays no part.
+        margin_length: m, > 0. It makes a moment comparable with a force. If it is None, it is the radius of
+            gyration.
 
     Raises:
         InvalidFieldError: the length is not > 0.
@@ -87,7 +89,7 @@ def _balance(contacts: Sequence[PlanarContact], length: float) -> PolyhedralCone
 
 
 def _room(balance: PolyhedralCone, target: Vector3, accuracy: float) -> float:
-    """Return how far inside the cone that is dual to ``balance`` the wrench lies, N; < 0: outside."""
+    """Return how far inside the cone dual to ``balance`` the wrench lies, N, or -1 if it is outside."""
     tolerance = accuracy * math.sqrt(dot(target, target))
     heights = [dot(facet, target) for facet in balance.rays]
     if balance.exact:
@@ -103,5 +105,8 @@ def _room(balance: PolyhedralCone, target: Vector3, accuracy: float) -> float:
 
 
 def _press_on_each_other(balance: PolyhedralCone) -> bool:
-    """Return whether some contact forces, not all zero, cancel: no half-space holds all of them strictly."""
+    """Return whether some contact forces cancel that are not all zero.
+
+    Some do if no half-space has all of them strictly inside.
+    """
     return bool(balance.rows) and not balance.has_interior

@@ -1,12 +1,13 @@
-"""The applied wrenches that can bring about a planar mode, as the cone pos({a} + {-c_i}) of lecture 26.
+"""The applied wrenches that can bring about a planar mode are the cone pos({a} + {-c_i}) of lecture 26.
 
-Newton's law m q = w + sum of contact forces turns the accelerations q of a mode and the forces its letters
-allow into applied wrenches w = m q - c: the accelerations' rays and the negated edges of the friction cones
-generate a cone. A wrench in its interior brings the mode about. On its boundary the lecture's strictness
-decides: forces may be zero but `s`, `l` and `r` must accelerate, so that the mode holds only where the
-supporting half-space contains all accelerations of the mode on its boundary.
+Newton's law is m q = w + c, where c is the sum of contact forces. So the wrenches of a mode are w = m q - c,
+for the accelerations q of the mode and the forces c that its letters allow. The rays of the accelerations and
+the negated edges of the friction cones generate these wrenches. A wrench inside this cone brings the mode
+about. On the boundary the strictness of the letters decides. Forces may be zero, but `s`, `l` and `r` must
+accelerate. So the mode holds there only if the supporting plane contains all accelerations of the mode.
 
-With centripetal terms the same is said of (wrench across the line of symmetry, m scale): see `problem`.
+With centripetal terms, the same is true of the pair of the wrench across the line of symmetry and m scale,
+see `problem`.
 """
 
 from __future__ import annotations
@@ -31,14 +32,15 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
 
-_MOST_INDEPENDENT: Final = 3  # wrenches in the plane
+_MOST_INDEPENDENT: Final = 3
+"""No more wrenches can be independent in the plane."""
 
 
 class HalfSpace(NamedTuple):
-    """Wrenches w = (f_x, f_y, moment / rho) with a . w <= b.
+    """The wrenches w = (f_x, f_y, moment / rho) with a . w <= b.
 
     Attributes:
-        a: Unit.
+        a: A unit vector.
         b: N.
     """
 
@@ -47,14 +49,14 @@ class HalfSpace(NamedTuple):
 
 
 class ModeWrenches:
-    """The cone of applied wrenches of one mode, and where the problem's own wrench stands in it."""
+    """The cone of the applied wrenches of one mode, and where the problem's own wrench lies in it."""
 
     __slots__ = ("_case", "_common", "_rays", "_reactions", "_target", "dual", "edges")
 
     def __init__(self, case: PlanarCase, cell: Cell, *, exact: bool = False) -> None:
-        """Build the cone; its rays stand first among the rows of ``dual``, then the reactions.
+        """Build the cone. The rows of ``dual`` are the rays of the accelerations, and then the reactions.
 
-        ``exact``: in decimals, even where floats tell all directions apart.
+        ``exact`` says whether to build it in decimals even if floats tell all directions apart.
         """
         lift = case.lift
         self._case = case
@@ -71,7 +73,7 @@ class ModeWrenches:
         return [*rays, *sharp_reactions(case.lift, case.rows, self.edges, self._reactions.edges)]
 
     def generated_by(self) -> tuple[list[Vector3], list[Vector3]]:
-        """Return vertices, N, and rays whose averages and positive combinations are the mode's wrenches."""
+        """Return vertices, N, and rays. Each wrench of the mode is an average of vertices plus some rays."""
         lift = self._case.lift
         rays = [opposite(wrench) for wrench in self.edges.wrenches]
         if lift is None:
@@ -88,7 +90,10 @@ class ModeWrenches:
         return vertices, rays
 
     def half_spaces(self) -> list[HalfSpace]:
-        """Return the closure of the wrenches that can bring the mode about as half-spaces; empty: all can."""
+        """Return half-spaces whose intersection is the closure of the wrenches that can bring the mode about.
+
+        There are none if every wrench can.
+        """
         facets = [*self.dual.rays]
         for line in self.dual.lineality:
             facets += [line, opposite(line)]
@@ -101,10 +106,10 @@ class ModeWrenches:
         return found
 
     def shortfall(self, accuracy: float) -> float | None:
-        """Return None where the problem's wrench can bring the mode about, else by how much it cannot, N.
+        """Return None if the problem's wrench can bring the mode about, or by how much it cannot, N.
 
-        The amount is the largest distance to one of the half-spaces; 0: the wrench lies on the boundary,
-        where the mode's strict inequalities fail; infinite: no wrench brings the mode about.
+        The amount is the distance to one of the half-spaces. It is 0 if the wrench lies on the boundary,
+        where the strict inequalities of the mode fail. It is infinite if no wrench brings the mode about.
         """
         tolerance = accuracy * norm(self._target)
         if self.dual.exact:
@@ -134,9 +139,9 @@ class ModeWrenches:
         return None if strict else 0.0
 
     def solution(self, accuracy: float) -> tuple[list[float], tuple[bool, bool]]:
-        """Return the least forces (f_n along each of ``edges``), and whether forces and motion are unique.
+        """Return the least forces, as f_n along each of ``edges``, and whether forces and motion are unique.
 
-        Only after `shortfall` has returned None.
+        Call it only if `shortfall` has returned None.
         """
         tolerance = accuracy * norm(self._target)
         target = self._target
@@ -151,7 +156,7 @@ class ModeWrenches:
                 largest = min(largest, height / dot(z, inner))
         if math.isinf(largest):
             largest = norm(target)
-        # Half of the way that the mode's mean acceleration could go keeps every strict inequality.
+        # Half of the largest mean acceleration of the mode is taken. Every strict inequality then holds.
         share = 0.5 * largest if self._rays else 0.0
         rest = (target[0] - share * inner[0], target[1] - share * inner[1], target[2] - share * inner[2])
         if self.dual.exact:
@@ -163,7 +168,8 @@ class ModeWrenches:
             found = least_force([self.dual.rows[i] for i in used], rest, absent)
         wrenches = self.edges.wrenches
         shares = [0.0] * len(wrenches)
-        idle = set(self._reactions.edges)  # the others act along the line of symmetry: any of them may
+        # Edges that have no reaction act along the line of symmetry, and any of them may act.
+        idle = set(self._reactions.edges)
         for column, value in zip(used, found, strict=True):
             if column >= len(self._rays):
                 edge = self._reactions.edges[column - len(self._rays)]
@@ -172,7 +178,7 @@ class ModeWrenches:
         return shares, self._uniqueness([wrench for i, wrench in enumerate(wrenches) if i not in idle])
 
     def _uniqueness(self, acting: list[Vector3]) -> tuple[bool, bool]:
-        """Return whether forces and motion are unique, ``acting`` being the edges that can act."""
+        """Return whether forces and motion are unique if edges with the wrenches ``acting`` can act."""
         motions = orthonormal(self._motions())
         if not motions and len(acting) > _MOST_INDEPENDENT:
             return False, True
@@ -188,7 +194,7 @@ class ModeWrenches:
             yield (*self._case.lift.line, 0.0)
 
     def _unlifted(self, z: Vector3) -> tuple[Vector3, float]:
-        """Return a and b of a . w + b for the height of the wrench w over the facet ``z``."""
+        """Return a and b such that a . w + b is the height of the wrench w over the facet ``z``."""
         lift = self._case.lift
         if lift is None:
             return z, 0.0

@@ -1,10 +1,10 @@
-"""Which applied wrenches bring about which mode, and how far a given one is from another mode (lecture 26).
+"""This file says which applied wrenches bring about which mode of planar contacts (lecture 26).
 
-For every mode of a planar contact set the applied wrenches that can bring it about are a convex set, a cone
-where no centripetal terms act. All sets together are the map of modes over applied wrenches: they overlap
-where the outcome is indeterminate, and leave gaps where it is inconsistent.
+The applied wrenches that can bring about a mode are a convex set, and a cone if there are no centripetal
+terms. All sets together are the map of modes over applied wrenches. They overlap where the outcome is
+indeterminate, and leave gaps where it is inconsistent.
 
-The margin of a wrench in a mode is the length of the least change that takes it out of the mode's set, in the
+The margin of a wrench in a mode is the size of the least change that takes it out of the mode's set, in the
 metric |f|^2 + (moment / length)^2.
 """
 
@@ -30,10 +30,11 @@ if TYPE_CHECKING:
 
 
 class WrenchHalfSpace(NamedTuple):
-    """Applied wrenches with a . (f_x, f_y, moment) <= b.
+    """The applied wrenches with a . (f_x, f_y, moment) <= b.
 
     Attributes:
-        a: (1, 1, 1/m); of unit length once its third part is multiplied by the radius of gyration.
+        a: Its units are (1, 1, 1/m). It is a unit vector if its third number is multiplied by the radius of
+            gyration.
         b: N.
     """
 
@@ -41,12 +42,12 @@ class WrenchHalfSpace(NamedTuple):
     b: float
 
     def depth(self, wrench: PlanarWrench, length: float) -> float:
-        """Return how far inside the wrench lies, N, in the metric of ``length``, m; < 0: outside."""
+        """Return how far inside the wrench lies, N, in the metric of ``length``, m; < 0 is outside."""
         room = self.b - self.a[0] * wrench.f[0] - self.a[1] * wrench.f[1] - self.a[2] * wrench.moment
         return room / math.sqrt(self._square(length))
 
     def outward(self, length: float) -> PlanarWrench:
-        """Return the change of unit size, in the metric of ``length``, that leads out the shortest way."""
+        """Return the change that leads out the shortest way. Its size is 1 in the metric of ``length``."""
         size = math.sqrt(self._square(length))
         return PlanarWrench(f=(self.a[0] / size, self.a[1] / size), moment=self.a[2] * length * length / size)
 
@@ -59,10 +60,10 @@ class PlanarWrenchSet(Record):
     """The applied wrenches that can bring one mode about, as the closure of their set in two forms.
 
     Attributes:
-        mode: One letter a contact.
-        vertices: The set is all averages of these plus.
-        generators: All positive combinations of these, any scale.
-        half_spaces: The same set; empty: every wrench.
+        mode: The mode, with one letter for each contact.
+        vertices: The set has all sums of an average of vertices and a positive combination of generators.
+        generators: They may have any size.
+        half_spaces: Their intersection is the same set. If there are none, it has every wrench.
     """
 
     mode: str
@@ -73,15 +74,17 @@ class PlanarWrenchSet(Record):
     def depth(self, wrench: PlanarWrench, length: float) -> float:
         """Return how far inside the set a wrench lies, N, in the metric of ``length``, m.
 
-        Infinite: every wrench does; < 0: outside (then a lower bound of the distance).
+        It is infinite if the set has every wrench. It is negative outside of the set, and then bounds the
+        distance from below.
         """
         return min((side.depth(wrench, length) for side in self.half_spaces), default=math.inf)
 
 
 def length_of(sets: Sequence[PlanarWrenchSet]) -> float:
-    """Return the radius of gyration, m, of the body that sets were made for; 1 where no torque bounds them.
+    """Return the radius of gyration, m, of the body that sets were made for.
 
-    It is the length with which the half-spaces have unit size, see `WrenchHalfSpace`.
+    It is the length with which the half-spaces have unit size, see `WrenchHalfSpace`. If no set is bounded in
+    its torques, the length does not matter, and 1 is returned.
     """
     normals = [side.a for one in sets for side in one.half_spaces]
     a = max(normals, key=lambda row: abs(row[2]), default=(0.0, 0.0, 0.0))
@@ -94,12 +97,12 @@ def planar_wrench_sets(
 ) -> tuple[PlanarWrenchSet, ...]:
     """Return the applied wrenches of every kinematically possible mode, in alphabetical order.
 
-    Empty where a contact approaches, or where none touches. The problem's own wrench plays no part.
+    There are none if a contact approaches, or if none touches. The problem's own wrench plays no part.
 
     Args:
         problem: The contacts and the velocity.
-        modes: Letters, one a contact, of the modes that are wanted; None: all. What is impossible whatever
-            the wrench has no set.
+        modes: The modes that are wanted, with one letter for each contact. If it is None, all are returned. A
+            mode that is impossible under every wrench has no set.
 
     Raises:
         InvalidFieldError: modes that are not strings of s, l, r and f.
@@ -115,7 +118,7 @@ def planar_wrench_sets(
 
 
 def wrench_set_of(case: PlanarCase, mode: str, cell: Cell) -> PlanarWrenchSet:
-    """Return the wrenches of one mode; the problem's own wrench plays no part."""
+    """Return the wrenches of one mode. The problem's own wrench plays no part."""
     wrenches = ModeWrenches(case, cell)
     rho = case.rho
     vertices, generators = wrenches.generated_by()
