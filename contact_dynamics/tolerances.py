@@ -373,68 +373,71 @@ ESCAPE_ARRIVED: Final = 1e-16
 last bit."""
 
 MODE_STRAIGHT: Final = 1e-8
-"""rad, misdirection of friction that is rounding."""
+"""rad. Friction that misses the direction against the sliding by no more opposes it to rounding."""
 
 MODE_OBLIQUE: Final = 1e-3
-"""rad: surfaces that lean less are flush. Several modes are rare there with usual friction."""
+"""rad. Surfaces that lean less against each other count as flush. Several modes are rare there with usual
+friction."""
 
 MODE_RESTS: Final = 1e-12
-"""Relative to the load: what forces that hold a body may leave over."""
+"""Relative to the load. Forces that hold a body may leave so much of it unbalanced."""
 
 MODE_BETTER: Final = 1e-2
-"""Relative: less is rounding."""
+"""Relative. Forces replace others where they leave less than this part of what those left unbalanced. A
+smaller gain would be rounding."""
 
 CAREFUL_UNMET: Final = 1e-9
-"""Relative to the largest acceleration: by how much equations that count as the same may ask for different
-accelerations, as where centripetal terms are rounded."""
+"""Relative to the largest acceleration. Equations that count as the same may demand accelerations that differ
+by so much, as where centripetal terms are rounded."""
 
 CAREFUL_LEAST_PIVOT: Final = 1e-13
-"""Entries of the table up to it may be rounding of the doubles that it is made from."""
+"""Entries of the table that are no larger may be the rounding of the doubles from which it is made."""
 
 TABLE_SMALL_PIVOT: Final = 1e-3
-"""Division by a larger one counts as harmless: the rounding that it adds is within `FEASIBLE`."""
+"""Division by a larger entry counts as harmless. The rounding that it adds is within `FEASIBLE`."""
 
 TABLE_ROUNDING: Final = 1e-16
-"""Relative: what doubles lose in a step or two."""
+"""Relative. Doubles lose so much in a step or two."""
 
 LETTERS_SETTLED: Final = 1e-13
-"""Relative to the largest acceleration: what the equations may miss, in its last step."""
+"""Relative to the largest acceleration. The equations may be missed by so much in the last step."""
 
 LETTERS_REGULAR: Final = 1e-11
-"""Ratio of singular values below which the unknowns count as dependent: loads are shared."""
+"""Ratio of singular values. Below it, the unknowns count as dependent, because loads are shared."""
 
 LETTERS_ON_CONE: Final = 1e-9
-"""Relative: how far outside of its cone a force that sticks may lie."""
+"""Relative. A force that sticks may lie so far outside of its cone."""
 
 ONE_CONTACT_ON_CONE: Final = 1e-9
-"""Relative: how far outside of its cone a force that sticks may lie. Sliding begins as strictly."""
+"""Relative. A force that sticks may lie so far outside of its cone. Sliding begins just as strictly."""
 
 ONE_CONTACT_ZERO: Final = 1e-13
-"""Relative to the largest acceleration, and to the largest coefficient: rounding."""
+"""Relative to the largest acceleration, and to the largest coefficient. Less counts as rounding."""
 
 ONE_CONTACT_ON_CIRCLE: Final = 1e-3
-"""How far from the unit circle a root may lie before it is polished: double roots are half as exact."""
+"""A root may lie so far from the unit circle before it is polished. Double roots are known to half the
+digits."""
 
 ONE_CONTACT_SAME_ANGLE: Final = 1e-6
-"""rad, within which two roots are one."""
+"""rad. Two roots within it are one."""
 
 ROUND_CONE_HELD: Final = 1e-11
-"""Relative to the load: what forces may leave over that hold the contacts."""
+"""Relative to the load. Forces that hold the contacts may leave so much of it unbalanced."""
 
 ROUND_CONE_NO_HELP: Final = 1e-12
-"""Cosine, of a force's effect to what is left over, below which it is rounding."""
+"""A cosine, between the effect of a force and the remainder. A smaller one counts as rounding."""
 
 ROUND_CONE_INDEPENDENT: Final = 1e-15
-"""Relative: less is rounding."""
+"""Ratio of singular values. Smaller ones count as rounding."""
 
 ROUND_CONE_APART: Final = 1e-13
-"""Dimensionless, on rows of unit length: those that differ by more do so by more than rounding."""
+"""Dimensionless, for rows of unit length. Rows that differ by more do so by more than rounding."""
 
 ROUND_CONE_ON_CONE: Final = 1e-12
-"""Relative to the largest force."""
+"""Relative to the largest force. A force may lie so far outside of its cone."""
 
 ROUND_CONE_REACHED: Final = 1e-10
-"""Relative: what all forces together do less than that in some direction is nothing."""
+"""Relative. If all forces together have a smaller effect in some direction, it counts as none."""
 
 ROUND_CONE_ROUNDING: Final = 1e-15
-"""Relative: what doubles lose in a step or two."""
+"""Relative. Doubles lose so much in a step or two."""

@@ -1,17 +1,19 @@
 """The contact modes of a body in space that are consistent with mechanics, with directions of sliding.
 
-Model: as in the plane (lecture 26), with Coulomb's round cone. A contact that moves slides in a known
-direction and has its exact friction. For one at rest the cone is a pyramid with a stated number of edges, the
-first of which opposes the tangential acceleration that the contact would have without any contact force. On
-the pyramid friction does the most it can against the sliding: a contact that slides within the sector
-opposite to an edge has its force on that edge, one that slides on a sector's border has it on the side
-between two edges. Letters are s (separates), f (sticks) and c (stays and slides); the sector or border
-belongs to the mode. All of them are found (`search`); then friction is turned exactly against the
-sliding where that has a solution (`exact_friction`, `exact_letters`), and finer pyramids are tried where it
-has none. One contact at rest is solved exactly (`one_contact`), and round cones decide whether all contacts
-can stick (`round_cones`). A contact without friction is one letter, sliding or not.
+The model is that of the plane (lecture 26), with Coulomb's round cone. A contact that moves already slides in
+a known direction, so that its friction is known exactly. For a contact at rest, a pyramid with a stated
+number of edges stands for the cone. Its first edge opposes the tangential acceleration that the contact would
+have without any contact force. On the pyramid, friction does the most it can against the sliding. A contact
+that slides within the sector opposite to an edge has its force on that edge. A contact that slides along the
+border of two sectors has its force on the side between their edges.
 
-Does not cover: margins (`spatial.margins`).
+The letters are s (separates), f (sticks) and c (stays and slides); the sector or border belongs to the mode.
+The search finds all modes of the pyramids (`search`). Then friction is turned exactly against the sliding
+(`exact_friction`, `exact_letters`), and finer pyramids are tried where that has no solution. One contact at
+rest is solved exactly (`one_contact`), and round cones decide whether all contacts can stick (`round_cones`).
+A contact without friction has the letter c, whether it slides or not.
+
+`spatial.margins` says how far the applied wrench is from other modes.
 """
 
 from __future__ import annotations
@@ -51,13 +53,14 @@ if TYPE_CHECKING:
 
 
 _MOST_SOUGHT_TWICE: Final = 4
-"""Contacts whose modes are sought with finer pyramids too."""
+"""The modes of no more contacts than these are sought with finer pyramids too."""
 
 _FINER: Final = 4
-"""Times as many edges as asked for."""
+"""How many times as many edges the finer pyramids have."""
 
 _MOST_FACETS: Final = 128
-"""Edges of the finest pyramid that is searched where friction could not be turned against the sliding."""
+"""How many edges the finest pyramid has that is searched. Pyramids are made finer where friction could not be
+turned against the sliding."""
 
 _DOUBT: Final = "rounding decides whether some modes are consistent: contacts or normals are nearly the same"
 
@@ -69,18 +72,24 @@ _TURNED: Final = (
 
 
 class Evidence(NamedTuple):
-    """The modes of a case with what the search found of them; None: what it did not find."""
+    """The modes of a case, and what could not be decided about them.
+
+    Attributes:
+        modes: Each mode, with what the search of the pyramids found, or None if another way found the mode.
+        undecided: What could not be decided, and why. It is empty where everything was decided.
+    """
 
     modes: list[tuple[SpatialMode, Found | None]]
-    undecided: str  # what could not be made out; empty: nothing
+    undecided: str
 
 
 def spatial_contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer:
     """Return the verdict on a contact set in space and all consistent modes.
 
     Raises:
-        TooLargeError: more contacts touch than `spatial.problem.MOST_DYNAMIC_CONTACTS`; or the search takes
-            more trials than `search.MOST_EXAMINED`, as for hundreds of sectors without ``sharpen``.
+        TooLargeError: more contacts touch than `spatial.problem.MOST_DYNAMIC_CONTACTS`. Or the search takes
+            more trials than `search.MOST_EXAMINED`, which happens where hundreds of sectors are consistent
+            and ``sharpen`` is false.
     """
     case = spatial_case(problem)
     modes: list[SpatialMode] = []
@@ -115,7 +124,7 @@ def evidenced(case: SpatialCase, search: Search, *, facets: int) -> Evidence:
     Args:
         case: The body with its contacts.
         search: The search of that case.
-        facets: Edges of its pyramids.
+        facets: The number of edges of its pyramids.
     """
     kept = found_by(case, search, sharpen=True)
     undecided = _DOUBT if search.doubtful else ""
@@ -135,7 +144,7 @@ def _are_oblique(search: Search) -> bool:
 
 
 def _with_those_between(case: SpatialCase, found: Evidence, facets: int) -> Evidence:
-    """Return the modes with those that need friction between the edges of the pyramids."""
+    """Return the modes that were found, and those that need friction between the edges of the pyramids."""
     finer = search_of(case, min(_FINER * facets, _MOST_FACETS))
     try:
         further = _by_letters(case, finer, found_by(case, finer, sharpen=True))
@@ -146,10 +155,10 @@ def _with_those_between(case: SpatialCase, found: Evidence, facets: int) -> Evid
 
 
 def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[tuple[SpatialMode, Found | None]]:
-    """Return the modes of a case with friction pyramids; of twins, if sharpened, the first.
+    """Return the modes of a case with friction pyramids.
 
-    Twins have the same letters and the same motion. Where the motion with some letters is not unique, all
-    with these letters are twins of that mode.
+    If friction is sharpened, each mode is returned once. Two modes are the same if their letters and their
+    motions are. Where the motion with some letters is not unique, all modes with these letters are the same.
     """
     every = search.run(grouped=sharpen)
     found: list[tuple[SpatialMode, Found | None]] = [
@@ -175,7 +184,7 @@ def _is_exact(mode: SpatialMode) -> bool:
 
 
 def _refined(case: SpatialCase, search: Search, found: Evidence, facets: int) -> Evidence:
-    """Return the modes with those of finer pyramids in place of any whose friction could not be turned."""
+    """Return the modes, where modes of finer pyramids replace those whose friction could not be turned."""
     modes = _by_letters(case, search, found.modes)
     while not all(_is_exact(mode) for mode, _ in modes):
         facets *= 2
@@ -198,7 +207,7 @@ def _refined(case: SpatialCase, search: Search, found: Evidence, facets: int) ->
 def _by_letters(
     case: SpatialCase, search: Search, found: list[tuple[SpatialMode, Found | None]]
 ) -> list[tuple[SpatialMode, Found | None]]:
-    """Return the modes with exact ones in place of those whose friction could not be turned."""
+    """Return the modes, where exact solutions replace those whose friction could not be turned."""
     kept: list[tuple[SpatialMode, Found | None]] = []
     for mode, one in found:
         near: list[tuple[SpatialMode, Found | None]] = []
@@ -216,7 +225,7 @@ def _by_letters(
 def _of_one_contact(
     case: SpatialCase, search: Search, found: list[tuple[SpatialMode, Found | None]]
 ) -> list[tuple[SpatialMode, Found | None]]:
-    """Return all modes of one contact at rest, as they were found where that is exact already."""
+    """Return all modes of one contact at rest. A mode that the search found exactly stays as it is."""
     (contact,) = search.touching
     G = (
         case.motion.points[3 * case.touching[0] :][:3]
@@ -243,11 +252,11 @@ def _all_stick(case: SpatialCase, search: Search, mode: SpatialMode) -> bool:
 
 
 def _with_rest(case: SpatialCase, search: Search, found: Evidence) -> Evidence:
-    """Return the modes with the one in which all contacts stick, if the round cones hold it."""
+    """Return the modes, with the one in which all contacts stick if forces in the round cones allow it."""
     letters = "".join(STICKS if one.friction > 0.0 else STAYS for one in search.touching)
     undecided = found.undecided
     still = [pair for pair in found.modes if _all_stick(case, search, pair[0])]
-    if len(still) > 1:  # forces that hold a body are convex: one mode
+    if len(still) > 1:  # the forces that hold a body form a convex set, and are one mode
         found = found._replace(modes=[pair for pair in found.modes if pair not in still[1:]])
     if not still:
         rows = sticking(search)
@@ -273,12 +282,12 @@ def _are_twins(mode: SpatialMode, other: SpatialMode) -> bool:
 
 
 def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool) -> SpatialMode:
-    """Return a mode that was found, with accelerations and forces that realise it."""
+    """Return a mode that the search found, with accelerations and forces that realise it."""
     count = search.edges.shape[1]
     shares = found.program.shares(count)
     motion_unique, low, high = found.motion
     if not motion_unique and low is not None and high is not None:
-        shares = 0.5 * (low + high)  # away from the borders of the mode
+        shares = 0.5 * (low + high)  # this is away from the borders of the mode
     mixture = np.random.default_rng(26).normal(size=len(search.edges))
     forces_unique = found.program.ends(mixture @ search.edges).unique
     own, acting = (search.edges @ shares).reshape(-1, 3), search.acting(found)
@@ -294,15 +303,18 @@ def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool)
 
 
 def _rested(search: Search, forces: FloatArray) -> FloatArray:
-    """Return forces under which a body rests that does so but for what is left of merged conditions."""
+    """Return forces under which a body rests to rounding.
+
+    The given forces do so to the tolerance within which conditions on nearly the same contacts are merged.
+    """
     rows = sticking(search)
     motion = np.append(search.motion[:, -1] + search.of_forces @ forces.ravel(), 1.0)
-    if float(np.abs(rows @ motion).max()) > STRICT:  # merged contacts: what parts them has been lost
+    if float(np.abs(rows @ motion).max()) > STRICT:  # what tells merged contacts apart was lost
         held = held_by_round_cones(search, rows)
         forces = forces if held.forces is None else held.forces
 
     def left(forces: FloatArray) -> float:
-        """Return the size of the wrench that forces leave over."""
+        """Return the size of the wrench that forces leave unbalanced."""
         return float(np.linalg.norm(search.mass @ (search.motion[:, -1] + search.of_forces @ forces.ravel())))
 
     before = left(forces)
@@ -327,7 +339,7 @@ def _mode(
     for i, letter in zip(touching.tolist(), touching_letters, strict=True):
         way = sliding[i] if np.any(sliding[i]) else across[i]
         size = float(np.linalg.norm(way))
-        # Without friction one letter stands for both, and the acceleration says which it is.
+        # Without friction one letter stands for both, and the acceleration says whether the contact slides.
         rests = letter == STAYS and not np.any(sliding[i]) and size <= STRICT * motion.scale
         letters[i] = STICKS if rests else letter
         if letters[i] == STAYS:
@@ -348,7 +360,10 @@ def _mode(
 def _sharpened(
     search: Search, found: Found, forces: FloatArray, acting: list[FloatArray]
 ) -> tuple[FloatArray, list[FloatArray]]:
-    """Return forces, and the edges that may act, with friction exactly against the sliding if that can be."""
+    """Return forces with friction exactly against the sliding, and the edges that may act.
+
+    Where friction could not be turned, they are those that were given.
+    """
     letters = "".join(one.letter for one in found.letters)
     if all(one.item < 0 for one in found.letters):
         return forces, acting

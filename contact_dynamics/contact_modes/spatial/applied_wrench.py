@@ -1,4 +1,4 @@
-"""From a mode's accelerations and forces back to the applied wrench: Newton's and Euler's laws."""
+"""The applied wrench that belongs to a mode's accelerations and forces, by Newton's and Euler's laws."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ def applied_wrench(
         mode: The mode.
 
     Returns:
-        (6,), the force, N, then the torque about the centre of mass, N m, world axes; gravity is part of it.
+        (6,), the force, N, then the torque about the centre of mass, N m, in world axes. Gravity is part of
+        it.
     """
     I_W = body.inertia_in_world(state.R_WB)
     force_W = body.mass * mode.acceleration_W - mode.contact_forces_W.sum(axis=0)

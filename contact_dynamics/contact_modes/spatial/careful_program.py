@@ -1,10 +1,11 @@
-"""Whether some edge forces satisfy conditions that nearly coincide: solved anew each time, from merged rows.
+"""Whether some edge forces satisfy conditions that nearly coincide.
 
-`dual_simplex` goes on from table to table, and where two contacts or normals are nearly the same it divides
-by what parts them, again and again. Here all conditions that are equations are gathered first. Their rows
-are about unit, and an orthonormal basis of what these see takes their place: rows that agree within
-`ROW_TOLERANCE` are one condition, and those that differ by more are as well conditioned as any other. The
-table is then made from nothing, in NumPy's longest floating-point numbers.
+`dual_simplex` goes on from table to table. Where two contacts or normals are nearly the same, it divides by
+their difference again and again, which amplifies rounding. Here all conditions that are equations are
+gathered first. Their rows have about unit length, and an orthonormal basis of the space that they span
+replaces them. So rows that agree within `ROW_TOLERANCE` are one condition, and rows that differ by more are
+as well conditioned as any others. Each program makes its table anew, in NumPy's longest floating-point
+numbers.
 """
 
 from __future__ import annotations
@@ -23,18 +24,18 @@ if TYPE_CHECKING:
 
 
 class CarefulProgram:
-    """Edge forces that satisfy some conditions, with the methods of `Program`."""
+    """A set of edge forces that satisfy some conditions. It has the methods of `Program`."""
 
     __slots__ = ("_motion", "_named", "_names", "_raised", "_solved", "_tagged", "_zeroed", "doubtful")
 
     def __init__(self, motion: FloatArray, named: FloatArray, names: Sequence[int]) -> None:
-        """Take what `Program.stated` takes."""
+        """Take the arguments of `Program.stated`."""
         self._motion, self._named, self._names = motion, named, tuple(names)
         self._zeroed: frozenset[int] = frozenset()
         self._raised: dict[int, float] = {}
         self._tagged: dict[int, tuple[FloatArray, int]] = {}
         self._solved: Program | None = None
-        self.doubtful = False  # as in `Program`
+        self.doubtful = False  # whether rounding may have decided, as in `Program`
 
     def narrowed(
         self,
@@ -46,7 +47,7 @@ class CarefulProgram:
         equalities: int = 0,
         tag: int = -1,
     ) -> CarefulProgram:
-        """Return a program with further conditions; arguments are those of `Program.narrowed`."""
+        """Return a program with further conditions. The arguments are those of `Program.narrowed`."""
         found = CarefulProgram(self._motion, self._named, self._names)
         found._zeroed = self._zeroed.union(zeroed)
         found._raised = self._raised | dict.fromkeys(raised, least)
@@ -68,7 +69,7 @@ class CarefulProgram:
         return holds
 
     def allows_any(self, weights: FloatArray, constants: FloatArray, least: float) -> bool:
-        """Return whether they allow one further condition; see `Program.allows_any`."""
+        """Return whether they allow one of some further conditions, as `Program.allows_any` does."""
         program = self._table
         holds = program.allows_any(weights, constants, least)
         self.doubtful = program.doubtful
@@ -79,7 +80,7 @@ class CarefulProgram:
         return self._table.shares(count)
 
     def ends(self, weights: FloatArray) -> Ends:
-        """Return whether a weighted sum of edge forces is the same for all; see `Program.ends`."""
+        """Return whether a weighted sum of edge forces has one value only, as `Program.ends` does."""
         return self._table.ends(weights)
 
     @property
@@ -89,7 +90,7 @@ class CarefulProgram:
         return self._solved
 
     def _stated(self) -> Program | None:
-        """Return the table, with equations merged; None: they contradict each other."""
+        """Return the table with merged equations, or None if the equations contradict each other."""
         zero, positive = [np.zeros((0, 7))], [np.zeros((0, 7))]
         for name, row in zip(self._names, self._named, strict=True):
             if name in self._zeroed:
@@ -113,11 +114,12 @@ class CarefulProgram:
 
 
 def merged(rows: FloatArray, tolerance: float = ROW_TOLERANCE) -> FloatArray | None:
-    """Return equations, (k, 7), with orthonormal rows of a motion; None: there is no such motion.
+    """Return equivalent equations, (k, 7), with orthonormal rows, or None if no motion satisfies them.
 
     Args:
-        rows: (m, 7), about unit; each says that it vanishes on the motion and 1.
-        tolerance: Rows that differ by no more are one.
+        rows: (m, 7), of about unit length. Each demands that its product with the motion, followed by 1,
+            is zero.
+        tolerance: Rows that differ by no more count as one.
     """
     if len(rows) == 0:
         return rows

@@ -24,25 +24,25 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 _WELL_INSIDE: Final = 0.02
-"""Height of a unit point over all unit rows at which it serves as inner point; less is left to a linear
-program."""
+"""A unit point serves as inner point if its product with each unit row is larger than this. Otherwise a
+linear program looks for one."""
 
 _MOST_CHOICES: Final = 300
-"""Choices of d - 1 of the rows that are tried in a millisecond; with more of them a hull is faster, but it
-takes SciPy, whose first import takes tenths of a second."""
+"""As many choices of d - 1 rows are tried one by one, which takes a millisecond. With more of them a convex
+hull is faster, but that needs SciPy, whose first import takes tenths of a second."""
 
 _TRIALS: Final = 60
-"""Steps, of a few microseconds each, before a linear program, of milliseconds, has to find the inner
-point."""
+"""The search for an inner point takes this many steps of a few microseconds, before a linear program, which
+takes milliseconds, has to find it."""
 
 
 class Cone(NamedTuple):
     """The parts of {x : rows x >= 0}: positive sums of rays, plus sums of lines.
 
     Attributes:
-        strict: (m,), which rows can be positive; the others vanish all over the cone.
-        rows: (k, d), the strict ones, unit, within the space where the others vanish.
-        rays: (r, d), unit, orthogonal to the lines; a ray may appear several times.
+        strict: (m,), which rows can be positive. The others vanish all over the cone.
+        rows: (k, d), the rows that can be positive, projected on the space where the others vanish, unit.
+        rays: (r, d), unit, orthogonal to the lines. A ray may appear several times.
         lines: (l, d), orthonormal.
     """
 
@@ -53,7 +53,7 @@ class Cone(NamedTuple):
 
 
 def cone_of(rows: FloatArray) -> Cone:
-    """Return the parts of a cone, given by unit rows, (m, d).
+    """Return the parts of a cone that is given by unit rows, (m, d).
 
     Raises:
         UndecidedError: rounding decides what the cone is.
@@ -97,7 +97,7 @@ def inner_point(rows: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
     strict = solution[d:] > 0.5
     if not strict.any():
         return solution[:d], strict
-    # The one deepest inside, in the space of the rows that cannot be positive.
+    # The point deepest inside lies in the space where the rows that cannot be positive vanish.
     space = null_space(rows[~strict])
     if space.shape[1] == 0:
         return solution[:d], np.zeros_like(strict)
@@ -115,7 +115,7 @@ def inner_point(rows: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
 
 
 def _solution_of(program: Any) -> FloatArray:
-    """Return where a linear program of SciPy's ends. Those here all do, unless rounding hides it."""
+    """Return the solution of a linear program of SciPy's, which each has unless rounding hides it."""
     if program.x is None:
         raise _undecided("a linear program has no end")
     solution: FloatArray = program.x
@@ -123,7 +123,7 @@ def _solution_of(program: Any) -> FloatArray:
 
 
 def extreme_rays(rows: FloatArray, inner: FloatArray) -> FloatArray:
-    """Return the unit extreme rays, (k, d), of a pointed cone; all rows are positive at ``inner``."""
+    """Return the unit extreme rays, (k, d), of a pointed cone whose rows are all positive at ``inner``."""
     d = rows.shape[1]
     if d == 1:
         return np.sign(inner)[None, :]
@@ -146,7 +146,7 @@ def extreme_rays(rows: FloatArray, inner: FloatArray) -> FloatArray:
 
 
 def _rays_by_choice(rows: FloatArray) -> FloatArray:
-    """Return the extreme rays: what d - 1 independent rows leave, where no row forbids it."""
+    """Return the extreme rays: the lines on which d - 1 independent rows vanish, and no row is negative."""
     d = rows.shape[1]
     spread, basis = np.linalg.svd(rows[list(itertools.combinations(range(len(rows)), d - 1))])[1:]
     rays = basis[:, -1][spread[:, -1] > ROW_TOLERANCE * spread[:, 0]]
@@ -160,7 +160,7 @@ def nearest_sum(spans: FloatArray, target: FloatArray) -> tuple[FloatArray, floa
     """Return shares >= 0, (k,), of spans, (k, d), whose sum is nearest to a target, (d,), and its distance.
 
     Raises:
-        UndecidedError: spans so nearly dependent that the search does not end.
+        UndecidedError: the spans are so nearly dependent that the search does not end.
     """
     found = nearest_combination(spans.T, target)
     if found is None:

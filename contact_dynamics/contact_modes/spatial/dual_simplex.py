@@ -1,10 +1,10 @@
-"""Whether some edge forces satisfy linear conditions: a small dense dual simplex that goes on where it was.
+"""Whether some edge forces satisfy linear conditions, by a small dense dual simplex that can be continued.
 
-Edge forces are >= 0, the motion is affine in them, and conditions ask combinations of the motion to be zero
-or not negative. A `Program` holds its basic variables as affine functions of the others, which are zero; a
-narrower one copies that table and adds its conditions, so that a few pivots decide it instead of a linear
-program from nothing. The sum of edge forces, unequally weighted, is kept least: that bounds every step, and
-ties are rare.
+Edge forces are >= 0, the motion is an affine function of them, and each condition demands that a combination
+of the motion is zero or is not negative. A `Program` holds its basic variables as affine functions of the
+other variables, which are zero. A narrower program copies that table and adds its conditions. So a few pivots
+decide it, where a linear program would start from nothing. The simplex keeps an unequally weighted sum of the
+edge forces as small as it can. That bounds every step, and makes ties rare.
 """
 
 from __future__ import annotations
@@ -29,33 +29,35 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 _HEAD: Final = 7
-"""Rows of the table before the conditions: the weighted sum of edge forces, then the motion."""
+"""The number of rows of the table before the conditions: the weighted sum of edge forces, then the motion."""
 
 _DEAD: Final = -1
-"""Name of a column that stays zero."""
+"""The name of a column that stays zero."""
 
 _GOLDEN: Final = 0.6180339887498949
-"""Its multiples are spread evenly modulo 1: weights of the edge forces without ties."""
+"""The golden ratio less one. Its multiples are spread evenly modulo 1, which gives edge forces weights
+without ties."""
 
 _MOST_STEPS: Final = 500
-"""Bound on the steps of the primal simplex. From a fifth of it Bland's rule holds, which cannot cycle."""
+"""The largest number of steps of the primal simplex. After a fifth of them Bland's rule holds, which cannot
+cycle."""
 
 
 _CLEAR: Final = 1e3
-"""How many times its estimated rounding a condition must be missed by for a refusal to be beyond doubt."""
+"""A refusal is beyond doubt only if a condition is missed by this many times its estimated rounding."""
 
 _MOST_FORCE: Final = 1e4
-"""Times the load: a refusal is beyond doubt if what the table takes for zero could matter only with larger
-edge forces than that."""
+"""This is a multiple of the load. A refusal is beyond doubt only if entries that count as zero could matter
+only with edge forces larger than this."""
 
 
 class Ends(NamedTuple):
-    """What a weighted sum of edge forces ranges over.
+    """The range of a weighted sum of edge forces.
 
     Attributes:
-        unique: It is one number.
-        low: (K,), edge forces where it is least; None: it has no bound.
-        high: (K,), and largest.
+        unique: Whether the sum has one value only.
+        low: (K,), edge forces at which it is least; None if it has no bound.
+        high: (K,), edge forces at which it is largest; None if it has no bound.
     """
 
     unique: bool
@@ -64,7 +66,7 @@ class Ends(NamedTuple):
 
 
 class Program:
-    """Edge forces that satisfy some conditions; each narrowing is a new program."""
+    """A set of edge forces that satisfy some conditions. Each narrower set is a new program."""
 
     __slots__ = ("_columns", "_fixed", "_noise", "_rows", "_table", "doubtful")
 
@@ -76,22 +78,22 @@ class Program:
         fixed: NDArray[np.float64],
         noise: float = TABLE_ROUNDING,
     ) -> None:
-        """Take a table whose columns are the variables that are zero, and constants; see `stated`."""
-        self._noise = noise  # estimated rounding of the table's entries
+        """Take a table whose columns are the variables that are zero, and constants. `stated` makes one."""
+        self._noise = noise  # the estimated rounding of the table's entries
         self.doubtful = False  # whether rounding may have decided that nothing satisfies the conditions
         self._table = table
-        self._rows = rows  # name of each condition's variable, after the head
+        self._rows = rows  # the name of each condition's variable, after the head
         self._columns = columns
-        self._fixed = fixed  # 1.0: the row's variable is zero; 0.0: it is not negative
+        self._fixed = fixed  # 1.0 where the row's variable is zero; 0.0 where it is not negative
 
     @staticmethod
     def stated(motion: FloatArray, named: FloatArray, names: Sequence[int]) -> Program:
-        """Return the program of the motion, (6, K + 1), for K edge forces and a constant.
+        """Return the program whose motion, (6, K + 1), is given for K edge forces and a constant.
 
         Args:
-            motion: In the units in which conditions are stated.
-            named: (k, 7), combinations of motion and a constant that are not negative.
-            names: The names of the rows, >= K, for `narrowed`. Edge forces have the names 0 to K - 1.
+            motion: The motion, in the units in which conditions are stated.
+            named: (k, 7), combinations of the motion and a constant that are not negative.
+            names: The names of these rows for `narrowed`, each >= K. Edge forces have the names 0 to K - 1.
         """
         count = motion.shape[1] - 1
         weights = np.append(1.0 + 0.5 * (np.arange(1, count + 1) * _GOLDEN % 1.0), 0.0)
@@ -100,7 +102,7 @@ class Program:
         return Program(table, list(names), list(range(count)), np.zeros(len(rows)))
 
     def renamed(self, columns: list[int], equalities: int) -> Program:
-        """Return the program with other names of its edge forces, and its first rows zero."""
+        """Return the program with other names of its edge forces, and with its first rows as equations."""
         fixed = self._fixed.copy()
         fixed[:equalities] = 1.0
         return Program(self._table, self._rows, columns, fixed, self._noise)
@@ -118,13 +120,14 @@ class Program:
         """Return a program with further conditions.
 
         Args:
-            zeroed: Names of variables that are zero.
-            raised: Names of variables that are at least ``least``.
-            least: See ``raised``.
-            rows: (k, 7), combinations of motion and a constant; the first ``equalities`` of them are zero,
-                the others not negative.
-            equalities: See ``rows``.
-            tag: < -1, of the ``rows``. Earlier ones with that tag are replaced, and must follow from these.
+            zeroed: The names of variables that are zero.
+            raised: The names of variables that are at least ``least``.
+            least: The least value of the ``raised`` variables.
+            rows: (k, 7), combinations of the motion and a constant. The first ``equalities`` of them are
+                zero, and the others are not negative.
+            equalities: The number of ``rows`` that are zero.
+            tag: The name of the ``rows``, < -1. They replace earlier rows with that tag, and must imply
+                these.
         """
         keep = [k for k, name in enumerate(self._columns) if name != _DEAD and name not in zeroed]
         columns = [self._columns[k] for k in keep]
@@ -155,12 +158,12 @@ class Program:
         return Program(table, names, columns, fixed, self._noise)
 
     def allows_any(self, weights: FloatArray, constants: FloatArray, least: float) -> bool:
-        """Return whether some edge forces satisfy all conditions and one, any one, further condition.
+        """Return whether some edge forces satisfy all conditions and at least one of some further conditions.
 
         Args:
-            weights: (k, K), each condition's weights of the edge forces.
-            constants: (k,), added to the weighted sums, which must be at least ``least``.
-            least: See ``constants``.
+            weights: (k, K), the weights of the edge forces in each further condition.
+            constants: (k,), which are added to the weighted sums.
+            least: The value that a sum must reach.
         """
         count = weights.shape[1]
         rows, columns = np.array(self._rows, dtype=int), np.array(self._columns, dtype=int)
@@ -174,7 +177,7 @@ class Program:
         for row in sums:
             table = np.concatenate([self._table, row[None, :]])
             fixed = np.append(self._fixed, 0.0)
-            # Only solved, not narrowed again: the name is not asked for.
+            # The trial is solved, and not narrowed again, so that nobody asks for its name.
             trial = Program(table, [*self._rows, _DEAD], list(self._columns), fixed, self._noise)
             if trial.solve():
                 return True
@@ -183,15 +186,15 @@ class Program:
 
     @property
     def motion(self) -> FloatArray:
-        """The motion, (6,), of the table's edge forces."""
+        """The motion, (6,), that the table's edge forces cause."""
         found: FloatArray = self._table[1:_HEAD, -1]
         return found
 
     def solve(self, least_pivot: float = ROW_TOLERANCE) -> bool:
-        """Return whether some edge forces satisfy all conditions, and make the table theirs.
+        """Return whether some edge forces satisfy all conditions. If so, the table then holds such forces.
 
         Args:
-            least_pivot: Entries of the table up to it count as zero.
+            least_pivot: Entries of the table that are no larger count as zero.
         """
         table, fixed = self._table, self._fixed
         if len(fixed) == 0:
@@ -213,7 +216,10 @@ class Program:
             self._pivot(worst, int(enters))
 
     def _pivot(self, leaves: int, enters: int) -> None:
-        """Exchange a condition's variable and a column's; a column whose variable is fixed dies."""
+        """Exchange a condition's variable and a column's.
+
+        A column whose variable is fixed stays zero from then on.
+        """
         table = self._table
         column = table[:, enters].copy()
         pivot = column[_HEAD + leaves]
@@ -233,7 +239,7 @@ class Program:
             table[:, enters] = 0.0
 
     def shares(self, count: int) -> FloatArray:
-        """Return the edge forces, (count,), of the table."""
+        """Return the edge forces, (count,), that the table holds."""
         found = np.zeros(count)
         for name, value in zip(self._rows, self._table[_HEAD:, -1], strict=True):
             if 0 <= name < count:
@@ -241,7 +247,7 @@ class Program:
         return found
 
     def spread(self, weights: FloatArray) -> tuple[FloatArray, FloatArray] | None:
-        """Return edge forces at which their weighted sum is least and largest; None: it has no bound.
+        """Return edge forces at which their weighted sum is least and largest, or None if it has no bound.
 
         Args:
             weights: (K,).
@@ -258,13 +264,13 @@ class Program:
         return ends[0], ends[1]
 
     def ends(self, weights: FloatArray) -> Ends:
-        """Return whether a weighted sum of edge forces is the same for all that are allowed, and its ends.
+        """Return whether a weighted sum of edge forces has one value only, and where it is extreme.
 
         Args:
             weights: (K,).
         """
         largest = float(np.abs(weights).max(initial=0.0))
-        weights = weights / largest if largest > 0.0 else weights  # whatever the units of force
+        weights = weights / largest if largest > 0.0 else weights  # so that the units of force do not matter
         found = self.spread(weights)
         if found is None:
             return Ends(unique=False, low=None, high=None)
@@ -272,14 +278,14 @@ class Program:
         return Ends(high - low <= SAME_MOTION * (1.0 + abs(low)), *found)
 
     def _settle_fixed(self) -> None:
-        """Exchange what is fixed at zero for columns, as far as those move it."""
+        """Exchange variables that are fixed at zero for columns, as far as those columns change them."""
         for k in np.flatnonzero(self._fixed):
             row = np.abs(self._table[_HEAD + k, :-1])
             if row.size and row.max() > ROW_TOLERANCE:
                 self._pivot(int(k), int(row.argmax()))
 
     def _minimise(self, weights: FloatArray) -> bool:
-        """Make the weighted sum of the edge forces least; False: it has no bound."""
+        """Make the weighted sum of the edge forces least, and return whether it has a least value."""
         table = self._table
         table[0] = 0.0
         for k, name in enumerate(self._rows):

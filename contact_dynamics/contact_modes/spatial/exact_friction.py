@@ -1,8 +1,8 @@
 """Exact friction for a mode in space that was found with friction pyramids.
 
-Contacts at rest that come to slide have, on a pyramid, friction up to half a sector away from the way against
-their sliding. Here each has one edge, in a direction that is sought by Newton's method such that it is
-straight against the sliding that the forces bring about. Where that settles in the same letters, the mode
+Where contacts at rest come to slide, friction on a pyramid is up to half a sector away from the direction
+against their sliding. Here each contact has one edge. Newton's method seeks its direction, such that it is
+straight against the sliding that the forces cause. Where that settles in the same letters, the mode
 obeys Coulomb's round cone at every contact that slides. Contacts that stick keep their pyramids, which lie
 inside the round cones.
 """
@@ -26,14 +26,15 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 _MOST_STEPS: Final = 12
-"""Each solves as many times, 0.1 ms each, as there are sliding contacts. Four suffice where there is a
-solution nearby."""
+"""Each step solves for the forces, in 0.1 ms, once for each contact that slides. Four steps suffice where
+there is a solution nearby."""
 
 _LONGEST_STEP: Final = 0.3
-"""rad. Half a sector of the usual pyramid is 0.39."""
+"""rad. This is a little less than half a sector of the usual pyramid, which is 0.39 rad."""
 
 _FAST: Final = 0.1
-"""Share of its error that a step may leave where sliding is followed without asking how it would turn."""
+"""The share of its error that a step may leave where directions just follow the sliding. If a step leaves
+more, Newton's method, which needs derivatives, takes over."""
 
 
 class Sharpened(NamedTuple):
@@ -41,7 +42,7 @@ class Sharpened(NamedTuple):
 
     Attributes:
         forces: (n, 3), in the units of the motion.
-        edges: (k, 3) for each contact, those that may act.
+        edges: The edges, (k, 3), that may act at each contact.
     """
 
     forces: FloatArray
@@ -55,8 +56,8 @@ class Sliding(NamedTuple):
         touching: The n contacts.
         pyramids: Their force edges.
         letters: s, c or f for each contact.
-        of_forces: (6, 3 n), motion for unit forces.
-        free: (6,), motion without forces.
+        of_forces: (6, 3 n), the motion that unit forces cause.
+        free: (6,), the motion without forces.
     """
 
     touching: Sequence[Touching]
@@ -67,11 +68,11 @@ class Sliding(NamedTuple):
 
 
 def sharpened(mode: Sliding, forces: FloatArray) -> Sharpened | None:
-    """Return forces with exact friction; None: the directions do not settle, or not in these letters.
+    """Return forces with exact friction, or None if the directions do not settle with these letters.
 
     Args:
-        mode: As it was found.
-        forces: (n, 3), those of the mode.
+        mode: The mode, as it was found.
+        forces: (n, 3), the forces of the mode.
     """
     turning = [i for i, one in enumerate(mode.pyramids) if mode.letters[i] == STAYS and one.frame is not None]
     angles: FloatArray = np.asarray([_against(mode.pyramids[i], forces[i]) for i in turning])
@@ -95,6 +96,7 @@ def _followed(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpene
 
 
 def _by_newton(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpened | None:
+    """Turn friction against the sliding by Newton's method, from given angles."""
     step: FloatArray = np.zeros(len(turning))
     for _ in range(_MOST_STEPS):
         found = _solved(mode, turning, angles + step)
@@ -114,7 +116,7 @@ def _by_newton(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpen
 
 
 def _slopes(mode: Sliding, turning: list[int], angles: FloatArray, errors: FloatArray) -> FloatArray | None:
-    """Return how the errors change with the directions, (k, k); None: the mode ends there."""
+    """Return how the errors change with the directions, (k, k), or None where the mode ends there."""
     found = np.zeros((len(turning), len(turning)))
     for k, trial in enumerate(TRIAL_TURN * np.eye(len(turning))):
         beside = _solved(mode, turning, angles + trial)
@@ -144,7 +146,7 @@ def _solved(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpened 
 
 
 def _errors(mode: Sliding, turning: list[int], angles: FloatArray, found: Sharpened) -> FloatArray:
-    """Return by how much sliding turns away from given directions, (k,), in (-pi, pi]; NaN: it stops."""
+    """Return the angles, (k,), from given directions to the sliding, in (-pi, pi], or NaN where it stops."""
     motion = np.append(mode.free + mode.of_forces @ found.forces.ravel(), 1.0)
     actual = []
     for i in turning:
@@ -155,7 +157,7 @@ def _errors(mode: Sliding, turning: list[int], angles: FloatArray, found: Sharpe
 
 
 def _forces(mode: Sliding, edges: list[FloatArray]) -> FloatArray | None:
-    """Return forces, (n, 3), on the edges that give the letters; None: there are none."""
+    """Return forces, (n, 3), on the edges that give the letters, or None if there are none."""
     starts = np.cumsum([0, *(len(one) for one in edges)])
     spread = np.zeros((3 * len(edges), int(starts[-1])))
     for i, one in enumerate(edges):

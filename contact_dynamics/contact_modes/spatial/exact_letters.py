@@ -1,8 +1,9 @@
 """Forces of given letters with Coulomb's round cones, by Newton's method from forces that are close.
 
-What sticks has three forces and no acceleration; what slides has one, turned against its sliding, which is a
-second unknown, and keeps to the surface. These are as many equations as unknowns. Whether the letters are
-those of the solution is checked in the end, so that a mode that is found is one, to rounding.
+A contact that sticks has three unknown components of force, and its acceleration vanishes. A contact that
+slides has two unknowns, its normal force and the direction of its friction. Its normal acceleration vanishes,
+and friction opposes the sliding. So there are as many equations as unknowns. In the end the solution is
+checked to have the letters, so that a mode that is found is a mode to rounding.
 """
 
 from __future__ import annotations
@@ -23,13 +24,15 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 _MOST_STEPS: Final = 25
+"""The largest number of Newton's steps. From forces that are close, some five are enough."""
 
 _MOST_SWAPPED: Final = 5
-"""Contacts of which any may stick or slide instead: twice as many letters for each."""
+"""The largest number of contacts that are tried sticking and sliding. Each of them doubles the number of
+letters."""
 
 
 def letters_near(search: Search, letters: str) -> Iterator[str]:
-    """Yield the letters, and those in which contacts with friction that stay do so otherwise."""
+    """Yield letters in which the contacts that stay and have friction stick or slide in any combination."""
     swapped = [i for i, one in enumerate(search.touching) if letters[i] != SEPARATES and one.friction > 0.0]
     if len(swapped) > _MOST_SWAPPED:
         yield letters
@@ -42,7 +45,7 @@ def letters_near(search: Search, letters: str) -> Iterator[str]:
 
 
 def forces_with_letters(search: Search, letters: str, forces: FloatArray) -> FloatArray | None:
-    """Return forces, (n, 3), of touching contacts at rest that have the letters; None: none was found.
+    """Return forces, (n, 3), of touching contacts at rest that have the letters, or None if none were found.
 
     Args:
         search: The case.
@@ -83,7 +86,7 @@ class _System:
         ]
 
     def start(self, forces: FloatArray) -> FloatArray:
-        """Return the unknowns nearest to forces: three where it sticks, else a normal force and an angle."""
+        """Return the unknowns that are nearest to given forces."""
         found: list[float] = []
         for i, letter in enumerate(self._letters):
             contact = self._search.touching[i]
@@ -97,7 +100,7 @@ class _System:
         return np.array(found)
 
     def at(self, unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return what the equations are missed by, (k,), and its changes with the unknowns, (k, k)."""
+        """Return by how much the equations are missed, (k,), and the derivatives of that, (k, k)."""
         forces, changes = self._forces_and_changes(unknowns)
         motion = self._motion(forces)
         of_unknowns = self._search.of_forces @ changes

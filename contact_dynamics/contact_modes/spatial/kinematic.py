@@ -1,16 +1,16 @@
-"""Contacting and separating modes of a body in space: lecture 26's strings, with `c` for all that stays.
+"""Contacting and separating modes of a body in space: lecture 26's strings, with `c` where a contact stays.
 
-The accelerations (a, alpha) that do not penetrate are a polyhedral cone in R^6, and a mode is one of its
-faces: the contacts that stay are the rows that vanish on it. Every face is spanned by extreme rays, so that
-its set of staying contacts is the intersection of theirs: the modes are the closure under intersection of the
-rays' sets, kept as the bits of integers. The rays are the facets of the convex hull of the rows, seen from an
-inner point (Huang, Cheng and Mason, Efficient Contact Mode Enumeration in 3D, 2020). The cost follows the
-number of modes.
+The accelerations (a, alpha) that do not penetrate form a polyhedral cone in R^6, and each mode is one of its
+faces: the contacts that stay are the rows that vanish on the face. Extreme rays span every face, so its
+contacts that stay are the intersection of the sets of its rays. The modes are therefore all intersections of
+the sets of rays, which are kept as the bits of integers. The rays are the facets of the convex hull of the
+rows, seen from an inner point (Huang, Cheng and Mason, Efficient Contact Mode Enumeration in 3D, 2020). The
+time grows in proportion to the number of modes.
 
-A body that turns adds centripetal terms, and curved contacts those of their kind (`contact.curvature`); the
-polyhedron is then the section at height one of a cone in R^7.
+A body that turns adds centripetal terms, and curved contacts add those of their kind (`contact.curvature`).
+The polyhedron is then the section at height one of a cone in R^7.
 
-Does not cover: which way a contact that stays slides, or whether it sticks, and the forces.
+This file does not say whether a contact that stays sticks or which way it slides, nor with which forces.
 """
 
 from __future__ import annotations
@@ -34,7 +34,8 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 MOST_SPATIAL_CONTACTS: Final = 64
-"""Longest list of contacts accepted: a cone in R^6 can have n^2 rays and more faces than that."""
+"""The longest list of contacts that is accepted. A cone in R^6 can have n^2 rays, and more faces than
+that."""
 
 
 def spatial_kinematic_modes(
@@ -42,8 +43,8 @@ def spatial_kinematic_modes(
 ) -> tuple[str, ...]:
     """Return every contacting/separating mode that some acceleration realises, in alphabetical order.
 
-    A mode has one letter a contact, in the contacts' order: `c` it stays in contact, `s` it separates. Empty
-    where a contact approaches, and where every acceleration penetrates.
+    A mode has one letter for each contact, in the contacts' order: `c` if it stays in contact, `s` if it
+    separates. There are no modes where a contact approaches, and where every acceleration penetrates.
 
     Args:
         state: The state of the body, with its origin at the centre of mass.
@@ -75,7 +76,7 @@ def spatial_kinematic_modes(
     offsets = np.sum(contacts.normals_W * (turning + rolling), axis=1)[touching]
     scale = float(np.abs(offsets).max())
     below = 0
-    # Where a body rolls the two cancel; what is left of them is rounding.
+    # Where a body rolls, the two cancel, and what remains is rounding.
     if scale > ACCELERATION_TOLERANCE * float(np.abs(turning).max() + np.abs(rolling).max()):
         below = 1 << touching.size
         rows = np.vstack(
@@ -106,7 +107,7 @@ def cone_faces(rows: FloatArray) -> set[int]:
 
 
 def _contact_rows(r_W: FloatArray, normals_W: FloatArray) -> FloatArray:
-    """Return (n, r x n / reach) for each contact, (m, 6)."""
+    """Return the row (n, r x n / reach) of each contact, (m, 6)."""
     reach = float(np.linalg.norm(r_W, axis=1).max())
     return np.hstack([normals_W, np.cross(r_W, normals_W) / (reach if reach > 0.0 else 1.0)])
 

@@ -1,4 +1,4 @@
-"""The contact forces that the answer shows for a mode in space, and how far linearisation turns friction.
+"""The contact forces that the answer shows for a mode in space, and whether they oppose the sliding.
 
 Many forces may bring about the same motion, as under four feet. The answer shows those of least sum of
 squares if every contact's friction pyramid allows them. Otherwise it shows those with the fewest edges that
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 
 def least_forces(of_forces: FloatArray, forces: FloatArray, edges: Sequence[FloatArray]) -> FloatArray:
-    """Return forces, (n, 3), that cause the same motion, of least sum of squares where the edges allow it.
+    """Return forces, (n, 3), that cause the same motion, of least sum of squares if the edges allow that.
 
     Args:
-        of_forces: (6, 3 n), motion for unit forces.
-        forces: (n, 3), some that the edges allow.
-        edges: For each contact the edges, (k, 3), that may act, around its normal in order.
+        of_forces: (6, 3 n), the motion that unit forces cause.
+        forces: (n, 3), forces that the edges allow.
+        edges: The edges, (k, 3), that may act at each contact, in their order around its normal.
     """
     blocks = [row_space(of_contact) for of_contact in edges]
     basis = np.zeros((forces.size, sum(len(block) for block in blocks)))
@@ -48,7 +48,7 @@ def misdirection(forces: FloatArray, directions: FloatArray, normals: FloatArray
 
     Args:
         forces: (n, 3), N.
-        directions: (n, 3), unit, which way contacts slide; zero: they do not.
+        directions: (n, 3), unit, the directions in which contacts slide; zero where they do not slide.
         normals: (n, 3), unit.
     """
     largest = 0.0

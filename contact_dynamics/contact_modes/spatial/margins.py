@@ -1,12 +1,13 @@
 """How far an applied wrench in space is from leaving its contact modes, and into which ones it would.
 
-The applied wrenches of a mode (`wrenches`) are a polyhedron in R^6 whose facets are the extreme rays
-of the dual cone. The margin is the distance to the nearest facet in a stated metric, as in the plane.
+The applied wrenches of a mode (`wrenches`) are a polyhedron in R^6, and its facets are the extreme rays of
+the dual cone. The margin is the distance to the nearest facet in a stated metric, as in the plane.
 
-Where contacts stick, pyramids inside the round cones make a margin at most the true one, short by the part
-1 - cos(pi / facets) of friction or less. Where those that stay slide already, it is exact. Where contacts at
-rest begin to slide, which way depends on the wrench, and the wrenches are a union of polyhedra
-(`margins_of_sliding`): the margin is right to that part of friction, and NaN where it is not known.
+Where contacts stick, pyramids inside the round cones replace these. So the margin is never larger than the
+true one, and falls short of it by what at most the part 1 - cos(pi / facets) of friction contributes. Where
+all contacts that stay slide already, the margin is exact. Where contacts at rest begin to slide, their
+directions depend on the wrench, and the wrenches of the mode are a union of polyhedra (`margins_of_sliding`).
+There the margin is right to that part of friction, and NaN where it is not known.
 """
 
 from __future__ import annotations
@@ -43,11 +44,12 @@ class SpatialModeMargin(Record):
     """How far an applied wrench in space is from leaving one of its modes, and where it would go.
 
     Attributes:
-        mode: One letter a contact.
-        margin: N, least change, in |f|^2 + |torque / length|^2; infinite: none does it; NaN: unknown.
-        length: m, of that metric.
+        mode: One letter for each contact.
+        margin: N, the size of the least change that leaves the mode, in |f|^2 + |torque / length|^2. It is
+            infinite where no change does that, and NaN where it is unknown.
+        length: m, the length in that metric.
         change_W: (6,), N and N m, the least change itself, world axes; zero where there is none.
-        verdict_beyond: Just behind the boundary; the present one where there is none.
+        verdict_beyond: The verdict just behind the boundary, or the present one where there is no boundary.
         modes_beyond: The letters of the consistent modes there, each once.
     """
 
@@ -67,13 +69,13 @@ def spatial_mode_margins(
 ) -> tuple[SpatialModeMargin, ...]:
     """Return the margin of the wrench in each of its consistent modes, in the order of their answer.
 
-    Empty where a contact approaches.
+    There are none where a contact approaches.
 
     Args:
-        problem: The question. The more facets it has, the nearer is a margin of sticking.
-        answer: To that question, where it is known: it is not sought again.
-        margin_length: m, > 0, makes a torque comparable with a force; None: the radius of gyration, root mean
-            square over the axes.
+        problem: The question. With more facets, a margin of sticking is closer to that of the round cones.
+        answer: The answer to that question, if it is known.
+        margin_length: m, > 0. A torque is divided by it to be comparable with a force. If it is None, the
+            length is the radius of gyration, the root mean square over the axes.
 
     Raises:
         InvalidFieldError: the length is not > 0.
@@ -120,7 +122,7 @@ def _beyond(
 ) -> tuple[str, ...]:
     """Return the modes just behind the boundary that lies ``margin``, N, away, ``way`` in the metric."""
     size = float(np.linalg.norm(problem.wrench_W / metric))
-    # A pyramid that turns as the wrench changes may hold a little longer: the round cone's part.
+    # A pyramid that turns as the wrench changes may hold a little longer, up to what the round cone holds.
     rest = (1.0 / math.cos(math.pi / problem.friction_facets) - 1.0) * size
     found: tuple[str, ...] = ()
     for further in (0.0, rest):
@@ -132,7 +134,7 @@ def _beyond(
 
 
 def _modes_under(problem: SpatialContactProblem, wrench_W: FloatArray) -> tuple[str, ...]:
-    """Return the modes that another wrench brings about with friction pyramids, as the margin has them."""
+    """Return the modes that another wrench brings about with friction pyramids, which the margin uses too."""
     case = spatial_case(replace(problem, force_W=wrench_W[:3], torque_W=wrench_W[3:]))
     if not isinstance(case, SpatialCase):
         return ()
@@ -141,7 +143,7 @@ def _modes_under(problem: SpatialContactProblem, wrench_W: FloatArray) -> tuple[
 
 
 def _nearest(case: SpatialCase, search: Search, found: Found, metric: FloatArray) -> tuple[float, FloatArray]:
-    """Return the distance, N, from the mode's nearest boundary and the way there, (6,), in the metric."""
+    """Return the distance, N, to the mode's nearest boundary and the direction to it, (6,), in the metric."""
     motion = case.motion
     unit = motion.mass * motion.scale  # N; wrenches are divided by it, and torques by the length
     ways = [Way(one.letter, one.item) for one in found.letters]

@@ -3,10 +3,11 @@
 Each way in which they slide together has a convex cone of wrenches (`wrench_sets`), and the wrenches of the
 mode are the union of these cones. The search starts in a cone that contains the wrench, and crosses
 boundaries in the order of their distances. Just behind a boundary the mode either ends, or goes on in a cone
-to which the whole boundary belongs. Friction pyramids do not turn meanwhile.
+to which the whole boundary belongs. The friction pyramids keep their orientation meanwhile.
 
-Does not cover: boundaries behind which the mode goes on in parts, as where loads are shared in many ways;
-more than `MOST_BEGINNING` contacts that begin to slide; those of bodies that turn. There the margin is NaN.
+The margin is NaN where only a part of what lies behind a boundary belongs to the mode, which happens where
+loads are shared in many ways. It is NaN too where more than `MOST_BEGINNING` contacts begin to slide, and for
+contacts at rest of a body that turns.
 """
 
 from __future__ import annotations
@@ -34,19 +35,20 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 MOST_PROBES: Final = 64
-"""Boundaries that are looked behind before the margin is given up: a search for modes each, some 10 ms."""
+"""The search looks behind this many boundaries before the margin counts as unknown. Each takes a search for
+modes, of some 10 ms."""
 
 MOST_BEGINNING: Final = 4
-"""Contacts that begin to slide: the ways in which more do that are too many to go through."""
+"""The largest number of contacts that begin to slide. More of them have too many ways to go through."""
 
 
 class UnionMargin(NamedTuple):
     """How far a wrench is from leaving a mode, and where it would.
 
     Attributes:
-        margin: N, in the metric; infinite: nowhere; NaN: unknown.
-        way: (6,), unit, there, in the metric.
-        beyond: The consistent modes just behind; None: there is none, or it is unknown.
+        margin: N, in the metric. It is infinite where no wrench leaves the mode, and NaN where it is unknown.
+        way: (6,), unit, the direction of the least change, in the metric.
+        beyond: The consistent modes just behind the boundary; None if there is none, or if it is unknown.
     """
 
     margin: float
@@ -55,18 +57,20 @@ class UnionMargin(NamedTuple):
 
 
 class _Cone(NamedTuple):
-    """The wrenches of some ways of sliding."""
+    """The wrenches that bring about one way of sliding."""
 
     spans: FloatArray  # (k, 6), unit, whose positive sums they are
     sides: FloatArray  # (m, 6), unit, with which they have products >= 0
 
 
 class _Boundary(NamedTuple):
+    """A side of a cone, and how far away it is."""
+
     distance: float  # in the margin's metric; a lower bound until the nearest point is known
-    number: int  # for order among equals
+    number: int  # which decides the order of equal distances
     outward: FloatArray  # (6,), unit
-    spans: FloatArray  # (k, 6), whose positive sums it is
-    nearest: FloatArray | None  # (6,)
+    spans: FloatArray  # (k, 6), whose positive sums make up the side
+    nearest: FloatArray | None  # (6,), the point of the side that is nearest to the wrench
 
 
 def union_margin(
@@ -77,21 +81,21 @@ def union_margin(
     Args:
         case: The body with its contacts.
         search: The search of that case.
-        found: By that search, with contacts at rest that begin to slide.
+        found: A mode of that search, in which contacts at rest begin to slide.
         metric: (6,), m, by which a wrench is divided: ones, then the length that torques are divided by.
         facets: Edges of the friction pyramids.
     """
     beginning = sum(one.item >= 0 for one in found.letters)
     if case.motion.at_rest and not np.any(case.motion.turning) and beginning <= MOST_BEGINNING:
         union = _Union(case, search, "".join(one.letter for one in found.letters), facets)
-        # Here each way of sliding counts, which can be more than the search for modes has to tell apart.
+        # Each way of sliding counts here, and there can be more of them than the search accepts.
         with contextlib.suppress(TooLargeError):
             return _gone_through(union, case.motion.wrench / union.own / union.unit, union.own / metric)
     return UnionMargin(math.nan, np.zeros(6), None)
 
 
 def _gone_through(union: _Union, wrench: FloatArray, stretch: FloatArray) -> UnionMargin:
-    """Go outwards from a wrench; ``stretch`` makes distances those of the margin's metric."""
+    """Go outwards from a wrench, where ``stretch`` converts distances to the margin's metric."""
     unknown = UnionMargin(math.nan, np.zeros(6), None)
     numbers = itertools.count()
     cones = union.cones_at(wrench)
@@ -133,13 +137,13 @@ class _Union:
     def __init__(self, case: SpatialCase, search: Search, mode: str, facets: int) -> None:
         motion = case.motion
         gyration = mean_radius_of_gyration(motion.mass, motion.inertia)
-        # Cones are stated in the body's own metric, whichever margins are asked for in.
+        # Cones are stated in the body's own metric, whatever the metric of the margin.
         self.own = np.array([1.0, 1.0, 1.0, gyration, gyration, gyration])
         self.unit = motion.mass * motion.scale  # N; wrenches are divided by it, and by the metric
         self._case, self._search, self._mode, self._facets = case, search, mode, facets
 
     def cones_at(self, wrench: FloatArray) -> list[tuple[tuple[Way, ...], _Cone]] | None:
-        """Return the cones of the mode, with an inside, that hold a wrench; None: the mode is not there."""
+        """Return the mode's cones with inner points that contain a wrench, or None outside the mode."""
         there = search_of(self._under(wrench), self._facets).run()
         same = [one for one in there if "".join(of.letter for of in one.letters) == self._mode]
         if not same:
@@ -172,7 +176,7 @@ class _Union:
 
 
 def _next(heap: list[_Boundary], wrench: FloatArray, stretch: FloatArray) -> _Boundary | None:
-    """Take the nearest boundary, with its nearest point; None: there are no more."""
+    """Take the nearest boundary with its nearest point, or None if there are no more boundaries."""
     while heap:
         side = heapq.heappop(heap)
         if side.nearest is not None:

@@ -1,9 +1,10 @@
 """All modes of one contact at rest in space, with Coulomb's round cone, from the roots of a polynomial.
 
-The contact point's acceleration is b + G f for a contact force f. It sticks with f = -b / G, if the cone
-holds that. It slides along d with f = N (n - mu d), where b_n + N g(d) = 0 with g(d) = (G (n - mu d))_n, and
-what is left along the surface has the direction d. Times g, the part across d is a polynomial of second
-degree in cosine and sine of d's angle: at most four directions.
+The contact point's acceleration is b + G f for a contact force f. The contact sticks with f = -G^-1 b if that
+lies in the cone. It slides along d with f = N (n - mu d), where N follows from b_n + N g(d) = 0 with
+g(d) = (G (n - mu d))_n, if the tangential acceleration then has the direction d. The part of that
+acceleration across d, multiplied by g, is a polynomial of second degree in the cosine and sine of d's angle.
+So there are at most four directions.
 """
 
 from __future__ import annotations
@@ -31,22 +32,27 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 _POLISHING: Final = 8
-"""Newton's steps from a root of the polynomial; two are enough for single ones."""
+"""The number of Newton's steps from a root of the polynomial. Two are enough for a single root."""
 
 
 class Lettered(NamedTuple):
-    """A mode of one contact."""
+    """A mode of one contact.
 
-    letter: str  # s, f or c
-    force: FloatArray  # (3,)
+    Attributes:
+        letter: s, f or c.
+        force: (3,).
+    """
+
+    letter: str
+    force: FloatArray
 
 
 def modes_of_one(G: FloatArray, b: FloatArray, normal: FloatArray, friction: float) -> list[Lettered]:
     """Return every mode of one contact at rest.
 
     Args:
-        G: (3, 3), its acceleration for unit force.
-        b: (3,), its acceleration without force, in units in which the largest is about 1.
+        G: (3, 3), the acceleration that a unit force causes.
+        b: (3,), its acceleration without force, in units in which the largest component is about 1.
         normal: (3,), unit.
         friction: Coulomb's mu, > 0.
     """

@@ -25,20 +25,21 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 MILDER: Final = 0.1
-"""How much less an arc must hold than its letters, whose rows are differences of unit ones."""
+"""How much less an arc demands than its letters do, whose rows are differences of unit rows."""
 
 
 class Option(NamedTuple):
-    """A letter of one contact, or several together; rows are (motion, constant), 7 numbers.
+    """One letter of a contact, or a group of letters.
 
     Attributes:
-        letter: s, f or c, where c may be an arc of sliding directions; empty for several letters.
-        item: The item of sliding, or -1 for none or several.
-        zeroed: Edge forces, and normal acceleration, that are zero.
-        raised: The normal acceleration's name, where that is positive.
-        rows: (k, 7), zero or not negative.
-        equalities: How many rows are zero; the first ones.
-        parts: What it stands for, in groups; empty where it is a letter.
+        letter: s, f or c, where c may stand for an arc of sliding directions; empty for a group of different
+            letters.
+        item: The item of sliding, or -1 where there is none or several.
+        zeroed: The names of edge forces, and of a normal acceleration, that are zero.
+        raised: The name of the normal acceleration where that is positive, or None.
+        rows: (k, 7), whose products with the motion, followed by 1, are zero or not negative.
+        equalities: The number of rows, from the first, whose products are zero.
+        parts: The smaller groups that it consists of; empty if it is a single letter.
     """
 
     letter: str
@@ -54,9 +55,9 @@ class Pyramid(NamedTuple):
     """The edges of a contact's force: a friction pyramid, or one edge where friction or sliding is known.
 
     Attributes:
-        edges: (K, 3), of unit normal force.
-        frame: Unit tangents, edge 0 along the first; None: one edge.
-        first: Name of the first edge force; the others follow.
+        edges: (K, 3), forces with a unit normal part.
+        frame: Unit tangents, the first of which edge 0 leans along; None where there is one edge only.
+        first: The name of the first edge force. The names of the others follow it.
     """
 
     edges: FloatArray
@@ -64,7 +65,7 @@ class Pyramid(NamedTuple):
     first: int
 
     def tangential(self) -> FloatArray:
-        """Return the edges' parts along the frame, (K, 2)."""
+        """Return the components of the edges along the frame, (K, 2)."""
         along: FloatArray = self.edges @ np.array(self.frame).T
         return along
 
@@ -83,10 +84,10 @@ def pyramid_of(
     Args:
         normal: (3,), unit.
         friction: Coulomb's mu.
-        sliding: (3,), its tangential velocity; zero: it is at rest.
-        free: (3,), its acceleration without contact forces: edge 0 opposes it.
-        facets: Edges of the pyramid.
-        first: Name of the first edge force.
+        sliding: (3,), its tangential velocity; zero where it is at rest.
+        free: (3,), its acceleration without contact forces, which edge 0 opposes.
+        facets: The number of edges of the pyramid.
+        first: The name of the first edge force.
     """
     speed = float(np.linalg.norm(sliding))
     if friction == 0.0:
@@ -98,7 +99,7 @@ def pyramid_of(
 
 
 def any_letter(pyramid: Pyramid, point: FloatArray, normal_name: int) -> Option:
-    """Return all letters of one touching contact, but for its ways of sliding (`ways_of_sliding`).
+    """Return the letters s and f of one touching contact, as a group. `ways_of_sliding` returns the others.
 
     Args:
         pyramid: Its force edges.
@@ -125,8 +126,8 @@ def ways_of_sliding(
     Args:
         pyramid: Its force edges, more than one.
         point: (3, 7), its acceleration as a function of the motion.
-        acting: The first of some neighbouring edges and their number: only they oppose the sliding; None:
-            any may, and the arcs together go around the circle.
+        acting: The first of some neighbouring edges and their number, where only these can oppose the
+            sliding; None where any edge can. Then the arcs together go around the circle.
     """
     count = len(pyramid.edges)
     angles = 2.0 * math.pi * np.arange(count) / count
@@ -171,12 +172,12 @@ def _slides(arc: list[int], first_name: int, along: FloatArray) -> Option:
 
 
 def acting_edges(directions: FloatArray, count: int) -> NDArray[np.bool_]:
-    """Return which edges, (m, count), of each contact's pyramid oppose some sliding among positive sums.
+    """Return which edges, (m, count), of each contact's pyramid can oppose some sliding.
 
     Args:
-        directions: (m, 2, p), whose sums are meant, in each pyramid's frame; where they can vanish, any edge
-            may act.
-        count: Edges of a pyramid.
+        directions: (m, 2, p), in each pyramid's frame. Each contact slides along positive sums of these;
+            where such a sum can vanish, any edge may act.
+        count: The number of edges of a pyramid.
     """
     x, y = directions[:, 0], directions[:, 1]
     angles = np.sort(np.arctan2(y, x), axis=1)

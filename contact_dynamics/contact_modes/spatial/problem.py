@@ -30,14 +30,17 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 MOST_EDGES: Final = 128
-"""Most edges of all friction pyramids together: a cone of so many in R^6 has thousands of facets."""
+"""The largest number of edges of all friction pyramids together. Their cone in R^6 has thousands of
+facets."""
 
 MOST_DYNAMIC_CONTACTS: Final = 32
-"""Longest list of touching contacts accepted: a tenth of a second, two where many modes are consistent."""
+"""The largest number of touching contacts that is accepted. They take a tenth of a second, or two seconds
+where many modes are consistent."""
 
 
 FRICTION_FACETS: Final = 8
-"""Edges of a friction pyramid where nothing else is asked for: it holds at least 92 % of the round cone's."""
+"""The number of edges of a friction pyramid, unless another number is asked for. The pyramid allows at least
+92 % of the round cone's friction."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -55,13 +58,14 @@ class SpatialContactProblem(Record):
         state: The state of the body, with its origin at the centre of mass.
         contacts: Contacts of any kind. At most `MOST_DYNAMIC_CONTACTS` of them touch.
         force_W: (3,), N, on the body besides its contact forces, gravity included, world axes.
-        torque_W: (3,), N m, likewise, about the centre of mass, world axes.
-        friction_facets: Edges of the pyramid that stands for a friction cone, >= 3.
-        sharpen: Whether the pyramids' sectors are left behind. Then friction is turned exactly against the
-            sliding, in modes of unique motion where that has a solution (`exact_friction`), and modes with
-            the same letters are one if their motion is the same, or where some of them has none that is
-            unique. Otherwise each sector counts, hundreds where the motion under many feet is not unique.
-            Margins are always those of the sharpened modes.
+        torque_W: (3,), N m, on the body besides that of its contact forces, about the centre of mass, world
+            axes.
+        friction_facets: The number of edges of the pyramid that stands for a friction cone, >= 3.
+        sharpen: Whether friction is turned exactly against the sliding, where the motion is unique and there
+            is a solution (`exact_friction`). Then modes with the same letters are one mode if their motion is
+            the same, or if one of them has no unique motion. Otherwise each sector of the pyramids is a mode
+            of its own, and there can be hundreds where the motion under many feet is not unique. Margins are
+            always those of the sharpened modes.
         velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero, and so
             does an angular velocity that moves no contact relative to the centre of mass by more than that.
 
@@ -127,7 +131,8 @@ class AccelerationMap:
         self.mass = mass
         self.inertia = inertia
         self.points = J
-        # (n, 3), m/s^2, of the points without a and alpha, and of where contact goes over curved sides
+        # (n, 3), m/s^2, the part that a and alpha do not cause: of the points, and of contact that wanders
+        # over curved sides.
         self.turning = np.cross(w_W, np.cross(w_W, r_W)) + rolling_W
         self.of_forces = inverse @ J.T  # (6, 3 n)
         self.wrench = wrench_W - np.concatenate([np.zeros(3), np.cross(w_W, inertia @ w_W)])
@@ -148,8 +153,10 @@ class SpatialCase(NamedTuple):
     """A body with its contacts, none of which approaches.
 
     Attributes:
-        sliding: (n, 3), m/s, tangential velocities; zero: at rest.
-        touching: Contacts that neither approach nor leave.
+        motion: The accelerations of the body and of its contact points.
+        contacts: The contacts.
+        sliding: (n, 3), m/s, tangential velocities; zero for a contact at rest.
+        touching: The numbers of the contacts that neither approach nor leave.
     """
 
     motion: AccelerationMap
@@ -191,10 +198,10 @@ def spatial_case(problem: SpatialContactProblem) -> SpatialCase | tuple[int, ...
 
 
 def search_of_few_edges(case: SpatialCase, facets: int) -> Search:
-    """Return `search_of`, for what goes through all edges of all friction pyramids.
+    """Return the search for the modes of a case whose friction pyramids have few edges.
 
     Raises:
-        TooLargeError: these are more than `MOST_EDGES`.
+        TooLargeError: the pyramids have more than `MOST_EDGES` edges together.
     """
     search = search_of(case, facets)
     edges = sum(len(pyramid.edges) for pyramid in search.pyramids)
@@ -235,7 +242,7 @@ def search_of(case: SpatialCase, facets: int) -> Search:
 
 
 def _reach(body: MassProperties, r_W: FloatArray, contacts: ContactSet) -> float:
-    """Return how far, m, an angular velocity counts: where sides are curved, the body's size too."""
+    """Return the length, m, by which an angular velocity counts, for curved sides with the body's size."""
     far = float(np.linalg.norm(r_W, axis=1).max())
     if contacts.body_curvatures is None and contacts.surface_curvatures is None:
         return far

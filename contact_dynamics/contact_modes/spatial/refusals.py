@@ -7,8 +7,8 @@ the applied wrench is from those under which some forces inside the friction pyr
 and separate like that: the least change in |f|^2 + |torque / length|^2. Which way friction acts is left open,
 so that no smaller change brings the string about, and a larger one may be needed.
 
-Does not cover: why single letters, sticking or sliding one way, are refused of a string that is consistent;
-where loads are shared, that differs from one sharing to the next.
+Where a string is consistent, this file does not say why it sticks rather than slides, or slides one way
+rather than another. Where loads are shared, the reason would differ from one sharing to the next.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 _EXACT: Final = 1e4
-"""How much the height of a wrench (`wrenches`), which must be met, counts beside its distance."""
+"""The weight of the height of a wrench (`wrenches`), which must be met exactly, relative to its distance."""
 
 
 def spatial_refused_modes(
@@ -41,17 +41,18 @@ def spatial_refused_modes(
 ) -> tuple[RefusedMode, ...]:
     """Return each contacting and separating string without a consistent mode, in alphabetical order, and why.
 
-    Refusals are `PENETRATES` and `PULLS` of a contact, where forces are known; `NO_SOLUTION`, with the
-    distance, N, of the applied wrench from those that can bring the string about; or `WRONG_MOTION` with
-    amount 0: forces in the friction pyramids would do, but against no sliding that they bring about.
+    Where the forces are known, the refusal is `PENETRATES` or `PULLS` of a contact. Otherwise it is
+    `NO_SOLUTION`, with the distance, N, of the applied wrench from those that can bring the string about. It
+    is `WRONG_MOTION` with amount 0 where forces in the friction pyramids could do so, but would not oppose
+    the sliding that they cause.
 
-    Empty where a contact approaches. A millisecond for each string.
+    There are none where a contact approaches. Each string takes a millisecond.
 
     Args:
         problem: The question.
-        answer: To that question.
-        margin_length: m, > 0, makes a torque comparable with a force; None: the radius of gyration, root mean
-            square over the axes.
+        answer: The answer to that question.
+        margin_length: m, > 0. A torque is divided by it to be comparable with a force. If it is None, the
+            length is the radius of gyration, the root mean square over the axes.
 
     Raises:
         InvalidFieldError: the length is not > 0.
@@ -74,7 +75,7 @@ def spatial_refused_modes(
 
 
 def _known(case: SpatialCase, search: Search, string: str) -> RefusedMode | None:
-    """Return the refusal where the forces are known; None: they are not."""
+    """Return the refusal where the forces are known, or None where they are not."""
     motion, touching = case.motion, case.touching.tolist()
     staying = [k for k, i in enumerate(touching) if string[i] == STAYS]
     if any(len(search.pyramids[k].edges) > 1 for k in staying):
@@ -106,6 +107,7 @@ def _known(case: SpatialCase, search: Search, string: str) -> RefusedMode | None
 
 
 def _short(case: SpatialCase, search: Search, string: str, metric: FloatArray) -> RefusedMode:
+    """Return the refusal with the distance of the wrench from those that can bring the string about."""
     ways = [Way(string[i], -1) for i in case.touching.tolist()]
     generators = wrench_generators(case, search, ways, metric)
     unit = case.motion.mass * case.motion.scale  # N; wrenches are divided by it

@@ -28,18 +28,19 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 _NARROW: Final = 0.32
-"""rad, angle between all rays below which a region of three dimensions or less is not split further; of finer
-pyramids the same part of a sector, which is two fifths of the usual one's."""
+"""rad. A region of at most three dimensions is not split further if the angles between all its rays are
+smaller. This is two fifths of a sector of the usual pyramid. For finer pyramids it is the same part of their
+sectors."""
 
 _NARROW_OF_MORE: Final = 0.64
-"""rad, where there are more dimensions, in which regions are many."""
+"""rad. The same angle where there are more dimensions, and thus many regions."""
 
 
 class Image(NamedTuple):
     """The tangential accelerations of some contacts under the motions in which others stay as well.
 
     Attributes:
-        coordinates: (p, 6), of a motion.
+        coordinates: (p, 6), rows that give the coordinates of a motion.
         unseen: (q, 6), motions without tangential acceleration.
         maps: (m, 2, p), from coordinates to the contacts' accelerations in their pyramids' frames.
     """
@@ -61,7 +62,7 @@ class Region(NamedTuple):
     height: FloatArray
 
     def rows(self, image: Image) -> FloatArray:
-        """Return the conditions on the motion, (p + 1, 7): within the region, and not without sliding."""
+        """Return the conditions on the motion, (p + 1, 7), that it slides, within the region."""
         inside = np.vstack([np.linalg.inv(self.rays.T), self.height])
         inside /= np.sqrt((inside * inside).sum(axis=1))[:, None]
         found = np.zeros((len(inside), 7))
@@ -70,7 +71,10 @@ class Region(NamedTuple):
         return found
 
     def halves(self, count: int) -> tuple[Region, Region] | None:
-        """Return the region cut across its widest edge; None: narrow for pyramids of ``count`` edges."""
+        """Return the halves of the region, cut across its widest edge.
+
+        Return None if the region is narrow enough for pyramids of ``count`` edges.
+        """
         if len(self.rays) == 1:
             return None
         unit = self.rays / np.linalg.norm(self.rays, axis=1)[:, None]
@@ -88,9 +92,9 @@ class Region(NamedTuple):
         return acting_edges(image.maps @ self.rays.T, len(pyramids[0].edges))
 
     def friction(self, image: Image, pyramids: list[Pyramid]) -> FloatArray:
-        """Return the power, for unit normal force, of one share of friction at each contact, (m, p), on rays.
+        """Return the power of friction on each ray, for unit normal force at each contact, (m, p).
 
-        The share is that of the edge that opposes most the sliding in the middle of the region.
+        Friction acts along the edge that opposes the sliding in the middle of the region most.
         """
         along = image.maps @ self.rays.T  # (m, 2, p)
         middles = along.sum(axis=2)
@@ -117,7 +121,10 @@ class Flat(NamedTuple):
     image: Image
 
     def parts(self, normals: FloatArray, frames: FloatArray) -> Iterator[Flat]:
-        """Yield the flats in which one contact more sticks, with all that must then; none within a line."""
+        """Yield the flats in which one contact more sticks, with all contacts that must then stick too.
+
+        A flat whose motions differ only in size has no such parts.
+        """
         if len(self.image.coordinates) > 1:
             for i in range(len(frames)):
                 if i not in self.stuck:
@@ -128,8 +135,8 @@ def flat_of(normals: FloatArray, frames: FloatArray, chosen: tuple[int, ...]) ->
     """Return the motions in which some contacts stick.
 
     Args:
-        normals: As for `image_of`.
-        frames: As for `image_of`, of all contacts that may stick or slide.
+        normals: The normal accelerations, as for `image_of`.
+        frames: The tangential ones, as for `image_of`, of all contacts that may stick or slide.
         chosen: The contacts.
     """
     sticking = frames[list(chosen)].reshape(-1, 6)
@@ -144,7 +151,7 @@ def image_of(normals: FloatArray, frames: FloatArray) -> Image:
 
     Args:
         normals: (k, 6), normal accelerations of the contacts that stay, as functions of the motion.
-        frames: (m, 2, 6), tangential ones, of those whose sliding is asked for.
+        frames: (m, 2, 6), tangential accelerations of the contacts whose sliding is asked for.
     """
     free = seen_and_unseen(normals)[1]
     along = frames.reshape(-1, 6) @ free.T
@@ -153,6 +160,6 @@ def image_of(normals: FloatArray, frames: FloatArray) -> Image:
 
 
 def whole(dimensions: int) -> Iterator[Region]:
-    """Yield regions that together cover every direction; none where there is no dimension."""
+    """Yield regions that together cover every direction. There are none in a space of no dimensions."""
     for signs in itertools.product((1.0, -1.0), repeat=dimensions) if dimensions else ():
         yield Region(np.diag(signs), np.array(signs) / math.sqrt(dimensions))

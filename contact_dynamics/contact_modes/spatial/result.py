@@ -14,16 +14,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SpatialMode(Record):
-    """A mode that is consistent with mechanics, with accelerations and forces that realise it. World axes.
+    """A mode that is consistent with mechanics, with accelerations and forces that realise it, in world axes.
 
     Attributes:
-        mode: One letter a contact: s, f or c.
-        acceleration_W: (3,), m/s^2, of the centre of mass.
+        mode: One letter for each contact: s, f or c.
+        acceleration_W: (3,), m/s^2, the acceleration of the centre of mass.
         angular_acceleration_W: (3,), rad/s^2.
-        contact_forces_W: (n, 3), N, on the body.
-        contact_accelerations_W: (n, 3), m/s^2, of the body's points.
-        tangential_directions_W: (n, 3), unit, which way a contact slides; zero: it does not.
-        misdirection: rad, largest angle of friction to the way against sliding; 0: Coulomb's, exactly.
+        contact_forces_W: (n, 3), N, the forces on the body.
+        contact_accelerations_W: (n, 3), m/s^2, the accelerations of the body's points in contact.
+        tangential_directions_W: (n, 3), unit, the direction in which a contact slides; zero where it does
+            not slide.
+        misdirection: rad, the largest angle between friction and the direction against the sliding. It is 0
+            where friction obeys Coulomb's law exactly.
         forces_unique: Whether the forces are the only ones with this mode.
         motion_unique: Whether the accelerations are the only ones with this mode.
     """
@@ -49,11 +51,11 @@ class SpatialModeAnswer(Record):
     Attributes:
         verdict: On the whole contact set.
         modes: All consistent modes.
-        approaching: Contacts that approach; not empty exactly where the verdict is IMPACT.
-        velocity_tolerance: m/s, below which a contact's velocity counted as zero.
-        friction_facets: Edges of the pyramids.
-        examined: Letters, and groups of them, that were tried.
-        undecided: What could not be made out, and why. Empty unless the verdict is UNDECIDED.
+        approaching: The contacts that approach. It is not empty exactly where the verdict is IMPACT.
+        velocity_tolerance: m/s. A contact's velocity up to it counted as zero.
+        friction_facets: The number of edges of each friction pyramid.
+        examined: The number of cases, of one letter or of a group of letters, that were tried.
+        undecided: What could not be decided, and why. It is empty unless the verdict is UNDECIDED.
     """
 
     verdict: ModeVerdict

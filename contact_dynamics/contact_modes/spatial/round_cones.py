@@ -1,11 +1,14 @@
-"""Whether forces within Coulomb's round cones keep contacts from moving: yes with forces, no with a motion.
+"""Whether forces within Coulomb's round cones keep contacts from moving.
 
-Contacts that stick ask the motion to vanish on some rows; with these merged (`careful_program.merged`) that
-is one equation in at most six dimensions, whose left side is a sum of linear images of round cones. The point
-of that sum nearest to the right side is found by Wolfe's method: the cones are stood for by few of their
-edges, and where what is left over still has a positive product with some force of a cone, the one with the
-largest becomes an edge. What is left over in the end is nothing, or a direction that separates the right side
-from all that the cones can do: a virtual motion on which the load has power and no contact force takes it.
+The answer yes comes with such forces, and the answer no with a virtual motion.
+
+Contacts that stick demand that some rows of the motion vanish. When rows that nearly agree are merged
+(`careful_program.merged`), this is one equation in at most six dimensions: a sum of linear images of round
+cones is to be equal to a given vector. Wolfe's method finds the point of that sum nearest to the vector. A
+few edges replace the cones at first. While the remainder, which is the vector less the nearest point, has a
+positive product with some force of a cone, the force with the largest product becomes a further edge. In the
+end the remainder vanishes, or it separates the vector from all sums that the cones allow. Then it is a
+virtual motion on which the load has power, and on which no contact force takes that power.
 """
 
 from __future__ import annotations
@@ -32,23 +35,27 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 _MOST_FORCE: Final = 1e3
-"""Times the load: a motion separates if only larger forces could take its power."""
+"""This is a multiple of the load. A motion separates if only larger forces could take its power."""
 
 _MOST_EDGES: Final = 400
-"""Edges of cones that are tried. Some dozen are enough but on a cone's very border."""
+"""The largest number of edges that are tried. A dozen are enough, unless the load lies on the border of the
+sum."""
 
 
 class Held(NamedTuple):
-    """What came of the question."""
+    """Whether forces hold the contacts.
 
-    forces: (
-        FloatArray | None
-    )  # (n, 3), in the units of the motion, that hold the contacts; None: there are none
-    certain: bool  # False: rounding, or too slow a search, hides whether there are any
+    Attributes:
+        forces: (n, 3), forces that hold the contacts, in the units of the motion; None if none were found.
+        certain: Whether this is certain. It is not where rounding decides, or where the search was given up.
+    """
+
+    forces: FloatArray | None
+    certain: bool
 
 
 def sticking(search: Search) -> FloatArray:
-    """Return rows, (k, 7), that vanish where all contacts stay, and stick if they have friction."""
+    """Return rows, (k, 7), that vanish where all contacts stay, and those with friction stick."""
     rows = [
         contact.point if contact.friction > 0.0 else (contact.normal @ contact.point)[None, :]
         for contact in search.touching
@@ -61,19 +68,20 @@ def held_by_round_cones(search: Search, rows: FloatArray) -> Held:
 
     Args:
         search: The case. What slides already counts as at rest.
-        rows: (k, 7), about unit.
+        rows: (k, 7), of about unit length.
     """
     demand = _demand(search, rows)
     return Held(None, certain=True) if demand is None else _nearest(demand, search)
 
 
 def polished(search: Search, rows: FloatArray, forces: FloatArray) -> FloatArray:
-    """Return forces, (n, 3), that do to rounding what some in round cones do to a tolerance, as theirs allow.
+    """Return forces, (n, 3), that make rows of the motion vanish to rounding, where the cones allow that.
 
     Args:
         search: The search, as for `held_by_round_cones`.
         rows: The rows, as for `held_by_round_cones`.
-        forces: (n, 3), in the units of the motion.
+        forces: (n, 3), in the units of the motion. They lie in the round cones, and make the rows vanish to
+            a tolerance. They are returned themselves where the better ones would leave the cones.
     """
     demand = _demand(search, rows, ROUND_CONE_APART)
     if demand is None or demand.images.size == 0:
@@ -92,7 +100,7 @@ def polished(search: Search, rows: FloatArray, forces: FloatArray) -> FloatArray
 
 
 class Unique(NamedTuple):
-    """Whether the forces and the motion are the only ones."""
+    """Whether forces are the only ones, and whether their motion is the only one."""
 
     forces: bool
     motion: bool
@@ -106,15 +114,21 @@ def rests_in_one_way(search: Search, rows: FloatArray) -> Unique:
 
 
 class _Demand(NamedTuple):
-    """What forces must sum to, in units in which all contacts together do as much in every direction."""
+    """What forces must sum to, in units in which all contacts together do as much in every direction.
 
-    images: FloatArray  # (n, k, 3), of unit forces
-    target: FloatArray  # (k,)
-    sizes: FloatArray  # (k,), of the units, in parts of the load
+    Attributes:
+        images: (n, k, 3), the effects of unit forces.
+        target: (k,), what the effects must sum to.
+        sizes: (k,), the sizes of the units, in parts of the load.
+    """
+
+    images: FloatArray
+    target: FloatArray
+    sizes: FloatArray
 
 
 def _demand(search: Search, rows: FloatArray, tolerance: float = ROW_TOLERANCE) -> _Demand | None:
-    """Return what makes rows of the motion vanish, merged within a tolerance; None: no forces do."""
+    """Return what makes rows of the motion, merged within a tolerance, vanish, or None if no forces do."""
     equations = merged(rows, tolerance)
     if equations is None:
         return None
@@ -124,7 +138,7 @@ def _demand(search: Search, rows: FloatArray, tolerance: float = ROW_TOLERANCE) 
     units = search.mass if len(equations) == len(start) else equations[:, :-1]
     target, effects = -(units @ start), units @ search.of_forces
     load = float(np.linalg.norm(target))
-    # Nearly the same contacts do little in some directions, and are asked for little there.
+    # Contacts that are nearly the same have little effect in some directions, where little is demanded.
     units, sizes, _ = np.linalg.svd(effects, full_matrices=False)
     reached = sizes > ROUND_CONE_REACHED * sizes.max(initial=0.0)
     units, sizes = units[:, reached], sizes[reached]

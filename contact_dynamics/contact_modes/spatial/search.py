@@ -42,8 +42,9 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 MOST_EXAMINED: Final = 30_000
-"""Trials, of some 0.1 ms each, after which a search is given up: where the motion of a body on many feet is
-not unique, hundreds of combinations of their sectors may be consistent, and all are asked for."""
+"""The search is given up after this many trials of some 0.1 ms. Where the motion of a body on many feet is
+not unique, hundreds of combinations of their sectors may be consistent, and the search looks for all of
+them."""
 
 AnyProgram = Program | CarefulProgram
 
@@ -62,7 +63,7 @@ class Touching(NamedTuple):
     Attributes:
         normal: (3,), unit.
         friction: Coulomb's mu.
-        sliding: (3,), m/s, tangential velocity; zero: it is at rest.
+        sliding: (3,), m/s, its tangential velocity; zero where it is at rest.
         point: (3, 7), its acceleration as a function of the motion.
         free: (3,), its acceleration without contact forces.
     """
@@ -89,14 +90,15 @@ class Found(NamedTuple):
 
 
 class Common(NamedTuple):
-    """What regions of common sliding share.
+    """What the regions of one flat have in common.
 
     Attributes:
-        image: Their space.
-        open_ones: Contacts that slide.
-        pyramids: Theirs.
-        names: (m, K), of their edge forces.
-        gains: (p,), power of the applied wrench; None: not known, something moves.
+        image: The space in which the regions lie.
+        open_ones: The contacts that slide.
+        pyramids: The force edges of these contacts.
+        names: (m, K), the names of their edge forces.
+        gains: (p,), the power of the applied wrench on unit coordinates; None if something moves already,
+            because then the power may be negative.
     """
 
     image: Image
@@ -127,11 +129,11 @@ class Search:
 
         Args:
             touching: The contacts.
-            of_forces: (6, 3 n), motion for unit contact forces.
-            free: (6,), motion without contact forces.
-            mass: (6, 6), forces and torques for unit motion.
+            of_forces: (6, 3 n), the motion that unit contact forces cause.
+            free: (6,), the motion without contact forces.
+            mass: (6, 6), the forces and torques that unit motion needs.
             at_rest: Whether nothing moves, so that the applied wrench has power >= 0.
-            facets: Edges of a friction pyramid.
+            facets: The number of edges of a friction pyramid.
         """
         self.touching = touching
         self.pyramids: list[Pyramid] = []
@@ -148,7 +150,7 @@ class Search:
                 )
             )
             first += len(self.pyramids[-1].edges)
-        self.edges = np.zeros((3 * len(touching), first))  # contact forces of unit edge forces
+        self.edges = np.zeros((3 * len(touching), first))  # the contact forces that unit edge forces are
         for i, pyramid in enumerate(self.pyramids):
             last = pyramid.first + len(pyramid.edges)
             self.edges[3 * i : 3 * i + 3, pyramid.first : last] = pyramid.edges.T
@@ -159,8 +161,8 @@ class Search:
         self.edges /= sizes
         self._sizes = sizes
         self.motion = np.column_stack([motion / sizes, free])
-        self.examined = 0  # programs solved so far
-        self._first_normal = first  # name of contact 0's normal acceleration
+        self.examined = 0  # the number of programs solved so far
+        self._first_normal = first  # the name of contact 0's normal acceleration
         self._normals = np.array([c.normal @ c.point for c in touching]).reshape(-1, 7)
         named = self._normals
         names = [first + i for i in range(len(touching))]
@@ -179,7 +181,7 @@ class Search:
         self._ways: dict[tuple[int, tuple[int, int] | None], tuple[Option, ...]] = {}
         self._found: dict[tuple[tuple[str, int], ...], Found] = {}
         self._grouped = False
-        self.careful = False  # whether the modes were sought with care, contacts being nearly the same
+        self.careful = False  # whether the modes were sought with care, because contacts are nearly the same
         self._goal = ""  # the letters that are sought, where all are known
         self._settled: set[str] = set()  # letters that need no further mode
 
@@ -187,8 +189,8 @@ class Search:
         """Return all modes.
 
         Args:
-            grouped: Whether one mode stands for all with the same letters, whatever their items, where the
-                motion of one of them is not unique. Otherwise each is found.
+            grouped: Whether one mode represents all with the same letters, whatever their sectors, where the
+                motion of one of them is not unique. Otherwise each of them is found.
         """
         self._grouped = grouped
         try:
@@ -223,7 +225,7 @@ class Search:
         return self._trusted(program, holds=program.solve())
 
     def _trusted(self, program: AnyProgram, *, holds: bool) -> bool:
-        """Return what a program came to; if that is in doubt, all starts again with care."""
+        """Return whether a program has a solution. If that is in doubt, the search starts again with care."""
         if program.doubtful:
             if not self.careful:
                 raise _DoubtError
@@ -288,9 +290,9 @@ class Search:
         return program.narrowed(rows=rows, equalities=len(rows), tag=_CONTACT_TAG - len(self.touching))
 
     def _decide_flat(self, program: AnyProgram, trials: list[Option], image: Image) -> bool:
-        """Find the modes in which all contacts that are not decided slide; False: nor if some of them stick.
+        """Find the modes in which all contacts that are not decided slide.
 
-        But for all of them, at rest.
+        Return whether there may be modes in which some of these contacts stick, and others slide.
         """
         open_ones = [i for i, letters in enumerate(trials) if letters.parts]
         if not open_ones:
@@ -305,7 +307,7 @@ class Search:
         return may_hold
 
     def _common(self, image: Image, open_ones: list[int]) -> Common:
-        """Return what the regions of a flat share."""
+        """Return what the regions of a flat have in common."""
         gains = None
         if self._power is not None:
             # Seen motions with which unseen ones have no kinetic energy in common: those gain on their own.
@@ -319,7 +321,7 @@ class Search:
     def _decide_within(
         self, region: Region, program: AnyProgram, trials: list[Option], common: Common
     ) -> bool:
-        """Find the modes within a region; False: there is none, whichever of the contacts slide."""
+        """Find the modes within a region, and return whether it may hold any, whichever contacts slide."""
         if self._goal in self._settled:
             return True
         acting = region.acting_edges(common.image, common.pyramids)
@@ -360,7 +362,7 @@ class Search:
         return self._trusted(program, holds=holds)
 
     def _ways_of(self, at: int, acting: NDArray[np.bool_]) -> tuple[Option, ...]:
-        """Return the ways of sliding of a contact against neighbouring edges, laid out once for a range."""
+        """Return the ways of sliding of a contact against neighbouring edges, made once for each range."""
         arc = None if acting.all() else (int((acting & ~np.roll(acting, 1)).argmax()), int(acting.sum()))
         if (at, arc) not in self._ways:
             self._ways[at, arc] = ways_of_sliding(self.pyramids[at], self.touching[at].point, arc)

@@ -1,12 +1,13 @@
 """Which ways contacts in space can stick and slide together, whatever the forces.
 
-Each contact's tangent plane is cut by a few lines through the contact, so that a way of sliding is a sector
-between two of them, or along one. With the conditions that no contact penetrates, the lines' planes cut the
-accelerations of a body at rest into faces of a hyperplane arrangement, each a mode (Huang, Cheng and Mason,
-Efficient Contact Mode Enumeration in 3D, 2020). A face is found by its signs: those of the arrangement's
-rays, composed, where the first ray off a plane decides (the covectors of an oriented matroid).
+A few lines through each contact cut its tangent plane, so that a contact slides in a sector between two
+lines, or along one. The lines define planes in the space of accelerations of a body at rest. Together with
+the conditions that no contact penetrates, they cut this space into the faces of a hyperplane arrangement, and
+each face is a mode (Huang, Cheng and Mason, Efficient Contact Mode Enumeration in 3D, 2020). A face is found
+by its signs. They are composed from those of the arrangement's rays, where the first ray that does not lie in
+a plane decides the sign for that plane (the covectors of an oriented matroid).
 
-Does not cover: mechanics (`spatial.answer`), bodies that move.
+`spatial.answer` says which of these are consistent with mechanics. Bodies that move are not covered.
 """
 
 from __future__ import annotations
@@ -29,10 +30,11 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 MOST_SLIDING_CONTACTS: Final = 8
-"""Longest list of contacts accepted: eight in general position have tens of thousands of modes."""
+"""The longest list of contacts that is accepted. Eight in general position have tens of thousands of
+modes."""
 
 MOST_PLANES: Final = 4
-"""Most lines through a contact."""
+"""The largest number of lines through a contact."""
 
 _WAYS: Final = "0123456789ABCDEF"
 
@@ -40,14 +42,15 @@ _WAYS: Final = "0123456789ABCDEF"
 def spatial_sliding_modes(contacts: ContactSet, *, planes: int = 2) -> tuple[str, ...]:
     """Return every mode that some acceleration of a body at rest realises, in alphabetical order.
 
-    A mode has one letter a contact: `s` it separates, `f` it sticks, or which way it slides, an upper-case
-    hexadecimal digit. In the frame of `friction.tangents`, the even digit 2 k is at the angle k pi / planes,
-    along a line, and the odd digit 2 k + 1 in the sector between that and the next.
+    A mode has one letter for each contact: `s` if it separates, `f` if it sticks, and otherwise an upper-case
+    hexadecimal digit for the direction in which it slides. The angles are those of the frame of
+    `numerics.vectors.tangents_towards`: the even digit 2 k is the direction of a line, at k pi / planes, and
+    the odd digit 2 k + 1 is the sector between this line and the next.
 
     Args:
         contacts: At most `MOST_SLIDING_CONTACTS`.
-        planes: Lines through each contact, 2 to `MOST_PLANES`; a friction pyramid of as many pairs of edges
-            has them as its sectors' borders.
+        planes: The number of lines through each contact, from 2 to `MOST_PLANES`. They are the borders of the
+            sectors of a friction pyramid with twice as many edges.
 
     Raises:
         InvalidFieldError: too few or too many planes.

@@ -36,12 +36,12 @@ def spatial_statics(problem: SpatialContactProblem, *, margin_length: float | No
     Args:
         problem: The question; its velocities play no part. The first edge of each friction pyramid leans
             against the motion that the contact would begin without contact forces.
-        margin_length: m, > 0, makes a torque comparable with a force; None: the radius of gyration, root mean
-            square over the axes.
+        margin_length: m, > 0. A torque is divided by it to be comparable with a force. If it is None, the
+            length is the radius of gyration, the root mean square over the axes.
 
     Raises:
         InvalidFieldError: the length is not > 0.
-        UndecidedError: contacts so nearly the same that rounding decides the answer.
+        UndecidedError: the contacts are so nearly the same that rounding decides the answer.
         TooLargeError: more than `MOST_EDGES` edges, or more contacts than `spatial_contact_modes` accepts.
     """
     body, state, contacts = problem.body, problem.state, problem.contacts
@@ -101,9 +101,10 @@ def _rows(arms: FloatArray, pyramids: list[FloatArray], length: float) -> FloatA
 
 
 def _room(rows: FloatArray, target: FloatArray) -> tuple[float, bool]:
-    """Return how far inside the cone of positive combinations of rows a wrench lies, N; < 0: outside.
+    """Return how far inside the cone of positive combinations of rows a wrench lies, and if it is wedged.
 
-    And whether some combination, not of zeros alone, vanishes.
+    The distance is in N, and negative where the wrench lies outside. The contacts are wedged if some
+    combination of rows vanishes whose coefficients are not all zero.
     """
     tolerance = max(ACCELERATION_TOLERANCE, ROW_TOLERANCE) * float(np.linalg.norm(target))
     if len(rows) == 0:

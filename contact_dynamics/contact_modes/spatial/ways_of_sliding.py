@@ -1,8 +1,9 @@
-"""What the contacts of a body in space can do together, whatever the forces: separate, stick, slide how.
+"""How the contacts of a body in space can separate, stick and slide together, whatever the forces.
 
-The sectors of a contact's friction pyramid part its tangent plane by rays through the contact. Their planes
-cut the accelerations that do not penetrate into the faces of an arrangement (`spatial.sliding`), here for the
-pyramids of a case, and with centripetal terms.
+Rays through a contact divide its tangent plane into the sectors of its friction pyramid. They define planes
+in the space of accelerations, which cut the accelerations that do not penetrate into the faces of an
+arrangement. `spatial.sliding` does the same for lines in fixed directions. This file takes the pyramids of a
+case, and centripetal terms.
 """
 
 from __future__ import annotations
@@ -26,11 +27,12 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 MOST_MEETINGS: Final = 10_000
-"""Most sets of planes of one arrangement whose common line is worked out: a second, all told."""
+"""The largest number of sets of planes of one arrangement whose common lines are computed, in about a
+second."""
 
 
 def ways_of(search: Search) -> list[tuple[Way, ...]]:
-    """Return everything that touching contacts can do together, a `Way` for each.
+    """Return all that touching contacts can do together, each with a `Way` for every contact.
 
     Raises:
         TooLargeError: more than `MOST_MEETINGS` sets of planes meet in lines.
@@ -63,7 +65,8 @@ def ways_of(search: Search) -> list[tuple[Way, ...]]:
 def sliding_range(pyramid: Pyramid, way: Way) -> tuple[FloatArray, FloatArray]:
     """Return the unit tangents, (3,) each, between which a contact slides, anticlockwise about its normal.
 
-    Zero: it does not, or any way; equal: along that one.
+    Both are zero where it does not slide or may slide any way. They are equal where it slides in that one
+    direction.
     """
     if way.item < 0 or pyramid.frame is None:
         return np.zeros(3), np.zeros(3)
@@ -76,10 +79,11 @@ def sliding_range(pyramid: Pyramid, way: Way) -> tuple[FloatArray, FloatArray]:
 
 
 def _borders(contact: Touching, pyramid: Pyramid) -> FloatArray:
-    """Return rows, (k, 7), positive where a contact slides anticlockwise of a border; none: it is not asked.
+    """Return rows, (k, 7), that are positive where a contact slides anticlockwise of a border.
 
-    Each sector of sliding is opposite to an edge, and border j lies between sectors j and j + 1. Of an even
-    number the second half are the first half's rows, reversed, and left out.
+    Each sector of sliding is opposite to an edge, and border j lies between sectors j and j + 1. If their
+    number is even, the second half would be the first half's rows, reversed, and is left out. A contact whose
+    direction of sliding does not matter has no rows.
     """
     if pyramid.frame is None:
         return np.zeros((0, 7))
@@ -92,7 +96,9 @@ def _borders(contact: Touching, pyramid: Pyramid) -> FloatArray:
 def _way(signs: list[int], count: int) -> Way:
     """Return what a contact that stays does, from the side of each of its borders that it slides to.
 
-    ``count``: edges of its pyramid.
+    Args:
+        signs: The sides, in the order of the borders.
+        count: The number of edges of its pyramid.
     """
     if not signs:
         return Way(STAYS, -1)

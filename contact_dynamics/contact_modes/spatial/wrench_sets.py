@@ -41,11 +41,12 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 WRENCH_FACETS: Final = 4
-"""Edges of a friction pyramid that keep the sets few: ways of sliding grow as their square or cube."""
+"""The number of edges of a friction pyramid that keeps the sets few. The ways of sliding grow as its square
+or cube."""
 
 MOST_WRENCH_SETS: Final = 2000
-"""Most sets of one answer, of a millisecond or two each. A box on four feet has 200 to 350 with pyramids of
-four edges, some 1300 with eight."""
+"""The largest number of sets of one answer. Each takes a millisecond or two. A box on four feet has 200 to
+350 sets with pyramids of four edges, and some 1300 with eight."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -55,12 +56,15 @@ class SpatialWrenchSet(Record):
     Wrenches are force, N, then torque about the centre of mass, N m, world axes.
 
     Attributes:
-        mode: One letter a contact: s, f or c.
-        sliding_from_W: (n, 3), unit; a contact that begins to slide does between this direction.
-        sliding_to_W: (n, 3), and this, anticlockwise about its normal; zero: none is asked for.
-        vertices: (k, 6), N and N m: the set is all averages of these plus.
-        generators: (k, 6), all positive combinations of these, any scale.
-        half_spaces: (k, 7), the same set: a . w <= b, a then b; none: every wrench.
+        mode: One letter for each contact: s, f or c.
+        sliding_from_W: (n, 3), unit. A contact that begins to slide does so in a direction between this one
+            and ``sliding_to_W``, anticlockwise about its normal. Both are zero where any direction will do.
+        sliding_to_W: (n, 3), unit, the other end of that range.
+        vertices: (k, 6), N and N m. The set consists of all averages of these, to which positive combinations
+            of the generators are added.
+        generators: (k, 6), of any scale.
+        half_spaces: (k, 7), the same set as conditions a . w <= b, with a before b. Every wrench is in the
+            set if there are none.
     """
 
     mode: str
@@ -73,8 +77,8 @@ class SpatialWrenchSet(Record):
     def depth(self, wrench_W: ArrayLike, length: float) -> float:
         """Return how far inside the set a wrench, (6,), lies, N, in |f|^2 + |torque / length|^2.
 
-        Infinite: every wrench does; < 0: outside (then a lower bound of the distance). Zero at most where the
-        set has no inside.
+        The depth is infinite if the set contains every wrench. It is negative outside, and its size is then a
+        lower bound of the distance. It is zero or less where the set has no inner points.
         """
         if len(self.half_spaces) == 0:
             return math.inf
@@ -88,18 +92,18 @@ def spatial_wrench_sets(
 ) -> tuple[SpatialWrenchSet, ...]:
     """Return the applied wrenches of every mode and way of sliding, in alphabetical order of the letters.
 
-    Empty where a contact approaches. Sets of one mode follow each other. The problem's own wrench says how
-    the friction pyramids lie, and plays no other part.
+    There are none where a contact approaches. Sets of one mode follow each other. The problem's own wrench
+    says how the friction pyramids lie, and plays no other part.
 
     Args:
         problem: The contacts, the state and the facets: 4 keep the sets few.
-        modes: Letters, one a contact, of the modes that are wanted; None: all. What is impossible whatever
-            the wrench has no set.
+        modes: The modes that are wanted, with one letter for each contact; None for all. A mode that is
+            impossible whatever the wrench has no set.
 
     Raises:
         InvalidFieldError: modes that are not strings of s, f and c.
-        UndecidedError: contacts so nearly the same that rounding decides the sets.
-        TooLargeError: as for `spatial_contact_modes`; more than `MOST_WRENCH_SETS` sets, more than
+        UndecidedError: the contacts are so nearly the same that rounding decides the sets.
+        TooLargeError: as for `spatial_contact_modes`; or more than `MOST_WRENCH_SETS` sets, more than
             `spatial.problem.MOST_EDGES` edges of all pyramids, or too many ways of sliding
             (`ways_of_sliding.MOST_MEETINGS`).
 
@@ -117,7 +121,7 @@ def spatial_wrench_sets(
         allowed = f"at most {MOST_WRENCH_SETS}: fewer contacts, or fewer friction_facets"
         raise TooLargeError("contacts", f"{len(wanted)} sets of wrenches", allowed)
     metric = np.array([1.0, 1.0, 1.0, *[body.mean_radius_of_gyration] * 3])
-    turning = wrench - case.motion.wrench  # which a body that turns needs besides
+    turning = wrench - case.motion.wrench  # the part of the wrench that a turning body needs
     return tuple(
         _wrench_set(case, search, ways, mode=mode, metric=metric, turning=turning) for mode, ways in wanted
     )

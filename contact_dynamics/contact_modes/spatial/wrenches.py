@@ -1,6 +1,7 @@
-"""The applied wrenches in space that can bring letters about: what motions need, less what contacts give.
+"""The applied wrenches in space that can bring letters about.
 
-They are the positive sums of rays, plus sums of lines. Centripetal terms add a seventh coordinate, in which a
+They are the wrenches that the motions with these letters need, less the wrenches of contact forces. They are
+given as positive sums of rays, plus sums of lines. Centripetal terms add a seventh coordinate, in which a
 wrench has the height one. A wrench is (force, torque / length) / mass, in the units of accelerations.
 """
 
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 
 _ALIKE: Final = 7
-"""Digits to which unit rows that are meant to be the same agree; rounding reaches the eleventh."""
+"""Unit rows that agree to so many digits count as the same. Rounding reaches the eleventh digit."""
 
 
 class Way(NamedTuple):
@@ -46,7 +47,7 @@ class Generators(NamedTuple):
 
     Attributes:
         rays: (k, 7), unit.
-        lines: (l, 7), unit.
+        lines: (m, 7), unit.
     """
 
     rays: FloatArray
@@ -54,7 +55,13 @@ class Generators(NamedTuple):
 
 
 class _Conditions(NamedTuple):
-    """What a contact asks of the motion, rows (k, 7), and the force edges, (j, 3), that it lets act."""
+    """What a contact demands of the motion, and the force edges that may act.
+
+    Attributes:
+        zero: (k, 7), rows that vanish on the motion.
+        positive: (l, 7), rows that are not negative on it.
+        acting: (j, 3), the edges.
+    """
 
     zero: FloatArray
     positive: FloatArray
@@ -95,7 +102,7 @@ def wrench_generators(
 
 
 def supports(generators: Generators) -> tuple[FloatArray, FloatArray]:
-    """Return what all generated wrenches satisfy: rows, (k, 7), that are not negative, and that are zero."""
+    """Return the rows, (k, 7) each, that are not negative on generated wrenches, and those that vanish."""
     across = null_space(generators.lines)
     rows = _unit(generators.rays @ across)
     if len(rows) == 0:
