@@ -35,6 +35,10 @@ SERVER_PARAMETERS: Final = {
     "rate": "samples a second of trajectories, Hz",
     "log": "false: write no log",
     "log_directory": "folder to put the log's folder into",
+    "log_compression": "how the log is packed: none, lz4 or zstd",
+    "log_file_size": "size at which a file of the log is finished, MB; 0: no limit",
+    "log_file_duration": "time after which a file of the log is finished, s; 0: no limit",
+    "log_size_limit": "size of the log above which its oldest files are deleted, MB; 0: none is",
 }
 """The parameters that the server has, with what `--help` says about each."""
 

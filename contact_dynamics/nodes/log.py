@@ -17,19 +17,34 @@ if TYPE_CHECKING:
 
     from rclpy.qos import QoSProfile
 
+    from contact_dynamics.recording.limits import LogLimits
+
 
 class Log:
     """Records bytes under topics that are declared before the first message; nothing, without a directory."""
 
     def __init__(
-        self, directory: str | None, *, run: Mapping[str, str], on_problem: Callable[[str], object]
+        self,
+        directory: str | None,
+        *,
+        run: Mapping[str, str],
+        limits: LogLimits,
+        on_problem: Callable[[str], object],
+        on_deleted: Callable[[str], object],
     ) -> None:
         """Create a folder in ``directory``; empty means where the process was started, None no log.
+
+        Args:
+            directory: where the folder of the log is made.
+            run: how the run is made.
+            limits: what bounds the files of the log.
+            on_problem: told once, from the log's thread, what goes wrong first.
+            on_deleted: told, from the log's thread, of each file that ``limits`` cost.
 
         Raises:
             ConfigurationError: it cannot be made. A log that was asked for and fails at the start is told.
         """
-        self._writer = _new_bag(directory, run) if directory is not None else None
+        self._writer = _new_bag(directory, run, limits, on_deleted) if directory is not None else None
         self.folder = self._writer.folder if self._writer is not None else None
         self._recorder: Recorder | None = None
         self._on_problem = on_problem
@@ -64,14 +79,16 @@ class Log:
         return f"log: {self._writer.path} ({status.written} messages{lost})"
 
 
-def _new_bag(directory: str, run: Mapping[str, str]) -> BagWriter:
+def _new_bag(
+    directory: str, run: Mapping[str, str], limits: LogLimits, on_deleted: Callable[[str], object]
+) -> BagWriter:
     """Return a bag in a folder named by the time; of servers that start at once, each gets its own."""
     name = datetime.now(timezone.utc).astimezone().strftime("contact_dynamics_%Y_%m_%d-%H_%M_%S")
     number = 1
     while True:
         folder = Path(directory).expanduser() / (name if number == 1 else f"{name}_{number}")
         try:
-            return BagWriter(folder, run=run)
+            return BagWriter(folder, run=run, limits=limits, on_deleted=on_deleted)
         except LogExistsError:
             number += 1
         except OSError as error:

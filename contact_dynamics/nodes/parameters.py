@@ -16,6 +16,7 @@ from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.nodes.body_shapes import DESCRIPTIONS, ShapeParameters
 from contact_dynamics.questions.knowledge import Defaults
 from contact_dynamics.questions.state_store import FUTURE_TOLERANCE
+from contact_dynamics.recording.limits import Compression, LogLimits
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.validation import check_array, check_positive
@@ -84,6 +85,7 @@ class ServerParameters:
         state_history: s.
         future_tolerance: s.
         defaults: What holds where a question says nothing.
+        log_limits: How the log is cut into files, and which of them are kept.
     """
 
     world: World
@@ -95,6 +97,7 @@ class ServerParameters:
     defaults: Defaults
     log: bool
     log_directory: str
+    log_limits: LogLimits
 
 
 def read_server_parameters(source: ParameterSource) -> ServerParameters:
@@ -144,7 +147,46 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
         log_directory=reader.read(
             "log_directory", "", "Folder to put the log's folder into. Empty: where the server starts."
         ),
+        log_limits=_read_log_limits(reader),
     )
+
+
+def _read_log_limits(reader: _Reader) -> LogLimits:
+    names = [each.value for each in Compression]
+    allowed = ", ".join(names)
+    compression = reader.read("log_compression", Compression.ZSTD.value, f"How the log is packed: {allowed}.")
+    if compression not in names:
+        message = f"log_compression: found {compression!r}, allowed is one of {allowed}"
+        raise ConfigurationError(message)
+    file_size = reader.read(
+        "log_file_size", 1000.0, "Size at which a file of the log is finished, MB. 0: no limit.", (0.0, 1e8)
+    )
+    file_duration = reader.read(
+        "log_file_duration",
+        1800.0,
+        "Time after which a file of the log is finished, s. 0: no limit.",
+        (0.0, 1e8),
+    )
+    size_limit = reader.read(
+        "log_size_limit",
+        0.0,
+        "Size of all files of the log above which the oldest are deleted, MB. 0: none is deleted.",
+        (0.0, 1e8),
+    )
+    try:
+        return LogLimits(
+            compression=Compression(compression),
+            file_bytes=_bytes(file_size),
+            file_seconds=file_duration or None,
+            kept_bytes=_bytes(size_limit),
+        )
+    except InvalidFieldError as error:
+        message = f"log_file_size, log_file_duration, log_size_limit (as bytes and seconds): {error}"
+        raise ConfigurationError(message) from None
+
+
+def _bytes(megabytes: float) -> int | None:
+    return round(1e6 * megabytes) or None
 
 
 def _read_defaults(reader: _Reader) -> Defaults:

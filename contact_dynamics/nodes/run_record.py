@@ -31,9 +31,17 @@ _ARRAY: Final = re.compile(r"array\('\w', (\[.*\])\)", re.DOTALL)
 
 
 def versions_here() -> dict[str, str]:
-    """Return the versions that the last bits of an answer depend on."""
+    """Return the versions that the last bits of an answer depend on.
+
+    The platform has the kind of processor, and the C library, whose sines Python uses.
+    """
     libraries = {name: version(name) for name in ("numpy", "scipy")}
-    return {"version": version_of_this_package(), "python": platform.python_version(), **libraries}
+    return {
+        "version": version_of_this_package(),
+        "python": platform.python_version(),
+        **libraries,
+        "platform": f"{platform.machine()} {' '.join(platform.libc_ver())}",
+    }
 
 
 def run_record(parameters: Mapping[str, Any], topics: Mapping[str, str]) -> dict[str, str]:

@@ -86,7 +86,9 @@ class Server(Node):
         self._log = Log(
             parameters.log_directory if parameters.log else None,
             run=self._run_description(source.topics),
+            limits=parameters.log_limits,
             on_problem=self.get_logger().error,
+            on_deleted=self.get_logger().warning,
         )
         for topics in parameters.topics:
             types = subscribe_to_states(

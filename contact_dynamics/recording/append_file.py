@@ -37,6 +37,10 @@ class AppendFile:
     def flush(self) -> None:
         """Do nothing, since nothing is held back."""
 
+    def sync(self) -> None:
+        """Wait until the disk itself has all that was written. If it refuses, raise `OSError`."""
+        os.fdatasync(self._descriptor)
+
     def cut_back(self, size: int) -> None:
         """Drop everything behind the first ``size`` bytes."""
         os.ftruncate(self._descriptor, size)

@@ -33,23 +33,35 @@ class TopicSummary:
     type_name: str
     type_hash: str
     qos: tuple[str, ...]
-    message_count: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FileSummary:
+    """The entry of ``metadata.yaml`` for one file.
+
+    Attributes:
+        name: The file's path relative to the folder.
+        start_ns: Log time of the earliest message, ns since the epoch.
+        end_ns: Log time of the latest message, ns since the epoch.
+        counts: Number of messages by topic.
+    """
+
+    name: str
+    start_ns: int
+    end_ns: int
+    counts: Mapping[str, int]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BagSummary:
-    """The content of ``metadata.yaml`` for a bag of one file.
+    """The content of ``metadata.yaml`` for a bag.
 
     Attributes:
-        file_name: The file's path relative to the folder.
-        start_ns: Log time of the earliest message, ns since the epoch.
-        end_ns: Log time of the latest message, ns since the epoch.
+        files: The files, the oldest first.
         custom_data: The writer's record of the run.
     """
 
-    file_name: str
-    start_ns: int
-    end_ns: int
+    files: Sequence[FileSummary]
     topics: Sequence[TopicSummary]
     custom_data: Mapping[str, str]
 
@@ -71,27 +83,21 @@ def _checksum(run: Mapping[str, str]) -> str:
 
 def metadata_lines(bag: BagSummary) -> list[str]:
     """Return the YAML of the bag's metadata: the text of the MCAP record named ``rosbag2``."""
-    message_count = sum(topic.message_count for topic in bag.topics)
-    span = [
-        "duration:",
-        f"  nanoseconds: {bag.end_ns - bag.start_ns}",
-        "starting_time:",
-        f"  nanoseconds_since_epoch: {bag.start_ns}",
-        f"message_count: {message_count}",
-    ]
+    start_ns = min(file.start_ns for file in bag.files)
+    end_ns = max(file.end_ns for file in bag.files)
+    message_count = sum(sum(file.counts.values()) for file in bag.files)
     return [
         "version: 9",
         "storage_identifier: mcap",
-        *span,
+        *_span(start_ns, end_ns, message_count),
         f"topics_with_message_count:{'' if bag.topics else ' []'}",
-        *(line for topic in bag.topics for line in _indented(_topic_lines(topic))),
+        *(line for topic in bag.topics for line in _indented(_topic_lines(topic, bag.files))),
         'compression_format: ""',
         'compression_mode: ""',
         "relative_file_paths:",
-        f"  - {_quoted(bag.file_name)}",
+        *(f"  - {_quoted(file.name)}" for file in bag.files),
         "files:",
-        f"  - path: {_quoted(bag.file_name)}",
-        *_indented(_indented(span)),
+        *(line for file in bag.files for line in _indented(_file_lines(file))),
         f"custom_data:{'' if bag.custom_data else ' ~'}",
         *(f"  {_quoted(key)}: {_quoted(value)}" for key, value in bag.custom_data.items()),
         "ros_distro: jazzy",
@@ -103,7 +109,24 @@ def metadata_file_text(bag: BagSummary) -> str:
     return "\n".join(["rosbag2_bagfile_information:", *_indented(metadata_lines(bag)), ""])
 
 
-def _topic_lines(topic: TopicSummary) -> list[str]:
+def _span(start_ns: int, end_ns: int, message_count: int) -> list[str]:
+    return [
+        "duration:",
+        f"  nanoseconds: {end_ns - start_ns}",
+        "starting_time:",
+        f"  nanoseconds_since_epoch: {start_ns}",
+        f"message_count: {message_count}",
+    ]
+
+
+def _file_lines(file: FileSummary) -> list[str]:
+    return [
+        f"- path: {_quoted(file.name)}",
+        *_indented(_span(file.start_ns, file.end_ns, sum(file.counts.values()))),
+    ]
+
+
+def _topic_lines(topic: TopicSummary, files: Sequence[FileSummary]) -> list[str]:
     return [
         "- topic_metadata:",
         f"    name: {_quoted(topic.name)}",
@@ -112,7 +135,7 @@ def _topic_lines(topic: TopicSummary) -> list[str]:
         "    offered_qos_profiles:",
         *(f"      {line}" for line in topic.qos),
         f"    type_description_hash: {_quoted(topic.type_hash)}",
-        f"  message_count: {topic.message_count}",
+        f"  message_count: {sum(file.counts.get(topic.name, 0) for file in files)}",
     ]
 
 

@@ -1,6 +1,6 @@
-"""Writes a log: a folder with one MCAP file and the ``metadata.yaml`` that makes it a bag of rosbag2 (Jazzy).
+"""Writes a log: a folder of MCAP files and the ``metadata.yaml`` that makes it a bag of rosbag2 (Jazzy).
 
-The file has these parts:
+Each file has these parts:
 
 - The profile is ``ros2``.
 - Each type has a schema with its full definition (`definitions`), so a reader does not need our packages.
@@ -9,10 +9,13 @@ The file has these parts:
   costs only what came since the last flush.
 - A metadata record ``contact_dynamics`` at the head says how the run was made. rosbag2's own is at the end.
 
+`limits.LogLimits` says when a file is finished and another one begins, and which files are kept. The index of
+a file grows with each chunk and is freed with its file.
+
 The writer is not thread-safe. `recorder.Recorder` owns one on its own thread. Messages are bytes as a
 subscription with ``raw=True`` gives them. The result of ``rclpy.serialization.serialize_message`` ends in
-random bytes and is not for logs. Writes survive the death of the process, but not that of the machine, since
-there is no ``fsync``.
+random bytes and is not for logs. What was flushed survives the death of the process. What was synchronised
+survives that of the machine too.
 """
 
 from __future__ import annotations
@@ -24,57 +27,67 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from mcap.writer import CompressionType, Writer
-
+from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.recording.append_file import AppendFile
+from contact_dynamics.recording.bag_file import BagFile
 from contact_dynamics.recording.bag_metadata import (
     CHECKSUM_KEY,
     METADATA_FILE,
-    RUN_RECORD,
     BagSummary,
+    FileSummary,
     TopicSummary,
     metadata_file_text,
     metadata_lines,
-    sealed_run,
 )
 from contact_dynamics.recording.cdr_stamp import event_stamp_ns, leading_stamp_ns
 from contact_dynamics.recording.definitions import TypeDefinition, find_definition
 from contact_dynamics.recording.errors import LogExistsError, LogFailedError
+from contact_dynamics.recording.limits import UNLIMITED, LogLimits
 from contact_dynamics.recording.qos import OfferedQos, qos_lines
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Mapping, Sequence
     from types import TracebackType
 
     from typing_extensions import Self
 
-CHUNK_BYTES: Final = 256 * 1024
-
 _LATEST_NS: Final = 2**63 - 1  # rosbag2 keeps times as int64
 _SHORTEST_MESSAGE: Final = 5  # bytes: encapsulation and one of content, which even an empty message has
+_DELETED_KEY: Final = "deleted_files"  # in metadata.yaml: how many files the limit has cost
 _METADATA_EVERY_S: Final = 5.0  # how old the counts of metadata.yaml may grow while writing
 
 
-@dataclass(slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class _Topic:
-    channel_id: int
     definition: TypeDefinition
     qos: tuple[str, ...]
-    count: int = 0  # messages given
-    safe_count: int = 0  # of which in the file
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Finished:
+    summary: FileSummary
+    size: int
 
 
 class BagWriter:
     """A log that is being written, as a context manager. Methods raise `OSError` if the disk refuses."""
 
-    def __init__(self, folder: str | Path, *, run: Mapping[str, str] | None = None) -> None:
+    def __init__(
+        self,
+        folder: str | Path,
+        *,
+        run: Mapping[str, str] | None = None,
+        limits: LogLimits = UNLIMITED,
+        on_deleted: Callable[[str], object] | None = None,
+    ) -> None:
         """Create ``folder`` and in it ``<folder>_0.mcap``.
 
         Args:
             folder: the folder of the log. Parents are made. If it exists, `LogExistsError` is raised.
             run: how the run was made (parameters, configuration), kept in the log beside the package's
                 version.
+            limits: when a file is finished, and which files are kept.
+            on_deleted: a function that is told, in words, each time that the oldest file was deleted.
         """
         self._run = {"version": _package_version(), **_checked_run(run or {})}
         self.folder = Path(folder)
@@ -82,24 +95,18 @@ class BagWriter:
             self.folder.mkdir(parents=True)
         except FileExistsError as error:
             raise LogExistsError(f"{self.folder} exists; a log is never overwritten") from error
-        self.path = self.folder / f"{self.folder.name}_0.mcap"
+        self._limits = limits
+        self._on_deleted = on_deleted
         self._topics: dict[str, _Topic] = {}
-        self._schemas: dict[str, int] = {}
-        self._start_ns, self._end_ns = _LATEST_NS, 0
-        self._opened_ns = time.time_ns()
-        self._failure: str | None = None
+        self._finished: list[_Finished] = []
+        self._deleted = 0  # files
+        self._earlier_count = 0  # messages of the files before this one
+        self._failure: str | None = None  # beside that of the file
         self._closed = False
         self._metadata_due_s = 0.0
-        self._file = AppendFile(self.path)
-        self._safe_size = 0
-        self._writer: Any = Writer(  # Any: the library is typed in part only
-            self._file,  # type: ignore[arg-type]  # has what the library calls: write, tell, flush
-            chunk_size=CHUNK_BYTES,
-            compression=CompressionType.ZSTD,
-            enable_data_crcs=True,
-        )
+        self._file = self._new_file(0)
         try:
-            self._begin()
+            self._write_metadata_file()
         except OSError:
             self._file.close()
             raise
@@ -115,9 +122,14 @@ class BagWriter:
         self.close()
 
     @property
+    def path(self) -> Path:
+        """The file that is being written."""
+        return self._file.path
+
+    @property
     def safe_count(self) -> int:
         """Number of messages that a death of this process can no longer take."""
-        return sum(topic.safe_count for topic in self._topics.values())
+        return self._earlier_count + sum(self._file.summary.counts.values())
 
     def add_topic(self, name: str, type_name: str, qos: Any = None) -> None:
         """Declare a topic before its first message.
@@ -137,20 +149,8 @@ class BagWriter:
             raise InvalidFieldError("topic", name, "an absolute name that is not declared yet")
         definition = find_definition(type_name)
         qos_yaml = tuple(qos_lines(OfferedQos() if qos is None else qos))
-        with self._cut_back_on_failure():
-            if type_name not in self._schemas:
-                text = definition.text.encode()
-                self._schemas[type_name] = self._writer.register_schema(type_name, "ros2msg", text)
-            channel = self._writer.register_channel(
-                topic=name,
-                message_encoding="cdr",
-                schema_id=self._schemas[type_name],
-                metadata={
-                    "offered_qos_profiles": "\n".join(qos_yaml),
-                    "topic_type_hash": definition.type_hash,
-                },
-            )
-        self._topics[name] = _Topic(channel_id=channel, definition=definition, qos=qos_yaml)
+        self._file.add_topic(name, definition, qos_yaml)
+        self._topics[name] = _Topic(definition=definition, qos=qos_yaml)
         self._metadata_due_s = 0.0
 
     def write(self, topic: str, data: bytes, *, log_time_ns: int, publish_time_ns: int | None = None) -> None:
@@ -179,21 +179,21 @@ class BagWriter:
             publish_time = _stamp_within(declared.definition, data, otherwise_ns=log_time)
         else:
             publish_time = _checked_time("publish_time_ns", publish_time_ns)
-        with self._cut_back_on_failure():
-            self._writer.add_message(
-                channel_id=declared.channel_id, log_time=log_time, data=data, publish_time=publish_time
-            )
-        declared.count += 1
-        self._start_ns, self._end_ns = min(self._start_ns, log_time), max(self._end_ns, log_time)
+        if self._is_full(log_time):
+            self._next_file()
+        self._file.write(topic, data, log_time_ns=log_time, publish_time_ns=publish_time)
 
     def flush(self) -> None:
         """Bring all messages so far into the file, where a death of this process cannot take them."""
         self._check_open()
-        with self._cut_back_on_failure():
-            self._writer.flush()
-            self._mark_safe()
-            if time.monotonic() >= self._metadata_due_s:
-                self._write_metadata_file()
+        self._file.flush()
+        if time.monotonic() >= self._metadata_due_s:
+            self._write_metadata_file()
+
+    def sync(self) -> None:
+        """Wait until the disk has all that was flushed, which then survives the death of the machine."""
+        self._check_open()
+        self._file.sync()
 
     def close(self) -> None:
         """Finish the file and ``metadata.yaml``, or only the latter after a failed write. Twice is fine."""
@@ -201,66 +201,100 @@ class BagWriter:
             return
         self._closed = True
         try:
-            if self._failure is None:
-                with self._cut_back_on_failure():
-                    self._finish()
+            if self._failure is None and self._file.failure is None:
+                self._finish_file()
+                self._write_metadata_file()
             else:
                 with contextlib.suppress(OSError):
                     self._write_metadata_file()
         finally:
             self._file.close()
 
-    def _begin(self) -> None:
-        self._writer.start(profile="ros2", library=f"contact_dynamics {self._run['version']}")
-        self._writer.add_metadata(RUN_RECORD, sealed_run(self._run))
-        self._safe_size = self._file.tell()
-        self._write_metadata_file()
-
-    def _finish(self) -> None:
-        self._writer.flush()
-        self._mark_safe()
-        self._writer.add_metadata(
-            "rosbag2", {"serialized_metadata": "\n".join(metadata_lines(self._summary()))}
+    def _new_file(self, number: int) -> BagFile:
+        return BagFile(
+            self.folder / f"{self.folder.name}_{number}.mcap",
+            run=self._run,
+            compression=self._limits.compression,
+            opened_ns=time.time_ns(),
         )
-        self._writer.finish()
-        self._write_metadata_file()
 
-    def _mark_safe(self) -> None:
-        self._safe_size = self._file.tell()
-        for topic in self._topics.values():
-            topic.safe_count = topic.count
+    def _finish_file(self) -> None:
+        self._file.flush()
+        self._file.finish("\n".join(metadata_lines(self._summary([self._file.summary]))))
 
-    @contextlib.contextmanager
-    def _cut_back_on_failure(self) -> Iterator[None]:
-        """On any failure, leave the file as it was after the last flush, when it was whole and readable."""
+    def _is_full(self, log_time_ns: int) -> bool:
+        """Tell whether the file has reached its limit, before a message of some time."""
+        begun_ns = self._file.start_ns
+        if begun_ns is None:
+            return False
+        limits = self._limits
+        if limits.file_bytes is not None and self._file.size >= limits.file_bytes:
+            return True
+        span = limits.file_seconds
+        return span is not None and log_time_ns - begun_ns >= span * NS_PER_S
+
+    def _next_file(self) -> None:
+        """Finish the file, begin another one, and delete the oldest ones where there is a limit."""
+        self._finish_file()
+        file = self._begun_file(self._deleted + len(self._finished) + 1)
+        self._finished.append(_Finished(summary=self._file.summary, size=self._file.size))
+        self._earlier_count += sum(self._file.summary.counts.values())
+        self._file.close()
+        self._file = file
+        self._delete_oldest()
+
+    def _begun_file(self, number: int) -> BagFile:
+        """Return another file with all topics; where the disk refuses, nothing of it is left."""
         try:
-            yield
-        except Exception as error:
-            self._failure = f"an earlier write failed: {error}"
-            with contextlib.suppress(OSError):
-                self._file.cut_back(self._safe_size)
+            file = self._new_file(number)
+            try:
+                for name, topic in self._topics.items():
+                    file.add_topic(name, topic.definition, topic.qos)
+                file.flush()
+            except OSError:
+                file.close()
+                file.path.unlink(missing_ok=True)
+                raise
+        except OSError as error:
+            self._failure = f"the next file cannot be begun: {error}"
             raise
+        return file
+
+    def _delete_oldest(self) -> None:
+        """Delete the files that the limit has no room for beside the one that begins."""
+        limits, oldest = self._limits, list[_Finished]()
+        if limits.kept_bytes is not None and limits.file_bytes is not None:
+            room = limits.kept_bytes - limits.file_bytes
+            while self._finished and sum(file.size for file in self._finished) > room:
+                oldest.append(self._finished.pop(0))
+        self._deleted += len(oldest)
+        self._write_metadata_file()  # first, so that it never names a file that is gone
+        for file in oldest:
+            (self.folder / file.summary.name).unlink(missing_ok=True)
+            if self._on_deleted is not None:
+                self._on_deleted(
+                    f"the log's oldest file {file.summary.name} is deleted: "
+                    f"{limits.kept_bytes} bytes are kept, as configured"
+                )
 
     def _check_open(self) -> None:
-        if self._closed or self._failure is not None:
-            raise LogFailedError(f"{self.path}: {self._failure or 'the log is closed'}")
+        failure = self._failure or self._file.failure
+        if self._closed or failure is not None:
+            raise LogFailedError(f"{self.path}: {failure or 'the log is closed'}")
 
-    def _summary(self) -> BagSummary:
-        # Before the first message the start is when the log was opened, not the end of time as rosbag2 has
-        # it: should the process be killed, `ros2 bag play` starts its clock there.
-        empty = self._start_ns > self._end_ns
+    def _summary(self, files: Sequence[FileSummary]) -> BagSummary:
+        deleted = {_DELETED_KEY: str(self._deleted)} if self._deleted else {}
         return BagSummary(
-            file_name=self.path.name,
-            start_ns=self._opened_ns if empty else self._start_ns,
-            end_ns=self._opened_ns if empty else self._end_ns,
+            files=files,
             topics=[_topic_summary(name, topic) for name, topic in self._topics.items()],
-            custom_data=self._run,
+            custom_data={**self._run, **deleted},
         )
 
     def _write_metadata_file(self) -> None:
         part = self.folder / f".{METADATA_FILE}.part"
         try:
-            part.write_text(metadata_file_text(self._summary()), encoding="utf-8")
+            files = [*(file.summary for file in self._finished), self._file.summary]
+            part.write_text(metadata_file_text(self._summary(files)), encoding="utf-8")
             part.replace(self.folder / METADATA_FILE)
         except OSError:
             part.unlink(missing_ok=True)
@@ -277,7 +311,6 @@ def _topic_summary(name: str, topic: _Topic) -> TopicSummary:
         # event, written out as a message, it cannot; the true hash stands in the channel.
         type_hash="" if definition.is_service_event else definition.type_hash,
         qos=topic.qos,
-        message_count=topic.safe_count,
     )
 
 

@@ -1,8 +1,11 @@
 """A log written beside a running server. Handing over a message takes microseconds and never raises.
 
 Every 100 ms (sooner above 1 MiB) a thread takes the messages that wait, writes and flushes them. So a kill of
-the process costs at most that much. The queue has a limit in bytes. If the disk stalls, messages wait until
-there are `MAX_WAITING_BYTES`. Newer ones are then dropped and counted, to spare the server's memory.
+the process costs at most that much. Every second it waits until the disk itself has them, so a loss of power
+costs little more. `Recorder.settle` returns when that is done for all that was handed over before.
+
+The queue has a limit in bytes. If the disk stalls, messages wait until there are `MAX_WAITING_BYTES`. Newer
+ones are then dropped and counted, to spare the server's memory.
 
 If a write fails (a full disk), the log ends where it was last whole, and messages from then on are counted as
 lost. ``on_problem`` is called once with the first problem, and `Recorder.status` can be read at any time.
@@ -13,6 +16,7 @@ from __future__ import annotations
 import contextlib
 import logging
 import threading
+import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -27,6 +31,7 @@ if TYPE_CHECKING:
     from contact_dynamics.recording.bag_writer import BagWriter
 
 FLUSH_EVERY_S: Final = 0.1
+SYNC_EVERY_S: Final = 1.0
 MAX_WAITING_BYTES: Final = 64 * 1024 * 1024  # a minute of Odometry at 1 kHz
 
 _ITEM_BYTES: Final = 200  # what a message waiting costs beside its data
@@ -92,6 +97,9 @@ class Recorder:
         self._dead = False
         self._closing = False
         self._wake = threading.Event()
+        self._settled = threading.Condition(self._lock)
+        self._asked_to_settle = False
+        self._on_disk = 0  # of the messages given, as many are on the disk itself, or lost
         self._thread = threading.Thread(target=self._run, name="contact_dynamics log", daemon=True)
         self._thread.start()
 
@@ -140,6 +148,19 @@ class Recorder:
                 f"the disk does not keep up: {self._max_waiting_bytes} bytes wait, newer messages are dropped"
             )
 
+    def settle(self, *, timeout_s: float = 10.0) -> bool:
+        """Wait until the disk itself has all messages handed over so far; return whether it has them.
+
+        It has not where the log has ended, or where it hangs for longer than ``timeout_s``.
+        """
+        with self._lock:
+            given = self._given
+            self._asked_to_settle = True
+        self._wake.set()
+        with self._settled:
+            self._settled.wait_for(lambda: self._dead or self._on_disk >= given, timeout_s)
+            return not self._dead and self._on_disk >= given
+
     def close(self, *, timeout_s: float = 10.0) -> RecorderStatus:
         """Write all waiting messages, finish the file, and return the status. Later messages count as lost.
 
@@ -155,17 +176,30 @@ class Recorder:
     def _run(self) -> None:
         try:
             closing = False
+            synced_s = time.monotonic()
             while not closing:
                 self._wake.wait(FLUSH_EVERY_S)
                 self._wake.clear()
                 with self._lock:
                     closing = self._closing  # once it is set, nothing is added behind these items
                     items, self._items = self._items, []
+                    given = self._given
+                    must_sync, self._asked_to_settle = self._asked_to_settle, False
                 if items:
                     self._write(items)
+                if given > self._on_disk and (must_sync or time.monotonic() >= synced_s + SYNC_EVERY_S):
+                    self._writer.sync()
+                    synced_s = time.monotonic()
+                    self._tell_settled(given)
             self._writer.close()
+            self._tell_settled(given)
         except Exception as error:  # noqa: BLE001  whatever it is, it ends the log and not the server
             self._die(error)
+
+    def _tell_settled(self, given: int) -> None:
+        with self._settled:
+            self._on_disk = given
+            self._settled.notify_all()
 
     def _write(self, items: list[_Item]) -> None:
         refused = sum(not self._accepts(item) for item in items)
@@ -192,6 +226,7 @@ class Recorder:
             self._waiting_bytes = 0
             self._written = self._writer.safe_count
             self._lost = self._given - self._written
+            self._settled.notify_all()
         self._report(f"the log {self.folder} ends here: {error}")
         with contextlib.suppress(Exception):
             self._writer.close()

@@ -19,6 +19,7 @@ from rclpy.parameter import Parameter
 from contact_dynamics.nodes import server, visualizer
 from contact_dynamics.nodes.arguments import SERVER_PARAMETERS, VISUALIZER_PARAMETERS
 from contact_dynamics.nodes.log import Log
+from contact_dynamics.recording.limits import UNLIMITED
 from running_server import DOMAIN_ID, PATIENCE_S, ROOT, environment, process, wait_for
 
 CONFIG = ROOT / "config"
@@ -147,7 +148,7 @@ def test_every_parameter_is_described(declared: dict[str, dict[str, Any]]) -> No
     for name, (default, descriptor) in {**declared["server"], **declared["visualizer"]}.items():
         assert re.fullmatch(r"[A-Z].{8,}", descriptor.description), name
         if isinstance(default, float) or default is Parameter.Type.DOUBLE:
-            assert re.search(r"\b(m|s|kg|Hz|m/s|[Cc]oefficient)\b", descriptor.description), name
+            assert re.search(r"\b(m|s|kg|Hz|m/s|MB|[Cc]oefficient)\b", descriptor.description), name
 
 
 Change = Callable[[dict[str, Any]], object]
@@ -235,7 +236,7 @@ WRONG = [
 
 def test_the_log_may_go_below_the_home_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("HOME", str(tmp_path))
-    log = Log("~/logs", run={}, on_problem=pytest.fail)
+    log = Log("~/logs", run={}, limits=UNLIMITED, on_problem=pytest.fail, on_deleted=pytest.fail)
     assert log.folder is not None
     assert log.folder.parent == tmp_path / "logs"
     log.start()

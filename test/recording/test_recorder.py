@@ -46,6 +46,9 @@ class StuckWriter:
             raise self.error
         self.safe_count = self.taken
 
+    def sync(self) -> None:
+        pass
+
     def close(self) -> None:
         self.closed = True
 

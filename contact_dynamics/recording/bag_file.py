@@ -1,0 +1,160 @@
+"""One MCAP file of a log that is being written. `bag_writer.BagWriter` writes a folder of them."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import TYPE_CHECKING, Any, Final
+
+from mcap.writer import CompressionType, Writer
+
+from contact_dynamics.recording.append_file import AppendFile
+from contact_dynamics.recording.bag_metadata import RUN_RECORD, FileSummary, sealed_run
+from contact_dynamics.recording.limits import Compression
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+
+    from contact_dynamics.recording.definitions import TypeDefinition
+
+CHUNK_BYTES: Final = 256 * 1024
+
+_COMPRESSIONS: Final = {
+    Compression.NONE: CompressionType.NONE,
+    Compression.LZ4: CompressionType.LZ4,
+    Compression.ZSTD: CompressionType.ZSTD,
+}
+
+
+class BagFile:
+    """A file that grows by chunks, each of which is whole. Methods raise `OSError` if the disk refuses.
+
+    After the first failure the file is as it was after the last `flush`, when it was whole and readable, and
+    `failure` says why.
+    """
+
+    def __init__(
+        self, path: Path, *, run: Mapping[str, str], compression: Compression, opened_ns: int
+    ) -> None:
+        """Create the file, and begin it with the record of the run.
+
+        Args:
+            path: where. `FileExistsError` is raised if it is there.
+            run: how the run was made, with the package's version.
+            compression: how chunks are packed.
+            opened_ns: now, ns since the epoch: what the file spans before its first message.
+        """
+        self.path = path
+        self.failure: str | None = None
+        self.start_ns: int | None = None
+        self._end_ns = opened_ns
+        self._opened_ns = opened_ns
+        self._counts: dict[str, int] = {}  # messages given, by topic
+        self._safe_counts: dict[str, int] = {}  # of which in the file
+        self._channels: dict[str, int] = {}
+        self._schemas: dict[str, int] = {}
+        self._file = AppendFile(path)
+        self._safe_size = 0
+        self._writer: Any = Writer(  # Any: the library is typed in part only
+            self._file,  # type: ignore[arg-type]  # has what the library calls: write, tell, flush
+            chunk_size=CHUNK_BYTES,
+            compression=_COMPRESSIONS[compression],
+            enable_data_crcs=True,
+        )
+        try:
+            self._writer.start(profile="ros2", library=f"contact_dynamics {run['version']}")
+            self._writer.add_metadata(RUN_RECORD, sealed_run(run))
+            self._safe_size = self._file.tell()
+        except OSError:
+            self._file.close()
+            path.unlink(missing_ok=True)
+            raise
+
+    @property
+    def size(self) -> int:
+        """The size of the file by now, bytes. What waits for its chunk to be full does not count."""
+        return self._file.tell()
+
+    @property
+    def summary(self) -> FileSummary:
+        """What a death of this process can no longer take."""
+        return FileSummary(
+            name=self.path.name,
+            # Before the first message the start is when the file was opened, not the end of time as rosbag2
+            # has it: should the process be killed, `ros2 bag play` starts its clock there.
+            start_ns=self._opened_ns if self.start_ns is None else self.start_ns,
+            end_ns=self._end_ns,
+            counts=dict(self._safe_counts),
+        )
+
+    def add_topic(self, name: str, definition: TypeDefinition, qos: tuple[str, ...]) -> None:
+        """Write what defines a topic."""
+        with self._cut_back_on_failure():
+            type_name = definition.type_name
+            if type_name not in self._schemas:
+                text = definition.text.encode()
+                self._schemas[type_name] = self._writer.register_schema(type_name, "ros2msg", text)
+            self._channels[name] = self._writer.register_channel(
+                topic=name,
+                message_encoding="cdr",
+                schema_id=self._schemas[type_name],
+                metadata={
+                    "offered_qos_profiles": "\n".join(qos),
+                    "topic_type_hash": definition.type_hash,
+                },
+            )
+        self._counts[name] = self._safe_counts[name] = 0
+
+    def write(self, topic: str, data: bytes, *, log_time_ns: int, publish_time_ns: int) -> None:
+        """Append a message of a topic that was added."""
+        with self._cut_back_on_failure():
+            self._writer.add_message(
+                channel_id=self._channels[topic],
+                log_time=log_time_ns,
+                data=data,
+                publish_time=publish_time_ns,
+            )
+        self._counts[topic] += 1
+        if self.start_ns is None:
+            self.start_ns = self._end_ns = log_time_ns
+        else:
+            self.start_ns, self._end_ns = min(self.start_ns, log_time_ns), max(self._end_ns, log_time_ns)
+
+    def flush(self) -> None:
+        """Bring all messages so far into the file, where a death of this process cannot take them."""
+        with self._cut_back_on_failure():
+            self._writer.flush()
+            self._mark_safe()
+
+    def sync(self) -> None:
+        """Wait until the disk has all that was flushed, which then survives the death of the machine."""
+        with self._cut_back_on_failure():
+            self._file.sync()
+
+    def finish(self, metadata: str) -> None:
+        """Write rosbag2's own record, the index and the end."""
+        with self._cut_back_on_failure():
+            self._writer.flush()
+            self._mark_safe()
+            self._writer.add_metadata("rosbag2", {"serialized_metadata": metadata})
+            self._writer.finish()
+            self._safe_size = self._file.tell()
+            self._file.sync()
+
+    def close(self) -> None:
+        """Close the file as it is."""
+        self._file.close()
+
+    def _mark_safe(self) -> None:
+        self._safe_size = self._file.tell()
+        self._safe_counts = dict(self._counts)
+
+    @contextlib.contextmanager
+    def _cut_back_on_failure(self) -> Iterator[None]:
+        try:
+            yield
+        except Exception as error:
+            self.failure = f"an earlier write failed: {error}"
+            with contextlib.suppress(OSError):
+                self._file.cut_back(self._safe_size)
+            raise

@@ -1,0 +1,62 @@
+"""How a log is cut into files, packed, and kept: what bounds a log that is written for weeks."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+from typing import Final
+
+from contact_dynamics.errors import InvalidFieldError
+
+_LEAST_FILE_BYTES: Final = 64 * 1024  # less than a chunk would make a file of every chunk
+_LEAST_FILE_SECONDS: Final = 1.0
+_FILES_KEPT: Final = 2  # a limit on all files has room for as many
+
+
+class Compression(enum.Enum):
+    """How the chunks of a log are packed, by MCAP's names."""
+
+    NONE = "none"
+    LZ4 = "lz4"
+    ZSTD = "zstd"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LogLimits:
+    """What bounds the files of a log. The defaults bound nothing.
+
+    Attributes:
+        compression: How chunks are packed.
+        file_bytes: A file that has this size is finished, and another one begins. None: no limit.
+        file_seconds: s. The same for the time that a file spans. None: no limit.
+        kept_bytes: The oldest files are deleted, so that all files together stay below this size. It has room
+            for two files of ``file_bytes`` at least. None: no file is deleted.
+
+    Raises:
+        InvalidFieldError: a limit is too small, or ``kept_bytes`` is given without ``file_bytes``.
+    """
+
+    compression: Compression = Compression.ZSTD
+    file_bytes: int | None = None
+    file_seconds: float | None = None
+    kept_bytes: int | None = None
+
+    def __post_init__(self) -> None:
+        """Check the limits."""
+        if self.file_bytes is not None and self.file_bytes < _LEAST_FILE_BYTES:
+            raise InvalidFieldError("file_bytes", self.file_bytes, f"at least {_LEAST_FILE_BYTES}, or None")
+        if self.file_seconds is not None and not self.file_seconds >= _LEAST_FILE_SECONDS:
+            raise InvalidFieldError(
+                "file_seconds", self.file_seconds, f"at least {_LEAST_FILE_SECONDS}, or None"
+            )
+        if self.kept_bytes is None:
+            return
+        if self.file_bytes is None:
+            raise InvalidFieldError("kept_bytes", self.kept_bytes, "None, unless file_bytes is given too")
+        if self.kept_bytes < _FILES_KEPT * self.file_bytes:
+            allowed = f"at least {_FILES_KEPT} times file_bytes, which is {self.file_bytes}"
+            raise InvalidFieldError("kept_bytes", self.kept_bytes, allowed)
+
+
+UNLIMITED: Final = LogLimits()
+"""One file that grows as long as the log is written."""
