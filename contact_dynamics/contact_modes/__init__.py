@@ -36,7 +36,14 @@ from contact_dynamics.contact_modes.plane_or_space import (
     statics,
     wrench_sets,
 )
-from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict, Refusal, RefusedMode
+from contact_dynamics.contact_modes.result import (
+    BodyStatics,
+    Certainty,
+    ModeVerdict,
+    Refusal,
+    RefusedMode,
+    VerdictsWithin,
+)
 from contact_dynamics.contact_modes.spatial.kinematic import spatial_kinematic_modes
 from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
 from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
@@ -61,6 +68,7 @@ __all__ = [
     "SpatialModeAnswer",
     "SpatialModeMargin",
     "SpatialWrenchSet",
+    "VerdictsWithin",
     "WrenchHalfSpace",
     "contact_modes",
     "mode_margins",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from contact_dynamics.contact.uncertainty import ContactUncertainty
 from contact_dynamics.records import NamedInt, Record
 
 if TYPE_CHECKING:
@@ -61,6 +62,25 @@ class RefusedMode(Record):
     refusal: Refusal
     contact: int
     amount: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class VerdictsWithin(Record):
+    """The verdicts on contacts that are known only to some uncertainty.
+
+    Attributes:
+        uncertainty: The box in which the true contacts are.
+        verdicts: The verdicts that occur in the box, the one on the problem itself first. Each of the others
+            was found at some contacts in the box.
+        certain: Whether it is proven that no other verdict occurs in the box. If it is not, the verdicts are
+            those that samples have shown.
+        samples: How many contact sets in the box were tried.
+    """
+
+    uncertainty: ContactUncertainty
+    verdicts: tuple[ModeVerdict, ...]
+    certain: bool
+    samples: int
 
 
 def verdict_on(modes: Sized) -> ModeVerdict:
