@@ -9,7 +9,7 @@ the plane the path is known, and the three ends are closed forms in the middle o
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
 
 import numpy as np
 
@@ -37,6 +37,15 @@ class RestitutionLaw(NamedInt):
     with friction."""
     ENERGETIC = 2
     """e squared is the work that the normal impulse returns over the work that it took (Stronge 1990)."""
+
+
+def refuse_unknown(law: NoReturn) -> NoReturn:
+    """Raise `NotImplementedError` for a law that a caller has no branch for. Mypy finds such a caller first.
+
+    Where every member of `RestitutionLaw` has its branch, nothing is left for the argument to be.
+    """
+    message = f"restitution_law: found {law}, which is not written down here"
+    raise NotImplementedError(message)
 
 
 class RestitutionRule:

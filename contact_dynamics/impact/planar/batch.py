@@ -14,7 +14,7 @@ import numpy as np
 
 from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact.energy import ManyEnergies
-from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
+from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw, refuse_unknown
 from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_choice, check_not_negative
@@ -224,19 +224,19 @@ def _paths(  # noqa: PLR0917 - the columns of one table
     p_c = np.where(early, p_stop - v_stop / rate_2, -v_n / rate_1)
     rate = np.where(early, rate_2, rate_1)
 
-    if law == RestitutionLaw.POISSON:
+    if law is RestitutionLaw.POISSON:
         gain = e * p_c
         v_end = rate * gain
         p_end = p_c + gain
         late = ~early & (p_end > p_stop)
         v_end = np.where(late, v_stop + rate_2 * (p_end - p_stop), v_end)
-    elif law == RestitutionLaw.NEWTON:
+    elif law is RestitutionLaw.NEWTON:
         v_end = e * -v_n
         gain = v_end / rate
         p_end = p_c + gain
         late = ~early & (p_end > p_stop)
         p_end = np.where(late, p_stop + (v_end - v_stop) / rate_2, p_end)
-    else:
+    elif law is RestitutionLaw.ENERGETIC:
         taken = np.where(early, -(v_n + v_stop) * p_stop - v_stop * (p_c - p_stop), -v_n * p_c)
         gain = e * np.sqrt(taken / rate)
         v_end = rate * gain
@@ -246,6 +246,8 @@ def _paths(  # noqa: PLR0917 - the columns of one table
         after = rest / (v_stop + np.sqrt(v_stop * v_stop + rate_2 * rest))
         p_end = np.where(late, p_stop + after, p_end)
         v_end = np.where(late, v_stop + rate_2 * after, v_end)
+    else:
+        refuse_unknown(law)
 
     s_mu = s * mu
     stops = early | late

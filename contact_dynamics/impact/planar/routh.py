@@ -27,11 +27,15 @@ from __future__ import annotations
 import math
 from typing import Final, NamedTuple
 
-from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
+from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw, refuse_unknown
 
 LARGEST_FRICTION: Final = 1e100
 """A larger coefficient of friction counts as this one. No path differs in any digit, and mu a cannot
 overflow."""
+
+_POISSON: Final = RestitutionLaw.POISSON  # an enumeration finds a member in 30 ns, a module in 2
+_NEWTON: Final = RestitutionLaw.NEWTON
+_ENERGETIC: Final = RestitutionLaw.ENERGETIC
 
 
 class InverseInertia(NamedTuple):
@@ -143,30 +147,34 @@ def impulse_path(  # noqa: C901, PLR0912, PLR0915, PLR0917 - one computation; ea
     # These are the closed forms of the laws for a path that does not bend during restitution (see
     # `impact.law`).
     taken = 0.0
-    if law == RestitutionLaw.POISSON:
+    if law is _POISSON:
         gain = restitution * p_c
         v_end = rate * gain
-    elif law == RestitutionLaw.NEWTON:
+    elif law is _NEWTON:
         v_end = restitution * -v_n
         gain = v_end / rate
-    else:
+    elif law is _ENERGETIC:
         # This is twice the work that compression took, which is the area between v_n over p and zero.
         taken = -(v_n + v_stop) * p_stop - v_stop * (p_c - p_stop) if stops_early else -v_n * p_c
         gain = restitution * math.sqrt(taken / rate)
         v_end = rate * gain
+    else:
+        refuse_unknown(law)
     p_end = p_c + gain
 
     stops_late = not stops_early and p_end > p_stop
     if stops_late:
-        if law == RestitutionLaw.POISSON:
+        if law is _POISSON:
             v_end = v_stop + rate_2 * (p_end - p_stop)
-        elif law == RestitutionLaw.NEWTON:
+        elif law is _NEWTON:
             p_end = p_stop + (v_end - v_stop) / rate_2
-        else:
+        elif law is _ENERGETIC:
             rest = restitution * restitution * taken - v_stop * (p_stop - p_c)
             after = rest / (v_stop + math.sqrt(v_stop * v_stop + rate_2 * rest))
             p_end = p_stop + after
             v_end = v_stop + rate_2 * after
+        else:
+            refuse_unknown(law)
 
     # The tangential impulse follows the cone's edge, then the sticking line or the way back.
     s_mu = s * mu
