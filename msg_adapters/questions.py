@@ -12,16 +12,17 @@ from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.impact.in_time.sequence import MOST_STRIKES, STRIKE_WINDOW
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions.contact_modes import ContactModeQuestion
+from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.sample_times import AtRate, AtStamps, AtTimes, UntilContact, UntilPlane
 from contact_dynamics.questions.subject import NEWEST, PublishedState, changed_body
 from contact_dynamics.questions.tumbling import TumblingQuestion
-from contact_dynamics.questions.which_impact import ImpactQuestion, InTime
 from contact_dynamics.validation import check_not_negative
 from contact_dynamics.world import Body
 from msg_adapters.body_state import known_state_from_msg
@@ -231,7 +232,7 @@ def _body(name: str, inertia: Inertia, world: World) -> Body:
         raise TooLargeError("body_name", f"{len(name)} characters", f"at most {_LONGEST_NAME}")
     if not name and inertia.m == 0.0:
         raise InvalidFieldError("body_name", name, "the name of a configured body, or an inertia of mass > 0")
-    known = world.body(name) if name else None
+    known = world.body(name) if name else None  # here, for an explicit state is of the frame of its body
     if known is not None and inertia.m == 0.0:
         return known
     mass_properties, p_FB_F = mass_properties_from_msg(inertia)
@@ -349,9 +350,9 @@ def _several_contacts_law(request: PredictImpact.Request) -> SeveralContactsLaw 
     value = request.several_contacts_law
     if value == request.SEQUENTIAL_IN_TIME:
         return InTime(
-            strike_window=request.strike_window,
-            most_strikes=request.most_strikes,
-            hold_step=request.hold_step,
+            strike_window=request.strike_window or STRIKE_WINDOW,
+            most_strikes=request.most_strikes or MOST_STRIKES,
+            hold_step=request.hold_step or None,
         )
     try:
         return SeveralContactsLaw(value)

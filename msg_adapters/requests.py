@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.motion.forces import WrenchAxes
+from contact_dynamics.questions.impact_question import InTime
 from contact_dynamics.questions.sample_times import AtStamps, AtTimes, UntilContact, UntilPlane
 from contact_dynamics.questions.subject import PublishedState
-from contact_dynamics.questions.which_impact import InTime
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.body_state import known_state_to_msg
 from msg_adapters.contacts import contacts_to_msg
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.questions.contact_modes import ContactModeQuestion
+    from contact_dynamics.questions.impact_question import ImpactQuestion
     from contact_dynamics.questions.sample_times import Sampling
     from contact_dynamics.questions.subject import StateSource
     from contact_dynamics.questions.tumbling import TumblingQuestion
-    from contact_dynamics.questions.which_impact import ImpactQuestion
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
 
@@ -84,8 +84,8 @@ def impact_question_to_msg(
     law = question.several_contacts_law
     if isinstance(law, InTime):
         msg.several_contacts_law = msg.SEQUENTIAL_IN_TIME
-        msg.strike_window = _or_zero("strike_window", law.strike_window)
-        msg.most_strikes = law.most_strikes or 0
+        msg.strike_window = law.strike_window
+        msg.most_strikes = law.most_strikes
         msg.hold_step = law.hold_step or 0.0
     else:
         msg.several_contacts_law = int(law)

@@ -524,7 +524,7 @@ def impact_questions(draw: st.DrawFn) -> ImpactQuestion:
     other = draw(some(bodies()))
     other_state = draw(known_states()) if other is not None else NEWEST
     in_time = st.builds(
-        InTime, strike_window=some(positive), most_strikes=some(indices), hold_step=some(positive)
+        InTime, strike_window=positive, most_strikes=st.integers(1, 2**32 - 1), hold_step=some(positive)
     )
     return ImpactQuestion(
         body=draw(bodies()),

@@ -4,18 +4,22 @@ State a `TumblingQuestion`, an `ImpactQuestion` or a `ContactModeQuestion`, and 
 service's request becomes one of these, and its answer becomes the response; a notebook, a test or a log asks
 the same question without ROS.
 
-Each kind has a file with its question, its answer and a function ``answer``: `tumbling` (where will a free
-body be: lectures 24, 25), `impact` (which velocities follow: lecture 27; the question stands in
-`which_impact`), `contact_modes` (which contacts separate, slide or stay: lecture 26). They share `knowledge`
-(the world, defaults, and in a `state_store` what was published), `subject` (which body, in which state),
-`sample_times` (when), `touching` (which contacts), `extent` (how large numbers may be) and `problem` (in a
-plane or in space). Answers tell every impact alike (`resolved_impact`), modes of a plane in world axes
-(`lifted_modes`) and back (`planar_view`), and what follows an inconsistency (`settled_impact`).
+Each kind has a file with its question, its answer and a function ``answer``. `tumbling` says where a free
+body will be (lectures 24, 25). `impact` says which velocities follow (lecture 27); its question is in
+`impact_question`, and `which_impact` finds the contacts that it means. `contact_modes` says which contacts
+separate, slide or stay (lecture 26).
+
+The kinds share these files: `knowledge` (the world, defaults, and in a `state_store` what was published),
+`subject` (which body, in which state), `sample_times` (when), `touching` (which contacts), `extent` (how
+large numbers may be) and `problem` (in a plane or in space). Answers describe every impact in the same way
+(`resolved_impact`). They give modes of a plane in world axes (`lifted_modes`), and `planar_view` leads back.
+`settled_impact` has the impact that follows an inconsistency.
 """
 
 from contact_dynamics.questions.asking import ask
 from contact_dynamics.questions.contact_modes import ContactModeAnswer, ContactModeQuestion
 from contact_dynamics.questions.impact import ImpactAnswer, StruckBody
+from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
 from contact_dynamics.questions.knowledge import Defaults, Knowledge
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.resolved_impact import ResolvedImpact, SequenceStrike
@@ -32,7 +36,6 @@ from contact_dynamics.questions.settled_impact import SettledImpact
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.subject import FitQuality, PublishedState, UncertainState
 from contact_dynamics.questions.tumbling import TumblingAnswer, TumblingQuestion
-from contact_dynamics.questions.which_impact import ImpactQuestion, InTime
 
 __all__ = [
     "AtRate",

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, overload
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.questions import contact_modes, impact, tumbling
 from contact_dynamics.questions.contact_modes import ContactModeQuestion
+from contact_dynamics.questions.impact_question import ImpactQuestion
 from contact_dynamics.questions.tumbling import TumblingQuestion
-from contact_dynamics.questions.which_impact import ImpactQuestion
 
 if TYPE_CHECKING:
     from contact_dynamics.questions.contact_modes import ContactModeAnswer

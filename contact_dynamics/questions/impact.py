@@ -21,7 +21,6 @@ from contact_dynamics.impact import (
     spatial_impact_distribution,
     spatial_pair_impact,
 )
-from contact_dynamics.impact.in_time.sequence import MOST_STRIKES, STRIKE_WINDOW
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.motion.covariance import propagate_covariance
 from contact_dynamics.plane.in_space import planar_in_space
@@ -32,6 +31,7 @@ from contact_dynamics.plane.lifting import (
     with_planar_velocity,
 )
 from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
 from contact_dynamics.questions.knowledge import Knowledge, or_default
 from contact_dynamics.questions.problem import Problem, planar_problem_of
 from contact_dynamics.questions.resolved_impact import (
@@ -46,7 +46,7 @@ from contact_dynamics.questions.resolved_impact import (
     with_orders,
 )
 from contact_dynamics.questions.subject import FitQuality, Subject, covariance_of
-from contact_dynamics.questions.which_impact import ImpactQuestion, InTime, Strike, strike_of
+from contact_dynamics.questions.which_impact import Strike, strike_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.validation import FloatArray
@@ -157,8 +157,6 @@ def answer(question: ImpactQuestion, knowledge: Knowledge | None = None) -> Impa
 
 def _in_time(question: ImpactQuestion, law: InTime, strike: Strike, knowledge: Knowledge) -> ImpactSequence:
     """Return the strikes from a state on; without one raise `SeparatingContactError` or `NoContactError`."""
-    window = or_default(law.strike_window, STRIKE_WINDOW)
-    most_strikes = MOST_STRIKES if law.most_strikes is None else law.most_strikes
     world = knowledge.world
     if question.contacts is not None:
         sequence = impact_sequence_of(
@@ -167,8 +165,8 @@ def _in_time(question: ImpactQuestion, law: InTime, strike: Strike, knowledge: K
             strike.contacts,
             gravity_W=world.gravity_W,
             restitution_law=question.restitution_law,
-            window=window,
-            most_strikes=most_strikes,
+            window=law.strike_window,
+            most_strikes=law.most_strikes,
             distance_tolerance=strike.distance_tolerance,
             velocity_tolerance=strike.velocity_tolerance,
             hold_step=law.hold_step,
@@ -179,23 +177,23 @@ def _in_time(question: ImpactQuestion, law: InTime, strike: Strike, knowledge: K
             strike.state,
             world,
             restitution_law=question.restitution_law,
-            window=window,
-            most_strikes=most_strikes,
+            window=law.strike_window,
+            most_strikes=law.most_strikes,
             distance_tolerance=strike.distance_tolerance,
             velocity_tolerance=strike.velocity_tolerance,
             hold_step=law.hold_step,
         )
     if not sequence.strikes and sequence.end == SequenceEnd.STAYS:
         message = (
-            "contacts: found one that stays and none that strikes (~/predict_contact_mode says what follows; "
-            "a hold_step goes on over it)"
+            "contacts: found one that stays and none that strikes (a question about contact modes says what "
+            "follows; a hold_step goes on over it)"
         )
         raise NoContactError(message)
     if not sequence.strikes:
         raise SeparatingContactError(
             "contacts",
             "none that strikes",
-            f"one that approaches or comes back within the strike_window of {window:g} s",
+            f"one that approaches or comes back within the strike_window of {law.strike_window:g} s",
         )
     return sequence
 

@@ -1,4 +1,4 @@
-"""Which impact a question is about: the bodies, their states just before, the contacts and the laws."""
+"""Which impact a question is about: the bodies, their states just before, and the contacts."""
 
 from __future__ import annotations
 
@@ -6,98 +6,16 @@ from dataclasses import dataclass
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.errors import NoContactError, NotSupportedError
-from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.landing.earliest import next_landing
-from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions.extent import check_contacts, check_extent
-from contact_dynamics.questions.knowledge import Knowledge, check_optional, or_default
+from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
+from contact_dynamics.questions.knowledge import Knowledge, or_default
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.resolved_impact import Before
-from contact_dynamics.questions.subject import NEWEST, StateSource, Subject, subject_of
+from contact_dynamics.questions.subject import Subject, subject_of
 from contact_dynamics.questions.touching import check_has_shape, contacts_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.validation import check_choice
-from contact_dynamics.world import Body
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class InTime(Record):
-    """The law for several contacts by which they strike one after the other, with free flight in between.
-
-    Attributes:
-        strike_window: s, the longest flight after which a strike still belongs to the same landing. None or
-            zero: `STRIKE_WINDOW`.
-        most_strikes: How many strikes to resolve at most. None or zero: `MOST_STRIKES`.
-        hold_step: s. Where a contact stays on its surface, the body goes on in steps of this length until
-            another corner strikes or it leaves. None or zero: the sequence ends there.
-
-    Raises:
-        InvalidFieldError: a number is negative or not finite.
-    """
-
-    strike_window: float | None = None
-    most_strikes: int | None = None
-    hold_step: float | None = None
-
-    def __post_init__(self) -> None:
-        """Check both times."""
-        for name in ("strike_window", "hold_step"):
-            object.__setattr__(self, name, check_optional(name, getattr(self, name)) or None)
-        object.__setattr__(self, "most_strikes", self.most_strikes or None)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ImpactQuestion(Record):
-    """Which velocities does a body have just after an impact?
-
-    Attributes:
-        body: The body, or the name of one of the known world.
-        state: Its state, with a covariance or without, or which published one.
-        other: A second moving body that the first one strikes. None: it strikes the world.
-        other_state: The second body's state.
-        contacts: The contacts, at the state taken. None: the body flies on to its first contact with the
-            known world, and the impact is the one that happens there.
-        horizon: s, >= 0. How far ahead to look for that first contact. None: the default.
-        restitution_law: What the coefficients of restitution mean.
-        several_contacts_law: What happens at several contacts: a law for one instant, or strikes in time.
-        want_orders: Whether to list the outcomes over the admissible orders of several contacts.
-        want_covariance: Whether to carry the state's covariance through flight and impact.
-        problem: In a plane of motion, or in space.
-        plane: The plane of motion of a planar problem. None: the one that fits best.
-        out_of_plane_tolerance: m/s, >= 0. Motion out of the plane up to this counts as planar. None: the
-            default.
-        velocity_tolerance: m/s, >= 0. A slower approach counts as none. None: the default.
-        distance_tolerance: m, >= 0. A body with a smaller gap touches. None: the default.
-
-    Raises:
-        InvalidFieldError: a number is negative or not finite, or a choice is no member of its enumeration.
-    """
-
-    body: Body | str
-    state: StateSource = NEWEST
-    other: Body | str | None = None
-    other_state: StateSource = NEWEST
-    contacts: ContactSet | None = None
-    horizon: float | None = None
-    restitution_law: RestitutionLaw = RestitutionLaw.POISSON
-    several_contacts_law: SeveralContactsLaw | InTime = SeveralContactsLaw.SEQUENTIAL
-    want_orders: bool = False
-    want_covariance: bool = False
-    problem: Problem = Problem.AUTOMATIC
-    plane: PlaneOfMotion | None = None
-    out_of_plane_tolerance: float | None = None
-    velocity_tolerance: float | None = None
-    distance_tolerance: float | None = None
-
-    def __post_init__(self) -> None:
-        """Check the numbers and the choices."""
-        check_choice("problem", self.problem, Problem)
-        check_choice("restitution_law", self.restitution_law, RestitutionLaw)
-        if not isinstance(self.several_contacts_law, InTime):
-            check_choice("several_contacts_law", self.several_contacts_law, SeveralContactsLaw)
-        for name in ("horizon", "out_of_plane_tolerance", "velocity_tolerance", "distance_tolerance"):
-            object.__setattr__(self, name, check_optional(name, getattr(self, name)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -147,7 +65,7 @@ def strike_of(question: ImpactQuestion, knowledge: Knowledge) -> Strike:
             question.contacts, subject, knowledge.world, distance_tolerance=distance_tolerance
         )
     elif other is not None:
-        message = "contact_source: found CONTACTS_FROM_GEOMETRY (0) for two bodies, allowed is 1 (explicit)"
+        message = "contacts: found none for two bodies, allowed is to state them: shapes meet the world alone"
         raise NotSupportedError(message)
     else:
         seconds, state, contacts = _landing(
@@ -176,21 +94,21 @@ def _check_supported(question: ImpactQuestion, *, contact_count: int) -> None:
     is_planar, has_other = question.problem is Problem.PLANAR, question.other is not None
     if has_other and (question.want_orders or is_planar or in_time):
         message = (
-            "other_body_name: found a second body, allowed with it are SPATIAL or AUTOMATIC, SEQUENTIAL (0) "
-            "or SIMULTANEOUS (1), and no want_orders"
+            "other: found a second body, allowed with it are the problem SPATIAL or AUTOMATIC, the laws "
+            "SEQUENTIAL or SIMULTANEOUS, and no want_orders"
         )
         raise NotSupportedError(message)
     if in_time and is_planar:
-        message = "problem: found PLANAR (1), allowed with SEQUENTIAL_IN_TIME is SPATIAL: space has the plane"
+        message = "problem: found PLANAR, allowed for strikes in time is SPATIAL: space contains the plane"
         raise NotSupportedError(message)
     if in_time and question.want_orders:
-        message = "want_orders: found true, allowed with SEQUENTIAL_IN_TIME is false: time is the order"
+        message = "want_orders: found true, allowed for strikes in time is false: time is the order"
         raise NotSupportedError(message)
     one_contact = contact_count == 1 and not is_planar and not in_time
     if question.want_covariance and (has_other or not one_contact):
         message = (
-            "want_covariance: found true, allowed at one contact with the world in space, and not with "
-            "SEQUENTIAL_IN_TIME"
+            "want_covariance: found true, allowed at one contact with the world in space, and not for "
+            "strikes in time"
         )
         raise NotSupportedError(message)
 
@@ -221,6 +139,6 @@ def _landing(
     if not landing.strikes and not in_time:  # in time, another corner may strike while this one rests
         raise NoContactError(
             f"contacts: {name!r} touches {landing.contacts.surfaces[0]!r} and does not approach it by more "
-            f"than {velocity_tolerance:g} m/s (~/predict_contact_mode says what follows)"
+            f"than {velocity_tolerance:g} m/s (a question about contact modes says what follows)"
         )
     return landing.seconds, landing.state, landing.contacts

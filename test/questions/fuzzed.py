@@ -186,8 +186,8 @@ def tumbling_questions(draw: st.DrawFn) -> TumblingQuestion:
 def impact_questions(draw: st.DrawFn) -> ImpactQuestion:
     in_time = st.builds(
         InTime,
-        strike_window=optional_sizes,
-        most_strikes=st.sampled_from([None, 1, 50, 2**32 - 1]),
+        strike_window=sizes,
+        most_strikes=st.sampled_from([1, 50, 2**32 - 1]),
         hold_step=optional_sizes,
     )
     other = draw(st.sampled_from([None, None, None, "ball", "cube"]))

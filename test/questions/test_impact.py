@@ -187,7 +187,7 @@ def test_the_law_of_restitution_is_the_one_asked_for(law: RestitutionLaw) -> Non
         (
             {"several_contacts_law": InTime(), "problem": Problem.PLANAR},
             NotSupportedError,
-            "allowed with SEQUENTIAL_IN_TIME is SPATIAL",
+            "allowed for strikes in time is SPATIAL",
         ),
         ({"want_covariance": True}, InvalidFieldError, r"state\.covariance: found none"),
         (
@@ -224,4 +224,6 @@ def test_numbers_without_sense_are_refused() -> None:
     for name in ("strike_window", "hold_step"):
         with pytest.raises(InvalidFieldError, match=f"{name}: found nan"):
             InTime(**{name: math.nan})  # type: ignore[arg-type]
-    assert InTime(strike_window=0.0, most_strikes=0, hold_step=0.0) == InTime()
+    for name in ("strike_window", "most_strikes", "hold_step"):
+        with pytest.raises(InvalidFieldError, match=f"{name}: found 0"):
+            InTime(**{name: 0})  # type: ignore[arg-type]
