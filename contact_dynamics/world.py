@@ -188,5 +188,5 @@ class World(Record):
             if body.name == name:
                 return body
         known = ", ".join(repr(body.name) for body in self.bodies) or "none"
-        message = f"body_name: found {name!r}, allowed are the configured bodies: {known}"
+        message = f"body_name: found {name!r}, allowed are the known bodies: {known}"
         raise UnknownBodyError(message)

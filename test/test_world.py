@@ -108,7 +108,7 @@ def test_a_subset_keeps_rows_together() -> None:
 def test_an_unknown_body_is_refused_with_those_that_are_known() -> None:
     world = World(bodies=(BOX,))
     assert world.body("box") is BOX
-    with pytest.raises(UnknownBodyError, match="found 'cat', allowed are the configured bodies: 'box'"):
+    with pytest.raises(UnknownBodyError, match="found 'cat', allowed are the known bodies: 'box'"):
         world.body("cat")
     with pytest.raises(InvalidFieldError, match="names that differ"):
         World(bodies=(BOX, BOX))

@@ -69,7 +69,7 @@ class AtTimes(Record):
         """Check the times."""
         times = _ascending("times", self.times)
         if len(times) > 0 and times[0] < 0.0:
-            raise InvalidFieldError("times[0]", times[0], "a number >= 0 (AT_STAMPS reaches into the past)")
+            raise InvalidFieldError("times[0]", times[0], "a number >= 0 (stamps reach into the past)")
         object.__setattr__(self, "times", times)
 
 

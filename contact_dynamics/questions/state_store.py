@@ -44,9 +44,9 @@ class StateStore:
             ahead_ns = state.stamp_ns - now_ns
             if ahead_ns > self._future_tolerance_ns:
                 raise InvalidFieldError(
-                    "header.stamp",
+                    "stamp",
                     f"{to_seconds(ahead_ns):.3f} s ahead of the clock",
-                    f"at most {to_seconds(self._future_tolerance_ns):g} s (parameter future_tolerance)",
+                    f"at most {to_seconds(self._future_tolerance_ns):g} s (future_tolerance)",
                 )
             self._forget_future(body_name, now_ns)
         states = self._states.setdefault(body_name, [])
@@ -109,7 +109,7 @@ class StateStore:
         if age_ns > self._timeout_ns:
             message = (
                 f"state of {body_name!r}: the newest is {to_seconds(age_ns):.3f} s old, "
-                f"allowed is at most {to_seconds(self._timeout_ns):g} s (parameter state_timeout)"
+                f"allowed is at most {to_seconds(self._timeout_ns):g} s (state_timeout)"
             )
             raise StaleStateError(message)
         return state

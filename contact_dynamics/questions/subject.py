@@ -186,7 +186,7 @@ def _published(body: Body, source: PublishedState, knowledge: Knowledge) -> Sequ
     """Return the published states that are asked for, in order of time, of the body's centre of mass."""
     name = body.name
     if not name:
-        raise InvalidFieldError("body_name", name, "the name of a configured body, or an explicit state")
+        raise InvalidFieldError("body_name", name, "the name of a known body, or a state of its own")
     if source.stamp_ns is None:
         now_ns = None if knowledge.now_ns is None else knowledge.now_ns()
         newest = knowledge.states.newest(name, now_ns=now_ns)
@@ -194,6 +194,7 @@ def _published(body: Body, source: PublishedState, knowledge: Knowledge) -> Sequ
         newest = knowledge.states.at(name, source.stamp_ns)
     window = source.fit_window
     states = knowledge.states.window(name, newest, window) if window > 0.0 else [newest]
+    # States are published of the known body. The one asked about may share its name and have another mass.
     known = knowledge.world.body(name)
     return states if body is known else [_carried_over(state, known, body) for state in states]
 

@@ -75,7 +75,7 @@ EVERY_SERVICE = [
         "INVALID_FIELD",
         "state.covariance: found 36 numbers",
     ),
-    (put("body_name", "cat"), "UNKNOWN_BODY", "found 'cat', allowed are the configured bodies: 'brick'"),
+    (put("body_name", "cat"), "UNKNOWN_BODY", "found 'cat', allowed are the known bodies: 'brick'"),
     (put("body_name", "x" * 1000), "TOO_LARGE", "body_name: found 1000 characters"),
     (put("state_source", 7), "INVALID_FIELD", "state_source: found 7"),
     (put("state_source", 0), "INVALID_FIELD", "body_name: found nothing"),
@@ -318,7 +318,7 @@ def test_states_that_are_stale_or_make_no_sense(client: Client) -> None:
 
     client.spin_until(stale)
     assert all(answer.status in (answer.NO_STATE, answer.STALE_STATE) for answer in answers)
-    assert "s old, allowed is at most 0.5 s (parameter state_timeout)" in answers[-1].message
+    assert "s old, allowed is at most 0.5 s (state_timeout)" in answers[-1].message
     asked = PredictTumbling.Request(body_name="brick", times=[0.1])
     asked.stamp = old.header.stamp
     assert client.ask(asked).status == 0

@@ -56,8 +56,8 @@ def test_a_stamp_from_the_future_poisons_no_body_and_is_told_by_topic(tmp_path: 
                 now_ns = time.time_ns()
                 states.publish(odometry(name, now_ns + HOUR_NS))
                 states.publish(odometry(name, now_ns))
-                told = wait_for(server, f"/{name}/odometry: message ignored: header.stamp: found")
-                assert "allowed is at most 0.5 s (parameter future_tolerance)" in told
+                told = wait_for(server, f"/{name}/odometry: message ignored: stamp: found")
+                assert "allowed is at most 0.5 s (future_tolerance)" in told
                 client.spin_until(lambda name=name, now_ns=now_ns: newest_ns(client, name) == now_ns)
         finally:
             client.close()
@@ -77,7 +77,7 @@ def test_before_the_first_clock_nothing_is_from_the_future_and_after_it_is(tmp_p
             states.publish(odometry("brick", 5 * HOUR_NS))
             states.publish(odometry("brick", HOUR_NS))
             client.spin_until(lambda: newest_ns(client, "brick") == HOUR_NS)
-            wait_for(server, "header.stamp: found 14400.000 s ahead of the clock")
+            wait_for(server, "stamp: found 14400.000 s ahead of the clock")
         finally:
             client.close()
 

@@ -388,7 +388,7 @@ def test_a_plate_that_falls_on_another_with_four_corners(
     request.want_orders = True
     answer = client.ask(request)
     assert answer.status == answer.NOT_SUPPORTED
-    assert "other_body_name: found a second body" in answer.message
+    assert "other: found a second body" in answer.message
 
 
 def test_the_energetic_law_is_not_one_at_once(client: Client) -> None:

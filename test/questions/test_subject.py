@@ -102,7 +102,7 @@ def test_what_is_not_known_is_named() -> None:
     known = watching()
     with pytest.raises(NoStateError, match="state of 'cube': none was published yet"):
         subject_of("cube", PublishedState(), known)
-    with pytest.raises(UnknownBodyError, match="found 'dog', allowed are the configured bodies: 'cube'"):
+    with pytest.raises(UnknownBodyError, match="found 'dog', allowed are the known bodies: 'cube'"):
         subject_of("dog", state(), known)
     with pytest.raises(InvalidFieldError, match="body_name: found nothing"):
         subject_of(Body(name="", mass_properties=CUBE.mass_properties), PublishedState(), known)
