@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import inspect
 import subprocess
 import sys
 from pathlib import Path
@@ -11,6 +12,7 @@ from types import ModuleType
 import pytest
 
 import contact_dynamics
+from contact_dynamics.shapes import convex
 
 CHAPTERS = (
     "rigid_body",
@@ -84,6 +86,17 @@ def test_a_name_means_one_thing() -> None:
     chapters = {chapter.rpartition(".")[2] for chapter in CHAPTERS}
     for name in set(contact_dynamics.__all__) - chapters:
         assert seen.get(name, getattr(contact_dynamics, name)) is getattr(contact_dynamics, name), name
+
+
+def test_every_shape_stands_on_its_chapters_page() -> None:
+    """A function that makes a shape is found by who looks for it where all others are."""
+    makers = {
+        name
+        for name, made in vars(convex).items()
+        if not name.startswith("_") and inspect.isfunction(made) and made.__module__ == convex.__name__
+    }
+    assert {"box", "rounded", "sphere"} <= makers
+    assert makers <= {*door("shapes").__all__}
 
 
 def test_the_whole_library_is_imported_without_scipy() -> None:

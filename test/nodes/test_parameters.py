@@ -137,6 +137,21 @@ def test_every_parameter_has_a_comment_that_says_its_default(
         assert descriptor.read_only
 
 
+def test_every_topic_that_is_configured_is_subscribed() -> None:
+    topics = {
+        name: f"/{name.replace('.', '/')}" for name in values_of(SERVER_FILE) if name.endswith("_topic")
+    }
+    assert len(topics) >= 3
+    arguments = [word for name, topic in topics.items() for word in ("-p", f"{name}:={topic}")]
+    rclpy.init(args=["--ros-args", "--params-file", str(SERVER_FILE), "-p", "log:=false", *arguments])
+    try:
+        node = server.Server()
+        assert set(topics.values()) <= {each.topic_name for each in node.subscriptions}
+        node.destroy_node()
+    finally:
+        rclpy.shutdown()
+
+
 def test_help_lists_every_parameter() -> None:
     single = {name for name in values_of(SERVER_FILE) if "." not in name}
     assert single == set(SERVER_PARAMETERS)
