@@ -1,4 +1,4 @@
-"""The one call for any question."""
+"""One function answers every kind of question."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ def ask(
 
     Args:
         question: What is asked.
-        knowledge: What is known: bodies by name, surfaces, published states, defaults. None: nothing, so that
-            the question says all there is to know.
+        knowledge: What is known: bodies by name, surfaces, published states, defaults. If it is None, nothing
+            is known but what the question says.
 
     Raises:
         ContactDynamicsError: something is asked for that is not known, not allowed or not supported; the

@@ -59,7 +59,7 @@ if TYPE_CHECKING:
     from contact_dynamics.plane.projection import PlanarProblem
 
 MOST_FRICTION_FACETS: Final = 32
-"""More edges of a friction pyramid are refused: 32 hold 99.5 % of the round cone, and more cost more."""
+"""A friction pyramid may have at most this many edges. With 32 it holds 99.5 % of the round cone."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -68,28 +68,29 @@ class ContactModeQuestion(Record):
 
     Attributes:
         body: The body, or the name of one of the known world.
-        state: Its state, or which published one.
-        contacts: The contacts. None: those of the body's shape with the known world's surfaces.
+        state: Its state, or a reference to a published one.
+        contacts: The contacts. If it is None, they are found from the body's shape and the known world's
+            surfaces.
         force_W: (3,), N, applied besides gravity and contact forces, world axes.
         torque_W: (3,), N m, applied about the centre of mass, world axes.
-        gravity_W: (3,), m/s^2, world axes. None: that of the known world.
-        problem: In a plane of motion, in space, or whichever suits.
-        plane: The plane of motion. None: the one that fits best.
-        out_of_plane_tolerance: m/s, >= 0. Motion out of the plane up to this counts as planar. None: the
+        gravity_W: (3,), m/s^2, world axes. If it is None, the known world's gravity acts.
+        problem: Whether to solve the problem in a plane of motion, in space, or in whichever suits.
+        plane: The plane of motion. If it is None, the best fitting plane is found.
+        out_of_plane_tolerance: m/s, >= 0. Motion out of the plane up to this counts as planar. None means the
             default.
-        velocity_tolerance: m/s, >= 0. A contact that is slower counts as at rest. None: the default.
-        distance_tolerance: m, >= 0. A body with a smaller gap touches. None: the default.
-        friction_facets: Space: edges, 3 to 32, of the pyramid that stands for a cone at rest. Zero: 8, and 4
-            in wrench sets.
-        margin_length: m, makes a torque comparable with a force in margins and statics. None or zero: the
-            radius of gyration.
-        want_margins: Whether to tell how far the wrench is from another mode.
-        want_wrenches: Whether to tell the applied wrenches of every kinematically possible mode.
-        want_statics: Whether to answer the static questions.
-        want_impact: Whether to resolve the impact that settles an inconsistency or an approach.
+        velocity_tolerance: m/s, >= 0. A slower contact counts as at rest. None means the default.
+        distance_tolerance: m, >= 0. A body with a smaller gap touches. None means the default.
+        friction_facets: Number of edges, 3 to 32, of the pyramid that stands for a friction cone at rest in
+            space. Zero means 8 edges in the modes and 4 in the wrench sets.
+        margin_length: m. A torque divided by this length compares with a force in margins and statics. If it
+            is None or zero, the radius of gyration serves.
+        want_margins: Whether the answer says how far the wrench is from another mode.
+        want_wrenches: Whether the answer has the applied wrenches of every kinematically possible mode.
+        want_statics: Whether the static questions are answered too.
+        want_impact: Whether the impact is resolved that settles an inconsistency or an approach.
 
     Raises:
-        InvalidFieldError: a number is out of its range or not finite, or the problem is none.
+        InvalidFieldError: a number is out of its range or not finite, or the problem is not a `Problem`.
     """
 
     body: Body | str
@@ -136,7 +137,7 @@ class ContactModeQuestion(Record):
             """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
-        """Check what has no type of its own, and the choice."""
+        """Check the vectors, the numbers and the choice of the problem."""
         check_choice("problem", self.problem, Problem)
         object.__setattr__(self, "force_W", check_array("force_W", self.force_W, (3,)))
         object.__setattr__(self, "torque_W", check_array("torque_W", self.torque_W, (3,)))
@@ -158,30 +159,36 @@ class ContactModeAnswer(Record):
     ``tangential_directions_W`` (the letters l and r say which way), its wrench sets no ``sliding_from_W``.
 
     Attributes:
-        body_name: The body's name; empty where it has none.
+        body_name: The body's name, which may be empty.
         p_FB_F: (3,), m, its centre of mass in its published frame F.
-        state: The state that was taken.
+        state: The state that the question was answered for.
         contacts: The contacts.
         verdict: The verdict on the whole contact set.
-        undecided: What could not be made out, and why. Empty unless the verdict is UNDECIDED.
-        modes: All consistent modes. In a plane mirrored contacts share their forces equally.
-        margins: How far the wrench is from leaving each of these modes, in their order. None: not asked for.
-        approaching: Contacts that approach, as indices.
-        contact_velocities_W: (n, 3), m/s, of the body's points, with what is within tolerance as zero.
-        refused: Modes that are possible kinematically and refused by mechanics. Space: told with margins.
-        kinematic_modes: Every kinematically possible mode. Space: strings of s and c alone.
-        wrench_sets: The applied wrenches of each mode. None: not asked for.
-        statics: What holds the body at rest. None: not asked for.
-        settled: The impact that settles the case, and the modes after it. None: not asked for, or not needed.
+        undecided: What could not be decided, and why. It is empty unless the verdict is UNDECIDED.
+        modes: All consistent modes. In a plane, mirrored contacts share their forces equally.
+        margins: How far the wrench is from leaving each of these modes, in their order, or None if that was
+            not asked for.
+        approaching: The indices of the contacts that approach.
+        contact_velocities_W: (n, 3), m/s, velocities of the body's points. Parts within the tolerance are
+            zero.
+        refused: Modes that are kinematically possible and that mechanics refuses. In space they are listed
+            only with margins.
+        kinematic_modes: Every kinematically possible mode. In space these are strings of s and c alone.
+        wrench_sets: The applied wrenches of each mode, or None if they were not asked for.
+        statics: What holds the body at rest, or None if that was not asked for.
+        settled: The impact that settles the case, and the modes after it. It is None if it was not asked for
+            or is not needed.
         problem: PLANAR or SPATIAL.
-        plane: The plane of motion. None: space.
-        out_of_plane: m/s, the largest motion out of the plane. NaN in space.
-        out_of_plane_reason: What left the plane, so that AUTOMATIC came to SPATIAL. Empty otherwise.
-        velocity_tolerance: m/s, that was used.
-        acceleration_tolerance: m/s^2, that was used. NaN in space.
-        distance_tolerance: m, that was used.
-        friction_facets: Space: edges of each friction pyramid in the modes. Zero in the plane.
-        wrench_facets: Space: edges of each friction pyramid in the wrench sets. Zero: not asked for.
+        plane: The plane of motion, or None in space.
+        out_of_plane: m/s, the largest motion out of the plane, or NaN in space.
+        out_of_plane_reason: What left the plane, if AUTOMATIC became SPATIAL for that reason. It is empty
+            otherwise.
+        velocity_tolerance: m/s, the tolerance that was used.
+        acceleration_tolerance: m/s^2, the tolerance that was used, or NaN in space.
+        distance_tolerance: m, the tolerance that was used.
+        friction_facets: Number of edges of each friction pyramid in the modes, or zero in the plane.
+        wrench_facets: Number of edges of each friction pyramid in the wrench sets in space, or zero if they
+            were not asked for.
     """
 
     body_name: str
@@ -211,11 +218,11 @@ class ContactModeAnswer(Record):
 
 
 def answer(question: ContactModeQuestion, knowledge: Knowledge | None = None) -> ContactModeAnswer:
-    """Answer a question about contact modes; without ``knowledge`` no body is known by name.
+    """Answer a question about contact modes. Without ``knowledge`` no body is known by name.
 
     Raises:
         ContactDynamicsError: nothing touches, a planar question leaves its plane, or something is asked for
-            that is not known or not allowed; the message says what.
+            that is not known or not allowed. The message names it.
     """
     known = Knowledge() if knowledge is None else knowledge
     case = _case(question, known)
@@ -252,7 +259,7 @@ def _in_plane(
 ) -> tuple[tuple[PlanarProblem, tuple[int, ...]] | None, str]:
     """Return the problem in its plane of motion, with the mirror image of each contact in that plane.
 
-    Or None, and what AUTOMATIC found to be out of the plane.
+    If AUTOMATIC finds no such plane, return None and what left the plane.
     """
     if question.problem is Problem.SPATIAL:
         return None, ""

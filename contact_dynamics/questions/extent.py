@@ -1,4 +1,4 @@
-"""How large the numbers of a question about contacts may be, so that no sum or product of them overflows."""
+"""Limits on the numbers of a question about contacts, so that no sum or product of them overflows."""
 
 from __future__ import annotations
 
@@ -14,14 +14,15 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 MOST_IN_CONTACT: Final = 1e15
-"""In SI units: m, m/s, rad/s, N, N m. Beside larger numbers a metre, or a newton, is rounding."""
+"""The largest number allowed, in m, m/s, rad/s, N or N m. Beside larger ones a metre or a newton is lost in
+rounding."""
 
 MOST_INERTIA: Final = 1e30
-"""kg, kg m^2. Masses and moments are at most this, and at least its inverse."""
+"""The largest mass and moment of inertia allowed, in kg and kg m^2. The smallest is its inverse."""
 
 
 def check_extent(body: MassProperties, state: BodyState) -> None:
-    """Refuse a body or a state whose numbers are too large for the mechanics of contacts, by name.
+    """Refuse a body or a state with a number that is too large for the mechanics of contacts, and name it.
 
     Raises:
         InvalidFieldError: a number is beyond `MOST_IN_CONTACT`, or a mass or moment beyond `MOST_INERTIA`.
@@ -40,14 +41,14 @@ def check_extent(body: MassProperties, state: BodyState) -> None:
 
 
 def check_contacts(contacts: ContactSet) -> None:
-    """Refuse contacts that are too far away, by name."""
+    """Refuse contacts that are too far away, and name the first."""
     largest = float(np.abs(contacts.p_WC_W).max(initial=0.0))
     if not largest <= MOST_IN_CONTACT:
         raise InvalidFieldError("contacts.positions", f"{largest:g} m", f"at most {MOST_IN_CONTACT:g} m")
 
 
 def check_wrench(force_W: FloatArray, torque_W: FloatArray) -> None:
-    """Refuse a force or a torque, (3,), that is too large, by name."""
+    """Refuse a force or a torque, (3,), that is too large, and name it."""
     _check_vector("force", force_W)
     _check_vector("torque", torque_W)
 

@@ -57,18 +57,18 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import MassProperties
 
 SAMPLES: Final = 2000
-"""Drawn states of an uncertain impact: probabilities to 0.011; some 20 ms, in which a server answers nobody
-else."""
+"""Number of states that are drawn for an uncertain impact. They give probabilities to 0.011 and take some 20
+ms, during which a server answers nobody else."""
 
 _NO_WRENCH: Final = np.zeros(3)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class StruckBody(Record):
-    """The second body of an impact, just before.
+    """The second body of an impact, just before it.
 
     Attributes:
-        name: The body's name; empty where it has none.
+        name: The body's name, which may be empty.
         p_FB_F: (3,), m, its centre of mass in its published frame F.
         state: Its state just before the impact.
     """
@@ -80,22 +80,25 @@ class StruckBody(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ImpactAnswer(Record):
-    """What the impact does.
+    """The impact, and the state and contacts just before it.
 
     Attributes:
-        body_name: The body's name; empty where it has none.
+        body_name: The body's name, which may be empty.
         p_FB_F: (3,), m, its centre of mass in its published frame F.
-        state: Its state just before the impact; of strikes in time, before the first.
-        fit: How well the motion fits the published states that the state was found from. None: no fit.
-        other: The second body just before; its state after is in ``impact``. None: it strikes the world.
-        seconds_to_contact: s, from the state that was taken to the impact; zero where it touches already.
-        contacts: The contacts; of strikes in time, those that strike or stay.
-        impact: What the impact comes to.
+        state: Its state just before the impact, or before the first of several strikes in time.
+        fit: How well the motion fits the published states that the state was found from, or None without a
+            fit.
+        other: The second body just before, or None if the world is struck. Its state after the impact is in
+            ``impact``.
+        seconds_to_contact: s, from the question's state to the impact. It is zero if the body touches
+            already.
+        contacts: The contacts. For strikes in time, these are the contacts that strike or stay.
+        impact: The result of the impact.
         problem: PLANAR or SPATIAL.
-        plane: The plane of motion. None: space.
-        out_of_plane: m/s, the largest motion out of the plane. Zero in space.
-        velocity_tolerance: m/s, that was used.
-        distance_tolerance: m, that was used.
+        plane: The plane of motion, or None in space.
+        out_of_plane: m/s, the largest motion out of the plane, or zero in space.
+        velocity_tolerance: m/s, the tolerance that was used.
+        distance_tolerance: m, the tolerance that was used.
     """
 
     body_name: str
@@ -114,11 +117,11 @@ class ImpactAnswer(Record):
 
 
 def answer(question: ImpactQuestion, knowledge: Knowledge | None = None) -> ImpactAnswer:
-    """Answer a question about an impact; without ``knowledge`` no body is known by name, and no surface.
+    """Answer a question about an impact. Without ``knowledge`` no body is known by name, and no surface.
 
     Raises:
         ContactDynamicsError: nothing strikes, or something is asked for that is not known, not allowed or not
-            supported; the message says what.
+            supported. The message names it.
     """
     known = Knowledge() if knowledge is None else knowledge
     strike = strike_of(question, known)
@@ -131,7 +134,7 @@ def answer(question: ImpactQuestion, knowledge: Knowledge | None = None) -> Impa
     elif question.problem is Problem.PLANAR:
         problem = _problem(question, strike, known)
         resolved = _in_plane(question, law, strike, problem)
-    else:  # space contains the plane
+    else:  # AUTOMATIC goes here too, because space contains the plane
         resolved = _in_space(question, law, strike)
     if question.want_covariance:
         resolved = with_distribution(resolved, _distribution(question, strike, known))
@@ -156,7 +159,7 @@ def answer(question: ImpactQuestion, knowledge: Knowledge | None = None) -> Impa
 
 
 def _in_time(question: ImpactQuestion, law: InTime, strike: Strike, knowledge: Knowledge) -> ImpactSequence:
-    """Return the strikes from a state on; without one raise `SeparatingContactError` or `NoContactError`."""
+    """Return the strikes from a state on. Without any, raise `SeparatingContactError` or `NoContactError`."""
     world = knowledge.world
     if question.contacts is not None:
         sequence = impact_sequence_of(
@@ -199,7 +202,7 @@ def _in_time(question: ImpactQuestion, law: InTime, strike: Strike, knowledge: K
 
 
 def _from_first(sequence: ImpactSequence, strike: Strike) -> Strike:
-    """Return the impact that begins with the first of the strikes in time, at the contacts of them all."""
+    """Return the impact that begins with the first of several strikes, with the contacts of all of them."""
     first = sequence.strikes[0]
     return replace(
         strike, seconds=strike.seconds + first.seconds, state=first.state_before, contacts=sequence.contacts
@@ -263,7 +266,7 @@ def _of_two(
 
 
 def _problem(question: ImpactQuestion, strike: Strike, knowledge: Knowledge) -> PlanarProblem:
-    """Return the problem in its plane of motion; refuse contacts beside it that have no mirror image."""
+    """Return the problem in its plane of motion. Refuse contacts beside it that have no mirror image."""
     problem = planar_problem_of(
         strike.subject.body.mass_properties,
         strike.state,
@@ -326,7 +329,7 @@ def _orders(
 
 
 def _distribution(question: ImpactQuestion, strike: Strike, knowledge: Knowledge) -> ImpactDistribution:
-    """Return where the state after the impact lies, for the covariance of the state that was taken."""
+    """Return the distribution of the state after the impact, from the covariance of the state before."""
     covariance = covariance_of(strike.subject)
     body = strike.before.body
     if strike.seconds > 0.0:

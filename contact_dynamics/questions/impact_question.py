@@ -19,13 +19,13 @@ from contact_dynamics.world import Body
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class InTime(Record):
-    """The law for several contacts by which they strike one after the other, with free flight in between.
+    """A law for several contacts. They strike one after the other, with free flight in between.
 
     Attributes:
         strike_window: s, > 0. The longest flight after which a strike still belongs to the same landing.
         most_strikes: How many strikes are resolved at most, >= 1.
         hold_step: s, > 0. Where a contact stays on its surface, the body goes on in steps of this length
-            until another corner strikes or it leaves. None: the sequence ends there.
+            until another corner strikes or it leaves. If it is None, the sequence ends there.
 
     Raises:
         InvalidFieldError: a number is out of its range or not finite.
@@ -50,25 +50,26 @@ class ImpactQuestion(Record):
 
     Attributes:
         body: The body, or the name of one of the known world.
-        state: Its state, with a covariance or without, or which published one.
-        other: A second moving body that the first one strikes. None: it strikes the world.
+        state: Its state, with or without a covariance, or a reference to a published one.
+        other: A second moving body that the first one strikes, or None if it strikes the world.
         other_state: The second body's state.
-        contacts: The contacts, at the state taken. None: the body flies on to its first contact with the
-            known world, and the impact is the one that happens there.
-        horizon: s, >= 0. How far ahead to look for that first contact. None: the default.
+        contacts: The contacts in the given state. If it is None, the body flies on to its first contact with
+            the known world, and the question is about the impact there.
+        horizon: s, >= 0. How far ahead to look for that first contact. None means the default.
         restitution_law: What the coefficients of restitution mean.
-        several_contacts_law: What happens at several contacts: a law for one instant, or strikes in time.
-        want_orders: Whether to list the outcomes over the admissible orders of several contacts.
-        want_covariance: Whether to carry the state's covariance through flight and impact.
-        problem: In a plane of motion, or in space.
-        plane: The plane of motion of a planar problem. None: the one that fits best.
-        out_of_plane_tolerance: m/s, >= 0. Motion out of the plane up to this counts as planar. None: the
+        several_contacts_law: The law for several contacts, which is one for a single instant, or strikes in
+            time.
+        want_orders: Whether the answer lists the outcomes over the admissible orders of several contacts.
+        want_covariance: Whether the state's covariance is carried through flight and impact.
+        problem: Whether to solve the problem in a plane of motion or in space.
+        plane: The plane of motion of a planar problem. If it is None, the best fitting plane is found.
+        out_of_plane_tolerance: m/s, >= 0. Motion out of the plane up to this counts as planar. None means the
             default.
-        velocity_tolerance: m/s, >= 0. A slower approach counts as none. None: the default.
-        distance_tolerance: m, >= 0. A body with a smaller gap touches. None: the default.
+        velocity_tolerance: m/s, >= 0. A slower approach counts as none. None means the default.
+        distance_tolerance: m, >= 0. A body with a smaller gap touches. None means the default.
 
     Raises:
-        InvalidFieldError: a number is negative or not finite, or a choice is no member of its enumeration.
+        InvalidFieldError: a number is negative or not finite, or a choice is not a member of its enumeration.
     """
 
     body: Body | str

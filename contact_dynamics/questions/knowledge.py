@@ -1,4 +1,4 @@
-"""What is known when a question is asked: the world, the published states, and what holds by default."""
+"""The knowledge that questions are answered with: the world, the published states, and defaults."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from contact_dynamics.world import World
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Defaults(Record):
-    """What holds where a question says nothing itself.
+    """Values for what a question leaves out.
 
     Attributes:
         velocity_tolerance: m/s, >= 0. A contact that is slower counts as at rest.
         distance_tolerance: m, >= 0. A body with a smaller gap to a surface touches it.
         out_of_plane_tolerance: m/s, >= 0. Motion out of a plane up to this still counts as planar.
-        horizon: s, >= 0. How far ahead a first contact is looked for, and how long a trajectory is.
-        rate: Hz, > 0. Samples a second of a trajectory.
+        horizon: s, >= 0. How far ahead a first contact is sought, and how long a trajectory is.
+        rate: Hz, > 0. Number of samples a second of a trajectory.
 
     Raises:
         InvalidFieldError: a number is out of its range or not finite.
@@ -34,7 +34,7 @@ class Defaults(Record):
     rate: float = 100.0
 
     def __post_init__(self) -> None:
-        """Check all five."""
+        """Check all fields."""
         for name in ("velocity_tolerance", "distance_tolerance", "out_of_plane_tolerance", "horizon"):
             object.__setattr__(self, name, check_not_negative(name, getattr(self, name)))
         object.__setattr__(self, "rate", check_positive("rate", self.rate))
@@ -47,10 +47,10 @@ class Knowledge(Record):
     Attributes:
         world: Bodies that questions can name, the surfaces they meet, and gravity.
         states: The states that were published, by body. A question about the newest one reads them here.
-        defaults: What holds where a question says nothing itself.
-        now_ns: Returns the present time, ns, on the clock of the states' stamps, so that an old state is
-            refused. None, or where it returns None: there is no clock yet, and the newest state counts as
-            fresh.
+        defaults: Values for what a question leaves out.
+        now_ns: A function that returns the present time, ns, on the clock of the states' stamps, so that an
+            old state is refused. If it is None or returns None, there is no clock yet, and the newest state
+            counts as fresh.
     """
 
     world: World = field(default_factory=World)
@@ -60,12 +60,12 @@ class Knowledge(Record):
 
 
 def or_default(asked: float | None, default: float) -> float:
-    """Return what a question asks for, or the default where it says nothing."""
+    """Return the value of a question's field, or the default if the field is None."""
     return default if asked is None else asked
 
 
 def check_optional(field_name: str, value: float | None) -> float | None:
-    """Return a number >= 0, or None where a question says nothing; anything else is refused.
+    """Return a number >= 0 as a float, or None for None. Refuse anything else.
 
     Raises:
         InvalidFieldError: the number is negative or not finite.

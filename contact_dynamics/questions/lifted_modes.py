@@ -1,4 +1,4 @@
-"""What a plane of motion says of contact modes, in world axes, as an answer in space says it."""
+"""Turns planar contact modes into modes in world axes, so that planar and spatial answers have one form."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def lifted_mode(mode: PlanarMode, problem: PlanarProblem, partners: tuple[int, ...]) -> SpatialMode:
-    """Return a mode in world axes; contacts share their forces with ``partners``, their mirror images."""
+    """Return a mode in world axes. Contacts share their forces with ``partners``, their mirror images."""
     plane = problem.plane
     return SpatialMode(
         mode=mode.mode,
@@ -47,7 +47,7 @@ def lifted_margin(margin: PlanarModeMargin, plane: PlaneOfMotion) -> SpatialMode
 
 
 def lifted_wrench_set(wrenches: PlanarWrenchSet, plane: PlaneOfMotion) -> SpatialWrenchSet:
-    """Return the applied wrenches of a mode in world axes; wrenches out of the plane are not bounded."""
+    """Return the applied wrenches of a mode in world axes. Wrenches out of the plane have no bounds."""
     return SpatialWrenchSet(
         mode=wrenches.mode,
         sliding_from_W=np.zeros((0, 3)),  # the letters say it

@@ -1,6 +1,6 @@
-"""An answer about contact modes as its plane of motion sees it: the way back from world axes.
+"""Turns the world axes of an answer about contact modes back into those of its plane of motion.
 
-Positions count from the centre of mass. The answer must have a plane.
+Positions are relative to the centre of mass. The answer must have a plane.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def seen_contacts(answer: ContactModeAnswer, plane: PlaneOfMotion) -> tuple[PlanarContact, ...]:
-    """Return the contacts, all as points on flats."""
+    """Return the contacts in the plane, all as points on flats."""
     contacts = answer.contacts
     arms = (contacts.p_WC_W - answer.state.p_WB_W) @ plane.axes_W.T
     normals = contacts.normals_W @ plane.axes_W.T
@@ -35,14 +35,14 @@ def seen_contacts(answer: ContactModeAnswer, plane: PlaneOfMotion) -> tuple[Plan
 
 
 def seen_modes(answer: ContactModeAnswer, plane: PlaneOfMotion) -> tuple[PlanarMode, ...]:
-    """Return the consistent modes; contact accelerations within the answer's tolerance are zero."""
+    """Return the consistent modes in the plane. Accelerations within the answer's tolerance are zero."""
     bases = np.array([(contact.tangent, contact.normal) for contact in seen_contacts(answer, plane)])
     bases_W = bases.reshape(-1, 2, 2) @ plane.axes_W
     return tuple(_seen_mode(mode, plane, bases_W, answer.acceleration_tolerance) for mode in answer.modes)
 
 
 def seen_wrench_set(wrenches: SpatialWrenchSet, plane: PlaneOfMotion) -> PlanarWrenchSet:
-    """Return the applied wrenches of a mode, without those out of the plane."""
+    """Return the applied wrenches of a mode within the plane."""
     return PlanarWrenchSet(
         mode=wrenches.mode,
         vertices=tuple(seen_wrench(row, plane) for row in wrenches.vertices),
@@ -62,9 +62,10 @@ def seen_wrench(wrench_W: FloatArray, plane: PlaneOfMotion) -> PlanarWrench:
 
 
 def sliding_directions(answer: ContactModeAnswer, mode: SpatialMode) -> FloatArray:
-    """Return the way that each contact slides in a mode, (n, 3), unit, world axes; zero: it does not slide.
+    """Return the unit direction in which each contact slides in a mode, (n, 3), world axes, or zero.
 
-    In space the mode tells it, in a plane its letters do: l is against the tangent, r along it.
+    In space the mode has the directions. In a plane its letters give them: l is against the tangent, r along
+    it.
     """
     if answer.plane is None:
         return mode.tangential_directions_W
@@ -75,12 +76,12 @@ def sliding_directions(answer: ContactModeAnswer, mode: SpatialMode) -> FloatArr
 
 
 def beyond(vectors: FloatArray, tolerance: float) -> FloatArray:
-    """Return vectors, (n, k), with those that are as short as a tolerance as zero."""
+    """Return vectors, (n, k), in which those no longer than a tolerance are set to zero."""
     return np.where(np.linalg.norm(vectors, axis=1, keepdims=True) > tolerance, vectors, 0.0)
 
 
 def _seen_mode(mode: SpatialMode, plane: PlaneOfMotion, bases_W: FloatArray, tolerance: float) -> PlanarMode:
-    """Return a mode in the plane; ``bases_W``, (n, 2, 3), are tangent and normal of each contact."""
+    """Return a mode in the plane. ``bases_W``, (n, 2, 3), has the tangent and the normal of each contact."""
     forces, accelerations = (
         tuple(_pair(pair) for pair in np.einsum("nij,nj->ni", bases_W, vectors_W))
         for vectors_W in (mode.contact_forces_W, beyond(mode.contact_accelerations_W, tolerance))

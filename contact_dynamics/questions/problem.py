@@ -1,4 +1,4 @@
-"""Whether a question is about a plane of motion or about space, and the problem in its plane."""
+"""The choice between a plane of motion and space, and the projection of a question onto its plane."""
 
 from __future__ import annotations
 
@@ -14,12 +14,14 @@ if TYPE_CHECKING:
 
 
 class Problem(NamedInt):
-    """What a question about contacts is solved in; the numbers are those of the services."""
+    """Whether a question about contacts is solved in a plane or in space. Messages have the same numbers."""
 
     AUTOMATIC = 0
-    """Whichever suits; the answer says which. An impact is then solved in space, which contains the plane."""
+    """The question is solved in whichever suits, and the answer says in which. An impact is solved in space,
+    which contains the plane."""
     PLANAR = 1
-    """A plane of motion through the centre of mass; what leaves it is refused."""
+    """The question is solved in a plane of motion through the centre of mass. What leaves the plane is
+    refused."""
     SPATIAL = 2
 
 
@@ -33,10 +35,10 @@ def planar_problem_of(
     torque_W: FloatArray,
     speed_tolerance: float,
 ) -> PlanarProblem:
-    """Return a problem in a plane of motion; None: in the plane that fits best.
+    """Return a problem in a plane of motion. If ``plane`` is None, the best fitting plane is found.
 
     Raises:
-        OutOfPlaneError: something leaves the plane by too much, as `project` and `best_plane`.
+        OutOfPlaneError: something leaves the plane by too much, as in `project_onto_plane` and `best_plane`.
     """
     if plane is None:
         plane = best_plane(

@@ -1,7 +1,7 @@
-"""One impact as an answer tells it, by whichever law and at however many contacts it was resolved.
+"""One form for every impact in an answer, whichever law resolved it and at however many contacts.
 
-The impact chapter has a result of its own for one contact and for several, in the plane and in space, for one
-body and for two. An answer tells all of them in the same words, in world axes.
+The impact chapter has separate results for one contact and for several, in the plane and in space, for one
+body and for two. An answer gives all of them in one form, in world axes.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SequenceStrike(Record):
-    """One strike of several in time.
+    """One of several strikes in time.
 
     Attributes:
         seconds: s after the first strike.
@@ -65,38 +65,41 @@ class SequenceStrike(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ResolvedImpact(Record):
-    """What an impact comes to; row i of an array belongs to contact i, axes are the world's.
+    """The result of an impact. Row i of an array belongs to contact i, and vectors are in world axes.
 
     Attributes:
         restitution_law: What the coefficients of restitution meant.
         several_contacts_law: The law for several contacts of one instant.
-        outcome: What the contact did; of several, the one with the largest impulse. None: the law does not
-            tell (SIMULTANEOUS).
-        jams: Whether sliding drove that contact into compression though it did not approach.
-        converged: Whether the law came to an end. False: it reached its bound, and the state is the last one.
-        state: The body just after: the pose of before, new velocities.
-        other_state: The second body just after. None: the contact is with the world.
+        outcome: What the contact did, or the contact with the largest impulse if there are several. It is
+            None if the law does not say (SIMULTANEOUS).
+        jams: Whether sliding drove that contact into compression although it did not approach.
+        converged: Whether the law came to an end. If not, it reached its bound, and the state is the last
+            one.
+        state: The body just after, with the pose from before and new velocities.
+        other_state: The second body just after, or None if the contact is with the world.
         impulses_W: (n, 3), N s, on the body.
-        compression_impulses_W: (n, 3), N s, up to the end of compression. Without rows where the law does not
-            tell.
-        velocities_before_W: (n, 3), m/s, of the contact points relative to what they touch.
-        velocities_after_W: (n, 3), m/s, likewise.
-        path_W: (k, 3), N s, vertices of the impulse path; of several strikes one after the other, each from
-            what its contact had before. Without rows where the law does not tell.
+        compression_impulses_W: (n, 3), N s, up to the end of compression. It has no rows if the law does not
+            say.
+        velocities_before_W: (n, 3), m/s, of the contact points relative to what they touch, just before.
+        velocities_after_W: (n, 3), m/s, the same just after.
+        path_W: (k, 3), N s, vertices of the impulse path. Several strikes come one after the other, each from
+            the impulse that its contact had before. It has no rows if the law does not say.
         path_events: (k,), what each vertex stands for.
         path_contacts: (k,), the contact that each vertex belongs to.
-        kinetic_energy_before: J, of all bodies that move.
-        kinetic_energy_after: J, likewise.
-        creates_energy: Whether the law made energy out of nothing, beyond rounding.
-        orders: (m,), the contacts struck, in each admissible order. Empty: not asked for.
+        kinetic_energy_before: J, of all bodies that move, just before.
+        kinetic_energy_after: J, the same just after.
+        creates_energy: Whether there is more energy after the impact than before, beyond rounding.
+        orders: (m,), the contacts struck, in each admissible order. It is empty if that was not asked for.
         order_velocities_W: (m, 6), m/s and rad/s, linear then angular velocity after each order.
-        covariance: (12, 12), of the state just after, in the order of `UncertainState`. None: not asked for.
-        outcome_probabilities: (7,), of each outcome, by its value. None: not asked for.
+        covariance: (12, 12), of the state just after, in the order of `UncertainState`, or None if that was
+            not asked for.
+        outcome_probabilities: (7,), the probability of each outcome, by its value, or None if that was not
+            asked for.
         miss_probability: Probability that the contact separates, so that nothing strikes.
-        strikes: Strikes in time, in their order. Empty: all happened at one instant.
-        end: Why there is no further strike. None: all happened at one instant.
+        strikes: Strikes in time, in their order. It is empty if all happened at one instant.
+        end: Why there is no further strike, or None if all happened at one instant.
         staying: The contacts that stay from then on.
-        limit_seconds: s after the first strike, from when on they stay. None: none does.
+        limit_seconds: The time from which on they stay, s after the first strike, or None if none stays.
     """
 
     restitution_law: RestitutionLaw
@@ -129,7 +132,7 @@ class ResolvedImpact(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Before(Record):
-    """A body just before an impact.
+    """A body just before an impact: its mass properties and its state.
 
     Attributes:
         body: Mass and angular inertia.
@@ -169,7 +172,7 @@ def spatial_resolved(impact: SpatialImpact, before: Before, other: Before | None
 
 
 def planar_resolved(impact: PlanarImpact, problem: PlanarProblem, before: Before) -> ResolvedImpact:
-    """Return an impact at the one contact of a plane of motion; what is out of the plane stays as it was."""
+    """Return an impact at the one contact of a plane of motion. Motion out of the plane stays as it was."""
     after = with_planar_velocity(problem, before.state, impact.velocity)
     path = impact.path
     (t_x, t_y), (n_x, n_y) = problem.contacts[0].tangent, problem.contacts[0].normal
@@ -216,7 +219,7 @@ def pair_resolved(impact: BodiesImpact, before: Before, other: Before) -> Resolv
 
 
 def sequence_resolved(impact: ImpactSequence, before: Before) -> ResolvedImpact:
-    """Return strikes in time; there is at least one, and ``before`` is the body just before the first."""
+    """Return one or more strikes in time. ``before`` is the body just before the first."""
     first = impact.strikes[0].seconds
     impulses = np.zeros((len(impact.contacts), 3))
     velocities_before, velocities_after = np.zeros_like(impulses), np.zeros_like(impulses)
@@ -267,7 +270,7 @@ def with_orders(resolved: ResolvedImpact, outcomes: OrderedOutcomes) -> Resolved
 
 
 def with_distribution(resolved: ResolvedImpact, distribution: ImpactDistribution) -> ResolvedImpact:
-    """Return an impact with the covariance of the state after it, and how probable each outcome is."""
+    """Return an impact with the covariance of the state after it and the probability of each outcome."""
     return replace(
         resolved,
         covariance=distribution.covariance,
@@ -305,7 +308,7 @@ def _several(
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Told:
-    """What only a sequence tells: the outcome, the split of each contact's impulse, and the paths."""
+    """What only a sequence has: its outcome, the split of each contact's impulse, and the paths."""
 
     outcome: ImpactOutcome | None
     jams: bool
@@ -326,7 +329,7 @@ _NOT_TOLD = _Told(
 
 
 def _told_by(strikes: Sequence[tuple[int, SpatialImpact]], contact_count: int) -> _Told:
-    """Return what a sequence tells; of the outcomes that of the hardest strike."""
+    """Return what only a sequence has. Its outcome is that of the hardest strike."""
     hardest = max(strikes, key=lambda strike: float(strike[1].impulse_W @ strike[1].impulse_W))[1]
     so_far = np.zeros((contact_count, 3))
     compression = np.zeros((contact_count, 3))

@@ -1,4 +1,4 @@
-"""At which times a trajectory is asked for, and what ends it."""
+"""The times at which a trajectory is asked for, and what ends it."""
 
 from __future__ import annotations
 
@@ -30,19 +30,19 @@ if TYPE_CHECKING:
     from contact_dynamics.tumbling import FreeMotion
 
 MOST_SAMPLES: Final = 20_000
-"""Longest trajectory in one answer: 2.2 MB of numbers. More would stall the middleware for longer than the
-answer takes."""
+"""Largest number of samples in one answer, which has then 2.2 MB of numbers. More would stall the middleware
+for longer than the answer takes."""
 
 MOST_INTEGRATED_TURNS: Final = 100.0
-"""Longest motion under torque or drag in one answer, in turns at the present rate: 1 or 2 s of computing,
-during which a server answers nobody else."""
+"""Longest motion under torque or drag in one answer, in turns at the present rate. It takes 1 or 2 s of
+computing, during which a server answers nobody else."""
 
 MOST_INTEGRATED_STEPS: Final = 6000
-"""Most steps of the integrator in one answer: what a torque spins up takes more than its present rate says,
-and a server answers nobody else meanwhile."""
+"""Largest number of the integrator's steps in one answer. A body that a torque spins up takes more steps than
+its present rate says, and a server answers nobody else meanwhile."""
 
 MOST_SEARCHED_TURNS: Final = 1000.0
-"""Longest search for a contact in one answer, in turns: a body that spins close to a surface without touching
+"""Longest search for a contact in one answer, in turns. A body that spins close to a surface without touching
 it takes a millisecond a turn, during which a server answers nobody else."""
 
 
@@ -110,8 +110,8 @@ class AtRate(Record):
     """Samples from the state on, at a steady rate.
 
     Attributes:
-        rate: Hz, samples a second. None or zero: the default.
-        duration: s, >= 0, how far to go. None: the default horizon.
+        rate: Hz, number of samples a second. None or zero means the default.
+        duration: s, >= 0, how far to go. None means the default horizon.
 
     Raises:
         InvalidFieldError: a number is out of its range or not finite.
@@ -131,8 +131,8 @@ class UntilContact(AtRate):
     """Samples at a steady rate that end with the first contact of the body with a surface of the world.
 
     Attributes:
-        rate: Hz, samples a second. None or zero: the default.
-        duration: s, >= 0, how far to go. None: the default horizon.
+        rate: Hz, number of samples a second. None or zero means the default.
+        duration: s, >= 0, how far to go. None means the default horizon.
     """
 
 
@@ -144,8 +144,8 @@ class UntilPlane(AtRate):
         plane_point: (3,), m, a point of the plane, world.
         plane_normal: (3,), unit, its normal, world axes.
         body_point: (3,), m, the point of the body, in its published frame F.
-        rate: Hz, samples a second. None or zero: the default.
-        duration: s, >= 0, how far to go. None: the default horizon.
+        rate: Hz, number of samples a second. None or zero means the default.
+        duration: s, >= 0, how far to go. None means the default horizon.
 
     Raises:
         InvalidFieldError: a number is out of its range or not finite, or the normal is not unit.

@@ -1,4 +1,4 @@
-"""The impact that settles a question about contact modes, and the modes after it."""
+"""Resolves the impact that settles a question about contact modes, and finds the modes after it."""
 
 from __future__ import annotations
 
@@ -40,7 +40,8 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
 MOST_CONTACTS_IN_ORDERS: Final = 4
-"""Up to that many contacts the outcomes over all orders are listed: 24 sequences, of some milliseconds."""
+"""Up to this many contacts the outcomes over all orders are listed. These are 24 sequences and take some
+milliseconds."""
 
 _UNSETTLED: Final = (ModeVerdict.INCONSISTENT, ModeVerdict.IMPACT)
 
@@ -50,7 +51,7 @@ class SettledImpact(Record):
     """The impact by which an inconsistent or approaching contact set comes to a contact mode.
 
     Attributes:
-        impact: What the impact comes to.
+        impact: The result of the impact.
         verdict: The verdict on the velocities after it.
         modes: All consistent modes with these velocities, as in `ContactModeAnswer`.
     """
@@ -62,11 +63,11 @@ class SettledImpact(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ModeCase(Record):
-    """What a question about contact modes comes to once all that it names is looked up.
+    """A question about contact modes after all that it names has been looked up.
 
     Attributes:
-        subject: The body in the state that was taken.
-        contacts: Where it touches.
+        subject: The body in the question's state.
+        contacts: The contacts at which it touches.
         force_W: (3,), N, applied besides contact forces, gravity included, world axes.
         torque_W: (3,), N m, applied about the centre of mass, world axes.
         velocity_tolerance: m/s.
@@ -102,7 +103,7 @@ class ModeCase(Record):
 
 
 def settled_in_space(case: ModeCase, verdict: ModeVerdict) -> SettledImpact | None:
-    """Return the impact, and the modes after it, where the verdict on a case in space calls for one."""
+    """Return the impact and the modes after it, or None if the verdict on a case in space needs none."""
     if verdict not in _UNSETTLED:
         return None
     before, contacts, problem = case.before, case.contacts, case.in_space
@@ -142,15 +143,15 @@ def settled_in_plane(
     verdict: ModeVerdict,
     partners: tuple[int, ...],
 ) -> SettledImpact | None:
-    """Return the impact, and the modes after it, where the verdict on a planar case calls for one.
+    """Return the impact and the modes after it, or None if the verdict on a planar case needs none.
 
     Args:
         case: The case in space.
-        problem: The same as its plane of motion sees it.
+        problem: The case in its plane of motion.
         in_plane: The question about contact modes there.
         verdict: The verdict on it.
-        partners: The mirror image of each contact in the plane, for the shares of forces and of impulses at
-            once; impulses in turn belong to the contact that struck.
+        partners: The mirror image of each contact in the plane. Mirror images share forces, and impulses at
+            one instant. An impulse of a sequence belongs to the contact that struck.
     """
     if verdict not in _UNSETTLED:
         return None
@@ -203,7 +204,7 @@ def _several(
     is_settled: Callable[[BodyState], bool],
     plane_normal_W: FloatArray | None = None,
 ) -> SeveralImpact:
-    """Return the impact of several contacts: those that approach strike in turn, those that jam at once."""
+    """Return the impact of several contacts. Those that approach strike in turn, those that jam at once."""
     if verdict == ModeVerdict.IMPACT:
         return several_impact(body, state, contacts, velocity_tolerance=case.velocity_tolerance)
     return settling_impact(
@@ -222,7 +223,7 @@ def _several(
 def _orders(
     case: ModeCase, body: MassProperties, state: BodyState, contacts: ContactSet, verdict: ModeVerdict
 ) -> OrderedOutcomes | None:
-    """Return the outcomes over the orders of contacts that approach, where they are few."""
+    """Return the outcomes over the orders of contacts that approach, or None for too many contacts."""
     if verdict != ModeVerdict.IMPACT or len(contacts) > MOST_CONTACTS_IN_ORDERS:
         return None
     return outcomes_over_orders(body, state, contacts, velocity_tolerance=case.velocity_tolerance)

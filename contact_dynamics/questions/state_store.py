@@ -1,4 +1,4 @@
-"""The published states of each body, newest last, for as long as questions about the past are answered."""
+"""Keeps the published states of each body for as long as questions about the past are answered."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
 
 FUTURE_TOLERANCE: Final = 0.5
-"""s. How far a stamp may be ahead of the clock, where nothing else is said: clocks of two machines that NTP
-keeps differ by far less."""
+"""s. By default a stamp may be ahead of the clock by this much. The clocks of two machines that NTP keeps
+differ by far less."""
 
 
 class StateStore:
-    """States by body, sorted by their stamps; older ones than the history are dropped as new ones come."""
+    """Published states by body, sorted by their stamps. When new ones come, those beyond the history go."""
 
     def __init__(self, *, history: float, timeout: float, future_tolerance: float = FUTURE_TOLERANCE) -> None:
         """Begin without states.
@@ -34,11 +34,11 @@ class StateStore:
         self._states: dict[str, list[BodyState]] = {}
 
     def add(self, body_name: str, state: BodyState, *, now_ns: int | None = None) -> None:
-        """Keep a state; without the present time, ns, whatever its stamp.
+        """Keep a state. ``now_ns`` is the present time, ns. Without it, any stamp is accepted.
 
         Raises:
-            InvalidFieldError: its stamp is ahead of the present time by more than the tolerance. Kept, it
-                would be the newest state until the clock came to it.
+            InvalidFieldError: its stamp is ahead of the present time by more than the tolerance. Such a state
+                would stay the newest until the clock came to it.
         """
         if now_ns is not None:
             ahead_ns = state.stamp_ns - now_ns
@@ -56,11 +56,11 @@ class StateStore:
             del states[: bisect_right(states, oldest - 1, key=_stamp)]
 
     def clear(self) -> None:
-        """Forget all states: the clock was set back, and what they are stamped with has not come yet."""
+        """Forget all states, as when the clock is set back and their stamps become times to come."""
         self._states.clear()
 
     def newest(self, body_name: str, *, now_ns: int | None = None) -> BodyState:
-        """Return the newest state; without the present time, ns, however old it is.
+        """Return the newest state. Without the present time, ns, it may be of any age.
 
         Raises:
             NoStateError: none was published yet.
@@ -75,9 +75,9 @@ class StateStore:
         return states[-1] if now_ns is None else self._fresh(body_name, states[-1], now_ns)
 
     def window(self, body_name: str, newest: BodyState, seconds: float) -> list[BodyState]:
-        """Return the states of the last ``seconds`` up to ``newest``, in order of time, one a stamp."""
+        """Return the states of the last ``seconds`` up to ``newest``, by time, and one for each stamp."""
         states = self._states.get(body_name, [])
-        # No more is kept than the history, so that a longer window, however long, is that one.
+        # No more than the history is kept, so a longer window is as long as the history.
         first = bisect_left(states, newest.stamp_ns - to_ns(min(seconds, self._history)), key=_stamp)
         last = bisect_right(states, newest.stamp_ns, key=_stamp)
         return list({state.stamp_ns: state for state in states[first:last]}.values())
@@ -86,7 +86,7 @@ class StateStore:
         """Return the newest state with at most that stamp.
 
         Raises:
-            NoStateError: none that old is kept.
+            NoStateError: every state that is kept has a later stamp.
             StaleStateError: it is older than ``stamp_ns`` by more than the timeout.
         """
         states = self._states.get(body_name, [])
@@ -98,7 +98,7 @@ class StateStore:
         return self._fresh(body_name, states[index - 1], stamp_ns)
 
     def _forget_future(self, body_name: str, now_ns: int) -> None:
-        """Forget what is ahead of the clock by too much: it came before the clock began or was set back."""
+        """Forget states too far ahead of the clock, which came before the clock began or was set back."""
         states = self._states.get(body_name, [])
         latest = now_ns + self._future_tolerance_ns
         if states and states[-1].stamp_ns > latest:

@@ -1,4 +1,4 @@
-"""What a question is about: a body in a state, as the question says or as it was published."""
+"""Finds the body that a question is about, in the state that it gives or that was published."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class UncertainState(Record):
             (rad/s).
 
     Raises:
-        InvalidFieldError: the covariance is none (`check_covariance`).
+        InvalidFieldError: the matrix is not a covariance (`check_covariance`).
     """
 
     state: BodyState
@@ -58,12 +58,12 @@ class UncertainState(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class PublishedState(Record):
-    """The state of a body that was published, or a fit to several.
+    """A reference to the published state of a body, or to a fit to several states.
 
     Attributes:
-        stamp_ns: ns. The newest state with at most this stamp is taken. None: the newest of all.
-        fit_window: s, >= 0. The motion is fitted to the states of this last time. Zero: one is taken as it
-            is.
+        stamp_ns: ns. The newest state with at most this stamp is taken, or the newest of all if it is None.
+        fit_window: s, >= 0. The motion is fitted to the states of the last ``fit_window`` seconds. With zero,
+            one state is taken as it is.
 
     Raises:
         InvalidFieldError: the window is negative or not finite.
@@ -81,7 +81,7 @@ NEWEST: Final = PublishedState()
 """The newest published state."""
 
 StateSource: TypeAlias = "BodyState | UncertainState | PublishedState"
-"""Where a question takes a body's state from: it says the state itself, or names a published one."""
+"""The sources of a body's state: a question contains the state, or refers to a published one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -101,13 +101,14 @@ class FitQuality(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Subject(Record):
-    """The body that a question is about, and the state that was taken.
+    """The body that a question is about, and its state.
 
     Attributes:
         body: The body.
         state: Its state.
-        covariance: (12, 12), of the state, in the order of `UncertainState`. None: not known.
-        fit: How well the motion fits the published states that the state was found from. None: no fit.
+        covariance: (12, 12), of the state, in the order of `UncertainState`, or None if it is not known.
+        fit: How well the motion fits the published states that the state was found from, or None without a
+            fit.
     """
 
     body: Body
@@ -119,20 +120,22 @@ class Subject(Record):
 def subject_of(
     body: Body | str, source: StateSource, knowledge: Knowledge, *, fit: Fitting | None = None
 ) -> Subject:
-    """Return the body that a question names or describes, in the state that it says or names.
+    """Return the body that a question names or describes, in the state that it gives or refers to.
 
     Args:
         body: The body, or its name in the known world.
-        source: Where its state comes from.
+        source: Its state, or a reference to a published one.
         knowledge: What is known.
-        fit: Finds the state that fits a window of published ones best. None: that of a free flight.
+        fit: A function that finds the state that fits a window of published ones best. By default a free
+            flight is fitted.
 
     Raises:
         UnknownBodyError: the known world has no body of that name.
-        NoStateError: no state of it was published, or none that old.
-        StaleStateError: the newest is too old.
-        InvalidFieldError: a published state of a body without a name; a window that cannot be fitted.
-        TooLargeError: more states in the window than are fitted.
+        NoStateError: no state of it was published, or every one that is kept has a later stamp.
+        StaleStateError: the newest state is too old.
+        InvalidFieldError: a published state is asked for and the body has no name, or the window cannot be
+            fitted.
+        TooLargeError: the window has more states than are fitted.
     """
     if isinstance(body, str):
         body = knowledge.world.body(body)
@@ -156,7 +159,7 @@ def subject_of(
 
 
 def covariance_of(subject: Subject) -> FloatArray:
-    """Return the covariance of a subject's state, (12, 12); without one raise `InvalidFieldError`."""
+    """Return the covariance of a subject's state, (12, 12), or raise `InvalidFieldError` if it has none."""
     if subject.covariance is None:
         raise InvalidFieldError(
             "state.covariance",
@@ -167,7 +170,7 @@ def covariance_of(subject: Subject) -> FloatArray:
 
 
 def changed_body(known: Body, mass_properties: MassProperties, p_FB_F: FloatArray) -> Body:
-    """Return a known body, with its name and its shape, but with another mass.
+    """Return a body with the name and the shape of a known one and another mass.
 
     Args:
         known: The body as it is known.
@@ -183,7 +186,7 @@ def changed_body(known: Body, mass_properties: MassProperties, p_FB_F: FloatArra
 
 
 def _published(body: Body, source: PublishedState, knowledge: Knowledge) -> Sequence[BodyState]:
-    """Return the published states that are asked for, in order of time, of the body's centre of mass."""
+    """Return the published states that are asked for, by time, as states of the body's centre of mass."""
     name = body.name
     if not name:
         raise InvalidFieldError("body_name", name, "the name of a known body, or a state of its own")
@@ -200,7 +203,7 @@ def _published(body: Body, source: PublishedState, knowledge: Knowledge) -> Sequ
 
 
 def _carried_over(state: BodyState, known: Body, body: Body) -> BodyState:
-    """Return a published state of a known body as that of the same body with another centre of mass."""
+    """Return the state of a body's centre of mass, from that of the known body with another centre."""
     return state_of_center_of_mass(
         p_WF_W=origin_of_published_frame(state, known.p_FB_F),
         q_WF=state.q_WB,

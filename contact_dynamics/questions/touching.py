@@ -1,4 +1,4 @@
-"""Which contacts a question is about: those that it names, or those that geometry finds."""
+"""Finds the contacts of a question: those that it states, or those that geometry finds."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def contacts_of(
     named: ContactSet | None, subject: Subject, world: World, *, distance_tolerance: float
 ) -> ContactSet:
-    """Return the contacts that a question names; None: those of the body's shape with the world's surfaces.
+    """Return the contacts that a question states, or else those of the body with the world's surfaces.
 
     Raises:
         NoContactError: there is none.
@@ -36,7 +36,7 @@ def contacts_of(
 
 
 def check_has_shape(body: Body) -> None:
-    """Refuse a body without a shape that could touch anything, with `NoContactError`."""
+    """Raise `NoContactError` for a body without a shape that could touch anything."""
     if body.shape.is_empty:
         message = (
             f"contacts: body {body.name!r} has no shape to find them from, allowed are explicit contacts"

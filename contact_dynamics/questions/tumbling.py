@@ -45,16 +45,16 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import MassProperties
 
 FLIPS: Final = 3
-"""How many of the next flips are told."""
+"""An answer has this many of the next flips."""
 
 MOST_COVARIANCES: Final = 2000
-"""Most samples with covariances in one answer. More would stall the middleware."""
+"""Largest number of samples with covariances in one answer. More would stall the middleware."""
 
 MOST_CARRIED_TURNS: Final = 30.0
-"""Longest motion under torque or drag with covariances, in turns: 1 or 2 s of computing."""
+"""Longest motion under torque or drag with covariances, in turns. It takes 1 or 2 s of computing."""
 
 MOST_CURVE_POINTS: Final = 10_000
-"""Longest polhode and herpolhode in one answer. More would stall the middleware."""
+"""Largest number of points of polhode and herpolhode in one answer. More would stall the middleware."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -63,14 +63,13 @@ class TumblingQuestion(Record):
 
     Attributes:
         body: The body, or the name of one of the known world.
-        state: Its state, with a covariance or without, or which published one.
-        sampling: At which times. By default at the default rate over the default horizon.
-        gravity_W: (3,), m/s^2, world axes. None: that of the known world.
-        wrench: A wrench that acts all along, besides gravity.
+        state: Its state, with or without a covariance, or a reference to a published one.
+        sampling: The times of the samples. By default they come at the default rate over the default horizon.
+        gravity_W: (3,), m/s^2, world axes. If it is None, the known world's gravity acts.
+        wrench: A constant wrench that acts besides gravity.
         drag: Drag in still air.
-        want_covariance: Whether to carry the state's covariance along.
-        curve_points: How many points of polhode and herpolhode to tell, at most `MOST_CURVE_POINTS`. Zero:
-            none.
+        want_covariance: Whether the answer has the state's covariance at each sample.
+        curve_points: Number of points of polhode and herpolhode in the answer, at most `MOST_CURVE_POINTS`.
 
     Raises:
         InvalidFieldError: gravity is not three finite numbers.
@@ -103,7 +102,7 @@ class TumblingQuestion(Record):
             """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
-        """Check what has no type of its own."""
+        """Check gravity and the number of points."""
         if self.gravity_W is not None:
             object.__setattr__(self, "gravity_W", check_array("gravity_W", self.gravity_W, (3,)))
         if self.curve_points > MOST_CURVE_POINTS:
@@ -112,20 +111,21 @@ class TumblingQuestion(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class TumblingAnswer(Record):
-    """Where the body will be.
+    """Where the body will be, and what is known of its rotation.
 
     Attributes:
-        body_name: The body's name; empty where it has none.
+        body_name: The body's name, which may be empty.
         p_FB_F: (3,), m, its centre of mass in its published frame F.
-        state: The state that was taken; times count from its stamp.
-        fit: How well the motion fits the published states that the state was found from. None: no fit.
+        state: The question's state. Times count from its stamp.
+        fit: How well the motion fits the published states that the state was found from, or None without a
+            fit.
         trajectory: The centre of mass, the orientation and the velocities at the times asked for.
-        covariance: The state's covariance at these times. None: not asked for.
+        covariance: The state's covariance at these times, or None if it was not asked for.
         method: Whether the motion is exact or integrated.
-        event: What ended the trajectory. None: nothing did, all samples asked for are there.
-        poinsot: The rotation as Poinsot saw it. None: a torque acts, so that his picture does not apply.
-        flips: The next flips of the middle axis. None: as for ``poinsot``.
-        curves: Polhode and herpolhode. None: not asked for, or as for ``poinsot``.
+        event: What ended the trajectory, or None if all samples that were asked for are there.
+        poinsot: Poinsot's picture of the rotation, or None if a torque acts, so that it does not apply.
+        flips: The next flips of the middle axis, or None if a torque acts.
+        curves: Polhode and herpolhode, or None if they were not asked for or a torque acts.
     """
 
     body_name: str
@@ -142,10 +142,10 @@ class TumblingAnswer(Record):
 
 
 def answer(question: TumblingQuestion, knowledge: Knowledge | None = None) -> TumblingAnswer:
-    """Answer a question about tumbling; without ``knowledge`` no body is known by name, and no surface.
+    """Answer a question about tumbling. Without ``knowledge`` no body is known by name, and no surface.
 
     Raises:
-        ContactDynamicsError: something is asked for that is not known or not allowed; the message says what.
+        ContactDynamicsError: something is asked for that is not known or not allowed. The message names it.
     """
     known = Knowledge() if knowledge is None else knowledge
     forces = _Forces(
@@ -206,7 +206,7 @@ class _Forces:
 def _rotation(
     question: TumblingQuestion, subject: Subject, motion: FreeMotion | ForcedMotion
 ) -> tuple[Poinsot | None, Flips | None, RollingCurves | None]:
-    """Return Poinsot's picture of a rotation, its next flips and its curves; none of them under a torque."""
+    """Return Poinsot's picture of a rotation, its next flips and its curves. Under a torque all are None."""
     if isinstance(motion, ForcedMotion):
         if not motion.rotates_freely:
             return None, None, None

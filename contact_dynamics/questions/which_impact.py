@@ -1,4 +1,4 @@
-"""Which impact a question is about: the bodies, their states just before, and the contacts."""
+"""Finds the impact that a question is about: the bodies, their states just before, and the contacts."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ class Strike(Record):
     """An impact that is to be resolved.
 
     Attributes:
-        subject: The first body, in the state that was taken.
-        other: The second body. None: the world.
-        seconds: s, from that state to the impact.
+        subject: The first body, in the question's state.
+        other: The second body, or None for the world.
+        seconds: The time from that state to the impact, s.
         state: The first body just before.
-        contacts: Where it strikes.
-        velocity_tolerance: m/s.
-        distance_tolerance: m.
+        contacts: The contacts at which it strikes.
+        velocity_tolerance: m/s. A slower approach counts as none.
+        distance_tolerance: m. A body with a smaller gap touches.
     """
 
     subject: Subject
@@ -47,7 +47,7 @@ class Strike(Record):
 
 
 def strike_of(question: ImpactQuestion, knowledge: Knowledge) -> Strike:
-    """Return the impact that a question means: at the contacts that it names, or at the next landing.
+    """Return the impact that a question means, at the contacts that it states or at the next landing.
 
     Raises:
         ContactDynamicsError: nothing strikes, or a part of the question is not known or not supported.
@@ -89,7 +89,7 @@ def strike_of(question: ImpactQuestion, knowledge: Knowledge) -> Strike:
 
 
 def _check_supported(question: ImpactQuestion, *, contact_count: int) -> None:
-    """Raise `NotSupportedError` for what can be asked together and no law here answers."""
+    """Raise `NotSupportedError` for combinations that a question can ask for and no law here answers."""
     in_time = isinstance(question.several_contacts_law, InTime)
     is_planar, has_other = question.problem is Problem.PLANAR, question.other is not None
     if has_other and (question.want_orders or is_planar or in_time):
@@ -121,7 +121,7 @@ def _landing(
     velocity_tolerance: float,
     distance_tolerance: float,
 ) -> tuple[float, BodyState, ContactSet]:
-    """Return when a body lands, s after its state, its state then, and where it touches."""
+    """Return when a body lands, s after its state, its state then, and its contacts."""
     check_has_shape(subject.body)
     horizon = or_default(question.horizon, knowledge.defaults.horizon)
     landing = next_landing(

@@ -1,6 +1,6 @@
-"""Logs that answer again: every logged question is asked anew, from the file alone and without ROS.
+"""Asks every question of a log again, from the file alone and without ROS.
 
-`verify` has the one call, `verify_log`. `timeline` brings questions and states into the order in which they
-came. `again` answers as the server did. `compare` sets two responses side by side. `stand_ins` makes the
-classes of messages that ROS would bring. `arguments`, `run` and `report` are the command.
+`verify` has the one call, `verify_log`. `timeline` puts questions and states into the order in which they
+came. `again` answers as the server did. `compare` finds the fields in which two responses differ. `stand_ins`
+makes the classes of messages where ROS is not installed. `arguments`, `run` and `report` are the command.
 """

@@ -1,7 +1,7 @@
-"""The server once more, without ROS: its configuration, the states that it knew, its answers.
+"""Answers questions as the server of a log did, with its configuration and the states that it knew.
 
-It is made of what the server is made of: the same reading of parameters, of states and of requests, the same
-answers, the same writing of responses.
+It shares the server's code: parameters, states and requests are read by the same functions, the same layer
+answers, and responses are written by the same functions. It needs no ROS.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ CLOCK: Final = "/clock"
 
 
 class ServerAgain:
-    """Answers as the server of a log did, from what it was configured with and had received."""
+    """Answers requests as the server of a log did, from its configuration and what it had received."""
 
     def __init__(self, run: Mapping[str, str]) -> None:
         """Take the configuration from the log's record of its run.
@@ -53,7 +53,7 @@ class ServerAgain:
             world=parameters.world,
             states=self._states,
             defaults=parameters.defaults,
-            now_ns=lambda: self._asked_ns or None,  # zero before a simulation tells the time
+            now_ns=lambda: self._asked_ns or None,  # it is zero before a simulation tells the time
         )
         self._sources: dict[str, tuple[str, Callable[[Any], BodyState | None]]] = {}
         for topics in parameters.topics:
@@ -82,13 +82,13 @@ class ServerAgain:
     def answer(
         self, service_type: str, request: object, make_response: Callable[[], Any], *, asked_ns: int
     ) -> Any:
-        """Return the response to a request.
+        """Return the response to a request, also where the request is refused.
 
         Args:
             service_type: "package/srv/Name".
-            request: as it was logged.
-            make_response: returns an empty one.
-            asked_ns: when the request came, by the clock of the states.
+            request: the request as it was logged.
+            make_response: a function that returns an empty response.
+            asked_ns: when the request came, ns, on the clock of the states' stamps.
         """
         self._asked_ns = asked_ns
         name = service_type.rpartition("/")[2]

@@ -11,8 +11,8 @@ def replay_parser() -> argparse.ArgumentParser:
         prog="contact-dynamics replay",
         description="Ask every logged question again, with the states that were logged, and compare the "
         "answers. This needs the logs alone, no ROS.",
-        epilog="exit code: 0 all answers are as logged; 1 an answer differs, or a call cannot be read; "
-        "2 a log is none of the server",
+        epilog="The exit code is 0 if all answers are as logged, 1 if an answer differs or a call cannot be "
+        "read, and 2 if a file is no log of the server.",
     )
     parser.add_argument(
         "logs", nargs="*", metavar="LOG", help="folder of a log of the server, or its .mcap file"
@@ -22,8 +22,8 @@ def replay_parser() -> argparse.ArgumentParser:
         type=_tolerance,
         default=0.0,
         metavar="T",
-        help="what a number may differ by, in parts of the larger of the two or of 1, whichever is more "
-        "(default: nothing, to the last bit)",
+        help="how much a number may differ, relative to the larger of the two, or to 1 if both are smaller "
+        "(default: 0, so that every bit counts)",
     )
     return parser
 

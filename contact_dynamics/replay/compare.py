@@ -1,4 +1,4 @@
-"""Two responses side by side, field by field."""
+"""Compares two responses field by field."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 MEASURED: Final = frozenset({"computation_time"})
-"""Fields of a response that tell how the answer was made, not what it is."""
+"""These fields of a response say how the answer was made, not what it is. They are not compared."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Difference:
-    """One field that is not the same.
+    """One field in which two responses differ.
 
     Attributes:
-        field: Its path within the response, as in "modes[2].margin".
+        field: Path of the field within the response, as in "modes[2].margin".
         logged: Its value in the log.
-        recomputed: Its value today.
-        size: The difference of the two, in parts of the larger one or of 1, whichever is more. Infinite
-            where they are not numbers, not as many, or one of them is not finite.
+        recomputed: Its value when the question is asked again.
+        size: The difference relative to the larger of the two, or to 1 if both are smaller. It is infinite if
+            the values are not numbers, if one of them is not finite, or if arrays have unequal lengths.
     """
 
     field: str
@@ -36,7 +36,7 @@ class Difference:
 
 
 def differences(logged: Message, recomputed: object, *, path: str = "") -> Iterator[Difference]:
-    """Yield each field of a logged message that another message has otherwise, to the bit."""
+    """Yield each field of a logged message whose value in another message is not the same to the last bit."""
     for field in logged.FIELDS:
         if not path and field.name in MEASURED:
             continue
@@ -92,7 +92,7 @@ def _of_lengths(name: str, ours: int, theirs: int) -> Difference:
 
 
 def _size(x: float, y: float) -> float:
-    """Return how far two numbers are apart, in parts of the larger one or of 1."""
+    """Return the distance of two numbers relative to the larger one, or to 1 if both are smaller."""
     if not (math.isfinite(x) and math.isfinite(y)):
         return math.inf
     return abs(x - y) / max(1.0, abs(x), abs(y))

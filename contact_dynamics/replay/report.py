@@ -1,4 +1,4 @@
-"""What came of a log, as text for a terminal."""
+"""Writes the result of a replay as text for a terminal."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from contact_dynamics.constants import NS_PER_S
 if TYPE_CHECKING:
     from contact_dynamics.replay.verify import OtherAnswer, Verification
 
-_LONGEST_VALUE: Final = 120  # characters; messages that an answer carries can be pages
+_LONGEST_VALUE: Final = 120  # characters, since a message that an answer carries can be pages long
 
 
 def report(found: Verification) -> str:
-    """Return the table of a log, what differs first, and what could not be read."""
+    """Return the table of one log, the first answers that differ, and what could not be read."""
     lines = [str(found.path)]
     changed = [
         f"{name} {text} (here {found.versions_now[name]})"

@@ -1,4 +1,4 @@
-"""`contact-dynamics replay`: logs are asked again, one after the other, and a table is printed of each."""
+"""The command `contact-dynamics replay` asks logs again, one after the other, and prints a table for each."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from contact_dynamics.replay.report import report
 from contact_dynamics.replay.verify import verify_log
 
 DIFFERENT: Final = 1
-"""Exit code: an answer differs, or a call cannot be read."""
+"""This exit code says that an answer differs, or that a call cannot be read."""
 
 NO_LOG: Final = 2
-"""Exit code: a log cannot be asked at all."""
+"""This exit code says that a file cannot be replayed at all."""
 
 _TELL_EVERY_S: Final = 1.0
 
 
 def main(arguments: list[str]) -> int:
-    """Verify each log; return the exit code."""
+    """Replay each log and return the exit code."""
     parser = replay_parser()
     given = parser.parse_args(arguments)
-    if not given.logs:  # here, so that a mistyped option is named first
+    if not given.logs:  # argparse would complain of this before it complains of a mistyped option
         parser.error("found no LOG, needed is one at least")
     worst = 0
     for name in given.logs:
@@ -44,7 +44,7 @@ def main(arguments: list[str]) -> int:
 
 
 class _Progress:
-    """A line that tells once a second how far it is, where somebody watches."""
+    """A line on the terminal that says once a second how much of the log has been read."""
 
     def __init__(self, name: str) -> None:
         self._name = name

@@ -1,8 +1,8 @@
-"""Classes of messages where ROS is not installed: made of a log's own definitions, under ROS's names.
+"""Makes classes of messages from a log's own definitions, for machines where ROS is not installed.
 
-`msg_adapters` writes responses with the classes that ROS generates of interface files. A log holds the text
-of these files. Where ``geometry_msgs.msg`` and its like are missing, modules of that name stand in, with
-classes made of the texts. Where ROS is installed, its own classes are used.
+`msg_adapters` imports the classes that ROS generates from interface files. A log holds the text of these
+files. If ``geometry_msgs.msg`` and the like are missing, modules of the same names are made here, with
+classes made from the texts. If ROS is installed, its own classes are used.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ _PACKAGES: Final = (
     "geometry_msgs.msg",
     "nav_msgs.msg",
 )
-"""The modules of messages that `msg_adapters` imports."""
+"""`msg_adapters` imports messages from these modules."""
 
 _PARTS: Final = ("_Request", "_Response", EVENT_SUFFIX)
 
 
 def stand_in(definitions: Iterable[tuple[str, str]]) -> None:
-    """Let what ROS would bring be imported, made of the types' names and texts.
+    """Make the missing modules of messages importable, from pairs of a type's name and its text.
 
     Raises:
-        NotSupportedError: a type stands in already, with other fields than these.
+        NotSupportedError: a type of this name was made before, with other fields.
     """
     modules = {name: _module(name) for name in _PACKAGES if _is_missing(name)}
     for type_name, text in definitions:
@@ -59,16 +59,16 @@ def _put(module: ModuleType, name: str, part: str, message_type: type[Message]) 
         setattr(owner, name, message_type)
     elif stands.FIELDS != message_type.FIELDS:
         raise NotSupportedError(
-            f"{message_type.__name__}: this log defines it otherwise than the one before; "
-            "allowed is to replay each in a process of its own"
+            f"{message_type.__name__}: found other fields in this log than in the one before, "
+            "allowed is to replay each log in a process of its own"
         )
 
 
 class _StandIn(ModuleType):
-    """A module of messages; a type that no log has described can be named, but not made."""
+    """A module of messages. A type that no log has described can be imported, but not instantiated."""
 
     def __getattr__(self, name: str) -> Any:
-        """Return the class of a type that is not there."""
+        """Return a class that cannot be instantiated, for a type that no log has described."""
         if name.startswith("__"):
             raise AttributeError(name)
 
@@ -79,7 +79,7 @@ class _StandIn(ModuleType):
 
 
 def _is_missing(name: str) -> bool:
-    """Tell whether a module is not installed; a folder without code, as in the sources, is no module."""
+    """Return whether a module is not installed. A folder without code, as in the sources, does not count."""
     if isinstance(sys.modules.get(name), _StandIn):
         return True
     try:
@@ -96,7 +96,7 @@ def _module(name: str) -> ModuleType:
     package = name.partition(".")[0]
     parent = sys.modules.setdefault(package, ModuleType(package))
     module = _StandIn(name)
-    module.__spec__ = ModuleSpec(name, None)  # without an origin: it does not count as installed
+    module.__spec__ = ModuleSpec(name, None)  # it has no origin, so it does not count as installed
     setattr(parent, name.rpartition(".")[2], module)
     sys.modules[name] = module
     return module

@@ -1,8 +1,9 @@
-"""The questions of a log in the order in which they came, each after the states that were known by then.
+"""Yields the questions of a log in the order in which they came, each after the states known by then.
 
-The log has states in the order in which they came, and events behind what came while the answer was made. So
-the file is read twice at once: one reading finds the calls, the other follows with the states, up to the
-``log_time`` of each request. Whatever the length of the log, one call and one message are in memory.
+A log has states in the order in which they came. The events of a call come later in it than the states that
+came while the answer was computed. So the file is read twice at the same time. One reading finds the calls,
+and the other follows with the states up to the ``log_time`` of each request. Only one call and one message
+are in memory, however long the log is.
 """
 
 from __future__ import annotations
@@ -23,12 +24,12 @@ INTERFACES: Final = "contact_dynamics_interfaces/srv/"
 def in_order(
     calls_from: BagReader, states_from: BagReader, topics: Collection[str]
 ) -> Iterator[LoggedMessage | ServiceCall]:
-    """Yield the messages of some topics, and between them each call where its request came.
+    """Yield the messages of some topics, and each call at the place where its request came.
 
     Args:
-        calls_from: reads the calls of this package's services.
-        states_from: reads the same log once more.
-        topics: what the answers depend on.
+        calls_from: the log, for the calls of this package's services.
+        states_from: the same log, opened a second time, for the messages of the topics.
+        topics: the topics that answers depend on.
     """
     states = states_from.messages(topics)
     state = next(states, None)
@@ -41,7 +42,7 @@ def in_order(
 
 
 def is_event_of_ours(message: LoggedMessage) -> bool:
-    """Tell whether a message is an event of a service of this package."""
+    """Return whether a message is an event of a service of this package."""
     return (
         message.topic.endswith(EVENT_TOPIC_SUFFIX)
         and message.type_name.startswith(INTERFACES)

@@ -1,4 +1,4 @@
-"""Asks today's code every logged question, with the states that were logged, and compares the answers."""
+"""Asks every logged question again, with the states that were logged, and compares the answers."""
 
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ if TYPE_CHECKING:
     from contact_dynamics.replay.again import ServerAgain
 
 MOST_TOLD: Final = 10
-"""Number of questions with other answers whose differences are kept."""
+"""The differences of this many questions are kept."""
 
 MOST_FIELDS_TOLD: Final = 5
-"""Number of different fields of one answer that are kept."""
+"""This many different fields of one answer are kept."""
 
 
 @dataclass(slots=True, kw_only=True)
 class ServiceTally:
-    """How the questions to one service came out.
+    """Counts of the questions to one service, by how their answers compare.
 
     Attributes:
-        questions: How many were asked again.
-        equal: Answered as in the log to the last bit.
-        within: Answered otherwise, by no more than the tolerance.
-        different: Answered otherwise, by more.
-        unanswered: Questions that the log has no answer to.
+        questions: Questions that were asked again.
+        equal: Answers that are as in the log to the last bit.
+        within: Other answers, none of which differs by more than the tolerance.
+        different: Answers that differ by more than the tolerance.
+        unanswered: Questions without an answer in the log, which were not asked.
         unreadable: Calls whose question is missing, or that cannot be decoded.
     """
 
@@ -55,12 +55,13 @@ class ServiceTally:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OtherAnswer:
-    """A question that is answered otherwise today.
+    """A question whose answer differs from the logged one.
 
     Attributes:
-        service: With its leading slash.
+        service: The service's name with its leading slash.
         number: Number of the question among those to this service, from 1.
-        asked_ns: When it came, ns since the epoch by the machine's clock: the ``log_time`` of its event.
+        asked_ns: When it came, ns since the epoch, by the machine's clock. It is the ``log_time`` of its
+            event.
         differences: The first fields that differ.
     """
 
@@ -72,17 +73,17 @@ class OtherAnswer:
 
 @dataclass(slots=True, kw_only=True)
 class Verification:
-    """What came of one log.
+    """The result of one log's replay.
 
     Attributes:
-        path: The log.
-        tolerance: What a number may differ by, in parts of the larger one or of 1.
-        versions: Versions of what wrote the log, by name.
-        versions_now: Versions of what answered again, by name.
+        path: Path of the log.
+        tolerance: How much a number may differ, relative to the larger one, or to 1 if both are smaller.
+        versions: Versions of the libraries that wrote the log, by name.
+        versions_now: Versions of the libraries that answered again, by name.
         services: Tallies by the service's name.
-        others: The first questions that are answered otherwise.
-        unreadable: Why a call could not be read: the first reason.
-        damage: What of the log could not be read, or None if all was whole.
+        others: The first questions whose answers differ.
+        unreadable: The first reason why a call could not be read, or None if all could.
+        damage: The damaged parts of the log, in words, or None if all was whole.
     """
 
     path: Path
@@ -108,19 +109,20 @@ def verify_log(
     Fields that tell how an answer was made (`compare.MEASURED`) are left out.
 
     Args:
-        path: a log of the server: its folder, or an ``.mcap`` file.
-        tolerance: >= 0. What a number may differ by, in parts of the larger one or of 1, whichever is more.
-            Zero: nothing, to the last bit.
-        on_progress: told again and again how many states were taken and how many questions asked.
+        path: a log of the server, as its folder or as an ``.mcap`` file.
+        tolerance: >= 0. How much a number may differ, relative to the larger one, or to 1 if both are
+            smaller. With zero every bit counts.
+        on_progress: a function that is called after each message, with the number of states taken and of
+            questions asked so far.
 
     Raises:
-        NotALogError: it is no log, or none of the server.
+        NotALogError: the path has no log, or a log of something else than the server.
         ConfigurationError: its record of the run lacks a parameter, or has one that is not allowed.
-        NotSupportedError: without ROS, another log in this process described a message otherwise.
+        NotSupportedError: ROS is not installed, and another log in this process gave a message other fields.
     """
     check_not_negative("tolerance", tolerance)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DamagedLogWarning)  # told in the result
+        warnings.simplefilter("ignore", DamagedLogWarning)  # the result says it
         run, server = _server_of(path)
         found = Verification(
             path=path,
@@ -158,7 +160,7 @@ def _server_of(path: Path) -> tuple[dict[str, str], ServerAgain]:
             f"{path}: not a log of the server: no record of how its run was configured{damage}"
         )
     stand_in(definitions.items())
-    from contact_dynamics.replay.again import ServerAgain  # here, for it imports what now stands in for ROS
+    from contact_dynamics.replay.again import ServerAgain  # it imports messages, which may exist only now
 
     return run, ServerAgain(run)
 
@@ -170,7 +172,7 @@ def _ask(call: ServiceCall, server: ServerAgain, found: Verification) -> None:
         tally.unanswered += 1
         return
     if call.request_event is None:
-        _unreadable(found, tally, "the log has an answer whose question it has not")
+        _unreadable(found, tally, "the log has an answer without its question")
         return
     try:
         request, _ = _contents(call.request_event, "request")
@@ -179,7 +181,7 @@ def _ask(call: ServiceCall, server: ServerAgain, found: Verification) -> None:
         _unreadable(found, tally, str(error))
         return
     tally.questions += 1
-    # The time of the node's clock when the question came: its present.
+    # The node's clock told this time when the question came.
     asked_ns = call.request_event.publish_time_ns
     recomputed = server.answer(call.service_type, request, make_response, asked_ns=asked_ns)
     same, told = _beyond(differences(logged, recomputed), found.tolerance)

@@ -272,7 +272,7 @@ def test_a_contact_that_leaves_strikes_when_it_comes_back(client: Client) -> Non
 @pytest.mark.parametrize(
     ("field", "value", "expected"),
     [
-        ("problem", PredictImpact.Request.PLANAR, "problem: found PLANAR (1)"),
+        ("problem", PredictImpact.Request.PLANAR, "problem: found PLANAR"),
         ("want_orders", True, "want_orders: found true"),
         ("want_covariance", True, "want_covariance: found true"),
         ("other_body_name", "cat", "found 'cat'"),
