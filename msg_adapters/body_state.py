@@ -1,7 +1,6 @@
-"""`contact_dynamics_interfaces/BodyState` to a body's state and back.
+"""Converts `contact_dynamics_interfaces/BodyState` to a body's state and back.
 
-The message's pose is that of the published frame, its velocity that of the centre of mass, both in the
-world's axes.
+The message has the pose of the published frame and the velocity of the centre of mass, both in world axes.
 """
 
 from __future__ import annotations
@@ -62,12 +61,12 @@ def body_state_to_msg(
     p_FB_F: FloatArray,
     into: BodyStateMsg | None = None,
 ) -> BodyStateMsg:
-    """Return the state as a message: a new one, or the one to fill."""
+    """Return the state as a message, which is new unless one to fill is given."""
     msg = BodyStateMsg() if into is None else into
     stamp_to_msg(state.stamp_ns, into=msg.header.stamp)
     msg.header.frame_id = world_frame
     msg.body_name = body_name
-    # Into what the message has already: messages cost more to build than to fill.
+    # A message costs more to build than to fill, so what it has already is filled.
     at, turn, v, w = msg.pose.position, msg.pose.orientation, msg.linear_velocity, msg.angular_velocity
     at.x, at.y, at.z = origin_of_published_frame(state, p_FB_F).tolist()
     turn.x, turn.y, turn.z, turn.w = state.q_WB.tolist()
@@ -79,7 +78,8 @@ def body_state_to_msg(
 def center_of_mass(body_name: str, world: World) -> FloatArray:
     """Return where a body's centre of mass is in its published frame, (3,), m.
 
-    Messages do not say it. Of a body that the world does not know it is taken to be at that frame's origin.
+    Messages do not say it. If the world does not know the body, its centre of mass counts as that frame's
+    origin.
     """
     known = (body.p_FB_F for body in world.bodies if body.name == body_name)
     return next(known, np.zeros(3))
@@ -88,12 +88,12 @@ def center_of_mass(body_name: str, world: World) -> FloatArray:
 def known_state_from_msg(
     msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArray
 ) -> BodyState | UncertainState:
-    """Return the state, with its covariance where the message has one.
+    """Return the state, with its covariance if the message has one.
 
     Raises:
-        InvalidFieldError: a covariance of another length than 144; or as `body_state_from_msg` and
+        InvalidFieldError: the covariance has another length than 144, or an error of `body_state_from_msg` or
             `UncertainState`.
-        FrameMismatchError: as `body_state_from_msg`.
+        FrameMismatchError: as in `body_state_from_msg`.
     """
     state = body_state_from_msg(msg, world_frame=world_frame, p_FB_F=p_FB_F)
     if len(msg.covariance) == 0:
@@ -113,7 +113,7 @@ def known_state_to_msg(
     p_FB_F: FloatArray,
     into: BodyStateMsg | None = None,
 ) -> BodyStateMsg:
-    """Return the state, with its covariance where that is known: a new message, or the one to fill."""
+    """Return the state as a message, a new one or the one to fill, with its covariance if that is known."""
     state = known if isinstance(known, BodyState) else known.state
     msg = body_state_to_msg(state, body_name=body_name, world_frame=world_frame, p_FB_F=p_FB_F, into=into)
     if isinstance(known, UncertainState):

@@ -1,4 +1,4 @@
-"""Answers about contact modes to the service's response and back, in world axes."""
+"""Converts answers about contact modes to the service's response and back, in world axes."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 def contact_mode_answer_to_msg(
     answer: ContactModeAnswer, *, world_frame: str, into: PredictContactMode.Response | None = None
 ) -> PredictContactMode.Response:
-    """Return an answer as a response: a new one, or the empty one to fill."""
+    """Return an answer as a response, which is new unless an empty one to fill is given."""
     msg = PredictContactMode.Response() if into is None else into
     margins = repeat(None) if answer.margins is None else answer.margins
     msg.verdict = int(answer.verdict)
@@ -68,12 +68,12 @@ def contact_mode_answer_to_msg(
 
 
 def contact_mode_answer_from_msg(msg: PredictContactMode.Response, *, world: World) -> ContactModeAnswer:
-    """Return the answer that a response carries; ``world`` knows the body's centre of mass.
+    """Return the answer that a response contains. ``world`` knows the body's centre of mass.
 
-    Where there is no mode, the response does not tell margins that were not asked for from none.
+    If there is no mode, the response does not say whether margins were asked for.
 
     Raises:
-        InvalidFieldError: arrays of unequal length, or a number that is not allowed.
+        InvalidFieldError: arrays have unequal lengths, or a number is not allowed.
     """
     p_FB_F = center_of_mass(msg.state.body_name, world)
     margins = tuple(filter(None, map(margin_from_msg, msg.modes)))
@@ -108,7 +108,7 @@ def contact_mode_answer_from_msg(msg: PredictContactMode.Response, *, world: Wor
 
 
 def mode_to_msg(mode: SpatialMode, margin: SpatialModeMargin | None = None) -> ContactMode:
-    """Return a mode, with its margin where that was asked for."""
+    """Return a mode as a message, with its margin if that was asked for."""
     msg = ContactMode(
         mode=mode.mode,
         linear_acceleration=mode.acceleration_W,
@@ -131,7 +131,7 @@ def mode_to_msg(mode: SpatialMode, margin: SpatialModeMargin | None = None) -> C
 
 
 def mode_from_msg(msg: ContactMode) -> SpatialMode:
-    """Return a mode, without its margin."""
+    """Return the mode in a message, without its margin."""
     return SpatialMode(
         mode=msg.mode,
         acceleration_W=np.array(msg.linear_acceleration),
@@ -146,7 +146,7 @@ def mode_from_msg(msg: ContactMode) -> SpatialMode:
 
 
 def margin_from_msg(msg: ContactMode) -> SpatialModeMargin | None:
-    """Return the margin of a mode; None: it was not asked for."""
+    """Return the margin of the mode in a message, or None if it was not asked for."""
     if msg.margin_length == 0.0:
         return None
     return SpatialModeMargin(
@@ -184,7 +184,7 @@ def wrench_set_from_msg(msg: ModeWrenches) -> SpatialWrenchSet:
 
 
 def _write_refused(msg: PredictContactMode.Response, modes: tuple[RefusedMode, ...]) -> None:
-    """Write which modes mechanics refuses, and why."""
+    """Write the modes that mechanics refuses, with the reasons."""
     msg.refused_modes = [refused.mode for refused in modes]
     msg.refusals = [int(refused.refusal) for refused in modes]
     msg.refused_contacts = [refused.contact for refused in modes]
@@ -192,7 +192,7 @@ def _write_refused(msg: PredictContactMode.Response, modes: tuple[RefusedMode, .
 
 
 def _read_refused(msg: PredictContactMode.Response) -> tuple[RefusedMode, ...]:
-    """Return which modes mechanics refuses, and why."""
+    """Return the modes that mechanics refuses, with the reasons."""
     columns = zip(msg.refused_modes, msg.refusals, msg.refused_contacts, msg.refusal_amounts, strict=True)
     return tuple(
         RefusedMode(mode=mode, refusal=Refusal(refusal), contact=contact, amount=amount)
@@ -211,7 +211,7 @@ def _write_statics(msg: PredictContactMode.Response, statics: BodyStatics | None
 
 
 def _read_statics(msg: PredictContactMode.Response) -> BodyStatics | None:
-    """Return the answers to the static questions, without the length of their metric, which is not told."""
+    """Return the answers to the static questions. The length that compares torques is not in the message."""
     if msg.equilibrium == msg.NOT_ASKED:
         return None
     return BodyStatics(

@@ -1,4 +1,4 @@
-"""`contact_dynamics_interfaces/ContactSet` to a contact set and back."""
+"""Converts `contact_dynamics_interfaces/ContactSet` to a contact set and back."""
 
 from __future__ import annotations
 
@@ -35,8 +35,10 @@ def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
     """Return the contacts.
 
     Raises:
-        InvalidFieldError: arrays of unequal length, curvatures without the kind CURVED, or as `ContactSet`.
-        TooLargeError: more than `MOST_CONTACTS` contacts. NotSupportedError: moving surfaces.
+        InvalidFieldError: arrays have unequal lengths, curvatures are without the kind CURVED, or an error of
+            `ContactSet`.
+        TooLargeError: there are more than `MOST_CONTACTS` contacts.
+        NotSupportedError: a surface moves.
     """
     n = len(msg.frictions)
     if max(n, len(msg.positions) // 3, len(msg.normals) // 3) > MOST_CONTACTS:
@@ -59,7 +61,7 @@ def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
 
 
 def contacts_to_msg(contacts: ContactSet, *, into: ContactSetMsg | None = None) -> ContactSetMsg:
-    """Return the contacts as a message: a new one, or the empty one to fill."""
+    """Return the contacts as a message, which is new unless an empty one to fill is given."""
     msg = ContactSetMsg() if into is None else into
     msg.positions = flat(contacts.p_WC_W)
     msg.normals = flat(contacts.normals_W)
@@ -86,7 +88,7 @@ def contacts_to_msg(contacts: ContactSet, *, into: ContactSetMsg | None = None) 
 
 
 def flat(values: FloatArray) -> array[float]:
-    """Return numbers as the flat `array.array` that message fields take without a check of each element."""
+    """Return numbers as a flat `array.array`, which message fields accept without checking each element."""
     numbers = array("d")
     numbers.frombytes(np.ascontiguousarray(values, dtype=np.float64).tobytes())
     return numbers
@@ -98,7 +100,7 @@ def rows(numbers: Sequence[float], width: int = 3) -> FloatArray:
 
 
 def _sides(msg: ContactSetMsg) -> tuple[Curvatures | None, Curvatures | None]:
-    """Return the curvatures of body and surface; None: points on flats, as most contacts are."""
+    """Return the curvatures of body and surface, or None for points on flats, as most contacts are."""
     if not any(len(getattr(msg, field)) for field in _CURVED_FIELDS):
         return None, None
     n = len(msg.frictions)
@@ -116,7 +118,7 @@ def _sides(msg: ContactSetMsg) -> tuple[Curvatures | None, Curvatures | None]:
 
 
 def _curvatures(msg: ContactSetMsg, side: str, kinds: NDArray[np.uint8], *, point: int) -> Curvatures | None:
-    """Return the curvatures of a side, which is a point where the kind is ``point``."""
+    """Return the curvatures of one side. It is a point at contacts of the kind ``point``."""
     n = len(msg.frictions)
     fields = (f"{side}_curvatures", f"{side}_curvatures_across", f"{side}_curvature_directions")
     along, across, directions = (np.array(getattr(msg, field), dtype=np.float64) for field in fields)

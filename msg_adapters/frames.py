@@ -1,4 +1,4 @@
-"""The names of frames at the border: whatever comes must be in the frame that is expected."""
+"""Checks the names of frames: every message must be in the frame that is expected."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from contact_dynamics.errors import FrameMismatchError
 
 
 def check_frame(field: str, found: str, expected: str) -> None:
-    """Raise `FrameMismatchError` where a message's frame is not the one expected."""
+    """Raise `FrameMismatchError` if a message's frame is not the expected one."""
     if found != expected:
         message = f"{field}: found {found!r}, allowed is {expected!r}"
         raise FrameMismatchError(message)

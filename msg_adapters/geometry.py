@@ -1,4 +1,4 @@
-"""`geometry_msgs` vectors, quaternions and inertia, to arrays and domain types, and back."""
+"""Converts vectors, quaternions and inertia of `geometry_msgs` to arrays and domain types, and back."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def mass_properties_from_msg(msg: Inertia) -> tuple[MassProperties, FloatArray]:
     """Return mass properties, and the centre of mass in the body's frame, (3,), m.
 
     Raises:
-        InvalidFieldError: as `MassProperties`, or the centre of mass is not finite.
+        InvalidFieldError: an error of `MassProperties`, or the centre of mass is not finite.
     """
     com = msg.com
     return _mass_properties(
@@ -68,7 +68,7 @@ def mass_properties_from_msg(msg: Inertia) -> tuple[MassProperties, FloatArray]:
     )
 
 
-@lru_cache(maxsize=64)  # whoever sends an inertia sends it with every question
+@lru_cache(maxsize=64)  # a client that sends an inertia sends it with every question
 def _mass_properties(
     mass: float, com: Vector, moments: Vector, products: Vector
 ) -> tuple[MassProperties, FloatArray]:

@@ -1,7 +1,7 @@
-"""Answers about impacts to the service's response and back, and impacts to messages and back.
+"""Converts answers about impacts to the service's response and back, and impacts to messages and back.
 
-Messages are new, or, for ``into``, the empty ones that a response has already: they cost more to build than
-to fill.
+Messages are new, unless ``into`` is an empty one that a response has already. A message costs more to build
+than to fill.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 def impact_answer_to_msg(
     answer: ImpactAnswer, *, world_frame: str, into: PredictImpact.Response | None = None
 ) -> PredictImpact.Response:
-    """Return an answer as a response: a new one, or the empty one to fill."""
+    """Return an answer as a response, which is new unless an empty one to fill is given."""
     msg = PredictImpact.Response() if into is None else into
     name, p_FB_F, other = answer.body_name, answer.p_FB_F, answer.other
     resolved_impact_to_msg(
@@ -63,10 +63,10 @@ def impact_answer_to_msg(
 
 
 def impact_answer_from_msg(msg: PredictImpact.Response, *, world: World) -> ImpactAnswer:
-    """Return the answer that a response carries; ``world`` knows the bodies' centres of mass.
+    """Return the answer that a response contains. ``world`` knows the bodies' centres of mass.
 
     Raises:
-        InvalidFieldError: arrays of unequal length, or a number that is not allowed.
+        InvalidFieldError: arrays have unequal lengths, or a number is not allowed.
     """
     p_FB_F = center_of_mass(msg.state_before.body_name, world)
     other = struck_body_from_msg(msg.other_state_before[0], world=world) if msg.other_state_before else None
@@ -93,12 +93,12 @@ def impact_answer_from_msg(msg: PredictImpact.Response, *, world: World) -> Impa
 
 
 def struck_body_to_msg(other: StruckBody, *, world_frame: str) -> BodyStateMsg:
-    """Return the second body just before."""
+    """Return the second body just before the impact as a message."""
     return body_state_to_msg(other.state, body_name=other.name, world_frame=world_frame, p_FB_F=other.p_FB_F)
 
 
 def struck_body_from_msg(msg: BodyStateMsg, *, world: World) -> StruckBody:
-    """Return the second body just before; ``world`` knows its centre of mass."""
+    """Return the second body just before the impact. ``world`` knows its centre of mass."""
     p_FB_F = center_of_mass(msg.body_name, world)
     state = body_state_from_msg(msg, world_frame=msg.header.frame_id, p_FB_F=p_FB_F)
     return StruckBody(name=msg.body_name, p_FB_F=p_FB_F, state=state)
@@ -159,7 +159,7 @@ def resolved_impact_from_msg(
 ) -> ResolvedImpact:
     """Return an impact of a body whose centre of mass is at ``p_FB_F``, (3,), m, in its published frame.
 
-    ``other_p_FB_F`` is the same of the second body, if there is one.
+    ``other_p_FB_F`` is the second body's centre of mass in its published frame, if there is one.
     """
     in_time = len(msg.strike_times) > 0
     law = SeveralContactsLaw.SEQUENTIAL if in_time else SeveralContactsLaw(msg.several_contacts_law)
@@ -221,7 +221,7 @@ def _write_strikes(msg: ImpactMsg, impact: ResolvedImpact, p_FB_F: FloatArray) -
 
 
 def _read_strikes(msg: ImpactMsg, p_FB_F: FloatArray) -> tuple[SequenceStrike, ...]:
-    """Return strikes in time, if there are any; the last of them leads to the state after the impact."""
+    """Return strikes in time, if there are any. The last of them leads to the state after the impact."""
     orientations = rows(msg.strike_body_orientations, 4)
     places = centers_of_mass(rows(msg.strike_body_positions), orientations, p_FB_F)
     last_ns = stamp_ns_from_msg(msg.state_after.header.stamp)

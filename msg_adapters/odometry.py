@@ -1,8 +1,8 @@
-"""`nav_msgs/Odometry` to a body's state and back.
+"""Converts `nav_msgs/Odometry` to a body's state and back.
 
-The pose is that of the child frame in `header.frame_id`; the twist is in the child frame's axes and at its
-origin (REP 105 and the message's own comment). Covariances are not read: a
-published state has none here, and a fit of several states finds its own.
+The pose is that of the child frame in `header.frame_id`. The twist is in the child frame's axes and at its
+origin (REP 105 and the message's own comment). Covariances are not read. Published states have none here, and
+a fit of several states finds its own.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def body_state_from_odometry(msg: Odometry, *, world_frame: str, p_FB_F: FloatAr
 def odometry_from_body_state(
     state: BodyState, *, world_frame: str, child_frame: str, p_FB_F: FloatArray
 ) -> Odometry:
-    """Return the state as a message: the twist in the child frame, at its origin."""
+    """Return the state as a message, with the twist in the child frame's axes and at its origin."""
     R_FW = state.R_WB.T
     msg = Odometry(child_frame_id=child_frame)
     msg.header.stamp = stamp_to_msg(state.stamp_ns)

@@ -1,4 +1,4 @@
-"""Trajectories to `nav_msgs/Path`, which RViz draws."""
+"""Converts trajectories to `nav_msgs/Path`, which RViz draws."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
 
 MOST_POSES: Final = 200
-"""A pose costs some 0.1 ms as a nested message, and a drawn line needs no more of them."""
+"""Largest number of poses. A pose costs some 0.1 ms as a nested message, and a drawn line needs no more."""
 
 
 def path_from_trajectory(trajectory: TrajectoryMsg) -> Path:
-    """Return the poses of a trajectory's message, first and last included, thinned out to `MOST_POSES`."""
+    """Return at most `MOST_POSES` poses of a trajectory's message, with the first and the last."""
     count = len(trajectory.times)
     chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_POSES)).round().astype(int)).tolist()
     positions = np.array(trajectory.positions).reshape(-1, 3)

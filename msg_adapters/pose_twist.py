@@ -1,7 +1,7 @@
-"""`geometry_msgs/PoseStamped` with `TwistStamped` to a body's state and back.
+"""Converts `geometry_msgs/PoseStamped` with `TwistStamped` to a body's state and back.
 
-The pose is that of the body's published frame in the world frame. The twist belongs to that frame's origin,
-and is expressed in the frame that its own header names: the world's, or the body's.
+The pose is that of the body's published frame in the world frame. The twist belongs to that frame's origin.
+Its own header says whether it is in the axes of the world or of the body.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def body_state_from_pose_twist(
 def pose_twist_from_body_state(
     state: BodyState, *, world_frame: str, p_FB_F: FloatArray
 ) -> tuple[PoseStamped, TwistStamped]:
-    """Return the state as two messages of one stamp; the twist is at the frame's origin, in world axes."""
+    """Return the state as two messages of one stamp. The twist is at the frame's origin, in world axes."""
     pose, twist = PoseStamped(), TwistStamped()
     pose.header.stamp = twist.header.stamp = stamp_to_msg(state.stamp_ns)
     pose.header.frame_id = twist.header.frame_id = world_frame

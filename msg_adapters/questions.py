@@ -1,7 +1,7 @@
-"""Requests of the three services to questions: the only place that reads a request.
+"""Converts requests of the three services to questions. No other file reads a request.
 
-A request says zero or nothing where a question leaves a field out. What it says of things that are not asked
-about, such as a horizon where the contacts are given, is not read.
+A field that a question leaves out is zero or empty in a request. Fields without meaning for a question, such
+as a horizon if the contacts are given, are not read.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 
 _LONGEST_NAME: Final = 256
-_REMEMBERED: Final = 16  # bodies that requests describe; who sends an inertia sends it with every request
+_REMEMBERED: Final = 16  # described bodies that are kept, since a client sends an inertia with every request
 
 _NO_GRAVITY: Final = np.zeros(3)
 _WRENCH_FIELDS: Final = {
@@ -57,13 +57,13 @@ _WRENCH_FIELDS: Final = {
     "force_W": "applied_wrench.force",
     "torque_W": "applied_wrench.torque",
 }
-"""What a request calls the fields of a wrench, by their own names."""
+"""The request's names of the fields of a wrench, by their names in the package."""
 
 T = TypeVar("T", bound=InvalidFieldError)
 
 
 class _SubjectRequest(Protocol):
-    """What the requests of all services say of the body."""
+    """The fields about the body, which the requests of all services have."""
 
     STATE_PUBLISHED: int
     STATE_EXPLICIT: int
@@ -75,7 +75,7 @@ class _SubjectRequest(Protocol):
 
 
 class _ContactRequest(Protocol):
-    """What requests say of contacts."""
+    """The fields about contacts."""
 
     CONTACTS_FROM_GEOMETRY: int
     CONTACTS_EXPLICIT: int
@@ -84,7 +84,7 @@ class _ContactRequest(Protocol):
 
 
 class _GravityRequest(Protocol):
-    """What requests say of gravity."""
+    """The field about gravity."""
 
     GRAVITY_AS_CONFIGURED: int
     GRAVITY_NONE: int
@@ -217,7 +217,7 @@ def _subject(
 
 
 def _other(request: PredictImpact.Request, world: World, world_frame: str) -> tuple[Body | None, StateSource]:
-    """Return the second body of an impact, and where its state comes from; None: the world is struck."""
+    """Return the second body of an impact, or None if the world is struck, and where its state comes from."""
     explicit = request.other_state[0] if request.other_state else None
     if not request.other_body_name and request.other_inertia.m == 0.0 and explicit is None:
         return None, NEWEST
@@ -232,7 +232,8 @@ def _body(name: str, inertia: Inertia, world: World) -> Body:
         raise TooLargeError("body_name", f"{len(name)} characters", f"at most {_LONGEST_NAME}")
     if not name and inertia.m == 0.0:
         raise InvalidFieldError("body_name", name, "the name of a configured body, or an inertia of mass > 0")
-    known = world.body(name) if name else None  # here, for an explicit state is of the frame of its body
+    # The body is looked up here, because an explicit state is that of the body's published frame.
+    known = world.body(name) if name else None
     if known is not None and inertia.m == 0.0:
         return known
     mass_properties, p_FB_F = mass_properties_from_msg(inertia)
@@ -241,7 +242,7 @@ def _body(name: str, inertia: Inertia, world: World) -> Body:
 
 @lru_cache(maxsize=_REMEMBERED)
 def _described_body(mass_properties: MassProperties, com: Vector, known: Body | None) -> Body:
-    """Return a body of the mass properties that a request describes, with the shape that is known of it."""
+    """Return a body with the mass properties of a request, and any known body's name and shape."""
     if known is None:
         return Body(name="", mass_properties=mass_properties, p_FB_F=com)
     return changed_body(known, mass_properties, np.array(com))
@@ -255,7 +256,7 @@ def _published(stamp: Time, fit_window: float = 0.0) -> PublishedState:
 
 
 def _contacts(request: _ContactRequest) -> ContactSet | None:
-    """Return the contacts that a request carries; None: geometry finds them."""
+    """Return the contacts of a request, or None if they are to be found from geometry."""
     if request.contact_source == request.CONTACTS_EXPLICIT:
         return contacts_from_msg(request.contacts)
     if request.contact_source == request.CONTACTS_FROM_GEOMETRY:
@@ -266,7 +267,7 @@ def _contacts(request: _ContactRequest) -> ContactSet | None:
 
 
 def _gravity(request: _GravityRequest) -> FloatArray | None:
-    """Return the acceleration of gravity that a request asks for; None: as configured."""
+    """Return the acceleration of gravity that a request asks for, or None for the configured one."""
     if request.gravity == request.GRAVITY_AS_CONFIGURED:
         return None
     if request.gravity == request.GRAVITY_NONE:
@@ -332,7 +333,7 @@ def _problem(value: int) -> Problem:
 
 
 def _plane(normal: Vector3) -> PlaneOfMotion | None:
-    """Return the plane of motion that a request names; None: the one that fits best."""
+    """Return the plane of motion of a request, or None if the best fitting plane is to be found."""
     if not any((normal.x, normal.y, normal.z)):
         return None
     return PlaneOfMotion(normal_W=vector_from_msg(normal))
@@ -362,5 +363,5 @@ def _several_contacts_law(request: PredictImpact.Request) -> SeveralContactsLaw 
 
 
 def _renamed(error: T, names: Mapping[str, str]) -> T:
-    """Return an error with the field as the request calls it."""
+    """Return the same error with the request's name of the field."""
     return type(error)(names.get(error.field, error.field), error.found, error.allowed)

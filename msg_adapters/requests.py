@@ -1,7 +1,7 @@
-"""Questions to requests of the three services: what `questions` reads, written.
+"""Converts questions to requests of the three services. `questions` converts them back.
 
-A request says zero where a question leaves a number out. What no request can say, such as a number that is
-zero itself or gravity of one's own, raises `NotSupportedError`.
+A number that a question leaves out is zero in a request. So a question with a number that is itself zero has
+no request, nor has a question with a gravity of its own. Both raise `NotSupportedError`.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def tumbling_question_to_msg(
 
     Raises:
         UnknownBodyError: the question names a body that the world does not have.
-        NotSupportedError: no request says it.
+        NotSupportedError: the question has no request.
     """
     msg = PredictTumbling.Request()
     _write_subject(msg, question.body, question.state, world, world_frame)
@@ -71,7 +71,7 @@ def tumbling_question_to_msg(
 def impact_question_to_msg(
     question: ImpactQuestion, *, world: World, world_frame: str
 ) -> PredictImpact.Request:
-    """Return the request of a question about an impact, as `tumbling_question_to_msg`."""
+    """Return the request of a question about an impact, with arguments as in `tumbling_question_to_msg`."""
     msg = PredictImpact.Request()
     _write_subject(msg, question.body, question.state, world, world_frame)
     if isinstance(question.state, PublishedState):
@@ -98,7 +98,7 @@ def impact_question_to_msg(
 def contact_mode_question_to_msg(
     question: ContactModeQuestion, *, world: World, world_frame: str
 ) -> PredictContactMode.Request:
-    """Return the request of a question about contact modes, as `tumbling_question_to_msg`."""
+    """Return the request of a question about contact modes, as in `tumbling_question_to_msg`."""
     msg = PredictContactMode.Request()
     _write_subject(msg, question.body, question.state, world, world_frame)
     if isinstance(question.state, PublishedState) and question.state.fit_window > 0.0:
@@ -120,7 +120,7 @@ def contact_mode_question_to_msg(
 def _write_subject(
     msg: Request, body: Body | str, source: StateSource, world: World, world_frame: str
 ) -> None:
-    """Write which body a request is about, and where its state comes from."""
+    """Write the body that a request is about, and where its state comes from."""
     body = world.body(body) if isinstance(body, str) else body
     msg.body_name = body.name
     inertia = _inertia(body, world)
@@ -154,7 +154,7 @@ def _write_other(
 
 
 def _inertia(body: Body, world: World) -> Inertia | None:
-    """Return a body's mass, where it is not as the world knows it; None: it is."""
+    """Return the inertia of a body that differs from the known one, or None if the body is the known one."""
     named = [known for known in world.bodies if known.name == body.name]
     if body in named:
         return None
@@ -198,7 +198,7 @@ def _write_sampling(msg: PredictTumbling.Request, sampling: Sampling) -> None:
 
 
 def _write_problem(msg: ContactRequest, question: ContactModeQuestion | ImpactQuestion) -> None:
-    """Write whether a question is about a plane, about which, and the tolerances."""
+    """Write whether a question is about a plane, the plane, and the tolerances."""
     msg.problem = int(question.problem)
     if question.plane is not None:
         msg.plane_normal = vector_to_msg(question.plane.normal_W)
@@ -208,7 +208,7 @@ def _write_problem(msg: ContactRequest, question: ContactModeQuestion | ImpactQu
 
 
 def _or_zero(field: str, value: float | None) -> float:
-    """Return a number as a request has it: zero where the question says nothing."""
+    """Return a number as it is in a request, with zero for None."""
     if value == 0.0:
         message = f"{field}: found 0, which requests take as left out; allowed is a number > 0, or None"
         raise NotSupportedError(message)

@@ -1,6 +1,6 @@
-"""Time at the border: `builtin_interfaces/Time` and int nanoseconds.
+"""Converts `builtin_interfaces/Time` to whole nanoseconds and back.
 
-Never float seconds since 1970, which are spaced 0.24 us.
+Seconds since 1970 as a float would be 0.24 us apart.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ def stamp_ns_from_msg(msg: Time) -> int:
 
 
 def stamp_to_msg(stamp_ns: int, *, into: Time | None = None) -> Time:
-    """Return a stamp in ns as a message: a new one, or the one to fill."""
+    """Return a stamp in ns as a message, which is new unless one to fill is given."""
     msg = Time() if into is None else into
     msg.sec, msg.nanosec = divmod(int(stamp_ns), NS_PER_S)
     return msg

@@ -1,4 +1,4 @@
-"""Errors to the status codes of the services: one meaning at one offset within each service's own range."""
+"""Converts errors to the status codes of the services. Equal offsets in their ranges mean the same."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Final, Protocol
 from contact_dynamics import errors
 
 _CODE_NAMES: Final[tuple[tuple[type[errors.ContactDynamicsError], str], ...]] = (
-    # Subclasses before the classes that they refine.
+    # A subclass must come before the class that it refines.
     (errors.TooLargeError, "TOO_LARGE"),
     (errors.OutOfPlaneError, "OUT_OF_PLANE"),
     (errors.SeparatingContactError, "SEPARATING"),
@@ -22,7 +22,7 @@ _CODE_NAMES: Final[tuple[tuple[type[errors.ContactDynamicsError], str], ...]] = 
 
 
 class Response(Protocol):
-    """What every response has."""
+    """The fields that every response has."""
 
     OK: int
     status: int
@@ -31,7 +31,7 @@ class Response(Protocol):
 
 
 def report_error(response: Response, error: Exception) -> None:
-    """Write an error into a response: its code, and what was found and what is allowed."""
+    """Write an error into a response, as its code and a message with what was found and what is allowed."""
     for error_type, code_name in _CODE_NAMES:
         code = getattr(response, code_name, None)
         if isinstance(error, error_type) and code is not None:

@@ -1,4 +1,4 @@
-"""Answers about tumbling to the service's response and back: trajectories, Poinsot's picture, events."""
+"""Converts answers about tumbling to the service's response and back."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 def tumbling_answer_to_msg(
     answer: TumblingAnswer, *, world_frame: str, into: PredictTumbling.Response | None = None
 ) -> PredictTumbling.Response:
-    """Return an answer as a response: a new one, or the empty one to fill."""
+    """Return an answer as a response, which is new unless an empty one to fill is given."""
     msg = PredictTumbling.Response() if into is None else into
     if answer.poinsot is None or answer.flips is None:
         msg.poinsot = torque_acts()
@@ -70,7 +70,7 @@ def tumbling_answer_to_msg(
 
 
 def tumbling_answer_from_msg(msg: PredictTumbling.Response, *, world: World) -> TumblingAnswer:
-    """Return the answer that a response carries; ``world`` knows the bodies' centres of mass.
+    """Return the answer that a response contains. ``world`` knows the bodies' centres of mass.
 
     Raises:
         InvalidFieldError: a number is not finite, or a quaternion is not unit.
@@ -109,9 +109,9 @@ def trajectory_to_msg(
     p_FB_F: FloatArray,
     into: TrajectoryMsg | None = None,
 ) -> TrajectoryMsg:
-    """Return a trajectory, whose times count from ``stamp_ns``, with positions of the published frame F.
+    """Return a trajectory as a message. Times count from ``stamp_ns``, positions are of the frame F.
 
-    It is a new message, or the empty one to fill.
+    The message is new unless an empty one to fill is given.
     """
     msg = TrajectoryMsg() if into is None else into
     msg.header.stamp = stamp_to_msg(stamp_ns)
@@ -143,7 +143,7 @@ def write_covariances(msg: TrajectoryMsg, carried: CarriedCovariance) -> None:
 
 
 def read_covariances(msg: TrajectoryMsg) -> CarriedCovariance | None:
-    """Return the covariances of a trajectory's samples; None: it has none."""
+    """Return the covariances of a trajectory's samples, or None if it has none."""
     if len(msg.covariances) == 0:
         return None
     covariances = rows(msg.covariances, 144).reshape(-1, 12, 12)
@@ -157,7 +157,7 @@ def read_covariances(msg: TrajectoryMsg) -> CarriedCovariance | None:
 
 
 def write_fit(response: PredictImpact.Response | PredictTumbling.Response, fit: FitQuality | None) -> None:
-    """Write into a response which fit its state came from."""
+    """Write into a response how good the fit was that its state came from."""
     if fit is not None:
         response.fit_count = fit.count
         response.fit_position_residual = fit.position_residual
@@ -165,7 +165,7 @@ def write_fit(response: PredictImpact.Response | PredictTumbling.Response, fit: 
 
 
 def read_fit(response: PredictImpact.Response | PredictTumbling.Response) -> FitQuality | None:
-    """Return the fit that a response's state came from; None: no fit."""
+    """Return how good the fit was that a response's state came from, or None without a fit."""
     if response.fit_count == 0:
         return None
     return FitQuality(
@@ -178,9 +178,9 @@ def read_fit(response: PredictImpact.Response | PredictTumbling.Response) -> Fit
 def poinsot_to_msg(
     picture: Poinsot, flips: Flips, curves: RollingCurves | None, *, into: PoinsotMsg | None = None
 ) -> PoinsotMsg:
-    """Return Poinsot's picture of a motion, with the next flips of its middle axis, and curves if any.
+    """Return Poinsot's picture of a motion as a message, with the next flips of its middle axis and curves.
 
-    It is a new message, or the empty one to fill.
+    The message is new unless an empty one to fill is given.
     """
     msg = PoinsotMsg() if into is None else into
     msg.regime = int(picture.regime)
@@ -202,7 +202,7 @@ def poinsot_to_msg(
 
 
 def poinsot_from_msg(msg: PoinsotMsg) -> Poinsot | None:
-    """Return Poinsot's picture of a motion; None: a torque acts."""
+    """Return Poinsot's picture of a motion, or None if a torque acts."""
     if msg.regime == msg.UNKNOWN:
         return None
     moments = np.array(msg.principal_moments)
@@ -221,14 +221,14 @@ def poinsot_from_msg(msg: PoinsotMsg) -> Poinsot | None:
 
 
 def flips_from_msg(msg: PoinsotMsg) -> Flips | None:
-    """Return the next flips of the middle axis, which may be none; None: a torque acts."""
+    """Return the next flips of the middle axis, of which there may be none, or None if a torque acts."""
     if msg.regime == msg.UNKNOWN:
         return None
     return Flips(seconds=np.array(msg.flip_times), deviations=np.array(msg.flip_time_deviations))
 
 
 def curves_from_msg(msg: PoinsotMsg) -> RollingCurves | None:
-    """Return polhode and herpolhode; None: they were not told."""
+    """Return polhode and herpolhode, or None if the response does not have them."""
     if len(msg.polhode) == 0:
         return None
     return RollingCurves(
@@ -239,7 +239,7 @@ def curves_from_msg(msg: PoinsotMsg) -> RollingCurves | None:
 
 
 def torque_acts() -> PoinsotMsg:
-    """Return what is left of Poinsot's picture under a torque: nothing."""
+    """Return the empty message that stands for Poinsot's picture if a torque acts."""
     nan = math.nan
     return PoinsotMsg(
         regime=PoinsotMsg.UNKNOWN,

@@ -1,8 +1,8 @@
 """Where a flight ends: the first contact with planes and obstacles.
 
-`earliest` has the next landing of a body in its world, with all contacts there. `plane_arrival` is the first
-time at a plane, with `rim_descent` for rims, and `obstacle_arrival` that at an obstacle. All rely on
-`acceleration_bounds`: for how long nothing can touch. `search_work` bounds how long they look.
+`earliest` finds the next landing of a body in its world, with all contacts there. `plane_arrival` finds the
+first time at a plane, with `rim_descent` for rims, and `obstacle_arrival` the first time at an obstacle. All
+of them use `acceleration_bounds`, which says for how long nothing can touch. `search_work` limits their work.
 """
 
 from contact_dynamics.landing.earliest import Landing, next_landing

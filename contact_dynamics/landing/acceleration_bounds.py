@@ -70,7 +70,7 @@ def free_for(height: float, rate: float, pull: float) -> float:
 
     Arguments are in m, m/s, m/s^2. A dip of less than `GRAZING_DEPTH` does not count as arrival.
     """
-    if height <= 0.0:  # below the plane and rising: as long as it rises, and not less than a graze takes
+    if height <= 0.0:  # it rises from below the plane: it is free while it rises, and for a graze at least
         return max(rate, math.sqrt(2.0 * GRAZING_DEPTH * pull)) / pull if pull > 0.0 else math.inf
     allowed = height + GRAZING_DEPTH
     stop = rate * rate + 2.0 * pull * allowed
@@ -83,7 +83,8 @@ def all_free_for(heights: FloatArray, rates: FloatArray, pulls: FloatArray) -> f
     """Return for how long, s, none of many points can arrive: the least `free_for` of arrays (k,)."""
     if len(heights) <= _FEW:
         return min(map(free_for, heights.tolist(), rates.tolist(), pulls.tolist()), default=math.inf)
-    with np.errstate(divide="ignore", invalid="ignore"):  # where nothing pulls, or nothing falls
+    # Divisors are zero for a point that nothing pulls, or that does not fall.
+    with np.errstate(divide="ignore", invalid="ignore"):
         allowed = heights + GRAZING_DEPTH
         stop = rates * rates + 2.0 * pulls * allowed
         root = np.sqrt(np.maximum(stop, 0.0))
@@ -118,7 +119,8 @@ class _Along:
         torques = _norms(_derivatives(momentum, span))
         twisting = float(torques.max()) / self.least_moment  # 1/s^2
         rate = float(_norms(_BERNSTEIN @ momentum.T, axis=1).max()) / self.least_moment  # |w| <= |L| / I_1
-        # From the rate at the start: x = w_0 + span (twisting + x^2 / sqrt 3) is not passed within the step.
+        # The rate at the start gives another bound, x = w_0 + span (twisting + x^2 / sqrt 3), for the whole
+        # step.
         began = self.motion.sample(step.start).w_WB_W
         grown = math.sqrt(sum(w * w for w in began)) + span * twisting
         root = 1.0 - 4.0 * _GYROSCOPIC * span * grown
@@ -133,7 +135,8 @@ class _Along:
 
 def _derivatives(values: FloatArray, span: float) -> FloatArray:
     """Return the Bernstein coefficients, (k, 7), of the rates of polynomials, (k, 8) at `_NODES`."""
-    coefficients = (values - values[:, :1]) @ _BERNSTEIN.T  # differences first: their size sets the rounding
+    # Differences come first, because their size then sets the rounding.
+    coefficients = (values - values[:, :1]) @ _BERNSTEIN.T
     rates: FloatArray = np.diff(coefficients, axis=1) * (_DEGREE / span)
     return rates
 

@@ -1,4 +1,4 @@
-"""When and how a body's flight ends: its first contact with the world, and all contacts there."""
+"""Finds the end of a body's flight: its first contact with the world, and all contacts there."""
 
 from __future__ import annotations
 
@@ -58,13 +58,14 @@ def next_landing(
     """Return where a body's flight ends within ``horizon`` (s), or None if it flies at least until then.
 
     A point within ``distance_tolerance`` (m) of a surface touches it. A body that touches flies only if each
-    of its contacts leaves faster than ``velocity_tolerance`` (m/s); what counts then is where it comes down.
-    ``motion`` is the flight, in closed form or under forces; None: that of the state in the world's gravity.
-    ``work`` counts the steps of the search, and of others; None: those of this one alone.
+    of its contacts leaves faster than ``velocity_tolerance`` (m/s). Then its next landing is sought.
+    ``motion`` is the flight, in closed form or under forces. By default it is the free flight from the state
+    in the world's gravity. ``work`` counts the steps of this search together with those of others. By default
+    this search has its own count.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
-        InvalidFieldError: a horizon or a tolerance that is negative or not finite.
+        InvalidFieldError: a horizon or a tolerance is negative or not finite.
         TooLargeError: the search takes too many steps: the body spins too fast for the horizon.
     """
     check_has_shape(body)

@@ -1,4 +1,4 @@
-"""The first time at which a moving body touches an obstacle, by steps in which it cannot touch.
+"""Finds the first time at which a moving body touches an obstacle, by steps in which it cannot touch.
 
 At any time one plane separates the two (`contact.on_obstacles`). While the body stays above this plane, it
 does not touch. `acceleration_bounds` says for how long it must stay above. The search goes to the end of that
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from contact_dynamics.shapes.obstacle import Obstacle
 
 MOST_STEPS: Final = 5_000
-"""Bound on the steps of a search, about a second of computing. A toss takes ten to a hundred steps."""
+"""Largest number of steps of a search, which take about a second. A toss takes ten to a hundred steps."""
 
 
 def first_touch(
@@ -48,9 +48,9 @@ def first_touch(
     back. The function returns None if the body does not touch.
 
     Raises:
-        InvalidFieldError: horizon < 0, an empty shape, or an integrated motion that does not get as far as
-            the search has to.
-        NotSupportedError: a rim that comes to an edge or a corner, or a body that hovers.
+        InvalidFieldError: the horizon is negative, the shape is empty, or an integrated motion does not reach
+            as far as the search has to go.
+        NotSupportedError: a rim comes to an edge or a corner, or the body hovers.
         TooLargeError: this search, and others that ``work`` counts, take too many steps together.
     """
     until = check_not_negative("horizon", horizon)

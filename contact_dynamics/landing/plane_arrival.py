@@ -1,4 +1,4 @@
-"""The first time at which a moving body reaches a plane: where the flight of lecture 25 ends.
+"""Finds the first time at which a moving body reaches a plane, where the flight of lecture 25 ends.
 
 The shape is convex (`shapes.convex`). Its parts that arrive are corners and rims, corners first. The heights
 of a corner, of a ball's centre and of each point of a rim have second derivatives that are bounded along the
@@ -38,7 +38,8 @@ if TYPE_CHECKING:
     from contact_dynamics.tumbling.motion import Sample
 
 _MOST_ROOT_STEPS: Final = 100
-"""Bound on the steps to a root. Bisection alone needs 60 for the last bit, and Newton's steps need four."""
+"""Largest number of steps to a root. Bisection alone needs 60 for the last bit, and Newton's steps need four.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -47,8 +48,8 @@ class FirstContact(Record):
 
     Attributes:
         seconds: Time of the arrival, s after the state's stamp, >= 0.
-        vertices: Index of the part that arrives, then those of other parts within `GRAZING_DEPTH`. Corners
-            are counted first, then rims.
+        vertices: Index of the part that arrives, then the indices of other parts within `GRAZING_DEPTH`.
+            Corners are counted first, then rims.
         p_WC_W: (3,), m, the point that arrives, world.
         v_WC_W: (3,), m/s, its velocity, world axes.
     """
@@ -80,14 +81,15 @@ def first_contact(
         p_WS_W: (3,), m, a point of the plane, world.
         normal_W: (3,), unit normal into the free side, world axes.
         horizon: s after the state's stamp, how far to search.
-        work: counts the steps, of other searches too. None: this one alone may take `MOST_SEARCH_STEPS`.
+        work: the count of steps, which may be shared with other searches. By default this search alone may
+            take `MOST_SEARCH_STEPS`.
 
     Raises:
         TooLargeError: the search takes too many steps: the body spins too fast, or is too large, for the
             horizon.
-        InvalidFieldError: an array of another shape, a number that is not finite, a normal that is not unit,
-            a shape without corners or rims,
-            or horizon < 0; an integrated motion that does not get as far as the search has to go.
+        InvalidFieldError: an array has another shape, a number is not finite, the normal is not unit, the
+            shape has no corners or rims, the horizon is negative, or an integrated motion does not reach as
+            far as the search has to go.
     """
     search = Descent(
         motion,
@@ -101,7 +103,7 @@ def first_contact(
 
 
 class Above(NamedTuple):
-    """A shape above a plane at one time.
+    """The heights of a shape's parts above a plane at one time.
 
     Attributes:
         heights: (k + m,), m, heights of corners, then of the lowest points of rims.
@@ -127,11 +129,12 @@ class Descent:
         self.shape = shape
         self.rims = [radii_of(rim) for rim in shape.rims]
         self.normal_W: Vector = tuple(normal_W.tolist())
-        self.offset = float(p_WS_W @ normal_W) + shape.rounding  # m, a ball's centre is as much higher
+        # m. The plane is raised by the radius of the ball that rolls over the shape.
+        self.offset = float(p_WS_W @ normal_W) + shape.rounding
         self.bound_from = bounds_of(motion, normal_W)
         self.arms = np.sqrt(np.einsum("ij,ij->i", shape.vertices, shape.vertices))  # (k,), m
         self.reach = max([float(self.arms.max(initial=0.0)), *(rim.reach for rim in self.rims)])  # m
-        self.newest: tuple[float, Above] | None = None  # what `at` has last returned, and its time
+        self.newest: tuple[float, Above] | None = None  # the last result of `at`, with its time
 
     def run(self, horizon: float, work: SearchWork) -> FirstContact | None:
         """Return the first contact within a horizon, s, or None."""
@@ -206,7 +209,7 @@ class Descent:
         )
 
     def crossing(self, low: float, high: float, above: FloatArray, below: FloatArray) -> tuple[float, int]:
-        """Return the first time between two at which a part reaches the plane from above, and which."""
+        """Return the first time between two at which a part comes down to the plane, and its index."""
         waiting = np.flatnonzero((above > 0.0) & (below <= 0.0))
         while True:
             part = int(waiting[below[waiting].argmin()])
@@ -224,7 +227,7 @@ class Descent:
             height, rate = float(at.heights[part]), float(at.rates[part])
             low, high = (now, high) if height > 0.0 else (low, now)
             if abs(height) <= -rate * math.ulp(now) or height == 0.0:
-                break  # Newton's next step is within rounding
+                break  # Newton's next step would be within rounding
             following = now - height / rate if rate < 0.0 else low
             if not low < following < high:
                 following = 0.5 * (low + high)

@@ -1,4 +1,4 @@
-"""A rim above a plane: its lowest point, and for how long none of its points can come down.
+"""Finds the lowest point of a rim above a plane, and for how long none of its points can come down.
 
 The points of a rim at the angle phi have heights h + a . u(phi) and rates h' + b . u(phi), with
 u = (cos phi, sin phi) and a, b the heights and rates of two orthogonal radii. If no point is pulled down by
@@ -18,7 +18,8 @@ from typing import Final, NamedTuple
 from contact_dynamics.tolerances import GRAZING_DEPTH, RIM_ACCURACY
 
 _MOST_STEPS: Final = 60
-"""Bound on Newton's steps. Four are usual. Towards a nearly double root, each step halves the distance."""
+"""Largest number of Newton's steps. Four are usual. Towards a nearly double root, each step halves the
+distance."""
 
 
 class RimAbove(NamedTuple):
@@ -56,10 +57,10 @@ class RimAbove(NamedTuple):
         (a_1, a_2), (b_1, b_2) = self.a, self.b
         low, rate, _ = self.lowest()
         slowest = self.rate - math.hypot(b_1, b_2)
-        if low <= 0.0:  # below the plane and rising: as long as all points rise, and not less than a graze
+        if low <= 0.0:  # it rises from below the plane: it is free while all points rise, or for a graze
             return max(slowest, math.sqrt(2.0 * GRAZING_DEPTH * pull)) / pull if pull > 0.0 else math.inf
         beyond = _arrival(low + GRAZING_DEPTH, rate, pull)
-        if slowest < 0.0:  # the point that sinks fastest, and it is no higher than the rim's top
+        if slowest < 0.0:  # the point that sinks fastest is no higher than the rim's top
             top = self.height + math.hypot(a_1, a_2)
             beyond = min(beyond, _arrival(top + GRAZING_DEPTH, slowest, pull))
         if math.isinf(beyond):

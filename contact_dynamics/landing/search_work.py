@@ -1,4 +1,4 @@
-"""How much work a search for a contact may take: counted in steps, so that the same question ends alike."""
+"""Limits the work of searches for contacts, by steps and not by time, so that a question ends alike."""
 
 from __future__ import annotations
 
@@ -7,30 +7,30 @@ from typing import Final
 from contact_dynamics.errors import TooLargeError
 
 MOST_SEARCH_STEPS: Final = 50_000
-"""Steps of all searches of one question, some 2 s of computing. A toss takes ten to a hundred, a turn close
-to a surface some thirty."""
+"""Largest number of steps of all searches of one question, which take some 2 s. A toss takes ten to a
+hundred, and a turn close to a surface takes some thirty."""
 
 SEARCH_BEGUN: Final = 5
-"""Steps that a search counts for before its first one: what it takes to set it up."""
+"""The setting up of a search counts as this many steps."""
 
 OBSTACLE_STEP: Final = 25
-"""Steps that one beside an obstacle counts for, where the plane that separates best is found anew."""
+"""A step beside an obstacle counts as this many, because it finds the plane that separates best anew."""
 
 
 class SearchWork:
-    """Counts the steps of one or several searches, and ends them where they are too many."""
+    """Counts the steps of one or several searches, and ends them if there are too many."""
 
     def __init__(self, field: str = "horizon", *, most: int = MOST_SEARCH_STEPS) -> None:
-        """Begin to count; ``field`` is what the caller calls the time to search."""
+        """Begin to count. ``field`` is the caller's name of the time to search."""
         self._field = field
         self._most = most
         self._spent = 0
 
     def spend(self, steps: int, seconds: float) -> None:
-        """Count steps that are taken at a time, s.
+        """Count steps that search at a time, s.
 
         Raises:
-            TooLargeError: they are more than allowed.
+            TooLargeError: there are more steps than allowed.
         """
         self._spent += steps
         if self._spent > self._most:

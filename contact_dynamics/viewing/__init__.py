@@ -1,7 +1,7 @@
-"""Drawing in rerun: results in, pictures out, nothing back.
+"""Draws results in rerun. Nothing comes back from a picture.
 
-What is drawn are the answers of `contact_dynamics.questions` and their parts, wherever they come from: a
-question asked in Python, a live server, or its log.
+It draws the answers of `contact_dynamics.questions` and their parts. They may come from a question asked in
+Python, from a live server, or from its log.
 
 In reading order: the colours (`palette`) and what they mean in words (`legend`), names of what is drawn
 (`entities`), bodies and surfaces (`shape`, `scene`), what was measured (`measured`), the three kinds of
@@ -19,9 +19,10 @@ import os
 from typing import Final
 
 _RUST_LOG: Final = "warn,re_log_encoding::rrd::file_sink=error"
-"""rerun's own level without its warning of files that have no index at their end, as `sinks` writes them."""
+"""This is rerun's own level of logging, without its warning about files that have no index at their end, as
+`sinks` writes them."""
 
-if "RUST_LOG" not in os.environ:  # rerun reads it once, when it is imported first
+if "RUST_LOG" not in os.environ:  # rerun reads it only when it is first imported
     os.environ["RUST_LOG"] = _RUST_LOG
     try:
         import rerun as _rerun  # noqa: F401

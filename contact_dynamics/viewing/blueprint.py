@@ -1,4 +1,4 @@
-"""How the views are arranged: the scene, impulse space, curves over time, and answers in words."""
+"""Arranges the views: the scene, impulse space, curves over time, and answers in words."""
 
 from __future__ import annotations
 
@@ -34,13 +34,14 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 LOWEST_DISTANCE: Final = 0.5
-"""m. The eye comes no nearer to what it looks at."""
+"""m. The eye stays at least this far from what it looks at."""
 
 NO_TRAVEL: Final = 1e-3
-"""m. A path that leads no farther, seen from above, has no sides to choose between."""
+"""m. A path that is shorter than this, seen from above, has no sides to choose between."""
 
 STRAIGHT: Final = 0.01
-"""Relative to how far a path leads: one that bulges by less is straight, and is looked at from its right."""
+"""Relative to the length of a path. A path that bulges by less counts as straight, and the eye looks at it
+from its right."""
 
 WINDOW_S: Final = 10.0
 """s. How long trails and earlier predictions stay in view, and how far back the curves go."""
@@ -51,15 +52,15 @@ DIAGRAMS: Final = {
     PLANAR_MODES: "Contact modes",
     POINSOT: "Poinsot",
 }
-"""What has a tab beside the scene once there is something to see; the first of them is open."""
+"""The diagrams. Each has a tab beside the scene once there is something to see, and the first is open."""
 
-_DISTANCE: Final = 1.0  # of the eye, relative to the diagonal of what it shows
-_ELEVATION: Final = 0.33  # of the eye above what it looks at, relative to its horizontal distance
+_DISTANCE: Final = 1.0  # distance of the eye, relative to the diagonal of what it shows
+_ELEVATION: Final = 0.33  # height of the eye above what it looks at, relative to its horizontal distance
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Eye:
-    """Where the scene is looked at from.
+    """The place from which the viewer looks at the scene.
 
     Attributes:
         position_W: (3,), m, world.
@@ -93,12 +94,12 @@ def eye_on(points_W: FloatArray, *, up_W: FloatArray, margin: float) -> Eye:
 def make_blueprint(
     body_names: Sequence[str], *, eye: Eye | None, diagrams: Sequence[str] = ()
 ) -> rrb.Blueprint:
-    """Return the arrangement.
+    """Return the arrangement of the views.
 
     Args:
-        body_names: of the bodies whose trails and predictions stay in view.
-        eye: of the scene; None: the viewer looks at all that there is.
-        diagrams: which of `DIAGRAMS` there are to see.
+        body_names: names of the bodies whose trails and predictions stay in view.
+        eye: the eye of the scene. If it is None, the viewer looks at all that there is.
+        diagrams: the `DIAGRAMS` in which there is something to see.
     """
     controls = None
     if eye is not None:

@@ -1,7 +1,7 @@
-"""Contact modes in the scene: letters and friction cones at the contacts, and each consistent mode.
+"""Draws contact modes in the scene: letters and friction cones at the contacts, and each consistent mode.
 
 Each mode has an entity of its own, `mode_1`, `mode_2` and so on, with its contact forces, sliding directions
-and acceleration. The viewer shows the first; the others are switched on by the eye beside their names.
+and acceleration. The viewer shows the first. The eye beside a mode's name switches it on.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from contact_dynamics.viewing.shape import Shape
 
 FORCE_LENGTH: Final = 0.6
-"""Length of the longest force arrow, relative to the body's size; labels say how much it stands for."""
+"""Length of the longest force arrow, relative to the body's size. Labels say how much force it stands for."""
 
 MOST_MODES: Final = 6
-"""Modes that are drawn; more are told in words alone."""
+"""Largest number of modes that are drawn. Further modes are only listed in words."""
 
-_ACCELERATION_LENGTH: Final = 0.6  # of the arrow at the centre of mass, relative to the size of the body
-_SLIDING_LENGTH: Final = 0.3  # of the arrows of sliding directions, likewise
+_ACCELERATION_LENGTH: Final = 0.6  # length of the arrow at the centre of mass, relative to the body's size
+_SLIDING_LENGTH: Final = 0.3  # length of the arrows of sliding directions, relative to the body's size
 _CONE_HEIGHT: Final = 0.25  # likewise
 _OUTLINE_WIDTH: Final = -0.8  # negative: points of the screen
 _POINT_SIZE: Final = 0.035  # likewise
@@ -83,7 +83,7 @@ def _draw_mode(
         colors=colors[pressed],
         radii=_ARROW_WIDTH * size,
         labels=[f"{magnitude:.3g} N" for magnitude in magnitudes[pressed].tolist()],
-        show_labels=False,  # four of them hide the body; the viewer shows one where the mouse is
+        show_labels=False,  # four labels would hide the body, so the viewer shows the one under the mouse
     )
     recording.log(f"{path}/forces", forces)
     sliding_W = sliding_directions(answer, mode)
@@ -109,7 +109,7 @@ def _draw_mode(
 
 
 def letters_of_contacts(modes: tuple[str, ...], count: int) -> list[str]:
-    """Return each contact's letters in all modes, each once, joined by `|`; `?` where there is no mode."""
+    """Return each contact's letters in all modes, each once, joined by `|`, or `?` if there is no mode."""
     return ["|".join(dict.fromkeys(mode[i] for mode in modes)) or "?" for i in range(count)]
 
 

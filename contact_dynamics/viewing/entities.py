@@ -7,7 +7,7 @@ from typing import Final
 import rerun as rr
 
 TIMELINE: Final = "stamp"
-"""ns since the epoch of the stamps' clock."""
+"""Name of the timeline. It is in ns since the epoch of the stamps' clock."""
 
 SCENE: Final = "world"
 SURFACES: Final = "world/surfaces"
@@ -26,12 +26,12 @@ LEGEND: Final = "legend"
 
 
 def entity(parent: str, *names: str) -> str:
-    """Return the path of a thing below ``parent``; names may hold any characters."""
+    """Return the path of a thing below ``parent``. Names may have any characters."""
     return f"{parent}{rr.new_entity_path(list(names))}"
 
 
 def body_entity(body_name: str) -> str:
-    """Return the path of a body's pose; what lies below it moves with the body."""
+    """Return the path of a body's pose. What lies below it moves with the body."""
     return entity("world/bodies", body_name or "unnamed")
 
 

@@ -1,8 +1,8 @@
-"""A predicted impact in the scene: contact, normal, friction cone, impulse, velocities before and after.
+"""Draws a predicted impact in the scene: contact, friction cone, impulse, velocities before and after.
 
-From each contact rises the path of the impulse as it accumulates, to the scale of the impulse's arrow. A
-second moving body is drawn where it is struck, with its velocities. Of strikes in sequence all impulses are
-drawn, the largest with their number, their time, and the body as it is then.
+The path of the impulse as it accumulates rises from each contact, to the scale of the impulse's arrow. A
+second moving body is drawn where it is struck, with its velocities. If there are several strikes in time, all
+impulses are drawn, and the largest have their number, their time, and the body as it is then.
 """
 
 from __future__ import annotations
@@ -30,16 +30,16 @@ if TYPE_CHECKING:
     from contact_dynamics.viewing.shape import Shape
 
 ARROW_LENGTH: Final = 1.1
-"""Length of the longest arrow of a kind, relative to the body's size; labels say how much it stands for."""
+"""Length of the longest arrow of a kind, relative to the body's size. Labels say how much it stands for."""
 
 RECENT: Final = ("body", "impulse")
-"""What stays in view beside what comes after it."""
+"""The parts of an impact that stay in view beside later ones."""
 
 CONE_HEIGHT: Final = 0.35
 """Relative to the size of the body."""
 
 MOST_STRIKES: Final = 5
-"""Strikes of a sequence, those with the largest impulses, that are labelled and have the body drawn."""
+"""This many strikes of a sequence, those with the largest impulses, have a label and the body drawn."""
 
 _CONE_FACETS: Final = 32
 _ARROW_WIDTH: Final = 0.016  # relative to the size of the body
@@ -49,7 +49,7 @@ _OUTLINE_WIDTH: Final = -1.2  # negative: points of the screen
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Arrows:
-    """Arrows of one unit, drawn to a scale of their own."""
+    """Arrows of one unit, which are drawn to their own scale."""
 
     origins: FloatArray  # (n, 3), m, world
     vectors: FloatArray  # (n, 3), in the unit, world axes
@@ -57,7 +57,7 @@ class _Arrows:
     colors: tuple[palette.Color, ...]  # (n,)
 
     def drawn(self, size: float) -> rr.Arrows3D:
-        """Return the arrows, the longest of which suits a body of that size, m."""
+        """Return the arrows to draw. The longest suits a body of that size, m."""
         return rr.Arrows3D(
             origins=self.origins,
             vectors=self.tips(size) - self.origins,
@@ -66,7 +66,7 @@ class _Arrows:
         )
 
     def labels(self, places: FloatArray, *, before: Sequence[str] = ()) -> rr.Points3D:
-        """Return how much each stands for, at places, (n, 3), m, world; after the words ``before``."""
+        """Return labels with the size of each, at places, (n, 3), m, world, after the words ``before``."""
         lengths = np.linalg.norm(self.vectors, axis=1).tolist()
         words = [f"{length:.3g} {self.unit}" for length in lengths]
         if before:
@@ -80,11 +80,11 @@ class _Arrows:
         )
 
     def tips(self, size: float) -> FloatArray:
-        """Return where the arrows end, (n, 3), m, world, for a body of that size, m."""
+        """Return the tips of the arrows, (n, 3), m, world, for a body of that size, m."""
         return self.origins + self.vectors * self.scale(size)
 
     def scale(self, size: float) -> float:
-        """Return how long one unit is drawn, m, for a body of that size, m."""
+        """Return the drawn length of one unit, m, for a body of that size, m."""
         longest = float(np.linalg.norm(self.vectors, axis=1).max(initial=0.0))
         return ARROW_LENGTH * size / longest if longest > 0.0 else 0.0
 
@@ -155,7 +155,7 @@ def main_strikes(strikes: Sequence[SequenceStrike]) -> list[int]:
 
 
 def _struck(answer: ImpactAnswer) -> tuple[list[int], FloatArray, FloatArray]:
-    """Return what is struck: contacts, points and impulses, (n, 3) each, in world axes."""
+    """Return the contacts that are struck, with their points and impulses, (n, 3) each, in world axes."""
     strikes, impulses_W = answer.impact.strikes, answer.impact.impulses_W
     if strikes:
         return (
@@ -194,7 +194,7 @@ def _paths(answer: ImpactAnswer, *, scale: float) -> list[FloatArray]:
 def friction_cones(
     points_W: FloatArray, normals_W: FloatArray, frictions: FloatArray, *, height: float
 ) -> rr.Mesh3D | None:
-    """Return friction cones at points, as long along their slope as ``height``, m; None without friction."""
+    """Return friction cones at points, with sides of length ``height``, m, or None without friction."""
     angles = np.linspace(0.0, 2.0 * math.pi, _CONE_FACETS, endpoint=False)
     rim_index = 1 + np.arange(_CONE_FACETS)
     facets = np.stack([np.zeros_like(rim_index), rim_index, np.roll(rim_index, -1)], axis=1)

@@ -1,16 +1,16 @@
-"""An impact in impulse space (Mason, lecture 27): tangential impulse to the right, normal impulse up.
+"""Draws an impact in impulse space (Mason, lecture 27): tangential impulse to the right, normal impulse up.
 
 The path of the accumulated impulse leaves the origin, inside the friction cone. On the sticking line the
-contact does not slide, on the compression line it does not approach: the path bends where it meets the first,
-and compression ends where it meets the second.
+contact does not slide, and on the compression line it does not approach. The path bends where it meets the
+sticking line, and compression ends where it meets the compression line.
 
-In space the picture's plane is that of the normal and of the total impulse, and a path that swerves is seen
-as its projection. So is the sticking line, where neither tangential velocity is left. Where the contact does
-not approach is a plane, of which the picture shows a cut: the compression line is that for impulses as far
-out of the picture as the path is where compression ends, one for each end.
+In space the picture's plane contains the normal and the total impulse. A path that swerves is projected onto
+it, and so is the sticking line, on which both tangential velocities are zero. The impulses after which the
+contact does not approach form a plane, and the picture shows a cut through it. The cut is as far out of the
+picture as the path is where compression ends. If compression ends more than once, each end has its own line.
 
-Of a contact that strikes more than once the whole path is drawn, the lines and labels of its first strike.
-What other contacts did before that is in its lines.
+If a contact strikes more than once, its whole path is drawn, with the lines and labels of its first strike.
+These lines take account of what other contacts did before.
 """
 
 from __future__ import annotations
@@ -40,14 +40,14 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 MARGIN: Final = 1.2
-"""How far cone and lines go beyond the path."""
+"""Length of cone and lines, relative to the path."""
 
-_BELOW: Final = 0.12  # part of the picture below the origin, relative to the part above it
+_BELOW: Final = 0.12  # height of the picture below the origin, relative to that above it
 _LINE_WIDTH: Final = -1.2  # negative: points of the screen
 _PATH_WIDTH: Final = -2.5
 _POINT_SIZE: Final = -5.0
-_LABEL_OFFSET: Final = 0.55  # of a label's centre from what it names, relative to the picture's height
-_NAMES: Final = 0.85  # of the names' centre from the normal, likewise
+_LABEL_OFFSET: Final = 0.55  # distance of a label's centre from its place, relative to the picture's height
+_NAMES: Final = 0.85  # distance of the names' centre from the normal, relative to the picture's height
 _NAMED: Final = (
     ("sticking line", palette.STICKING_LINE),
     ("compression line", palette.COMPRESSION_LINE),
@@ -61,7 +61,7 @@ _EVENTS: Final = {
 
 
 class Line(NamedTuple):
-    """Impulses x with ``normal . x + offset = 0``: a component of the contact's velocity is zero there.
+    """Impulses x with ``normal . x + offset = 0``, after which a component of a contact's velocity is zero.
 
     Attributes:
         normal: (2,), 1/kg, tangential, normal.
@@ -75,22 +75,23 @@ class Line(NamedTuple):
 class _ContactMotion(NamedTuple):
     """The contact's velocity after an impulse x is ``velocity + response @ x`` (lecture 27, eq. 9 and 10).
 
-    Components are those along the picture's tangent, along the normal, and out of the picture.
+    The components are along the picture's tangent, along the normal, and out of the picture.
     """
 
     velocity: FloatArray  # (3,), m/s, before the impact
     response: FloatArray  # (3, 3), 1/kg
 
     def sticking_line(self, *, in_space: bool) -> Line:
-        """Return where the contact does not slide; in space the projection of where it does not."""
+        """Return the line on which the contact does not slide. In space it is a projection."""
         velocity, response = self.velocity, self.response
-        # The impulse out of the picture is eliminated: it is the one that leaves no velocity there.
+        # The impulse out of the picture is eliminated. It has the size that leaves no velocity in that
+        # direction.
         share = response[0, 2] / response[2, 2] if in_space else 0.0
         normal = response[0, :2] - share * response[2, :2]
         return Line(normal, float(velocity[0] - share * velocity[2]))
 
     def compression_line(self, *, aside: float) -> Line:
-        """Return where the contact does not approach, for impulses ``aside``, N s, of the picture."""
+        """Return the line without approach, for impulses that are ``aside``, N s, out of the picture."""
         return Line(self.response[1, :2], float(self.velocity[1] + self.response[1, 2] * aside))
 
 
@@ -104,8 +105,9 @@ def draw_impulse_space(
 ) -> None:
     """Draw the impulse path of an impact's main contact, at the recording's current time.
 
-    Without the mass properties of all that moves the sticking and compression lines are left out; ``other``
-    are those of the body that is struck. ``entity``, a name without slashes, is where to draw.
+    The sticking and compression lines need the mass properties of all bodies that move, and are left out
+    otherwise. ``other`` are the mass properties of the body that is struck. ``entity``, a name without
+    slashes, is where the picture goes.
     """
     impact = answer.impact
     contact = main_contact(impact)
@@ -114,12 +116,12 @@ def draw_impulse_space(
     path = impact.path_W[chosen] @ axes_W.T
     extent = MARGIN * float(np.abs(path).max(initial=0.0)) or 1.0
     _draw_background(recording, entity, float(answer.contacts.frictions[contact]), extent)
-    # Labels of the path stand on its side of the normal, the names of the lines on the other.
+    # Labels of the path are on its side of the normal, and the names of the lines are on the other side.
     side = -1.0 if len(path) > 0 and path[-1, 0] < 0.0 else 1.0
     _draw_names(recording, entity, -side * _NAMES * extent, extent)
     events = [(i, impact.path_events[i]) for i in chosen if impact.path_events[i] in _EVENTS]
     ends = [k for k, (_, event) in enumerate(events) if event == PathEvent.RESTITUTION_ENDS]
-    events = events[: ends[0] + 1] if ends else events  # the lines are those of the first strike
+    events = events[: ends[0] + 1] if ends else events  # the lines belong to the first strike
     sticking: list[Line] = []
     compression: list[Line] = []
     if mass_properties is not None and (answer.other is None or other is not None):
@@ -147,7 +149,7 @@ def draw_impulse_space(
 
 
 def main_contact(impact: ResolvedImpact) -> int:
-    """Return the contact with the largest impulse; of strikes in time the one that strikes first."""
+    """Return the contact with the largest impulse, or for strikes in time the one that strikes first."""
     if impact.strikes:
         return impact.strikes[0].contact
     return int(np.linalg.norm(impact.impulses_W, axis=1).argmax())
@@ -156,8 +158,8 @@ def main_contact(impact: ResolvedImpact) -> int:
 def contact_axes(answer: ImpactAnswer, contact: int) -> FloatArray:
     """Return the axes of the picture, tangent and normal, (2, 3), unit, world axes.
 
-    In the plane of motion the tangent is the normal turned by -90 degrees. In space it points to where the
-    tangential impulse does, or where there is none, against the sliding.
+    In the plane of motion the tangent is the normal turned by -90 degrees. In space it points along the
+    tangential impulse, or against the sliding if there is no tangential impulse.
     """
     normal_W = answer.contacts.normals_W[contact]
     if answer.plane is not None:
@@ -174,7 +176,7 @@ def contact_axes(answer: ImpactAnswer, contact: int) -> FloatArray:
 
 
 def line_in_box(line: Line, extent: float) -> FloatArray:
-    """Return the ends, (1, 2, 2), of the part of a line that the picture shows; (0, 2, 2): none."""
+    """Return the ends of the part of a line within the picture, (1, 2, 2), or (0, 2, 2) without any."""
     nothing = np.zeros((0, 2, 2))
     squared = float(line.normal @ line.normal)
     if squared == 0.0:
@@ -204,12 +206,12 @@ def _contact_motion(
     other: MassProperties | None,
     before: int,
 ) -> _ContactMotion:
-    """Return how a contact moves once the contacts before a vertex of the path have struck."""
+    """Return the motion of a contact after the strikes that come before a vertex of the path."""
     state, impact = answer.state, answer.impact
     p_WC_W = answer.contacts.p_WC_W[contact]
     struck_W = dict(
         zip(impact.path_contacts[:before], impact.path_W[:before], strict=True)
-    )  # the last of each
+    )  # the last vertex of each contact
     pushes = [(answer.contacts.p_WC_W[i], impulse_W) for i, impulse_W in struck_W.items()]
     velocity_W = _velocity_of_point(mass_properties, state, p_WC_W, pushes)
     response_W = contact_inverse_inertia(mass_properties, state, p_WC_W - state.p_WB_W)

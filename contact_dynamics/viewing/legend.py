@@ -1,4 +1,4 @@
-"""What the viewer shows under *Legend*: how to read the picture, in Markdown."""
+"""The text that the viewer shows under *Legend*. It says in Markdown how to read the picture."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was measured: a body's pose, its trail, height and speed, many states in one go."""
+"""Draws what was measured: a body's pose, its trail, height and speed, for many states in one call."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def draw_states(
     before: BodyState | None,
     up_W: FloatArray,
 ) -> None:
-    """Draw states in the order of their stamps; the trail goes on from the state ``before`` them, if any."""
+    """Draw states in the order of their stamps. The trail continues from the state ``before``, if any."""
     if not states:
         return
     stamps = time_column([state.stamp_ns for state in states])
@@ -66,7 +66,7 @@ def draw_prediction_at(
     begin_ns: int,
     up_W: FloatArray,
 ) -> None:
-    """Draw what a trajectory that began at ``begin_ns`` says of height and speed at stamps that it reaches.
+    """Draw the height and speed of a trajectory, which began at ``begin_ns``, at the stamps that it reaches.
 
     So the curves of measured and predicted values share their times, and many predictions make one curve,
     which has a gap where a trajectory has ended.
@@ -93,7 +93,7 @@ def time_column(stamps_ns: ArrayLike) -> rr.TimeColumn:
 
 
 def set_time(recording: rr.RecordingStream, stamp_ns: int) -> None:
-    """Let what is logged next appear at a stamp."""
+    """Set the stamp at which everything that is logged next appears."""
     recording.set_time(TIMELINE, timestamp=np.datetime64(stamp_ns, "ns"))
 
 

@@ -1,7 +1,7 @@
 """The map of contact modes over applied wrenches (Mason, lecture 26, "Contact modes for wrench in tray").
 
-Each region of the chart is coloured by the mode that its wrenches bring about, and carries that mode's
-string. White: several modes are consistent (indeterminate). Black: none is (inconsistent).
+Each region of the chart has the colour of the mode that its wrenches bring about, and shows that mode's
+string. In white regions several modes are consistent (indeterminate). In black ones none is (inconsistent).
 """
 
 from __future__ import annotations
@@ -36,16 +36,17 @@ if TYPE_CHECKING:
 
 OUTSIDE: Final = 0
 NO_MODE: Final = 1
-"""Classes of the picture's points; the others count up from here."""
+"""Classes of the picture's points. The numbers of modes count up from here."""
 
 LIVE_RESOLUTION: Final = 240
-"""Points on a side: as many as the view of the visualizer shows. Such a map takes about 0.1 s to draw."""
+"""Number of points on a side. The view of the visualizer shows as many. Such a map takes about 0.1 s to draw.
+"""
 
 _NAMED_FROM: Final = 0.045
-"""Relative to a part's side: a region that holds no circle of this radius has no room for its name."""
+"""Relative to a part's side. A region in which no circle of this radius fits has no room for its name."""
 
-_SEEN: Final = 5e-3  # of unit normals: what moves a border by one point of the picture
-_COARSE: Final = 4  # every so many points suffice to find where a region is widest
+_SEEN: Final = 5e-3  # difference of unit normals that moves a border by one point
+_COARSE: Final = 4  # a step of this many points finds where a region is widest
 _EDGE: Final = 1e-9  # relative: what is outside by less is on the boundary
 _BORDER_WIDTH: Final = -1.0  # negative: points of the screen
 _POINT_SIZE: Final = -5.0
@@ -58,7 +59,7 @@ class ModeRegions:
 
     Attributes:
         classes: (h, w), indices into ``modes``.
-        modes: The consistent modes of each class; empty for OUTSIDE and NO_MODE.
+        modes: The consistent modes of each class. OUTSIDE and NO_MODE have none.
     """
 
     classes: NDArray[np.uint16]
@@ -66,7 +67,7 @@ class ModeRegions:
 
 
 class WidestPlace(NamedTuple):
-    """Where a region has most room for its name.
+    """The place at which a region has most room for its name.
 
     Attributes:
         region: Its class.
@@ -113,11 +114,11 @@ def draw_mode_map(
 
     Args:
         recording: to draw into.
-        sets: of `contact_modes.wrench_sets`.
+        sets: the result of `contact_modes.wrench_sets`.
         chart: how wrenches are laid out.
         entity: where the picture is put.
         applied: a wrench to mark.
-        change: its least change that brings about another mode; drawn as a way from it.
+        change: the least change of the wrench that brings about another mode, drawn as a path from it.
     """
     regions = mode_regions(sets, chart)
     names = ["", "no mode", *(" or ".join(modes) for modes in regions.modes[NO_MODE + 1 :])]
@@ -171,10 +172,10 @@ def chart_for(
     applied: PlanarWrench | None,
     resolution: int = LIVE_RESOLUTION,
 ) -> WrenchChart:
-    """Return the chart that suits: all directions of a body at rest, else forces at the applied torque.
+    """Return the chart that suits: all directions for a body at rest, or else forces at the applied torque.
 
     Args:
-        sets: of `contact_modes.wrench_sets`.
+        sets: the result of `contact_modes.wrench_sets`.
         length: m, the radius of gyration.
         applied: the wrench in question, if known.
         resolution: points on a side.
@@ -209,7 +210,7 @@ def borders_of(one: PlanarWrenchSet, chart: WrenchChart) -> list[FloatArray]:
 
 
 def widest_places(regions: ModeRegions, chart: WrenchChart) -> list[WidestPlace]:
-    """Return where each region is widest, on each part of the chart that it reaches."""
+    """Return the widest place of each region on each part of the chart that it reaches."""
     from scipy.ndimage import distance_transform_edt
 
     coarse = regions.classes[::_COARSE, ::_COARSE]
@@ -234,7 +235,7 @@ def widest_places(regions: ModeRegions, chart: WrenchChart) -> list[WidestPlace]
 
 
 def _different_columns(table: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the first of each kind of column of a table, (m, k), and the kind of each column, (k,)."""
+    """Return the different columns of a table, (m, k), and for each column the index of its like, (k,)."""
     firsts, kinds = np.zeros(min(1, table.shape[1]), dtype=np.int64), np.zeros(table.shape[1], dtype=np.int64)
     for eight in np.packbits(table, axis=0):
         _, firsts, kinds = np.unique(256 * kinds + eight, return_index=True, return_inverse=True)
@@ -242,14 +243,14 @@ def _different_columns(table: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDA
 
 
 def _shown_pieces(places: FloatArray, part: NDArray[np.int64]) -> list[FloatArray]:
-    """Return the pieces of a strip, (k, 2), that each stand on one part of the chart."""
+    """Return the pieces of a strip, (k, 2), each of which lies on one part of the chart."""
     cuts = np.flatnonzero(np.diff(part)) + 1
     pieces = zip(np.split(places, cuts), np.split(part, cuts), strict=True)
     return [piece for piece, there in pieces if len(piece) > 1 and there[0] != HIDDEN]
 
 
 def draw_frame(recording: rr.RecordingStream, chart: WrenchChart, entity: str, *, note: str = "") -> None:
-    """Draw a chart's outline, what its parts are below them, and a note above."""
+    """Draw a chart's outline, the names of its parts below them, and a note above."""
     width, height = picture_size(chart)
     half = 0.5 * chart.resolution
     centres = [np.array(part_centre(chart, part)) for part in range(chart.parts)]
@@ -281,7 +282,7 @@ def draw_applied(
     applied: PlanarWrench | None,
     change: PlanarWrench | None,
 ) -> None:
-    """Mark a wrench on a map, and its least change that brings about another mode as a way from it."""
+    """Mark a wrench on a map, with its least change that brings about another mode as a path from it."""
     start = np.zeros(3) if applied is None else np.array([*applied.f, applied.moment])
     if not start.any():
         recording.log(f"{entity}/applied", rr.Clear(recursive=True))

@@ -1,4 +1,4 @@
-"""What each colour means, everywhere: red, green, blue and opacity, 0 to 255."""
+"""The colours and their meanings, which are the same everywhere: red, green, blue and opacity, 0 to 255."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Final, TypeAlias
 Color: TypeAlias = tuple[int, int, int, int]
 
 MEASURED: Final[Color] = (120, 170, 215, 255)
-"""Blue grey: what was measured. The body, its trail, its height and speed."""
+"""Blue grey is for what was measured: the body, its trail, its height and speed."""
 
 MEASURED_EDGE: Final[Color] = (35, 60, 85, 255)
 """Edges of the body."""

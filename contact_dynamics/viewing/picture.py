@@ -67,7 +67,7 @@ class _Prediction:
 
 
 class Picture:
-    """Draws states and answers into a recording; an unknown body is drawn without shape.
+    """Draws states and answers into a recording. An unknown body is drawn without shape.
 
     Answers may come from a live server, from its log, or from a question asked in Python.
     """
@@ -83,11 +83,13 @@ class Picture:
         self._answers: dict[str, str] = {}
         self._told_ns: int | None = None  # stamp of the last answer
         self._map: DrawnMap | None = None
-        self._rolling: dict[str, Poinsot] = {}  # of the bodies whose flight still goes on
+        self._rolling: dict[str, Poinsot] = {}  # bodies whose predicted flight still goes on
         self._framed = False
         self._eye: Eye | None = None
-        self._diagrams: set[str] = set()  # those that have been drawn
-        self._recent: deque[tuple[int, FloatArray]] = deque()  # stamps and positions of the last `WINDOW_S`
+        self._diagrams: set[str] = set()  # the diagrams that have been drawn
+        self._recent: deque[tuple[int, FloatArray]] = (
+            deque()
+        )  # stamp, ns, position, m, of the last `WINDOW_S`
         gravity = float(np.linalg.norm(world.gravity_W))
         self._up_W = -world.gravity_W / gravity if gravity > 0.0 else np.array([0.0, 0.0, 1.0])
         self._draw_scene()
@@ -97,7 +99,7 @@ class Picture:
         if not states:
             return
         before = self._newest.get(body_name)
-        if before is None:  # until now it was nowhere
+        if before is None:  # it was not in the picture before
             draw_body(self._recording, body_name, self._shape(body_name))
         draw_states(self._recording, body_name, states, before=before, up_W=self._up_W)
         prediction = self._predictions.get(body_name)
@@ -125,13 +127,13 @@ class Picture:
         remark: str = "",
         computation_time: float | None = None,
     ) -> None:
-        """Draw where a body was predicted to be, how surely, and Poinsot's picture where it has curves.
+        """Draw where a body was predicted to be, with what certainty, and Poinsot's picture if it has curves.
 
         Args:
-            answer: What to show.
-            now_ns: ns, the time where the answer's state has no stamp.
-            remark: What else to say of it.
-            computation_time: s, how long the answer took. None: not known.
+            answer: The answer.
+            now_ns: ns, the time of the picture if the answer's state has no stamp.
+            remark: A remark that is added to the answer's words.
+            computation_time: s, how long the answer took, or None if that is not known.
         """
         stamp_ns = answer.state.stamp_ns or now_ns
         name, trajectory, rotation = answer.body_name, answer.trajectory, answer.poinsot
@@ -140,7 +142,7 @@ class Picture:
         self._predictions[name] = _Prediction(begin_ns=stamp_ns, trajectory=trajectory)
         if len(trajectory) > 0 and not self._framed:
             self._framed = True
-            self._look_at(trajectory.p_WB_W)  # later ones leave the view to whoever looks
+            self._look_at(trajectory.p_WB_W)  # after that the view belongs to the user
         if rotation is not None and answer.curves is not None and rotation.regime is not Regime.AT_REST:
             draw_poinsot(self._recording, name, rotation, answer.curves)
             draw_rolling(self._recording, name, [replace(answer.state, stamp_ns=stamp_ns)])
@@ -185,7 +187,7 @@ class Picture:
         remark: str = "",
         computation_time: float | None = None,
     ) -> None:
-        """Draw an answer about contact modes in the scene, and where it has a plane of motion in 2D.
+        """Draw an answer about contact modes in the scene, and in 2D if it has a plane of motion.
 
         Arguments are those of `show_tumbling`.
         """
@@ -203,7 +205,7 @@ class Picture:
         self._tell_answer(CONTACT_MODE, name, words, remark, computation_time, stamp_ns=stamp_ns)
 
     def tell(self, kind: str, text: str, *, stamp_ns: int, is_error: bool = False) -> None:
-        """Write an answer in words: to the log of all, and as the newest one of its kind."""
+        """Write an answer in words, both into the list of all answers and as the newest of its kind."""
         set_time(self._recording, stamp_ns)
         self._told_ns = stamp_ns
         level = rr.TextLogLevel.WARN if is_error else rr.TextLogLevel.INFO
@@ -213,12 +215,12 @@ class Picture:
         self._recording.log(NEWEST_ANSWERS, rr.TextDocument(document, media_type=rr.MediaType.MARKDOWN))
 
     def frame_all(self) -> None:
-        """Look at all that is in view at the end, for whoever opens the file."""
+        """Make the view show all that is there at the end, for the user who opens the file."""
         if self._recent:
             self._look_at(np.array([p_WB_W for _, p_WB_W in self._recent]))
 
     def newest_stamp_ns(self) -> int | None:
-        """Return the stamp of the newest measured state; without one that of the last answer, if any."""
+        """Return the stamp of the newest measured state, or else of the last answer, if there is either."""
         return max((state.stamp_ns for state in self._newest.values()), default=self._told_ns)
 
     def _draw_scene(self) -> None:
@@ -257,7 +259,7 @@ class Picture:
         self.tell(kind, f"{body_name or 'a body'} {'; '.join(said)}{took}", stamp_ns=stamp_ns)
 
     def _mass_properties(self, body_name: str) -> MassProperties | None:
-        """Return those of a body of the world; None: it is not known."""
+        """Return the mass properties of a body of the world, or None if the body is not known."""
         known = (body.mass_properties for body in self._world.bodies if body.name == body_name)
         return next(known, None)
 
@@ -267,7 +269,7 @@ class Picture:
         return self._shapes[body_name]
 
     def _look_at(self, points_W: FloatArray) -> None:
-        """Look at a path, and put the ground below it."""
+        """Turn the view towards a path, and put the ground below it."""
         center = 0.5 * (points_W.min(axis=0) + points_W.max(axis=0))
         for surface in self._world.surfaces:
             if isinstance(surface, Surface):
@@ -277,7 +279,7 @@ class Picture:
         self._arrange()
 
     def _bring_up(self, *diagrams: str) -> None:
-        """Give diagrams that are drawn for the first time a tab."""
+        """Add a tab for each diagram that is drawn for the first time."""
         if not self._diagrams.issuperset(diagrams):
             self._diagrams.update(diagrams)
             self._arrange()

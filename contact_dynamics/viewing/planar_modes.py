@@ -1,7 +1,7 @@
-"""A planar answer about contact modes in 2D: its consistent modes side by side, and the map that they are in.
+"""Draws a planar answer about contact modes in 2D: its consistent modes side by side, and the map of modes.
 
-Seen with the plane's normal towards the eye, each mode in a picture of its own. Where wrench sets were asked
-for, the map of modes over applied wrenches shows where the question stands and the least way out.
+The plane's normal points towards the eye, and each mode has its own picture. If wrench sets were asked for,
+the map of modes over applied wrenches shows the wrench in question and its least change into another mode.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ if TYPE_CHECKING:
     from contact_dynamics.viewing.wrench_chart import WrenchChart
 
 NO_SIZE: Final = 0.1
-"""m. Size that a body without shape, at its only contact, is drawn with."""
+"""m. A body without shape is drawn with this size at its only contact."""
 
 MOST_SETS: Final = 100
-"""A map of more modes has regions too small to see, and takes seconds to draw: it is left out."""
+"""A map of more modes than this is not drawn, because its regions are too small to see and take seconds."""
 
 _AROUND: Final = 0.45  # room around body and contacts in each picture, relative to the body's size
-_WALL: Final = 0.15  # half of the length of a contact's flat, likewise
+_WALL: Final = 0.15  # half of the length of a contact's flat, relative to the body's size
 
 
 def draw_planar_modes(
@@ -86,12 +86,12 @@ def draw_planar_modes(
         points = rr.Points2D(place, colors=palette.NORMAL, radii=0.0, labels=[titles[i]], show_labels=True)
         recording.log(f"{path}/title", points)
         room = rr.Points2D(upright(np.array([low, high]) + aside), colors=palette.BACKGROUND, radii=0.0)
-        recording.log(f"{path}/room", room)  # what the viewer fits into the view
+        recording.log(f"{path}/room", room)  # the viewer fits these points into the view
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class DrawnMap:
-    """A map that is in the picture."""
+    """The map that is in the picture."""
 
     sets: tuple[PlanarWrenchSet, ...]
     chart: WrenchChart
@@ -105,16 +105,17 @@ def draw_planar_map(
     *,
     body: MassProperties | None = None,
 ) -> DrawnMap | None:
-    """Draw the map that was told at the current time, and return what is drawn then.
+    """Draw the answer's map at the current time, and return the map that is in the picture then.
 
-    Where it looks like the one before, only the wrench in question moves.
+    If it looks like the map before, only the wrench in question moves.
 
     Args:
         recording: To draw into.
         answer: The answer, in world axes.
         plane: The plane of motion.
-        before: What is drawn so far, if anything is.
-        body: Mass properties, from which the wrench in question follows. None: it is not drawn.
+        before: The map in the picture so far, if there is one.
+        body: Mass properties, from which the wrench in question follows. If it is None, the wrench is not
+            drawn.
     """
     if not answer.wrench_sets:
         return before
@@ -139,14 +140,14 @@ def draw_planar_map(
 def _applied(
     answer: ContactModeAnswer, plane: PlaneOfMotion, body: MassProperties | None
 ) -> PlanarWrench | None:
-    """Return the wrench in question; None: nothing tells it."""
+    """Return the wrench in question, or None if it is not known."""
     if body is None or not answer.modes:
         return None
     return seen_wrench(applied_wrench(body, answer.state, answer.contacts, answer.modes[0]), plane)
 
 
 def _change(answer: ContactModeAnswer, plane: PlaneOfMotion) -> PlanarWrench | None:
-    """Return the least change that takes the wrench out of the first mode; None: not told, or none does."""
+    """Return the least change that takes the wrench out of the first mode, or None if it is not known."""
     if not answer.margins or not math.isfinite(answer.margins[0].margin):
         return None
     return seen_wrench(answer.margins[0].change_W, plane)
@@ -158,7 +159,7 @@ def silhouette(shape: Shape, axes_B: FloatArray) -> FloatArray:
 
     corners = np.vstack([shape.triangles_B.reshape(-1, 3), shape.edges_B.reshape(-1, 3)]) @ axes_B.T
     if len(corners) == 0 or np.linalg.matrix_rank(corners - corners[0], tol=FLAT * shape.size) < 2:
-        return corners[:2]  # a rod, or a disc seen from the side, is a line
+        return corners[:2]  # a rod is a line, and so is a disc seen from the side
     hull = ConvexHull(corners).vertices
     strip: FloatArray = corners[[*hull, hull[0]]]
     return strip

@@ -1,6 +1,6 @@
-"""A planar body among its contacts, in 2D: outline, walls, friction cones, and one mode's letters and forces.
+"""Draws a planar body and its contacts in 2D: outline, walls, friction cones, one mode's letters and forces.
 
-In metres from the centre of mass, x to the right, y up.
+Coordinates are in metres from the centre of mass, x to the right, y up.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ CONE_LENGTH: Final = 0.2
 ARROW_LENGTH: Final = 0.4
 """Length of the longest arrow of a kind, relative to the body's size."""
 
-_LABEL_OFFSET: Final = 0.07  # of a contact's label from the contact, out of the body, relative to its size
-_COVERED: Final = 0.06  # labels that are nearer cover each other, likewise
+_LABEL_OFFSET: Final = 0.07  # distance of a label from its contact, relative to the body's size
+_COVERED: Final = 0.06  # labels nearer than this would cover each other, relative to the body's size
 _OUTLINE_WIDTH: Final = -1.8  # negative: points of the screen
 _WALL_WIDTH: Final = -3.6
 _CONE_WIDTH: Final = -1.2
@@ -51,11 +51,11 @@ def draw_planar_scene(
 
     Args:
         recording: to draw into.
-        outline: (k, 2), m, of the body; closed by its last point being its first.
+        outline: (k, 2), m, outline of the body, whose last point is its first.
         contacts: numbered from 1.
         walls: strips, (k, 2) each, m.
-        mode: letters, contact forces and accelerations to draw; None: none.
-        size: m, that arrows and cones suit; None: of the outline.
+        mode: the mode whose letters, contact forces and accelerations are drawn, if any.
+        size: m, the size that arrows and cones suit. By default it is that of the outline.
         shift: m, how far to the right the picture stands.
         entity: where the picture is put.
     """

@@ -30,12 +30,12 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 SAME_MOMENTUM: Final = 0.2
-"""Relative. An angular momentum that is off by more is not that of the flight: in the demo's toss the noise
-of motion capture makes up to 0.08 of it, the impacts more than 1."""
+"""Relative. If the angular momentum is off by more, the flight is over. In the demo's toss the noise of
+motion capture makes up to 0.08 of it, and impacts make more than 1."""
 
-_PLANE_MARGIN: Final = 1.25  # how far the plane goes beyond what lies on it
-_GRID: Final = 10  # lines across the plane, either way
-_BELOW: Final = 0.005  # how far the plane is drawn below its place, not to hide the herpolhode, relative
+_PLANE_MARGIN: Final = 1.25  # size of the plane, relative to what lies on it
+_GRID: Final = 10  # number of lines across the plane in each direction
+_BELOW: Final = 0.005  # relative distance by which the plane is too low, not to hide the herpolhode
 _CURVE_WIDTH: Final = -1.2  # negative: points of the screen
 _GRID_WIDTH: Final = -0.6
 _NET_POINTS: Final = 73
@@ -58,9 +58,9 @@ def count_of_flight(picture: Poinsot, states: Sequence[BodyState]) -> int:
 def draw_poinsot(
     recording: rr.RecordingStream, body_name: str, picture: Poinsot, curves: RollingCurves
 ) -> None:
-    """Draw ellipsoid, plane and curves, at the recording's current time; `draw_rolling` turns it.
+    """Draw ellipsoid, plane and curves at the recording's current time. `draw_rolling` turns the ellipsoid.
 
-    The body must rotate: at rest there is no plane.
+    The body must rotate, because there is no plane at rest.
     """
     path = poinsot_entity(body_name)
     unit = float(picture.ellipsoid_semi_axes.max())
@@ -111,7 +111,7 @@ def draw_poinsot(
 
 
 def clear_poinsot(recording: rr.RecordingStream, body_name: str) -> None:
-    """Take the picture away at the recording's current time."""
+    """Remove the picture at the recording's current time."""
     recording.log(poinsot_entity(body_name), rr.Clear(recursive=True))
 
 

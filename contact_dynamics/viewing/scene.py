@@ -1,4 +1,4 @@
-"""What stands still or is drawn once: surfaces as patches of ground, and the shapes of the bodies."""
+"""Draws what stands still or is drawn once: surfaces as patches of ground, and the shapes of the bodies."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from contact_dynamics.world import Surface
 
 GRID_SPACING: Final = 0.1
-"""m between the lines on a surface; wider by tens where that would be more than `MOST_GRID_LINES` lines."""
+"""m. The distance of the lines on a surface. It is ten times wider, and so on, if there would be more than
+`MOST_GRID_LINES` lines."""
 
 MOST_GRID_LINES: Final = 100
 
@@ -71,7 +72,7 @@ def draw_obstacle(recording: rr.RecordingStream, obstacle: Obstacle) -> None:
 
 
 def draw_body(recording: rr.RecordingStream, body_name: str, shape: Shape) -> None:
-    """Draw a body's shape, which moves with the body's pose; without one, a ball."""
+    """Draw a body's shape, which moves with the body's pose. A body without shape is a ball."""
     path = body_entity(body_name)
     if len(shape.triangles_B) > 0:
         recording.log(f"{path}/faces", solid(shape, palette.MEASURED), static=True)

@@ -1,4 +1,4 @@
-"""The drawable shape of a convex body: faces and the edges between them; round sides in flat facets."""
+"""Makes the drawable shape of a convex body: faces with edges between them, flat facets on round sides."""
 
 from __future__ import annotations
 
@@ -15,20 +15,21 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 FLAT: Final = 1e-6
-"""Relative to a body's size: thinner than this it is drawn as a polygon, a line or a point. Also 1 - cos of
-the angle below which two triangles are one face: 0.08 degrees."""
+"""Relative to a body's size. If it is thinner than this, it is drawn as a polygon, a line or a point. It is
+also 1 - cos of the angle, 0.08 degrees, below which two triangles are one face."""
 
 ROUND_FACETS: Final = 48
-"""Facets around a rim or a ball: a chord is then 0.2 % of the radius from its arc."""
+"""Number of facets around a rim or a ball. A chord is then 0.2 % of the radius from its arc."""
 
 MOST_BALLS: Final = 100
-"""Corners that are rounded with all their facets; of more, each has fewer."""
+"""Up to this number of corners are rounded with all facets. If there are more corners, each has fewer facets.
+"""
 
 SHARP: Final = 0.06
-"""1 - cos of the angle, 20 degrees, below which facets of a round body are one side of it."""
+"""1 - cos of the angle, 20 degrees. Facets of a round body that meet at less are one side of it."""
 
 NO_SIZE: Final = 0.05
-"""m. Size that a body without shape is drawn with."""
+"""m. A body without shape is drawn with this size."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -49,7 +50,7 @@ class Shape:
 
 
 def drawn_shape(shape: ConvexShape) -> Shape:
-    """Return a body's shape. Round ones have circles and radii among their edges, so that turns are seen."""
+    """Return a body's shape. A round one has circles and radii among its edges, which show how it turns."""
     if shape.is_polyhedron:
         return convex_shape(shape.vertices)
     hull = convex_shape(_surface_points(shape), smooth=SHARP)
@@ -60,7 +61,7 @@ def drawn_shape(shape: ConvexShape) -> Shape:
 
 
 def convex_shape(vertices_B: FloatArray, *, smooth: float = FLAT) -> Shape:
-    """Return the shape of the hull of corners, (k, 3), m, which may lie in a plane, on a line, or be none.
+    """Return the shape of the hull of corners, (k, 3), m, which may lie in a plane or on a line.
 
     There is an edge where 1 - cos of the angle between two facets exceeds ``smooth``.
     """
@@ -90,7 +91,7 @@ def _polygon(vertices_B: FloatArray, in_plane: FloatArray, size: float) -> Shape
     outline = vertices_B[ConvexHull(in_plane).vertices]
     fan = [np.array([outline[0], outline[i], outline[i + 1]]) for i in range(1, len(outline) - 1)]
     front = np.array(fan)
-    triangles = np.concatenate([front, front[:, ::-1]])  # seen from either side
+    triangles = np.concatenate([front, front[:, ::-1]])  # twice, so that they are seen from either side
     edges = np.stack([outline, np.roll(outline, -1, axis=0)], axis=1)
     return Shape(triangles_B=triangles, normals_B=_normals(triangles), edges_B=edges, size=size)
 
@@ -129,7 +130,7 @@ def _surface_points(shape: ConvexShape) -> FloatArray:
     if shape.rounding == 0.0:
         return points
     around = _circle(np.zeros(3), _PLANES[0], 1.0)[:-1]
-    # A rim's balls need only be seen in outline; single ones are round on all sides.
+    # A rim's balls are seen in outline only. Single ones are round on all sides.
     tilts = np.linspace(0.0, np.pi, ROUND_FACETS // (4 if shape.rims else 2) + 1)
     ball = np.concatenate([around * np.sin(tilt) + [0.0, 0.0, np.cos(tilt)] for tilt in tilts])
     if len(points) > MOST_BALLS:

@@ -1,7 +1,7 @@
-"""Where the picture goes: a file, and a viewer that is started, served or connected to, or both at once.
+"""Opens the places where the picture goes: a file, a viewer that is started, served or connected to, or both.
 
-All network ends are of this machine (127.0.0.1) unless a URL names another. A viewer that dies or hangs later
-takes nothing with it: what is drawn goes on into the file, and closing waits for it a few seconds at most.
+All network addresses are of this machine (127.0.0.1) unless a URL names another. If a viewer dies or hangs
+later, the picture still goes into the file, and closing waits for the viewer a few seconds at most.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ DEFAULT_PORT: Final = 9876
 
 
 class ViewerMode(Enum):
-    """How a viewer comes to the picture."""
+    """The way in which a viewer gets the picture."""
 
     NONE = "none"
     SPAWN = "spawn"
@@ -36,10 +36,10 @@ class ViewerMode(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sinks:
-    """Where to draw to.
+    """The places to draw to.
 
     Attributes:
-        rrd_path: File to write, which is replaced; empty: none.
+        rrd_path: File to write, which is replaced. If it is empty, no file is written.
         port: Port of the viewer that is started, or that is served.
         url: URL of the viewer to connect to, such as rerun+http://127.0.0.1:9876/proxy.
     """
@@ -51,18 +51,18 @@ class Sinks:
 
 
 class NowhereToDrawError(ContactDynamicsError):
-    """A viewer was asked for and no file, and the viewer cannot be reached; the message says why."""
+    """A viewer was asked for without a file, and cannot be reached. The message says why."""
 
 
 class OpenRecording:
     """A recording that is open to its sinks."""
 
     def __init__(self, sinks: Sinks, *, on_problem: Callable[[str], object]) -> None:
-        """Open the sinks; a viewer that cannot be reached is told, the file is written all the same.
+        """Open the sinks. If a viewer cannot be reached, a message says so, and the file is still written.
 
         Raises:
             OSError: the file cannot be written.
-            NowhereToDrawError: a viewer was asked for alone, and there is none.
+            NowhereToDrawError: a viewer was asked for without a file, and there is none.
         """
         self.stream = rr.RecordingStream(APPLICATION)
         self._on_problem = on_problem
@@ -81,9 +81,9 @@ class OpenRecording:
         return bool(self._problem) or (self._viewer is not None and self._viewer.failed)
 
     def close(self, *, timeout: float = 5.0) -> bool:
-        """Write what is left and let go of the viewer, which stays open; return whether it took all.
+        """Write what is left and leave the viewer, which stays open. Return whether it took everything.
 
-        Where it did not within ``timeout``, s, rerun would wait for it for ever when the process exits.
+        If it did not within ``timeout``, s, rerun would wait for it for ever when the process exits.
         """
         thread = threading.Thread(target=self._disconnect, daemon=True)
         thread.start()
@@ -119,7 +119,7 @@ class OpenRecording:
         return names
 
     def _viewer_url(self, sinks: Sinks) -> str:
-        """Return the URL of a viewer that listens, or nothing after having told why there is none."""
+        """Return the URL of a viewer that listens, or None after a message that says why there is none."""
         if sinks.viewer is ViewerMode.CONNECT:
             parts = urlsplit(sinks.url)
             problem = connection_problem(parts.hostname or LOCAL, parts.port or DEFAULT_PORT)
@@ -135,12 +135,12 @@ class OpenRecording:
 
 
 def raise_errors() -> None:
-    """Let rerun raise where it is given what it cannot draw, which it would only warn of."""
+    """Make rerun raise an error for what it cannot draw, instead of a warning."""
     rr.set_strict_mode(True)
 
 
 def _serving_problem(port: int) -> str:
-    """Return why a port cannot be served at, in the system's words, or nothing where it can."""
+    """Return the system's reason why a port cannot be served at, or an empty string if it can."""
     try:
         with socket.socket() as probe:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # as rerun does

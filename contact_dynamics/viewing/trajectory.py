@@ -1,7 +1,7 @@
-"""Where a body was predicted to be: the path of its centre of mass, outlines on it, the pose at its end.
+"""Draws where a body was predicted to be: the path of its centre of mass, outlines on it, its last pose.
 
-Where the prediction has covariances, an ellipsoid stands at each outline: with two deviations to each side
-it holds the centre of mass in three of four cases. White: not to be relied on any more.
+If the prediction has covariances, there is an ellipsoid at each outline. It extends two deviations to each
+side, and so contains the centre of mass in three of four cases. A white one is not to be relied on.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from contact_dynamics.viewing.shape import Shape
 
 MOST_PATH_POINTS: Final = 2000
-"""More samples than a screen is wide are thinned out evenly."""
+"""If there are more samples than this, they are thinned out evenly. It is the width of a screen."""
 
 MOST_OUTLINES: Final = 6
-"""Outlines of the body along the path, evenly in time, besides the one at its end. A path that is short has
+"""Number of outlines of the body along the path, evenly in time, besides the one at its end. A short path has
 one for each length of the body."""
 
 NEARBY: Final = 0.25
@@ -37,7 +37,7 @@ DEVIATIONS: Final = 2.0
 """Half axes of the ellipsoids of uncertainty, in standard deviations: 74 % of a normal distribution."""
 
 RECENT: Final = ("path", "outlines", "end", "uncertainty")
-"""What stays in view beside what comes after it."""
+"""The parts of a prediction that stay in view beside later ones."""
 
 _PATH_WIDTH: Final = -2.0  # negative: points of the screen
 _OUTLINE_WIDTH: Final = -0.8
@@ -52,9 +52,9 @@ def draw_trajectory(
     *,
     covariance: CarriedCovariance | None = None,
 ) -> None:
-    """Draw a trajectory at the recording's current time; one without samples clears what was drawn before.
+    """Draw a trajectory at the recording's current time. One without samples clears what was drawn before.
 
-    ``covariance`` is that of the state at the trajectory's samples. None: it is not known.
+    ``covariance`` is the covariance of the state at the trajectory's samples, or None if it is not known.
     """
     path = predicted_entity(body_name)
     if len(trajectory) == 0:

@@ -1,4 +1,4 @@
-"""rerun's viewer as a process of its own: how it is started, and what it says when it fails.
+"""Runs rerun's viewer as its own process, and reports what it says when it fails.
 
 The executable of rerun's wheel is started itself. `python -m rerun` would fail with an ImportError where
 `RERUN_APP_ONLY` is set (rerun 0.39 to 0.41), and `rerun` need not be on the PATH.
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 LOCAL: Final = "127.0.0.1"
 
 _START_S: Final = 15.0
-_WINDOW_S: Final = 5.0  # a viewer that has listened for so long and still lives is taken to be open
+_WINDOW_S: Final = 5.0  # s, after which a viewer that listens and still lives counts as open
 _CONNECT_S: Final = 1.0
 _POLL_S: Final = 0.05
-_DRAWS: Final = "wgpu adapter"  # what the viewer logs once it has a window and has found what to draw with
-_MOST_WORDS: Final = 4  # lines of the viewer that are told
+_DRAWS: Final = "wgpu adapter"  # the viewer logs this once it has a window and a graphics adapter
+_MOST_WORDS: Final = 4  # number of the viewer's lines that are shown
 _COLORS: Final = re.compile(r"\x1b\[[0-9;]*m")
 _LOGGED: Final = re.compile(r"^\S+ +(?:TRACE|DEBUG|INFO|WARN|ERROR) ")
 _HTTP2_GREETING: Final = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + bytes([0, 0, 0, 4, 0, 0, 0, 0, 0])
@@ -45,8 +45,8 @@ class ViewerProcess:
     def __init__(self, port: int, *, on_problem: Callable[[str], object]) -> None:
         """Start a viewer, unless one listens at the port; wait until it is open.
 
-        ``problem`` says then why there is none, and is empty where there is one. ``on_problem`` is told what
-        happens to it later.
+        Afterwards ``problem`` says why there is none, and is empty if there is one. ``on_problem`` is called
+        with what happens to the viewer later.
         """
         self._port = port
         self._on_problem = on_problem
@@ -73,7 +73,8 @@ class ViewerProcess:
                 stdout=output,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
-                env={**os.environ, "RERUN_APP_ONLY": "true", "RUST_LOG": "info"},  # what we wait for is info
+                # The line that we wait for has the level info.
+                env={**os.environ, "RERUN_APP_ONLY": "true", "RUST_LOG": "info"},
             )
         except OSError as error:
             output.close()
@@ -103,7 +104,7 @@ class ViewerProcess:
 
     def _watch(self, process: subprocess.Popen[bytes], output: IO[bytes]) -> None:
         with output:
-            if process.wait() != 0:  # 0: whoever looked has closed it
+            if process.wait() != 0:  # with 0 the user has closed it
                 self._failed = True
                 self._on_problem(_how_it_ended(process, output))
 
@@ -129,7 +130,7 @@ def _printed(output: IO[bytes]) -> str:
 
 
 def _words(output: IO[bytes]) -> str:
-    """Return what the viewer says of its end, in its own words."""
+    """Return the last lines of the viewer, which say why it ended."""
     lines = [line.strip() for line in _printed(output).splitlines() if line.strip()]
     begins = [i for i, line in enumerate(lines) if line.startswith(("Error:", "thread '"))]
     if begins:
@@ -139,7 +140,7 @@ def _words(output: IO[bytes]) -> str:
 
 
 def viewer_executable() -> str:
-    """Return the path of the viewer in rerun's wheel, or what `RERUN_CLI_PATH` names, as rerun does."""
+    """Return the path of the viewer in rerun's wheel, or the path in `RERUN_CLI_PATH`, as rerun does."""
     named = os.environ.get("RERUN_CLI_PATH")
     if named:
         return named
@@ -149,7 +150,7 @@ def viewer_executable() -> str:
 
 
 def connection_problem(host: str, port: int) -> str:
-    """Return why nothing can be reached at a port, in the system's words, or nothing where something can."""
+    """Return the system's reason why nothing is reached at a port, or an empty string if something is."""
     try:
         with socket.create_connection((host, port), timeout=_CONNECT_S):
             return ""
@@ -158,7 +159,7 @@ def connection_problem(host: str, port: int) -> str:
 
 
 def _speaks_http2(port: int) -> bool:
-    """Return whether what listens there greets as gRPC's servers do, of which rerun's viewer is one."""
+    """Return whether the process that listens there greets as gRPC's servers do. rerun's viewer is one."""
     try:
         with socket.create_connection((LOCAL, port), timeout=_CONNECT_S) as connection:
             connection.sendall(_HTTP2_GREETING)

@@ -1,4 +1,4 @@
-"""What answers say in words, beside what is drawn of them: regimes, outcomes, verdicts, certainties."""
+"""Puts answers into words, beside the pictures of them: regimes, outcomes, verdicts, certainties."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 TUMBLING: Final = "Tumbling"
 IMPACT: Final = "Impact"
 CONTACT_MODE: Final = "Contact mode"
-"""The kinds of answers, as they are told."""
+"""The kinds of answers."""
 
 MOST_LISTED: Final = 8
-"""More refused modes than this are counted, not listed."""
+"""Up to this number of refused modes are listed. The others are only counted."""
 
 REGIMES: Final = {
     Regime.UNKNOWN: "a torque acts",
@@ -39,10 +39,10 @@ REGIMES: Final = {
     Regime.ABOUT_MAJOR_AXIS: "it tumbles about its major axis",
     Regime.SEPARATRIX: "it turns over once, on the separatrix",
 }
-"""What kind of rotation a body makes."""
+"""The words for each kind of rotation."""
 
 OUTCOMES: Final = {outcome: outcome.name.replace("_", " ").lower() for outcome in ImpactOutcome}
-"""What a contact does in an impact."""
+"""The words for what a contact does in an impact."""
 
 SEQUENCE_ENDS: Final = {
     SequenceEnd.NOTHING_STRIKES: "it flies",
@@ -51,7 +51,7 @@ SEQUENCE_ENDS: Final = {
     SequenceEnd.MOST_STRIKES: "the bound on their number was reached",
     SequenceEnd.WINDOW_ENDED: "the window ended",
 }
-"""What follows the last of several strikes in time."""
+"""The words for what follows the last of several strikes in time."""
 
 VERDICTS: Final = {
     ModeVerdict.UNIQUE: "has one consistent mode",
@@ -60,14 +60,14 @@ VERDICTS: Final = {
     ModeVerdict.IMPACT: "approaches: no mode before the impact is resolved",
     ModeVerdict.UNDECIDED: "has modes that could not all be made out",
 }
-"""What mechanics says about a contact set."""
+"""The words for each verdict on a contact set."""
 
 CERTAINTIES: Final = {Certainty.NO: "no", Certainty.POSSIBLE: "possible", Certainty.CERTAIN: "certain"}
-"""Answers to static questions."""
+"""The words for answers to static questions."""
 
 
 def tumbling_in_words(answer: TumblingAnswer) -> list[str]:
-    """Return how far the motion goes, what ends it, and what kind of rotation it is."""
+    """Return words for the length of the motion, its end, and its kind of rotation."""
     event, seconds = answer.event, answer.trajectory.seconds
     if event is None:
         end = f"has {len(seconds)} samples"
@@ -83,7 +83,7 @@ def tumbling_in_words(answer: TumblingAnswer) -> list[str]:
 
 
 def impact_in_words(answer: ImpactAnswer) -> list[str]:
-    """Return what the impact does to the velocities, with which impulse, and what it costs."""
+    """Return words for the velocities before and after the impact, its impulse, and the energy lost."""
     impact, other = answer.impact, answer.other
     words = [
         f"strikes in {answer.seconds_to_contact:.4g} s: {outcome_in_words(impact.outcome)}",
@@ -105,7 +105,7 @@ def impact_in_words(answer: ImpactAnswer) -> list[str]:
 
 
 def contact_modes_in_words(answer: ContactModeAnswer) -> list[str]:
-    """Return the verdict with every mode, what is refused, and what else was asked for."""
+    """Return words for the verdict with every mode, for refused modes, and for what else was asked for."""
     margins = [""] * len(answer.modes)
     if answer.margins is not None:
         margins = [margin_in_words(margin) for margin in answer.margins]
@@ -124,12 +124,12 @@ def contact_modes_in_words(answer: ContactModeAnswer) -> list[str]:
 
 
 def outcome_in_words(outcome: ImpactOutcome | None) -> str:
-    """Return what a contact does in an impact; None: the law does not tell."""
+    """Return words for what a contact does in an impact. The outcome is None if the law does not say."""
     return "several at once" if outcome is None else OUTCOMES[outcome]
 
 
 def margin_in_words(margin: SpatialModeMargin) -> str:
-    """Return how far a mode's wrench is from another mode; nothing where that is not known."""
+    """Return words for how far a mode's wrench is from another mode, or an empty string if not known."""
     if math.isnan(margin.margin):
         return ""
     if math.isinf(margin.margin):
@@ -143,7 +143,7 @@ def _verdict_in_words(verdict: ModeVerdict, modes: list[str]) -> str:
 
 
 def _flips_in_words(flips: Flips | None) -> list[str]:
-    """Return when a body that spins near its middle axis turns over next, with its deviation if told."""
+    """Return words for when a body that spins near its middle axis turns over next, with any deviations."""
     if flips is None or len(flips.seconds) == 0:
         return []
     words = [
@@ -154,7 +154,7 @@ def _flips_in_words(flips: Flips | None) -> list[str]:
 
 
 def _probabilities_in_words(impact: ResolvedImpact) -> list[str]:
-    """Return how probable each outcome is, the most probable first, where that was told."""
+    """Return words for the probability of each outcome, the most probable first, if the answer has them."""
     if impact.outcome_probabilities is None:
         return []
     named = [
@@ -187,5 +187,5 @@ def _settled_in_words(settled: SettledImpact | None) -> list[str]:
 
 
 def _numbers(vector: FloatArray) -> str:
-    """Return numbers in words, what is below a millionth as 0."""
+    """Return numbers as text, with 0 for numbers below a millionth."""
     return ", ".join(f"{round(number, 6) + 0.0:.3g}" for number in vector.tolist())

@@ -1,14 +1,15 @@
-"""Charts of applied planar wrenches: which wrench stands at which place of a flat picture.
+"""Charts of applied planar wrenches, which give each wrench a place in a flat picture.
 
-Where modes depend on a wrench's direction alone (a body at rest) every wrench is a point of a sphere, once
-its torque is divided by the radius of gyration. `DirectionChart` shows that sphere whole, as two discs:
-torque anticlockwise on the left, clockwise on the right. The angle in a disc is the force's direction, the
-centre a pure torque, the rim a pure force, and equal areas are equal solid angles.
+If modes depend on a wrench's direction alone (a body at rest), every wrench is a point of a sphere, once its
+torque is divided by the radius of gyration. `DirectionChart` shows the whole sphere as two discs, with
+anticlockwise torque on the left and clockwise torque on the right. The angle in a disc is the force's
+direction, the centre is a pure torque, and the rim is a pure force. Equal areas are equal solid angles.
 
-`ForceDualChart` is lecture 26's picture: the same two halves in the plane of the body, where a wrench stands
-at its force dual, the centre about which it would turn the free body. Pure forces are at infinity.
+`ForceDualChart` is lecture 26's picture. It shows the same two halves in the plane of the body. A wrench is
+at its force dual, which is the centre about which it would turn the free body. Pure forces are at infinity.
 
-`ForceChart` serves moving bodies, whose modes depend on the size of the wrench too: forces at one torque.
+`ForceChart` shows the forces at one torque. It is for moving bodies, whose modes depend on the size of the
+wrench too.
 
 Places are in points of the picture, x to the right, y down.
 """
@@ -32,13 +33,13 @@ if TYPE_CHECKING:
 ANTICLOCKWISE: Final = 0
 CLOCKWISE: Final = 1
 HIDDEN: Final = -1
-"""Parts of a chart; what is on none of them is hidden."""
+"""Parts of a chart. What is on none of them is hidden."""
 
 _ON_RIM: Final = 1e-9
-"""Sine to the pure forces below which a wrench stands on the rim, which both discs show."""
+"""Sine of the angle to the pure forces. A wrench below it is on the rim, which both discs show."""
 
 _CURVE_POINTS: Final = 3000
-"""Number of points of a boundary. They are nearer to each other than the points of the screen."""
+"""Number of points of a boundary. They are closer together than the points of the screen."""
 
 
 class WrenchChart(Protocol):
@@ -59,7 +60,7 @@ class WrenchChart(Protocol):
         """Return wrenches along the boundary of a half-space, (k, 3), in their order."""
 
     def place(self, wrenches: FloatArray) -> tuple[FloatArray, NDArray[np.int64]]:
-        """Return where wrenches, (k, 3), stand, (k, 2), and on which part, (k,)."""
+        """Return the places of wrenches, (k, 3), as (k, 2), and the parts that they are on, (k,)."""
 
 
 def gap(resolution: int) -> int:
@@ -81,17 +82,17 @@ def part_centre(chart: WrenchChart, part: int) -> Vector2:
 
 
 def bounds(chart: WrenchChart) -> rrb.VisualBounds2D:
-    """Return what a view shows so that it shows a whole chart, and a note above."""
+    """Return the bounds of a view that shows a whole chart and a note above it."""
     width, height = picture_size(chart)
     return rrb.VisualBounds2D(x_range=(0.0, width), y_range=(-0.3 * gap(chart.resolution), height))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DirectionChart:
-    """All directions of wrenches: two discs.
+    """Two discs that show all directions of wrenches.
 
     Attributes:
-        length: m, > 0, that makes a torque comparable with a force: the radius of gyration.
+        length: m, > 0, the radius of gyration, by which torques are divided to compare with forces.
     """
 
     length: float
@@ -116,7 +117,7 @@ class DirectionChart:
         return _great_circle(side, self.length)
 
     def place(self, wrenches: FloatArray) -> tuple[FloatArray, NDArray[np.int64]]:
-        """Return where the directions of wrenches stand."""
+        """Return the places of the directions of wrenches."""
         scaled = wrenches / (1.0, 1.0, self.length)
         x, y, z = (scaled / np.linalg.norm(scaled, axis=1, keepdims=True)).T
         shrunk = np.sqrt(1.0 + np.abs(z))
@@ -126,12 +127,12 @@ class DirectionChart:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForceDualChart:
-    """Force duals in the plane of the body: two squares, each seen as the body is.
+    """Two squares that show force duals in the plane of the body.
 
     Attributes:
         length: m, > 0, the radius of gyration.
         half_side: m, > 0, of each square.
-        centre: m, of each square, from the centre of mass.
+        centre: m, the middle of each square, from the centre of mass.
     """
 
     length: float
@@ -157,7 +158,7 @@ class ForceDualChart:
         return _great_circle(side, self.length)
 
     def place(self, wrenches: FloatArray) -> tuple[FloatArray, NDArray[np.int64]]:
-        """Return where the force duals of wrenches stand."""
+        """Return the places of the force duals of wrenches."""
         f_x, f_y, moment = wrenches.T
         safe = np.where(moment == 0.0, 1.0, moment) / self.length**2
         points = np.column_stack([-f_y / safe, f_x / safe])
@@ -166,14 +167,14 @@ class ForceDualChart:
         return self.place_points(points, part), part
 
     def place_points(self, points: FloatArray, part: NDArray[np.int64] | int) -> FloatArray:
-        """Return where points of the plane, (k, 2), m from the centre of mass, stand on a part."""
+        """Return the places of points of the plane, (k, 2), m from the centre of mass, on a part."""
         u, v = ((points - self.centre) / self.half_side).T
         return _on_parts(self, u, v, part)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForceChart:
-    """Forces at one torque: a square.
+    """A square that shows forces at one torque.
 
     Attributes:
         moment: N m.
@@ -208,7 +209,7 @@ class ForceChart:
         return np.column_stack([offset * a_x - along * a_y, offset * a_y + along * a_x, moments])
 
     def place(self, wrenches: FloatArray) -> tuple[FloatArray, NDArray[np.int64]]:
-        """Return where the forces of wrenches stand; their torque plays no part."""
+        """Return the places of the forces of wrenches. Their torques do not matter."""
         u, v = wrenches[:, :2].T / self.half_side
         part = np.where((np.abs(u) <= 1.0) & (np.abs(v) <= 1.0), ANTICLOCKWISE, HIDDEN)
         return _on_parts(self, u, v, part), part
