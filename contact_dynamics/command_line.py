@@ -1,4 +1,4 @@
-"""The command line: `contact-dynamics <verb>`; `ros2 run contact_dynamics <executable>` does the same."""
+"""The command line, `contact-dynamics <verb>`. `ros2 run contact_dynamics <executable>` does the same."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Verb(NamedTuple):
-    """One verb: where its `main(arguments) -> exit code` is, where its parser is, and what it does.
+    """One verb, with the places of its `main(arguments) -> exit code` and of its parser.
 
     Attributes:
         parser: The parser, as module:function. It needs no ROS, so that `--help` works everywhere.
@@ -67,11 +67,11 @@ VERBS: Final = {
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the verb that the arguments name; return the exit code."""
+    """Run the verb that the arguments name, and return the exit code."""
     given = list(sys.argv[1:] if arguments is None else arguments)
     parser = _parser()
     if not given or given[0] not in VERBS:
-        parser.parse_args(given)  # --help and --version end here, anything else is an error
+        parser.parse_args(given)  # `--help` and `--version` end here, and anything else is an error
         parser.print_help()
         return 2
     return _run(given[0], given[1:])
@@ -90,7 +90,7 @@ def _run(name: str, arguments: list[str]) -> int:
 
 
 def _is_installed(module: str) -> bool:
-    """Return whether a module can be found. A folder without code, such as `srv` of the sources, is none."""
+    """Return whether a module can be found. A folder without code, such as the sources' `srv`, is none."""
     try:
         spec = find_spec(module)
     except ModuleNotFoundError:

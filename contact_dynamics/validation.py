@@ -67,7 +67,7 @@ def check_choice(field: str, value: Any, kind: type[Choice]) -> Choice:
 
 
 def check_array(field: str, value: ArrayLike, shape: tuple[int | None, ...]) -> FloatArray:
-    """Return a read-only float64 copy of ``value`` with the given shape (None: any length), all finite.
+    """Return a read-only float64 copy of ``value`` with the given shape, all finite. None is any length.
 
     Where any number of rows is allowed, an error names the first one that is not finite.
     """

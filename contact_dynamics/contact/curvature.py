@@ -98,9 +98,9 @@ class Curvatures(Record):
         )
 
     def in_direction(self, i: int, t_W: FloatArray) -> float | None:
-        """Return the curvature of contact ``i`` along a unit tangent, 1/m; None: not a principal direction.
+        """Return the curvature of contact ``i`` along a unit tangent, 1/m, or None if it is not principal.
 
-        Principal is what is within `UNIT_LENGTH_TOLERANCE` rad of one.
+        A direction within `UNIT_LENGTH_TOLERANCE` rad of a principal one counts as principal.
         """
         along, across = float(self.along[i]), float(self.across[i])
         if along == across:
@@ -144,7 +144,7 @@ def check_pairs(
     """Raise `InvalidFieldError` for the first contact that is not one at a point with a normal of its own."""
     n = len(normals_W)
     mine, theirs = least_and_most(body_curvatures, n, math.inf), least_and_most(surface_curvatures, n, 0.0)
-    # Quick: one side convex in all directions and the other flat.
+    # One side is convex in all directions and the other is flat, which is a quick test.
     clear = ((mine[0] > 0.0) & (theirs == 0.0).all(axis=0)) | ((theirs[0] > 0.0) & (mine == 0.0).all(axis=0))
     for i in np.flatnonzero(~clear).tolist():
         frame = tangent_rows(normals_W[i])

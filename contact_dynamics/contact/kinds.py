@@ -46,7 +46,7 @@ def velocity_accelerations(contacts: ContactSet, velocities_W: FloatArray, w_W: 
             (float(m[0]), float(m[1])),
             (float(v[0]), float(v[1])),
         )
-        if found is not None:  # as `check_pairs` saw to
+        if found is not None:  # which `check_pairs` has made sure of
             eta_W = np.array(found.eta) @ frame
             added[i] = found.gap * normal + float(normal @ w_W) * np.cross(normal, eta_W)
     return added

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 SAME_STRIKE: Final = 0.03
 """s. A predicted strike and a measured one that are closer than this are the same."""
 
-_AVERAGED: Final = 12  # frames at either end of the rest, whose means tell whether the body moved
+_AVERAGED: Final = 12  # number of frames at each end of the rest, whose means show whether the body moved
 
 _OUTCOMES: Final = {
     getattr(Impact, name): name.lower().replace("_", " ")

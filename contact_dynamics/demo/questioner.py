@@ -49,7 +49,7 @@ CURVE_POINTS: Final = 120
 
 _START_S: Final = 30.0
 _POLL_S: Final = 0.1
-_NOW: Final = Time()  # zero asks about the newest state
+_NOW: Final = Time()  # a stamp of zero asks about the newest state
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -118,7 +118,7 @@ class Questioner(Node):
         """Listen and ask until the toss is over."""
         self._heard = time.monotonic() + _START_S  # until the first state, as long as a start may take
         landing: float | None = None  # predicted, s on the recording's clock
-        # velocities look back over WINDOW: no question before that much flight has been seen
+        # velocities look back over WINDOW, so it must have seen that much flight before it asks
         blind_until = 0.0
         while playing() or time.monotonic() - self._heard < SILENCE_S:
             if not self._spin():
@@ -135,7 +135,7 @@ class Questioner(Node):
                 if landing is None:
                     blind_until = self._now + WINDOW
         if self.received and not self.modes:  # recordings may end as soon as the body does not move
-            self._ask_contact_mode(self._newest)  # by its stamp, as it is too old by now to be taken for now
+            self._ask_contact_mode(self._newest)  # by its stamp, since it is too old by now to be the newest
 
     def _flight_seen(self) -> float:
         """Return how long the body has been flying, s, less one frame, in which it may have touched."""
@@ -174,9 +174,9 @@ class Questioner(Node):
         request.curve_points = CURVE_POINTS
         asked = self._ask(request)
         landing = self.seconds_of(asked.response.state.header.stamp) + float(asked.response.event_time)
-        if landing - self._now <= LAST_MOMENT:  # it touches, or soon will: no flight to fit is left
+        if landing - self._now <= LAST_MOMENT:  # it touches, or soon will, so no flight is left to fit
             self._flying_since = self._now
-        if not landing - self._now > LAST_MOMENT:  # NaN, where it does not land; or too late to ask on
+        if not landing - self._now > LAST_MOMENT:  # it does not land (NaN), or it is too late to ask
             return None
         self.flights.append(asked)
         return landing

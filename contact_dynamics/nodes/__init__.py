@@ -1,1 +1,1 @@
-"""ROS 2 nodes: parameters and messages in, one physics call, messages out."""
+"""The ROS 2 nodes, which take parameters and messages, ask the library once, and send messages."""

@@ -1,4 +1,4 @@
-"""The arguments that every node of ours takes on the command line, besides ROS's own.
+"""The arguments that every node of this package takes on the command line, besides ROS's own.
 
 This file imports no ROS, so that `--help` works without it.
 """
@@ -64,11 +64,11 @@ def visualizer_parser() -> argparse.ArgumentParser:
 
 
 def ros_arguments(parser: argparse.ArgumentParser, arguments: list[str]) -> list[str]:
-    """Return what `rclpy.init` takes; `--help` and mistakes end the process here.
+    """Return the arguments for `rclpy.init`. `--help` and mistakes end the process here.
 
     Args:
-        parser: the verb's, from this file.
-        arguments: all that follows the verb; what comes after `--ros-args` is ROS's.
+        parser: the parser of the verb, from this file.
+        arguments: all that follows the verb. What comes after `--ros-args` belongs to ROS.
     """
     split = _end_of_ours(arguments)
     mine = parser.parse_args(arguments[:split])
@@ -79,7 +79,7 @@ def ros_arguments(parser: argparse.ArgumentParser, arguments: list[str]) -> list
 
 
 def check_arguments(parser: argparse.ArgumentParser, arguments: list[str]) -> None:
-    """Let `--help` and mistakes end the process; what follows `--ros-args` is ROS's to judge."""
+    """Let `--help` and mistakes end the process. ROS checks what follows `--ros-args`."""
     parser.parse_args(arguments[: _end_of_ours(arguments)])
 
 

@@ -1,4 +1,4 @@
-"""The parameters of a shape: one of several primitives, where it is in its frame, the mass that fills it."""
+"""The parameters of a shape: one of several primitives, its pose in its frame, and the mass that fills it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class _Primitive:
 
     Attributes:
         description: What the numbers are.
-        checks: The check of each number; None where there are three for each corner.
+        checks: The check of each number, or None if there are three numbers for each corner.
         shape: Makes the shape.
         mass: Makes the mass, kg, that fills the shape evenly.
     """
@@ -85,15 +85,15 @@ _PRIMITIVES: Final = {
 }
 
 DESCRIPTIONS: Final = {name: primitive.description for name, primitive in _PRIMITIVES.items()}
-"""The shapes and what their numbers are. One number 0.0 is none."""
+"""The shapes, with what their numbers are. The single number 0.0 stands for no shape."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ShapeParameters:
-    """A shape as it is configured, of a body or of an obstacle; lengths in m.
+    """A shape as it is configured, of a body or of an obstacle. Lengths are in m.
 
     Attributes:
-        numbers: The numbers of each of `DESCRIPTIONS`.
+        numbers: The numbers of each shape in `DESCRIPTIONS`.
         rounding: Radius of the ball that rolls over it.
         position: Position of the shape in the body's frame, or in the world.
         orientation: Unit quaternion x, y, z, w of the shape there.
@@ -107,10 +107,10 @@ class ShapeParameters:
     pose_names: tuple[str, str] = ("shape_position", "shape_orientation")
 
     def shape_F(self) -> ConvexShape:
-        """Return the shape in its frame; an empty one where none is configured.
+        """Return the shape in its frame, which is empty if none is configured.
 
         Raises:
-            InvalidFieldError: more than one shape, or numbers that are none of it.
+            InvalidFieldError: there is more than one shape, or the numbers do not make it.
         """
         name = self._name()
         if not name:
@@ -122,7 +122,7 @@ class ShapeParameters:
         """Return a mass, kg, that fills the shape evenly, in the body's frame.
 
         Raises:
-            InvalidFieldError: no shape, one without volume, or a rounded one.
+            InvalidFieldError: there is no shape, or it is without volume or rounded.
         """
         name = self._name()
         if not name or self.rounding > 0.0:

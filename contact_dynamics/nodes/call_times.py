@@ -1,8 +1,8 @@
-"""When each request came and each answer left, for the service events that tell of them only afterwards.
+"""Notes when each request came and each answer left, because service events come only afterwards.
 
-A service publishes its events while it works, and this process takes them when the answer is out. Their own
-stamps are of the node's clock, which stands still between two ticks of a simulation. So the log takes the
-times that are noted here, by this machine's clock.
+A service publishes its events while it works, and this process receives them after the answer has left. Their
+own stamps are from the node's clock, which stands still between two ticks of a simulation. So the log takes
+the times that are noted here, from this machine's clock.
 """
 
 from __future__ import annotations
@@ -18,15 +18,16 @@ from contact_dynamics.recording.cdr_stamp import EventType, event_info
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-_MOST_OPEN: Final = 10_000  # calls whose events may still come; an event that got lost leaves its call open
+_MOST_OPEN: Final = 10_000  # calls whose events may still come, since a lost event leaves its call open
 
 
 class EventTimes(NamedTuple):
-    """When that which an event tells of happened, ns since the epoch.
+    """The time of what an event reports, ns since the epoch.
 
     Attributes:
-        log_time_ns: By this machine's clock.
-        publish_time_ns: By the node's clock: the present time of the question. None: as the event says.
+        log_time_ns: The time on this machine's clock.
+        publish_time_ns: The time on the node's clock, which is the present time of the question, or None to
+            take the event's own.
     """
 
     log_time_ns: int
@@ -35,35 +36,34 @@ class EventTimes(NamedTuple):
 
 @dataclass(slots=True, kw_only=True)
 class _Call:
-    node_clock_ns: int  # when it came, by the clock that stamps the events
-    received_ns: int  # the same by this machine's clock, ns since the epoch
+    node_clock_ns: int  # when it came, on the clock that stamps the events
+    received_ns: int  # the same on this machine's clock, ns since the epoch
     sent_ns: int = 0  # when its answer left
 
 
 class CallTimes:
-    """The times of the calls of one service, all of whose callbacks run in one thread."""
+    """The times of the calls of one service. All of its callbacks run in one thread."""
 
     def __init__(self, node_clock_ns: Callable[[], int]) -> None:
-        """Note times beside those of the clock that stamps the events."""
+        """Take the clock that stamps the events, whose times are noted beside this machine's."""
         self._node_clock_ns = node_clock_ns
         self._unclaimed: deque[_Call] = deque(maxlen=_MOST_OPEN)  # no event told of the request yet
         self._answered: dict[tuple[bytes, int], _Call] = {}  # no event told of the answer yet
 
     def begin(self) -> int:
-        """Note that a request has come; return the time of the node's clock, ns."""
+        """Note that a request has come, and return the time of the node's clock, ns."""
         call = _Call(node_clock_ns=self._node_clock_ns(), received_ns=time.time_ns())
         self._unclaimed.append(call)
         return call.node_clock_ns
 
     def end(self) -> None:
-        """Note that the answer to it leaves."""
+        """Note that the answer to the newest request leaves."""
         self._unclaimed[-1].sent_ns = time.time_ns()
 
     def of_event(self, event: bytes) -> EventTimes:
-        """Return when that which an event tells of happened.
+        """Return the time of what an event reports.
 
-        That is now for an event of a client, which tells of what happened elsewhere, and for bytes that are
-        no event.
+        It is the present for an event of a client, which happened elsewhere, and for bytes that are no event.
         """
         try:
             info = event_info(event)
@@ -73,7 +73,7 @@ class CallTimes:
         if info.event_type is EventType.REQUEST_RECEIVED:
             while self._unclaimed:
                 call = self._unclaimed.popleft()
-                if call.node_clock_ns >= info.stamp_ns:  # else the event of this call got lost
+                if call.node_clock_ns >= info.stamp_ns:  # otherwise the event of this call got lost
                     self._answered[key] = call
                     while len(self._answered) > _MOST_OPEN:
                         del self._answered[next(iter(self._answered))]

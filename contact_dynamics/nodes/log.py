@@ -1,4 +1,4 @@
-"""The server's log: what its subscriptions and services carry, handed to a recorder as bytes."""
+"""The server's log. It hands the messages of subscriptions and services to a recorder as bytes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Log:
-    """Records bytes under topics that are declared before the first message; nothing, without a directory."""
+    """Records bytes under topics that are declared before the first message, or nothing without directory."""
 
     def __init__(
         self,
@@ -32,7 +32,7 @@ class Log:
         on_problem: Callable[[str], object],
         on_deleted: Callable[[str], object],
     ) -> None:
-        """Create a folder in ``directory``; empty means where the process was started, None no log.
+        """Create a folder in ``directory``, where empty means the current folder and None means no log.
 
         Args:
             directory: where the folder of the log is made.
@@ -42,7 +42,8 @@ class Log:
             on_deleted: told, from the log's thread, of each file that ``limits`` cost.
 
         Raises:
-            ConfigurationError: it cannot be made. A log that was asked for and fails at the start is told.
+            ConfigurationError: the folder cannot be made, so that a log that was asked for is never missing
+                silently.
         """
         self._writer = _new_bag(directory, run, limits, on_deleted) if directory is not None else None
         self.folder = self._writer.folder if self._writer is not None else None
@@ -64,14 +65,14 @@ class Log:
     ) -> None:
         """Record a message as received at that time, ns since the epoch by this machine's clock, or now.
 
-        Without a ``publish_time_ns``, that is the stamp that the message begins with.
+        The default of ``publish_time_ns`` is the stamp with which the message begins.
         """
         if self._recorder is not None:
             when_ns = time.time_ns() if log_time_ns is None else log_time_ns
             self._recorder.record(topic, data, log_time_ns=when_ns, publish_time_ns=publish_time_ns)
 
     def close(self) -> str:
-        """Finish the file; return in words where it is and how complete."""
+        """Finish the file, and return in words where it is and whether messages are missing."""
         if self._recorder is None or self._writer is None:
             return "no log was written"
         status = self._recorder.close()
@@ -82,7 +83,7 @@ class Log:
 def _new_bag(
     directory: str, run: Mapping[str, str], limits: LogLimits, on_deleted: Callable[[str], object]
 ) -> BagWriter:
-    """Return a bag in a folder named by the time; of servers that start at once, each gets its own."""
+    """Return a bag in a folder named by the time. Servers that start at one time have different folders."""
     name = datetime.now(timezone.utc).astimezone().strftime("contact_dynamics_%Y_%m_%d-%H_%M_%S")
     number = 1
     while True:

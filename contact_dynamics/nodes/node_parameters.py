@@ -1,4 +1,4 @@
-"""A node as the source of its parameters, and what it was given beyond them."""
+"""Makes a node the source of its parameters, and refuses parameters that it does not have."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ _MANDATORY: Final = {float: Parameter.Type.DOUBLE, list: Parameter.Type.DOUBLE_A
 
 
 class NodeParameters:
-    """Declares parameters at a node and returns their values: a `ParameterSource`."""
+    """Declares parameters at a node and returns their values, as a `ParameterSource`."""
 
     def __init__(self, node: Node) -> None:
         """Declare at this node."""
         self._node = node
-        self.topics: dict[str, str] = {}  # parameter, and the full name of the topic that it names
+        self.topics: dict[str, str] = {}  # the full name of each topic, by the parameter that names it
 
     def value(
         self, name: str, default: Any, description: str, bounds: tuple[float, float] | None = None
     ) -> Any:
-        """Return a read-only parameter's value; see `ParameterSource`."""
+        """Return a read-only parameter's value (see `ParameterSource`)."""
         ranges = [FloatingPointRange(from_value=bounds[0], to_value=bounds[1])] if bounds else []
         descriptor = ParameterDescriptor(description=description, read_only=True, floating_point_range=ranges)
         declared = _MANDATORY[default] if isinstance(default, type) else default
@@ -46,7 +46,7 @@ class NodeParameters:
         return value
 
     def resolved_topic(self, name: str, topic: str) -> str:
-        """Return the full name of a topic, remapped as ROS was told; see `ParameterSource`."""
+        """Return the full name of a topic after ROS's remapping (see `ParameterSource`)."""
         try:
             resolved: str = self._node.resolve_topic_name(topic)
         except RuntimeError as error:
@@ -57,14 +57,15 @@ class NodeParameters:
 
 
 def refuse_unknown_parameters(node: Node, *, also_known: Iterable[str] = ()) -> None:
-    """Refuse what a file or the command line sets and the node has not declared; ROS would ignore it.
+    """Refuse parameters that a file or the command line sets and the node lacks. ROS would ignore them.
 
     Args:
-        node: with all of its own parameters declared.
-        also_known: parameters of another node that reads the same file.
+        node: a node that has declared all of its own parameters.
+        also_known: parameters of another node, which may be in the same file.
 
     Raises:
-        ConfigurationError: each such parameter is named, with the nearest one that there is.
+        ConfigurationError: there is such a parameter. The message names each, with the most similar known
+            one.
     """
     # rclpy has no public way to ask what was given and not declared.
     known = {*node._parameters, *also_known}  # noqa: SLF001

@@ -1,6 +1,6 @@
-"""The server's parameters: each declared once, with its description and range, and read into domain types.
+"""The server's parameters. Each is declared once, with its description and range, and read into domain types.
 
-The commented file `config/server.yaml` is what a user edits; a test holds the two together.
+Users edit the commented file `config/server.yaml`. A test checks that both have the same parameters.
 
 This file imports no ROS. The values come from a `ParameterSource`: a node (`node_parameters`), or the log of
 a run that is over (`run_record`).
@@ -29,11 +29,11 @@ T = TypeVar("T")
 
 
 class ConfigurationError(ContactDynamicsError):
-    """A parameter is missing or not allowed; the message names it."""
+    """A parameter is missing or not allowed. The message names it."""
 
 
 class ParameterSource(Protocol):
-    """Where parameters have their values from."""
+    """A source of the values of parameters."""
 
     def value(
         self, name: str, default: Any, description: str, bounds: tuple[float, float] | None = None
@@ -41,29 +41,29 @@ class ParameterSource(Protocol):
         """Return a parameter's value, which has the type of the default.
 
         Args:
-            name: the parameter's.
-            default: its value where none is given; a type, `float` or `list`, makes it mandatory.
-            description: what it is, for a person.
+            name: the name of the parameter.
+            default: its value if none is given. A type, `float` or `list`, makes the parameter mandatory.
+            description: what it means, for people.
             bounds: least and greatest value.
 
         Raises:
-            ConfigurationError: none is given, or one of another type or out of bounds.
+            ConfigurationError: there is no value, or it has another type or is out of bounds.
         """
 
     def resolved_topic(self, name: str, topic: str) -> str:
         """Return the full name of the topic that a parameter names.
 
         Raises:
-            ConfigurationError: it is no topic's name.
+            ConfigurationError: the name is not that of a topic.
         """
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StateTopics:
-    """Where a body's states are published: one Odometry topic, or a pose and a twist topic.
+    """The topics of a body's states: one Odometry topic, or a pose and a twist topic.
 
     Attributes:
-        odometry: Topic of nav_msgs/Odometry; empty: the other two.
+        odometry: Topic of nav_msgs/Odometry, which may be empty.
         pose: Topic of geometry_msgs/PoseStamped.
         twist: Topic of geometry_msgs/TwistStamped.
         frame: The body's frame.
@@ -78,7 +78,7 @@ class StateTopics:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServerParameters:
-    """All that configures the server.
+    """The whole configuration of the server.
 
     Attributes:
         state_timeout: s.
@@ -104,8 +104,8 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
     """Read every parameter.
 
     Raises:
-        ConfigurationError: a parameter is missing, has another type, or a value that is not allowed; it is
-        named.
+        ConfigurationError: a parameter is missing, has another type, or a value that is not allowed. The
+            message names it.
     """
     reader = _Reader(source)
     body_names = reader.names("bodies", "Names of the bodies that questions can name.")
@@ -145,7 +145,7 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
         defaults=_read_defaults(reader),
         log=reader.read("log", default=True, description="Log every state, request and response to MCAP."),
         log_directory=reader.read(
-            "log_directory", "", "Folder to put the log's folder into. Empty: where the server starts."
+            "log_directory", "", "Folder for the log's folder. If empty, this is where the server starts."
         ),
         log_limits=_read_log_limits(reader),
     )
@@ -234,13 +234,13 @@ def _read_body(reader: _Reader, name: str) -> tuple[Body, StateTopics]:
     topics = StateTopics(
         body_name=name,
         odometry=reader.topic(
-            f"{key}.odometry_topic", "Topic of the body's states as nav_msgs/Odometry. Empty: not used."
+            f"{key}.odometry_topic", "Topic of the body's states as nav_msgs/Odometry. Not used if empty."
         ),
         pose=reader.topic(
-            f"{key}.pose_topic", "Topic of the body's geometry_msgs/PoseStamped. Empty: not used."
+            f"{key}.pose_topic", "Topic of the body's geometry_msgs/PoseStamped. Not used if empty."
         ),
         twist=reader.topic(
-            f"{key}.twist_topic", "Topic of the body's geometry_msgs/TwistStamped. Empty: not used."
+            f"{key}.twist_topic", "Topic of the body's geometry_msgs/TwistStamped. Not used if empty."
         ),
         frame=reader.read(f"{key}.frame", name, "Frame of the body, which the pose is of."),
     )
@@ -334,15 +334,15 @@ def _read_surface(reader: _Reader, name: str) -> Surface | Obstacle:
 
 
 class _Reader:
-    """Reads parameters from a source; whatever is wrong becomes a `ConfigurationError`."""
+    """Reads parameters from a source. Every mistake becomes a `ConfigurationError`."""
 
     def __init__(self, source: ParameterSource) -> None:
         self._source = source
         self.read = source.value
-        self._topics: dict[str, str] = {}  # resolved name, and the parameter that it comes from
+        self._topics: dict[str, str] = {}  # the parameter of each topic, by the topic's full name
 
     def names(self, name: str, description: str) -> list[str]:
-        """Return the names that a list has; empty ones, which stand for none, are left out."""
+        """Return the names in a list without empty ones, which stand for none."""
         found = [each for each in self.read(name, [""], description) if each]
         if len(set(found)) < len(found):
             message = f"{name}: found {found}, allowed are names that differ"
@@ -350,7 +350,7 @@ class _Reader:
         return found
 
     def topic(self, name: str, description: str) -> str:
-        """Return a topic's name, which no other parameter has; empty stands for none."""
+        """Return a topic's name, which is empty for none. Refuse a name that another parameter has."""
         topic: str = self.read(name, "", description)
         if not topic:
             return topic
@@ -365,7 +365,7 @@ class _Reader:
 
     @staticmethod
     def build(prefix: str, make: Callable[[], T]) -> T:
-        """Return what ``make`` builds; a field that it refuses is named as the parameter ``prefix.field``."""
+        """Return what ``make`` builds. A field that it refuses is named as the parameter ``prefix.field``."""
         try:
             return make()
         except InvalidFieldError as error:

@@ -1,4 +1,4 @@
-"""Messages of states that are refused: counted, and told for each topic and kind of fault, not too often."""
+"""Counts refused messages about states, and warns of each topic and kind of fault from time to time."""
 
 from __future__ import annotations
 
@@ -10,24 +10,25 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 TELL_EVERY_S: Final = 5.0
-"""s between two warnings of one kind about one topic. Another topic, or another fault, is told at once."""
+"""s. Time between two warnings of one kind about one topic. Another topic or another fault has a warning at
+once."""
 
 
 class RefusedMessages:
-    """Counts refused messages by topic and kind of fault, and tells of them.
+    """Counts refused messages by topic and kind of fault, and warns of them.
 
-    The throttle of ROS is one for each line of code: there, one topic's fault would hide all others.
+    The throttle of ROS has one clock for each line of code, so one topic's fault would hide all others.
     """
 
     def __init__(self, tell: Callable[[str], object], *, clock: Callable[[], float] = time.monotonic) -> None:
-        """Count from zero; ``tell`` takes a warning, ``clock`` returns seconds."""
+        """Count from zero. ``tell`` takes a warning, ``clock`` returns seconds."""
         self._tell = tell
         self._clock = clock
         self._counts: Counter[tuple[str, str]] = Counter()
         self._told: dict[tuple[str, str], float] = {}
 
     def add(self, topic: str, error: Exception) -> None:
-        """Count a message that was refused, and tell why, unless the same was told a moment ago."""
+        """Count a message that was refused, and warn with the reason, unless it has just warned of it."""
         kind = (topic, f"{type(error).__name__} {getattr(error, 'field', '')}")
         self._counts[kind] += 1
         now = self._clock()

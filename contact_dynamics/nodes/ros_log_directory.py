@@ -1,7 +1,7 @@
-"""Where ROS writes its own log files, on machines whose home folder cannot be written.
+"""Finds a folder for ROS's own log files on machines whose home folder cannot be written.
 
-rclpy does not start without that folder. It is looked up here as rcl does: ROS_LOG_DIR, or ROS_HOME/log, or
-~/.ros/log.
+rclpy does not start without such a folder. This file looks for it as rcl does, in ROS_LOG_DIR, ROS_HOME/log
+or ~/.ros/log.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pathlib import Path
 
 
 def ensure_ros_log_directory() -> None:
-    """Let this process and its children log to a temporary folder where home cannot be written.
+    """Let this process and its children log to a temporary folder if home cannot be written.
 
     A folder that the user has named with ROS_LOG_DIR is left as it is, so that rclpy refuses it by name.
     """

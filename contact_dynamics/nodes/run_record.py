@@ -1,4 +1,4 @@
-"""How a run was configured, as text in its log: written by the server, and read back without ROS.
+"""Writes how a run was configured as text into its log, and reads it back without ROS.
 
 `PARAMETERS` and `TOPICS` are JSON, so that a number, a text and a list stay what they are, to the last bit.
 Logs before 0.1.0 have each parameter under its own name instead, as Python prints it.
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 PARAMETERS: Final = "parameters"
-"""The key of all parameters of the node: a JSON object, by name."""
+"""The key of the node's parameters, which are a JSON object by name."""
 
 TOPICS: Final = "state_topics"
-"""The key of the full names of the topics of states: a JSON object, by the parameter that names each."""
+"""The key of the full names of the topics of states, which are a JSON object by parameter."""
 
 NODE_NAME: Final = "contact_dynamics"
 
@@ -45,20 +45,20 @@ def versions_here() -> dict[str, str]:
 
 
 def run_record(parameters: Mapping[str, Any], topics: Mapping[str, str]) -> dict[str, str]:
-    """Return what the log says of a run; the package's version is added by the log itself."""
+    """Return the log's record of a run. The log itself adds the package's version."""
     plain = {name: _plain(value) for name, value in parameters.items()}
     versions = {name: text for name, text in versions_here().items() if name != "version"}
     return {**versions, PARAMETERS: json.dumps(plain), TOPICS: json.dumps(dict(topics))}
 
 
 class LoggedParameters:
-    """The record of a run as the source of its parameters: a `ParameterSource`."""
+    """The record of a run as the source of its parameters, as a `ParameterSource`."""
 
     def __init__(self, run: Mapping[str, str]) -> None:
-        """Read from what `run_record` or an older server wrote.
+        """Read a record that `run_record` or an older server wrote.
 
         Raises:
-            ConfigurationError: the record is not what a server writes.
+            ConfigurationError: no server wrote this record.
         """
         self._texts = run
         self._values: dict[str, Any] | None = None
@@ -78,7 +78,7 @@ class LoggedParameters:
         description: str,
         bounds: tuple[float, float] | None = None,  # noqa: ARG002  the server judged them
     ) -> Any:
-        """Return a parameter's value, or the default of one that was not there yet; see `ParameterSource`."""
+        """Return a parameter's value, or its default if the server lacked it (see `ParameterSource`)."""
         if self._values is not None:
             found = self._values.get(name)
         else:
@@ -92,7 +92,7 @@ class LoggedParameters:
         return found
 
     def resolved_topic(self, name: str, topic: str) -> str:
-        """Return the full name under which a topic was logged; see `ParameterSource`."""
+        """Return the full name under which a topic was logged (see `ParameterSource`)."""
         if name in self._topics:
             return self._topics[name]
         if topic.startswith("~"):
@@ -105,7 +105,7 @@ def _plain(value: Any) -> Any:
 
 
 def _from_text(name: str, text: str, default: Any) -> Any:
-    """Return a value that ``str`` printed, of the type of the default."""
+    """Return a value of the default's type from its text."""
     kind = default if isinstance(default, type) else type(default)
     if kind is str:
         return text

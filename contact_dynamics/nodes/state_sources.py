@@ -1,6 +1,6 @@
-"""What makes states of the messages that are published about a body, live or logged.
+"""Makes states from the messages that are published about a body, live or logged.
 
-This file needs the classes of messages and no other part of ROS.
+It needs the classes of messages and no other part of ROS.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class StateSource:
         topic: Its name, as it is configured.
         parameter: The parameter that names it.
         type_name: "package/msg/Name".
-        state_from: Makes a state of a message. None: another message completes it.
+        state_from: Function from a message to a state, or to None if another message must complete it.
     """
 
     topic: str
@@ -96,8 +96,6 @@ class _Pairing:
         partner = others.pop(stamp_ns, None)
         if partner is None:
             mine[stamp_ns] = msg
-            if (
-                len(mine) > _MOST_UNPAIRED
-            ):  # one of the two topics is silent: what waits longest waits in vain
+            if len(mine) > _MOST_UNPAIRED:  # one topic is silent
                 del mine[next(iter(mine))]
         return partner

@@ -1,7 +1,7 @@
 """Subscriptions to published states: each message is logged as it came and kept as a state.
 
-They are raw: the log takes the bytes, so that it holds what was sent, and one deserialisation gives the
-state.
+The messages come as bytes. The log keeps these bytes, so it has exactly what was sent, and one
+deserialisation gives the state.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 STATE_QOS = QoSProfile(depth=1000)
-"""Reliable, and deep: a second of states at 1 kHz may wait for a stalled process, and the log loses none."""
+"""The queue is reliable and deep. A second of states at 1 kHz may wait for a stalled process, and the log
+loses none."""
 
 
 def subscribe_to_states(
@@ -40,9 +41,10 @@ def subscribe_to_states(
     states: StateStore,
     record: Callable[[str, bytes], None],
 ) -> dict[str, str]:
-    """Subscribe to a body's states, record every message, keep every state; return topics and their types.
+    """Subscribe to a body's states, record every message, keep every state. Return topics and their types.
 
-    A message that is no state, or whose stamp is from the future, is recorded, counted and told, not kept.
+    A message that is no state, or whose stamp is in the future, is recorded, and counted in a warning, and
+    not kept.
     """
     refused = RefusedMessages(node.get_logger().warning)
 
@@ -51,7 +53,7 @@ def subscribe_to_states(
             state = make_state()
             if state is not None:
                 states.add(topics.body_name, state, now_ns=present_ns(node))
-        except (ContactDynamicsError, RuntimeError) as error:  # the latter of bytes that are no message
+        except (ContactDynamicsError, RuntimeError) as error:  # bytes that are no message raise the latter
             refused.add(topic, error)
 
     def subscribe(msg_type: type[Any], topic: str, state_from: Callable[[Any], BodyState | None]) -> str:
@@ -73,7 +75,7 @@ def subscribe_to_states(
 
 
 def present_ns(node: Node) -> int | None:
-    """Return the present time, ns; None where a simulation's clock has not told it yet."""
+    """Return the present time, ns, or None if a simulation's clock has not told it yet."""
     clock = node.get_clock()
     now_ns: int = clock.now().nanoseconds
     return None if now_ns == 0 and clock.ros_time_is_active else now_ns

@@ -39,7 +39,7 @@ _LARGEST_SHARE: Final = 1e13
 """Largest share of the target that one column may have for the target to count as reached."""
 
 _GUESSES: Final = 30
-"""After which a search for the least forces is given up; it takes a few."""
+"""Largest number of rounds of a search for the least forces, which takes a few."""
 
 _Decimals: TypeAlias = "list[Decimal]"
 
@@ -53,7 +53,7 @@ def least_force(columns: Sequence[Vector3], target: Vector3, absent: Sequence[Ve
 
     Args:
         columns: Unit vectors whose positive combinations hold ``target``.
-        target: What to balance.
+        target: The sum.
         absent: Orthonormal directions orthogonal to all columns; the part of ``target`` there is left out.
     """
     if not columns:
@@ -98,8 +98,9 @@ def _few_forces(matrix: FloatArray, right: FloatArray) -> FloatArray:
 def exact_combination(columns: Sequence[Vector3], target: Vector3) -> tuple[list[float], float]:
     """Return an x >= 0 whose sum x_i columns_i is nearest to a target, and its distance, in decimals.
 
-    Of all such x the one of least sum of squares, where Newton's method finds it; else one in which at most
-    three act. The columns, unit vectors, may nearly coincide or oppose each other: floats would not do.
+    If there are many such x, it is the one of least sum of squares if Newton's method finds it, or else one
+    with at most three numbers that are not zero. The columns are unit vectors, and may nearly coincide or
+    oppose each other, so that floats do not have enough digits.
     """
     with within(DECIMALS.sums):
         rows = [[Decimal(part) for part in column] for column in columns]
@@ -115,9 +116,9 @@ def exact_combination(columns: Sequence[Vector3], target: Vector3) -> tuple[list
 
 
 def distance_from_cone(columns: Sequence[Vector3], target: Vector3) -> float:
-    """Return how far a target is from the positive combinations of ``columns``; infinite: not known.
+    """Return the distance of a target from the positive combinations of ``columns``, infinite if not known.
 
-    Where only shares of more than `_LARGEST_SHARE` of the target reach it, rounding of the columns decides.
+    It is not known if the target takes shares above `_LARGEST_SHARE` of it, because rounding then decides.
     """
     x, distance = exact_combination(columns, target)
     size = math.sqrt(sum(part * part for part in target))
@@ -125,10 +126,10 @@ def distance_from_cone(columns: Sequence[Vector3], target: Vector3) -> float:
 
 
 def _least_exact_forces(rows: list[_Decimals], right: _Decimals) -> dict[int, Decimal] | None:
-    """Return the forces of least sum of squares that add up to ``right``; None: not found.
+    """Return the forces of least sum of squares that add up to ``right``, or None if they are not found.
 
-    They are the positive parts of rows @ y for some y. Which are positive is guessed, and guessed again from
-    the y that follows.
+    They are the positive parts of rows @ y for some y. Each round guesses which parts are positive, from the
+    y of the round before.
     """
     acting = list(range(len(rows)))
     for _ in range(_GUESSES):
@@ -149,7 +150,7 @@ def _least_exact_forces(rows: list[_Decimals], right: _Decimals) -> dict[int, De
 
 
 def _few_exact_forces(rows: list[_Decimals], right: _Decimals) -> dict[int, Decimal]:
-    """Return the forces that act: `_few_forces` where every direction counts, however close to others."""
+    """Return the forces that act, as `_few_forces` does, but with every direction, near others or not."""
     acting: dict[int, Decimal] = {}
     left = list(right)
     size = _inner(right, right).sqrt()

@@ -38,8 +38,8 @@ class Field:
     Attributes:
         type_name: A key of `PRIMITIVES`, "string", or "package/Name".
         is_array: Whether it holds several.
-        count: How many, where that is fixed. None: as many as the message says.
-        default: As the type's text gives it. None: not given.
+        count: The number of elements, or None if each message has its own.
+        default: The default in the type's text, or None if it has none.
     """
 
     name: str

@@ -1,6 +1,6 @@
 """Tumbling (Mason, lecture 25): where a free rigid body will be, at any time, in closed form.
 
-`motion` answers for one body and `many` for many at once; `regime` says what kind of rotation it is. `flips`
+`motion` answers for one body and `many` for many at once. `regime` says what kind of rotation it is. `flips`
 has the flips of a body that spins near its middle axis. `poinsot_construction` is Poinsot's picture: an
 ellipsoid that rolls on a plane.
 

@@ -45,14 +45,12 @@ class Flips(Record):
     """The next flips of a body.
 
     Attributes:
-        seconds: (n,), s after the state's stamp, ascending; empty where there are none.
-        deviations: (n,), s, standard deviation of each time; empty: no covariance was given.
+        seconds: (n,), s after the state's stamp, ascending. It is empty if there are none.
+        deviations: (n,), s, standard deviation of each time, or NaN if the state's covariance is not known.
     """
 
     seconds: FloatArray
-    deviations: (
-        FloatArray  # (n,), s, one standard deviation of each; NaN: the state's covariance is not known
-    )
+    deviations: FloatArray
 
 
 def next_flips(motion: FreeMotion, count: int, *, covariance: ArrayLike | None = None) -> Flips:

@@ -30,10 +30,10 @@ MOST_MODES: Final = 6
 
 _ACCELERATION_LENGTH: Final = 0.6  # length of the arrow at the centre of mass, relative to the body's size
 _SLIDING_LENGTH: Final = 0.3  # length of the arrows of sliding directions, relative to the body's size
-_CONE_HEIGHT: Final = 0.25  # likewise
-_OUTLINE_WIDTH: Final = -0.8  # negative: points of the screen
-_POINT_SIZE: Final = 0.035  # likewise
-_ARROW_WIDTH: Final = 0.01  # likewise
+_CONE_HEIGHT: Final = 0.25  # relative to the body's size
+_OUTLINE_WIDTH: Final = -0.8  # a negative size is in points of the screen
+_POINT_SIZE: Final = 0.035  # radius of points, relative to the body's size
+_ARROW_WIDTH: Final = 0.01  # relative to the body's size
 
 
 def draw_contact_modes(recording: rr.RecordingStream, shape: Shape, answer: ContactModeAnswer) -> None:

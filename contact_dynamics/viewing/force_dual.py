@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 _PARALLEL: Final = 1e-9
 """1 - cos of the angle below which a generator is a friction cone's edge."""
 
-_POINT_SIZE: Final = -4.5  # negative: points of the screen
+_POINT_SIZE: Final = -4.5  # a negative size is in points of the screen
 _OUTLINE_WIDTH: Final = -1.2
 _FILL: Final = 0.55  # share of the mode's colour in its region
 

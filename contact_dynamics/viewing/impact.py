@@ -43,8 +43,8 @@ MOST_STRIKES: Final = 5
 
 _CONE_FACETS: Final = 32
 _ARROW_WIDTH: Final = 0.016  # relative to the size of the body
-_POINT_SIZE: Final = 0.02  # likewise
-_OUTLINE_WIDTH: Final = -1.2  # negative: points of the screen
+_POINT_SIZE: Final = 0.02  # radius of points, relative to the body's size
+_OUTLINE_WIDTH: Final = -1.2  # a negative size is in points of the screen
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

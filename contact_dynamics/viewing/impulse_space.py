@@ -43,7 +43,7 @@ MARGIN: Final = 1.2
 """Length of cone and lines, relative to the path."""
 
 _BELOW: Final = 0.12  # height of the picture below the origin, relative to that above it
-_LINE_WIDTH: Final = -1.2  # negative: points of the screen
+_LINE_WIDTH: Final = -1.2  # a negative size is in points of the screen
 _PATH_WIDTH: Final = -2.5
 _POINT_SIZE: Final = -5.0
 _LABEL_OFFSET: Final = 0.55  # distance of a label's centre from its place, relative to the picture's height

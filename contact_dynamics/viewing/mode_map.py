@@ -48,7 +48,7 @@ _NAMED_FROM: Final = 0.045
 _SEEN: Final = 5e-3  # difference of unit normals that moves a border by one point
 _COARSE: Final = 4  # a step of this many points finds where a region is widest
 _EDGE: Final = 1e-9  # relative: what is outside by less is on the boundary
-_BORDER_WIDTH: Final = -1.0  # negative: points of the screen
+_BORDER_WIDTH: Final = -1.0  # a negative size is in points of the screen
 _POINT_SIZE: Final = -5.0
 _HOVERED_SIZE: Final = -2.0
 

@@ -29,7 +29,7 @@ ARROW_LENGTH: Final = 0.4
 
 _LABEL_OFFSET: Final = 0.07  # distance of a label from its contact, relative to the body's size
 _COVERED: Final = 0.06  # labels nearer than this would cover each other, relative to the body's size
-_OUTLINE_WIDTH: Final = -1.8  # negative: points of the screen
+_OUTLINE_WIDTH: Final = -1.8  # a negative size is in points of the screen
 _WALL_WIDTH: Final = -3.6
 _CONE_WIDTH: Final = -1.2
 _ARROW_WIDTH: Final = -2.0

@@ -36,7 +36,7 @@ motion capture makes up to 0.08 of it, and impacts make more than 1."""
 _PLANE_MARGIN: Final = 1.25  # size of the plane, relative to what lies on it
 _GRID: Final = 10  # number of lines across the plane in each direction
 _BELOW: Final = 0.005  # relative distance by which the plane is too low, not to hide the herpolhode
-_CURVE_WIDTH: Final = -1.2  # negative: points of the screen
+_CURVE_WIDTH: Final = -1.2  # a negative size is in points of the screen
 _GRID_WIDTH: Final = -0.6
 _NET_POINTS: Final = 73
 _MERIDIANS: Final = 8

@@ -24,7 +24,7 @@ GRID_SPACING: Final = 0.1
 
 MOST_GRID_LINES: Final = 100
 
-_EDGE_WIDTH: Final = -1.5  # negative: points of the screen
+_EDGE_WIDTH: Final = -1.5  # a negative size is in points of the screen
 _GRID_WIDTH: Final = -0.6
 _TRAIL_WIDTH: Final = -1.5
 

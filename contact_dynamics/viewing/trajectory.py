@@ -39,7 +39,7 @@ DEVIATIONS: Final = 2.0
 RECENT: Final = ("path", "outlines", "end", "uncertainty")
 """The parts of a prediction that stay in view beside later ones."""
 
-_PATH_WIDTH: Final = -2.0  # negative: points of the screen
+_PATH_WIDTH: Final = -2.0  # a negative size is in points of the screen
 _OUTLINE_WIDTH: Final = -0.8
 _END_WIDTH: Final = -1.5
 
