@@ -10,8 +10,8 @@ from contact_dynamics.recording.bag_writer import BagWriter
 from contact_dynamics.recording.cdr import decode_without_ros
 from contact_dynamics.recording.decoding import decode
 from contact_dynamics.recording.errors import DamagedLogWarning, LogExistsError, LogFailedError, NotALogError
+from contact_dynamics.recording.file_messages import Loss
 from contact_dynamics.recording.limits import Compression, LogLimits
-from contact_dynamics.recording.mcap_walk import Loss
 from contact_dynamics.recording.qos import OfferedQos
 from contact_dynamics.recording.recorder import Recorder, RecorderStatus
 from contact_dynamics.recording.service_calls import EVENT_TOPIC_SUFFIX, ServiceCall, service_calls

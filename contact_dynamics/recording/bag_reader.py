@@ -1,8 +1,9 @@
-"""Reads a log: a bag folder or a bare ``.mcap``, ours or rosbag2's, in the order in which it was written.
+"""Reads a log: a folder of rosbag2 or one file of it, ours or another's, in the order of its writing.
 
-The reader checks every checksum. It skips what is damaged and reads everything else (`mcap_walk`), also all
-whole chunks of a log that a crash or a full disk cut short. `BagReader.losses` then says what is missing, and
-the reader warns once for each file (`DamagedLogWarning`).
+The files are MCAP or SQLite (``.db3``), split or not, packed as a whole, by message or not at all. The reader
+checks every checksum of MCAP. It skips what is damaged and reads everything else (`mcap_walk`), and all whole
+chunks of a log that a crash or a full disk cut short. `BagReader.losses` then says what is missing, and the
+reader warns once for each file (`DamagedLogWarning`).
 
 It needs no ROS. Messages are bytes, and `decoding` turns them into message objects if their packages are
 installed.
@@ -13,25 +14,25 @@ from __future__ import annotations
 import re
 import warnings
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from mcap.records import Channel, Message, Metadata, Schema
-
-from contact_dynamics.recording.bag_metadata import RUN_RECORD, unsealed_run
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
-from contact_dynamics.recording.mcap_file import McapFile
-from contact_dynamics.recording.mcap_summary import Summary
-from contact_dynamics.recording.mcap_walk import Loss, McapWalk
+from contact_dynamics.recording.file_messages import Loss, MessageFile, Span
+from contact_dynamics.recording.mcap_messages import McapMessages
+from contact_dynamics.recording.packed import SUFFIXES, unpacked_file, unpacked_message
+from contact_dynamics.recording.sqlite_messages import SqliteMessages
+from contact_dynamics.recording.standard_types import standard_definition
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
-    from contact_dynamics.recording.mcap_walk import WalkedRecord
+    from contact_dynamics.recording.file_messages import StoredMessage
 
 _MOST_TOLD: Final = 5  # places of damage that are told one by one
-_SPLIT_NUMBER: Final = re.compile(r"_(\d+)\.mcap$")
+_NAME: Final = re.compile(r"(_(?P<number>\d+))?(?P<kind>\.mcap|\.db3)(\.zstd|\.zst|\.lz4)?$")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,23 +57,27 @@ class LoggedMessage:
 
 
 class BagReader:
-    """A log to read from. Each call of a method reads the file again."""
+    """A log to read from. Each call of a method reads the files again."""
 
     def __init__(self, path: str | Path) -> None:
         """Find the files of a log.
 
         Args:
-            path: a bag folder, whose ``.mcap`` files are read in the order of their numbers, or one such
-                file.
+            path: a bag folder, whose files are read in the order of their numbers, or one such file.
 
         Raises:
             NotALogError: there is no such file.
         """
         path = Path(path)
-        self.paths = sorted(path.glob("*.mcap"), key=_split_number) if path.is_dir() else [path]
+        self.paths = _files_of(path) if path.is_dir() else [path]
         self.losses: list[Loss] = []  # what the last reading had to pass over, by then
         if not self.paths or not self.paths[0].is_file():
-            raise NotALogError(f"{path}: no MCAP file here")
+            raise NotALogError(f"{path}: no MCAP file here, and no .db3 file")
+
+    @property
+    def size(self) -> int:
+        """The size of all files together, bytes."""
+        return sum(path.stat().st_size for path in self.paths)
 
     @property
     def damage(self) -> str | None:
@@ -84,35 +89,28 @@ class BagReader:
         ]
         return "\n".join(described) or None
 
-    def messages(self, topics: Collection[str] | None = None) -> Iterator[LoggedMessage]:
-        """Yield the messages, of all topics or of the given ones, in the order in which they were written.
+    def messages(
+        self, topics: Collection[str] | None = None, *, start_ns: int | None = None, end_ns: int | None = None
+    ) -> Iterator[LoggedMessage]:
+        """Yield the messages in the order in which they were written.
 
         Events of services come after messages that were received while the answer was made. `log_time_ns`
         has the order in which everything happened.
+
+        Args:
+            topics: those to read; None: all.
+            start_ns: messages are left out whose log time is earlier, ns since the epoch. Where a file has
+                an index, only the chunks that it names are read.
+            end_ns: messages are left out whose log time is this or later.
         """
+        span = Span(start_ns, end_ns)
         self.losses = []
         for path in self.paths:
-            with self._walk(path) as walk:
-                definitions = _Definitions(walk)
-                undefined = 0
-                for record in walk.records():
-                    if isinstance(record, Message):
-                        channel = definitions.channel(record.channel_id)
-                        if channel is None:
-                            undefined += 1
-                        elif topics is None or channel[0] in topics:
-                            yield LoggedMessage(
-                                topic=channel[0],
-                                type_name=channel[1],
-                                data=record.data,
-                                log_time_ns=record.log_time,
-                                publish_time_ns=record.publish_time,
-                                definition=channel[2],
-                            )
-                    else:
-                        definitions.add(record)
-                if undefined:
-                    walk.lose_undefined(undefined)
+            with self._opened(path) as file:
+                for message in file.messages(topics, span):
+                    made = self._made(path, message)
+                    if made is not None:
+                        yield made
 
     def definitions(self) -> dict[str, str]:
         """Return the text of each type that the log describes before its first message or at its end.
@@ -120,91 +118,71 @@ class BagReader:
         Texts in another form than MCAP's ros2msg are left out.
         """
         self.losses = []
-        schemas: list[Schema] = []
+        found: dict[str, str] = {}
         for path in self.paths:
-            with self._walk(path) as walk:
-                for record in walk.records():
-                    if isinstance(record, Message):
-                        break
-                    if isinstance(record, Schema):
-                        schemas.append(record)
-                schemas += (walk.summary or Summary()).schemas.values()
-        return {schema.name: text for schema in schemas if (text := _ros2msg(schema))}
+            with self._opened(path) as file:
+                found |= file.definitions()
+        return found
 
     def run(self) -> dict[str, str]:
         """Return the writer's record of its run. It is empty if the record is missing or damaged."""
         self.losses = []
         for path in self.paths:
-            with self._walk(path) as walk:
-                for record in walk.records():
-                    if isinstance(record, Metadata) and record.name == RUN_RECORD:
-                        run = unsealed_run(record.metadata)
-                        if run is not None:
-                            return run
-                        walk.lose_run()
+            with self._opened(path) as file:
+                run = file.run()
+            if run is not None:
+                return run
         return {}
 
-    @contextmanager
-    def _walk(self, path: Path) -> Iterator[McapWalk]:
-        """Open a file to walk through, and say at the end what was lost."""
-        with path.open("rb") as stream:
-            walk = McapWalk(McapFile(path, stream, path.stat().st_size))
+    def _made(self, path: Path, stored: StoredMessage) -> LoggedMessage | None:
+        topic, data, log_time_ns, publish_time_ns = stored
+        if data[:1] != b"\0":  # no serialised message: perhaps a packed one
             try:
-                yield walk
-            finally:  # also where the reading ends early: what was passed over until then
-                losses = walk.losses
-                if losses:
+                data = unpacked_message(data)
+            except InvalidFieldError as error:
+                self.losses.append(
+                    Loss(path=path, begin=0, end=path.stat().st_size, messages=1, reason=str(error))
+                )
+                return None
+        return LoggedMessage(
+            topic=topic.name,
+            type_name=topic.type_name,
+            data=data,
+            log_time_ns=log_time_ns,
+            publish_time_ns=publish_time_ns,
+            definition=topic.definition or standard_definition(topic.type_name),
+        )
+
+    @contextmanager
+    def _opened(self, path: Path) -> Iterator[MessageFile]:
+        """Open a file, and say at the end what was lost."""
+        with unpacked_file(path) as (plain, cut):
+            match = _NAME.search(path.name)
+            is_sqlite = match is not None and match["kind"] == ".db3"
+            with SqliteMessages(plain) if is_sqlite else McapMessages(plain) as file:
+                before = len(self.losses)
+                try:
+                    yield file
+                finally:  # also where the reading ends early: what was passed over until then
+                    losses = [replace(loss, path=path) for loss in file.losses]
+                    if cut is not None:
+                        losses.append(
+                            Loss(path=path, begin=0, end=path.stat().st_size, messages=None, reason=cut)
+                        )
                     self.losses += losses
-                    warnings.warn(_described(path, losses), DamagedLogWarning, stacklevel=4)
+                    if self.losses[before:]:
+                        told = _described(path, self.losses[before:])
+                        warnings.warn(told, DamagedLogWarning, stacklevel=4)
 
 
-class _Definitions:
-    """Channels and schemas of one file. The file's summary has those that a lost chunk defined."""
-
-    def __init__(self, walk: McapWalk) -> None:
-        self._walk = walk
-        self._schemas: dict[int, Schema] = {}
-        self._channels: dict[int, Channel] = {}
-        self._known: dict[int, tuple[str, str, str] | None] = {}
-
-    def add(self, record: WalkedRecord) -> None:
-        """Keep a record if it is a definition."""
-        if isinstance(record, Schema):
-            self._schemas[record.id] = record
-        elif isinstance(record, Channel):
-            self._channels[record.id] = record
-            self._known.pop(record.id, None)
-
-    def channel(self, channel_id: int) -> tuple[str, str, str] | None:
-        """Return topic, type and its text, which may both be empty, or None if the channel is not defined."""
-        if channel_id not in self._known:
-            self._known[channel_id] = self._find(channel_id)
-        return self._known[channel_id]
-
-    def _find(self, channel_id: int) -> tuple[str, str, str] | None:
-        channel = self._channels.get(channel_id) or self._summary.channels.get(channel_id)
-        if channel is None or channel.schema_id == 0:
-            return None if channel is None else (channel.topic, "", "")
-        schema = self._schemas.get(channel.schema_id) or self._summary.schemas.get(channel.schema_id)
-        if schema is None:
-            return None
-        return channel.topic, schema.name, _ros2msg(schema)
-
-    @property
-    def _summary(self) -> Summary:
-        return self._walk.summary or Summary()
-
-
-def _ros2msg(schema: Schema) -> str:
-    return schema.data.decode(errors="replace") if schema.encoding == "ros2msg" else ""
+def _files_of(folder: Path) -> list[Path]:
+    """Return the files of a bag; where a packed one has been unpacked beside, the plain one."""
+    matches = {path: match for path in folder.iterdir() if (match := _NAME.search(path.name)) is not None}
+    files = [path for path in matches if path.suffix not in SUFFIXES or path.with_suffix("") not in matches]
+    return sorted(files, key=lambda path: (int(matches[path]["number"] or 0), path.name))
 
 
 def _described(path: Path, losses: list[Loss]) -> str:
     told = "; ".join(str(loss) for loss in losses[:_MOST_TOLD])
     more = f"; and {len(losses) - _MOST_TOLD} places more" if len(losses) > _MOST_TOLD else ""
     return f"{path} is damaged or was cut short, all but this was read: {told}{more}"
-
-
-def _split_number(path: Path) -> tuple[int, str]:
-    match = _SPLIT_NUMBER.search(path.name)
-    return (int(match[1]) if match else 0, path.name)

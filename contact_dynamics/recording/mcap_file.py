@@ -35,6 +35,8 @@ class McapFile:
 
     def bytes_at(self, position: int, count: int) -> bytes:
         """Return this many bytes, or fewer where the file ends."""
+        if position >= self.size:
+            return b""  # a position of a damaged file can be one that no system seeks to
         self._stream.seek(position)
         return self._stream.read(max(0, min(count, self.size - position)))
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 import re
 import struct
 import zlib
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from mcap.opcode import Opcode
@@ -21,12 +21,14 @@ from mcap.records import Channel, Message, Metadata, Schema
 
 from contact_dynamics.recording.chunk_data import uncompressed
 from contact_dynamics.recording.errors import NotALogError
+from contact_dynamics.recording.file_messages import Loss
 from contact_dynamics.recording.mcap_file import HEAD, MAGIC, WINDOW, DamagedError, McapFile, demand, parsed
 from contact_dynamics.recording.mcap_summary import Summary, read_summary
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from pathlib import Path
+
+    from contact_dynamics.recording.file_messages import Span
 
 _CHUNK: Final = struct.Struct("<QQQII")  # earliest and latest time, size, checksum, length of the next field
 _MESSAGE: Final = struct.Struct("<HIQQ")  # channel, sequence, log time, publish time
@@ -39,28 +41,6 @@ _PERHAPS_WHOLE: Final = re.compile(rb"[\x06\x0c\x0f](?=.{5}\x00\x00\x00)", re.DO
 _DEFINING: Final[dict[int, Any]] = {Opcode.SCHEMA: Schema, Opcode.CHANNEL: Channel}
 
 WalkedRecord: TypeAlias = Schema | Channel | Message | Metadata
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Loss:
-    """A stretch of a log that could not be read.
-
-    Attributes:
-        begin: Its first byte.
-        end: The byte after its last one.
-        messages: Number of lost messages, by the file's summary, or None if there is no summary.
-    """
-
-    path: Path
-    begin: int
-    end: int
-    messages: int | None
-    reason: str
-
-    def __str__(self) -> str:
-        """Say what is lost and why."""
-        count = "an unknown number of" if self.messages is None else self.messages
-        return f"bytes {self.begin} to {self.end}, {count} messages ({self.reason})"
 
 
 class McapWalk:
@@ -107,6 +87,31 @@ class McapWalk:
                 self._lose(damaged, self._file.size if position is None else position, str(error))
             else:
                 position = end
+            yield from found
+
+    def records_within(self, span: Span) -> Iterator[WalkedRecord]:
+        """Yield the records of the chunks that have messages of a span, by the summary's index.
+
+        A file without an index is walked through as a whole.
+        """
+        summary = self.summary
+        if summary is None or not summary.chunks:
+            yield from self.records()
+            return
+        begins = {
+            chunk.chunk_start_offset
+            for chunk in summary.chunks
+            if not span.is_before(chunk.message_end_time) and not span.is_after(chunk.message_start_time)
+        }
+        for position in sorted(begins):
+            end = self._file.size
+            found: list[WalkedRecord] = []
+            try:
+                kind, begin, end = self._file.head(position)
+                demand(kind == Opcode.CHUNK, "the place of a chunk by the index")
+                found = self._chunk(begin, end)
+            except DamagedError as error:
+                self._lose(position, end, str(error))
             yield from found
 
     @property

@@ -1,0 +1,84 @@
+"""What is packed as a whole: files and messages of rosbag2's compression modes FILE and MESSAGE.
+
+A packed file becomes a temporary one, piece by piece, since a reader has to jump about in it. A serialised
+message begins with a zero byte, and packed data begin with a magic number that does not, so each shows by
+itself which it is.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.recording.chunk_data import uncompressed
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from typing import BinaryIO
+
+MAGICS: Final = {b"\x28\xb5\x2f\xfd": b"zstd", b"\x04\x22\x4d\x18": b"lz4"}
+"""The first bytes of packed data, and MCAP's name of the packing."""
+
+SUFFIXES: Final = (".zstd", ".zst", ".lz4")
+"""How the name of a packed file ends."""
+
+MOST_BYTES: Final = 64 * 1024 * 1024
+"""The size of the largest message that is unpacked, bytes."""
+
+_PIECE: Final = 1024 * 1024  # bytes
+
+
+def unpacked_message(data: bytes) -> bytes:
+    """Return a message as it was serialised.
+
+    Raises:
+        InvalidFieldError: it is damaged, or larger than `MOST_BYTES`.
+    """
+    compression = MAGICS.get(data[:4])
+    if compression is None:
+        return data
+    try:
+        found = uncompressed(compression, data, MOST_BYTES)
+    except Exception as error:  # noqa: BLE001  damaged bytes make the libraries raise nearly anything
+        raise InvalidFieldError("data", f"a packed message ({error})", "data that can be unpacked") from None
+    if len(found) > MOST_BYTES:
+        raise InvalidFieldError("data", "a packed message", f"at most {MOST_BYTES} bytes when unpacked")
+    return found
+
+
+@contextmanager
+def unpacked_file(path: Path) -> Iterator[tuple[Path, str | None]]:
+    """Yield where the content of a file is, and why it ends early: None where it does not.
+
+    The content of a packed file is in a temporary one, which is deleted afterwards.
+    """
+    if path.suffix not in SUFFIXES:
+        yield path, None
+        return
+    with path.open("rb") as packed, tempfile.NamedTemporaryFile(suffix=Path(path.stem).suffix) as plain:
+        reason = None
+        try:
+            for piece in _pieces(packed):
+                plain.write(piece)
+        except Exception as error:  # noqa: BLE001  see above
+            reason = f"the rest cannot be unpacked: {error}"
+        plain.flush()
+        yield Path(plain.name), reason
+
+
+def _pieces(packed: BinaryIO) -> Iterator[bytes]:
+    if MAGICS.get(packed.read(4)) == b"lz4":
+        import lz4.frame  # it comes with the mcap library, as zstandard does
+
+        packed.seek(0)
+        stream: Any = lz4.frame.LZ4FrameFile(packed)
+    else:
+        import zstandard
+
+        packed.seek(0)
+        stream = zstandard.ZstdDecompressor().stream_reader(packed, read_across_frames=True)
+    while piece := stream.read(_PIECE):
+        yield piece

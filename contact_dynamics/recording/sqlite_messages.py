@@ -1,0 +1,153 @@
+"""The messages of a ``.db3`` file of rosbag2, which is an SQLite database.
+
+SQLite has no checksums of its own, so a flipped bit within a message is not found. Where the structure of the
+file is damaged, what can be reached on both sides of the damage is read.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, Final
+
+from contact_dynamics.recording.errors import NotALogError
+from contact_dynamics.recording.file_messages import Loss, Span, StoredMessage, Topic
+from contact_dynamics.recording.packed import MOST_BYTES
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+    from pathlib import Path
+
+    from typing_extensions import Self
+
+_HEADER: Final = b"SQLite format 3\0"
+_NEXT_ROWS: Final = (
+    "SELECT id, topic_id, timestamp, data FROM messages "
+    "WHERE id > ? AND id <= ? AND topic_id IN ({}) ORDER BY id"
+)
+_SPANNED: Final = " AND timestamp >= ? AND timestamp < ?"
+_LEAST_NS: Final = -(2**63)
+_LATEST_NS: Final = 2**63 - 1
+_MOST_ID: Final = 2**63 - 1
+
+
+class SqliteMessages:
+    """A database that is read as a `MessageFile`."""
+
+    def __init__(self, path: Path) -> None:
+        """Name the file, which is opened later."""
+        self._path = path
+        self.losses: list[Loss] = []
+
+    def __enter__(self) -> Self:
+        """Open the file.
+
+        Raises:
+            NotALogError: it is no database of rosbag2.
+        """
+        with self._path.open("rb") as stream:
+            if stream.read(len(_HEADER)) != _HEADER:
+                message = f"{self._path} is not an SQLite file"
+                raise NotALogError(message)
+        self._database = self._opened()
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        """Close the file."""
+        self._database.close()
+
+    def messages(self, topics: Collection[str] | None, span: Span) -> Iterator[StoredMessage]:
+        """Yield the messages of some topics, or of all, in the order in which they were written."""
+        known = {
+            number: topic
+            for number, topic in self._topics().items()
+            if topics is None or topic.name in topics
+        }
+        ids = ", ".join(str(number) for number in known)
+        query = _NEXT_ROWS.format(ids)
+        bounds: tuple[int, ...] = ()
+        if span != (None, None):
+            query = query.replace(" ORDER", f"{_SPANNED} ORDER")
+            bounds = (
+                _LEAST_NS if span.start_ns is None else span.start_ns,
+                _LATEST_NS if span.end_ns is None else span.end_ns,
+            )
+        for _, topic_id, timestamp, data in self._rows(query, bounds):
+            if isinstance(timestamp, int) and isinstance(data, bytes):
+                yield StoredMessage(known[topic_id], data, timestamp, timestamp)
+
+    def definitions(self) -> dict[str, str]:
+        """Return the text of each type; bags from before ROS 2 Iron have none."""
+        with suppress(sqlite3.Error):
+            rows = self._database.execute(
+                "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions"
+            )
+            return {str(name): str(text) for name, encoding, text in rows if encoding == "ros2msg" and text}
+        return {}
+
+    def run(self) -> None:
+        """Return None: the server writes no database."""
+
+    def _opened(self) -> sqlite3.Connection:
+        """Return a connection that writes nothing, also not what a writer that was killed has left beside."""
+        address = self._path.resolve().as_uri()
+        error: Exception | None = None
+        for options in ("mode=ro", "mode=ro&immutable=1"):  # the latter where the folder cannot be written
+            database = sqlite3.connect(f"{address}?{options}", uri=True, check_same_thread=False)
+            try:
+                if hasattr(database, "setlimit"):  # not yet in Python 3.10
+                    database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MOST_BYTES)
+                tables = database.execute("SELECT name FROM sqlite_master WHERE type = 'table'")
+                found = {name for (name,) in tables}
+            except sqlite3.Error as caught:
+                database.close()
+                error = caught
+                continue
+            if {"messages", "topics"} <= found:
+                return database
+            database.close()
+            message = f"{self._path}: no bag of rosbag2: its tables are {', '.join(sorted(found)) or 'none'}"
+            raise NotALogError(message)
+        message = f"{self._path}: {error}"
+        raise NotALogError(message) from None
+
+    def _topics(self) -> dict[int, Topic]:
+        texts = self.definitions()
+        try:
+            rows = self._database.execute(
+                "SELECT id, name, type, serialization_format FROM topics"
+            ).fetchall()
+        except sqlite3.Error as error:
+            self._lose(f"the table of topics: {error}")
+            return {}
+        return {
+            int(number): Topic(str(name), str(kind), texts.get(str(kind), ""))
+            for number, name, kind, encoding in rows
+            if encoding == "cdr" and isinstance(number, int)
+        }
+
+    def _rows(self, query: str, bounds: tuple[int, ...]) -> Iterator[Any]:
+        """Yield rows by their number; behind damage, go on with ever larger steps until rows come again."""
+        last, end = 0, self._last_id()
+        step = 1
+        while last < end:
+            try:
+                for row in self._database.execute(query, (last, end, *bounds)):
+                    last, step = row[0], 1
+                    yield row
+            except sqlite3.Error as error:  # noqa: PERF203  an error ends one query, not the rows
+                self._lose(f"rows from {last + 1} on, as far as they cannot be reached: {error}")
+                last, step = last + step, 2 * step
+            else:
+                return
+
+    def _last_id(self) -> int:
+        with suppress(sqlite3.Error):
+            for (number,) in self._database.execute("SELECT max(id) FROM messages"):
+                return number if isinstance(number, int) else 0
+        return min(_MOST_ID, self._path.stat().st_size)  # no file has more rows than bytes
+
+    def _lose(self, reason: str) -> None:
+        loss = Loss(path=self._path, begin=0, end=self._path.stat().st_size, messages=None, reason=reason)
+        if not self.losses or self.losses[-1].reason.partition(":")[2] != reason.partition(":")[2]:
+            self.losses.append(loss)
