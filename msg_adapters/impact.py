@@ -6,6 +6,7 @@ than to fill.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -144,11 +145,15 @@ def resolved_impact_to_msg(
     if impact.orders:
         msg.orders = [",".join(map(str, order)) for order in impact.orders]
         msg.order_velocities = flat(impact.order_velocities_W)
+    msg.orders_complete = impact.orders_complete
+    msg.orders_not_converged = impact.orders_not_converged
     if impact.covariance is not None:
         msg.state_after.covariance = flat(impact.covariance)
+    msg.miss_probability = math.nan
     if impact.outcome_probabilities is not None:
         msg.outcome_probabilities = flat(impact.outcome_probabilities)
         msg.miss_probability = impact.miss_probability
+    msg.limit_time = math.nan if impact.limit_seconds is None else impact.limit_seconds
     if impact.strikes:
         _write_strikes(msg, impact, p_FB_F)
     return msg
@@ -190,9 +195,11 @@ def resolved_impact_from_msg(
         creates_energy=msg.creates_energy,
         orders=tuple(tuple(map(int, order.split(","))) for order in msg.orders),
         order_velocities_W=rows(msg.order_velocities, 6),
+        orders_complete=msg.orders_complete,
+        orders_not_converged=msg.orders_not_converged,
         covariance=rows(covariance, 12) if len(covariance) > 0 else None,
         outcome_probabilities=np.array(probabilities) if len(probabilities) > 0 else None,
-        miss_probability=msg.miss_probability,
+        miss_probability=msg.miss_probability if len(probabilities) > 0 else 0.0,
         strikes=_read_strikes(msg, p_FB_F),
         end=SequenceEnd(msg.sequence_end) if in_time else None,
         staying=tuple(msg.staying_contacts),
@@ -217,7 +224,6 @@ def _write_strikes(msg: ImpactMsg, impact: ResolvedImpact, p_FB_F: FloatArray) -
     if impact.end is not None:
         msg.sequence_end = int(impact.end)
     msg.staying_contacts = list(impact.staying)
-    msg.limit_time = 0.0 if impact.limit_seconds is None else impact.limit_seconds
 
 
 def _read_strikes(msg: ImpactMsg, p_FB_F: FloatArray) -> tuple[SequenceStrike, ...]:

@@ -1,6 +1,6 @@
 """Converts requests of the three services to questions. No other file reads a request.
 
-A field that a question leaves out is zero or empty in a request. Fields without meaning for a question, such
+A number that a question leaves out is an empty list in a request. Fields without meaning for a question, such
 as a horizon if the contacts are given, are not read.
 """
 
@@ -31,7 +31,7 @@ from msg_adapters.geometry import mass_properties_from_msg, vector_from_msg
 from msg_adapters.stamps import stamp_ns_from_msg
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from builtin_interfaces.msg import Time
     from geometry_msgs.msg import Inertia, Vector3
@@ -60,13 +60,15 @@ _WRENCH_FIELDS: Final = {
 """The request's names of the fields of a wrench, by their names in the package."""
 
 T = TypeVar("T", bound=InvalidFieldError)
+Number = TypeVar("Number", int, float)
 
 
 class _SubjectRequest(Protocol):
     """The fields about the body, which the requests of all services have."""
 
-    STATE_PUBLISHED: int
+    STATE_NEWEST: int
     STATE_EXPLICIT: int
+    STATE_AT_STAMP: int
     body_name: str
     inertia: Inertia
     state_source: int
@@ -81,6 +83,7 @@ class _ContactRequest(Protocol):
     CONTACTS_EXPLICIT: int
     contact_source: int
     contacts: ContactSetMsg
+    out_of_plane_tolerance: Sequence[float]
 
 
 class _GravityRequest(Protocol):
@@ -142,16 +145,16 @@ def impact_question_from_msg(
         other=other,
         other_state=other_state,
         contacts=contacts,
-        horizon=request.horizon or None if contacts is None else None,
+        horizon=_optional("horizon", request.horizon) if contacts is None else None,
         restitution_law=_restitution_law(request.restitution_law),
         several_contacts_law=_several_contacts_law(request),
         want_orders=request.want_orders,
         want_covariance=request.want_covariance,
         problem=problem,
         plane=_plane(request.plane_normal) if is_planar else None,
-        out_of_plane_tolerance=request.out_of_plane_tolerance or None if is_planar else None,
-        velocity_tolerance=request.velocity_tolerance or None,
-        distance_tolerance=request.distance_tolerance or None,
+        out_of_plane_tolerance=_out_of_plane_tolerance(request) if is_planar else None,
+        velocity_tolerance=_optional("velocity_tolerance", request.velocity_tolerance),
+        distance_tolerance=_optional("distance_tolerance", request.distance_tolerance),
     )
 
 
@@ -183,11 +186,11 @@ def contact_mode_question_from_msg(
             gravity_W=_gravity(request),
             problem=problem,
             plane=_plane(request.plane_normal) if may_be_planar else None,
-            out_of_plane_tolerance=request.out_of_plane_tolerance or None if may_be_planar else None,
-            velocity_tolerance=request.velocity_tolerance or None,
-            distance_tolerance=request.distance_tolerance or None,
-            friction_facets=int(request.friction_facets),
-            margin_length=request.margin_length if compares_torques else None,
+            out_of_plane_tolerance=_out_of_plane_tolerance(request) if may_be_planar else None,
+            velocity_tolerance=_optional("velocity_tolerance", request.velocity_tolerance),
+            distance_tolerance=_optional("distance_tolerance", request.distance_tolerance),
+            friction_facets=_optional("friction_facets", request.friction_facets),
+            margin_length=_optional("margin_length", request.margin_length) if compares_torques else None,
             want_margins=request.want_margins,
             want_wrenches=request.want_wrenches,
             want_statics=request.want_statics,
@@ -201,11 +204,8 @@ def _subject(
     request: _SubjectRequest, world: World, world_frame: str, *, fit_window: float = 0.0
 ) -> tuple[Body, StateSource]:
     """Return the body that a request names or describes, and where its state comes from."""
+    stamp_ns = _stamp_ns(request)
     is_explicit = request.state_source == request.STATE_EXPLICIT
-    if not is_explicit and request.state_source != request.STATE_PUBLISHED:
-        raise InvalidFieldError(
-            "state_source", request.state_source, "STATE_PUBLISHED (0) or STATE_EXPLICIT (1)"
-        )
     if is_explicit and check_not_negative("fit_window", fit_window) > 0.0:
         raise InvalidFieldError(
             "fit_window", fit_window, "0 for an explicit state: published states are fitted"
@@ -213,28 +213,29 @@ def _subject(
     body = _body(request.body_name, request.inertia, world)
     if is_explicit:
         return body, known_state_from_msg(request.state, world_frame=world_frame, p_FB_F=body.p_FB_F)
-    return body, _published(request.stamp, fit_window)
+    return body, _published(stamp_ns, fit_window)
 
 
 def _other(request: PredictImpact.Request, world: World, world_frame: str) -> tuple[Body | None, StateSource]:
     """Return the second body of an impact, or None if the world is struck, and where its state comes from."""
     explicit = request.other_state[0] if request.other_state else None
-    if not request.other_body_name and request.other_inertia.m == 0.0 and explicit is None:
+    if not request.other_body_name and explicit is None and not _is_described(request.other_inertia):
         return None, NEWEST
     body = _body(request.other_body_name, request.other_inertia, world)
     if explicit is None:
-        return body, _published(request.stamp)
+        return body, _published(_stamp_ns(request))
     return body, known_state_from_msg(explicit, world_frame=world_frame, p_FB_F=body.p_FB_F)
 
 
 def _body(name: str, inertia: Inertia, world: World) -> Body:
     if len(name) > _LONGEST_NAME:
         raise TooLargeError("body_name", f"{len(name)} characters", f"at most {_LONGEST_NAME}")
-    if not name and inertia.m == 0.0:
+    is_described = _is_described(inertia)
+    if not name and not is_described:
         raise InvalidFieldError("body_name", name, "the name of a configured body, or an inertia of mass > 0")
     # The body is looked up here, because an explicit state is that of the body's published frame.
     known = world.body(name) if name else None
-    if known is not None and inertia.m == 0.0:
+    if known is not None and not is_described:
         return known
     mass_properties, p_FB_F = mass_properties_from_msg(inertia)
     return _described_body(mass_properties, tuple(p_FB_F.tolist()), known)
@@ -248,11 +249,41 @@ def _described_body(mass_properties: MassProperties, com: Vector, known: Body | 
     return changed_body(known, mass_properties, np.array(com))
 
 
-def _published(stamp: Time, fit_window: float = 0.0) -> PublishedState:
-    stamp_ns = stamp_ns_from_msg(stamp)
-    if stamp_ns == 0 and fit_window == 0.0:
+def _is_described(inertia: Inertia) -> bool:
+    """Whether a request says anything of a body's mass: one of mass zero with other numbers is none."""
+    com = inertia.com
+    numbers = (inertia.m, inertia.ixx, inertia.ixy, inertia.ixz, inertia.iyy, inertia.iyz, inertia.izz)
+    return any(numbers) or any((com.x, com.y, com.z))
+
+
+def _stamp_ns(request: _SubjectRequest) -> int | None:
+    """Return the time of the published state that a request names; None: it does not name a time."""
+    if request.state_source == request.STATE_AT_STAMP:
+        return stamp_ns_from_msg(request.stamp)
+    if request.state_source not in {request.STATE_NEWEST, request.STATE_EXPLICIT}:
+        allowed = "STATE_NEWEST (0), STATE_EXPLICIT (1) or STATE_AT_STAMP (2)"
+        raise InvalidFieldError("state_source", request.state_source, allowed)
+    if request.stamp.sec or request.stamp.nanosec:
+        found = f"{stamp_ns_from_msg(request.stamp)} ns"
+        raise InvalidFieldError("stamp", found, "zero, or with state_source STATE_AT_STAMP (2) any time")
+    return None
+
+
+def _published(stamp_ns: int | None, fit_window: float = 0.0) -> PublishedState:
+    if stamp_ns is None and fit_window == 0.0:
         return NEWEST
-    return PublishedState(stamp_ns=stamp_ns or None, fit_window=fit_window)
+    return PublishedState(stamp_ns=stamp_ns, fit_window=fit_window)
+
+
+def _optional(field: str, numbers: Sequence[Number]) -> Number | None:
+    """Return the number of a field that may be left out; None: it is."""
+    if len(numbers) > 1:
+        raise InvalidFieldError(field, f"{len(numbers)} numbers", "one, or none")
+    return numbers[0] if numbers else None
+
+
+def _out_of_plane_tolerance(request: _ContactRequest) -> float | None:
+    return _optional("out_of_plane_tolerance", request.out_of_plane_tolerance)
 
 
 def _contacts(request: _ContactRequest) -> ContactSet | None:
@@ -308,7 +339,7 @@ def _sampling(request: PredictTumbling.Request) -> Sampling:
         return AtTimes(times=request.times)
     if request.sampling == request.AT_STAMPS:
         return AtStamps(stamps_ns=request.stamps_ns)
-    rate, duration = request.rate or None, request.duration or None
+    rate, duration = _optional("rate", request.rate), _optional("duration", request.duration)
     if request.sampling == request.AT_RATE:
         return AtRate(rate=rate, duration=duration)
     if request.sampling == request.UNTIL_CONTACT:
@@ -350,9 +381,11 @@ def _restitution_law(value: int) -> RestitutionLaw:
 def _several_contacts_law(request: PredictImpact.Request) -> SeveralContactsLaw | InTime:
     value = request.several_contacts_law
     if value == request.SEQUENTIAL_IN_TIME:
+        window = _optional("strike_window", request.strike_window)
+        most = _optional("most_strikes", request.most_strikes)
         return InTime(
-            strike_window=request.strike_window or STRIKE_WINDOW,
-            most_strikes=request.most_strikes or MOST_STRIKES,
+            strike_window=STRIKE_WINDOW if window is None else window,
+            most_strikes=MOST_STRIKES if most is None else most,
             hold_step=request.hold_step or None,
         )
     try:

@@ -1,12 +1,12 @@
 """Converts questions to requests of the three services. `questions` converts them back.
 
-A number that a question leaves out is zero in a request. So a question with a number that is itself zero has
-no request, nor has a question with a gravity of its own. Both raise `NotSupportedError`.
+A number that a question leaves out is an empty list in a request. A question with a gravity of its own has no
+request, and raises `NotSupportedError`.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.motion.forces import WrenchAxes
@@ -18,6 +18,8 @@ from msg_adapters.body_state import known_state_to_msg
 from msg_adapters.contacts import contacts_to_msg
 from msg_adapters.geometry import mass_properties_to_msg, point_to_msg, vector_to_msg, wrench_to_msg
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
+
+Number = TypeVar("Number", int, float)
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -79,13 +81,12 @@ def impact_question_to_msg(
     if question.other is not None:
         _write_other(msg, question.other, question.other_state, world, world_frame)
     _write_contacts(msg, question.contacts)
-    msg.horizon = _or_zero("horizon", question.horizon)
+    msg.horizon = _optional(question.horizon)
     msg.restitution_law = int(question.restitution_law)
     law = question.several_contacts_law
     if isinstance(law, InTime):
         msg.several_contacts_law = msg.SEQUENTIAL_IN_TIME
-        msg.strike_window = law.strike_window
-        msg.most_strikes = law.most_strikes
+        msg.strike_window, msg.most_strikes = [law.strike_window], [law.most_strikes]
         msg.hold_step = law.hold_step or 0.0
     else:
         msg.several_contacts_law = int(law)
@@ -108,8 +109,8 @@ def contact_mode_question_to_msg(
     msg.applied_wrench = wrench_to_msg(question.force_W, question.torque_W)
     _write_gravity(msg, question.gravity_W)
     _write_problem(msg, question)
-    msg.friction_facets = question.friction_facets
-    msg.margin_length = _or_zero("margin_length", question.margin_length)
+    msg.friction_facets = _optional(question.friction_facets)
+    msg.margin_length = _optional(question.margin_length)
     msg.want_margins = question.want_margins
     msg.want_wrenches = question.want_wrenches
     msg.want_statics = question.want_statics
@@ -127,8 +128,10 @@ def _write_subject(
     if inertia is not None:
         msg.inertia = inertia
     if isinstance(source, PublishedState):
-        msg.state_source = msg.STATE_PUBLISHED
-        msg.stamp = stamp_to_msg(source.stamp_ns or 0)
+        msg.state_source = msg.STATE_NEWEST
+        if source.stamp_ns is not None:
+            msg.state_source = msg.STATE_AT_STAMP
+            msg.stamp = stamp_to_msg(source.stamp_ns)
         return
     msg.state_source = msg.STATE_EXPLICIT
     known_state_to_msg(
@@ -145,10 +148,11 @@ def _write_other(
     inertia = _inertia(body, world)
     if inertia is not None:
         msg.other_inertia = inertia
+    stamp_ns = stamp_ns_from_msg(msg.stamp) if msg.state_source == msg.STATE_AT_STAMP else None
     if not isinstance(source, PublishedState):
         state = known_state_to_msg(source, body_name=body.name, world_frame=world_frame, p_FB_F=body.p_FB_F)
         msg.other_state = [state]
-    elif (source.stamp_ns or 0) != stamp_ns_from_msg(msg.stamp) or source.fit_window > 0.0:
+    elif source.stamp_ns != stamp_ns or source.fit_window > 0.0:
         message = "other_state: found a published one, allowed is that of the request's stamp, without a fit"
         raise NotSupportedError(message)
 
@@ -194,7 +198,7 @@ def _write_sampling(msg: PredictTumbling.Request, sampling: Sampling) -> None:
         msg.plane_point = point_to_msg(sampling.plane_point)
         msg.plane_normal = vector_to_msg(sampling.plane_normal)
         msg.body_point = point_to_msg(sampling.body_point)
-    msg.rate, msg.duration = _or_zero("rate", sampling.rate), _or_zero("duration", sampling.duration)
+    msg.rate, msg.duration = _optional(sampling.rate), _optional(sampling.duration)
 
 
 def _write_problem(msg: ContactRequest, question: ContactModeQuestion | ImpactQuestion) -> None:
@@ -202,14 +206,11 @@ def _write_problem(msg: ContactRequest, question: ContactModeQuestion | ImpactQu
     msg.problem = int(question.problem)
     if question.plane is not None:
         msg.plane_normal = vector_to_msg(question.plane.normal_W)
-    msg.out_of_plane_tolerance = _or_zero("out_of_plane_tolerance", question.out_of_plane_tolerance)
-    msg.velocity_tolerance = _or_zero("velocity_tolerance", question.velocity_tolerance)
-    msg.distance_tolerance = _or_zero("distance_tolerance", question.distance_tolerance)
+    msg.out_of_plane_tolerance = _optional(question.out_of_plane_tolerance)
+    msg.velocity_tolerance = _optional(question.velocity_tolerance)
+    msg.distance_tolerance = _optional(question.distance_tolerance)
 
 
-def _or_zero(field: str, value: float | None) -> float:
-    """Return a number as it is in a request, with zero for None."""
-    if value == 0.0:
-        message = f"{field}: found 0, which requests take as left out; allowed is a number > 0, or None"
-        raise NotSupportedError(message)
-    return 0.0 if value is None else value
+def _optional(value: Number | None) -> list[Number]:
+    """Return a number as a request has it, which may be left out."""
+    return [] if value is None else [value]

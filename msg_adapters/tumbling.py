@@ -157,11 +157,13 @@ def read_covariances(msg: TrajectoryMsg) -> CarriedCovariance | None:
 
 
 def write_fit(response: PredictImpact.Response | PredictTumbling.Response, fit: FitQuality | None) -> None:
-    """Write into a response how good the fit was that its state came from."""
-    if fit is not None:
-        response.fit_count = fit.count
-        response.fit_position_residual = fit.position_residual
-        response.fit_orientation_residual = fit.orientation_residual
+    """Write into a response how good the fit was that its state came from, with NaN for no fit."""
+    if fit is None:
+        response.fit_position_residual = response.fit_orientation_residual = math.nan
+        return
+    response.fit_count = fit.count
+    response.fit_position_residual = fit.position_residual
+    response.fit_orientation_residual = fit.orientation_residual
 
 
 def read_fit(response: PredictImpact.Response | PredictTumbling.Response) -> FitQuality | None:

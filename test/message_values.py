@@ -100,6 +100,7 @@ def same(one: Any, other: Any, *, rounding: float = 0.0) -> bool:
 numbers = st.floats(-1e3, 1e3)
 odd_numbers = st.one_of(numbers, st.sampled_from([math.nan, math.inf]))
 positive = st.floats(1e-3, 1e3)
+not_negative = st.one_of(st.just(0.0), positive)
 flags = st.booleans()
 texts = st.sampled_from(["", "floor", "wall 2", "ü"])
 indices = st.integers(0, 9)
@@ -294,7 +295,9 @@ def resolved_impacts(
     state = dataclasses.replace(draw(states), stamp_ns=draw(st.integers(10**9, 10**18)))
     strikes = draw(strikes_in_time(state.stamp_ns)) if (draw(flags) if in_time is None else in_time) else ()
     law = SeveralContactsLaw.SEQUENTIAL if strikes else draw(st.sampled_from(SeveralContactsLaw))
-    orders = draw(st.lists(st.lists(indices, min_size=1, max_size=3).map(tuple), max_size=2).map(tuple))
+    orders: tuple[tuple[int, ...], ...] = draw(
+        st.lists(st.lists(indices, min_size=1, max_size=3).map(tuple), max_size=2).map(tuple)
+    )
     told, k = draw(flags), draw(st.integers(0, 3))
     staying = draw(st.lists(indices, max_size=2).map(tuple)) if strikes else ()
     probabilities = draw(some(arrays(len(ImpactOutcome), of=st.floats(0.0, 1.0))))
@@ -318,6 +321,8 @@ def resolved_impacts(
         creates_energy=draw(flags),
         orders=orders,
         order_velocities_W=draw(arrays(len(orders), 6)),
+        orders_complete=draw(flags),
+        orders_not_converged=draw(indices),
         covariance=draw(some(arrays(12, 12))),
         outcome_probabilities=probabilities,
         miss_probability=0.0 if probabilities is None else draw(st.floats(0.0, 1.0)),
@@ -349,7 +354,7 @@ def impact_answers(draw: st.DrawFn, p_FB_F: np.ndarray = NO_OFFSET) -> ImpactAns
         impact=draw(resolved_impacts(len(contacts), other=struck is not None)),
         problem=Problem.SPATIAL if plane is None else Problem.PLANAR,
         plane=plane,
-        out_of_plane=draw(positive),
+        out_of_plane=draw(odd_numbers),
         velocity_tolerance=draw(positive),
         distance_tolerance=draw(positive),
     )
@@ -478,17 +483,17 @@ def bodies(draw: st.DrawFn) -> Body:
 
 
 published = st.builds(
-    PublishedState, stamp_ns=some(st.integers(1, 10**18)), fit_window=st.one_of(st.just(0.0), positive)
+    PublishedState, stamp_ns=some(st.integers(0, 10**18)), fit_window=st.one_of(st.just(0.0), positive)
 )
 sampled = st.one_of(
     st.builds(AtTimes, times=st.lists(st.floats(0.0, 9.0), max_size=3).map(sorted)),
     st.builds(AtStamps, stamps_ns=st.lists(st.integers(0, 10**18), max_size=3).map(sorted)),
-    st.builds(AtRate, rate=some(positive), duration=some(positive)),
-    st.builds(UntilContact, rate=some(positive), duration=some(positive)),
+    st.builds(AtRate, rate=some(positive), duration=some(not_negative)),
+    st.builds(UntilContact, rate=some(positive), duration=some(not_negative)),
     st.builds(
         UntilPlane,
         rate=some(positive),
-        duration=some(positive),
+        duration=some(not_negative),
         plane_point=arrays(3),
         plane_normal=unit_vectors(),
         body_point=arrays(3),
@@ -532,16 +537,16 @@ def impact_questions(draw: st.DrawFn) -> ImpactQuestion:
         other=other,
         other_state=other_state,
         contacts=contacts,
-        horizon=draw(some(positive)) if contacts is None else None,
+        horizon=draw(some(not_negative)) if contacts is None else None,
         restitution_law=draw(st.sampled_from(RestitutionLaw)),
         several_contacts_law=draw(st.one_of(st.sampled_from(SeveralContactsLaw), in_time)),
         want_orders=draw(flags),
         want_covariance=draw(flags),
         problem=problem,
         plane=draw(planes) if is_planar else None,
-        out_of_plane_tolerance=draw(some(positive)) if is_planar else None,
-        velocity_tolerance=draw(some(positive)),
-        distance_tolerance=draw(some(positive)),
+        out_of_plane_tolerance=draw(some(not_negative)) if is_planar else None,
+        velocity_tolerance=draw(some(not_negative)),
+        distance_tolerance=draw(some(not_negative)),
     )
 
 
@@ -551,7 +556,7 @@ def contact_mode_questions(draw: st.DrawFn) -> ContactModeQuestion:
     problem = draw(st.sampled_from(Problem))
     may_be_planar = problem is not Problem.SPATIAL
     margins, statics = draw(flags), draw(flags)
-    newest = st.builds(PublishedState, stamp_ns=some(st.integers(1, 10**18)))
+    newest = st.builds(PublishedState, stamp_ns=some(st.integers(0, 10**18)))
     return ContactModeQuestion(
         body=draw(bodies()),
         state=draw(st.one_of(newest, known_states())),
@@ -561,10 +566,10 @@ def contact_mode_questions(draw: st.DrawFn) -> ContactModeQuestion:
         gravity_W=draw(gravities),
         problem=problem,
         plane=draw(planes) if may_be_planar else None,
-        out_of_plane_tolerance=draw(some(positive)) if may_be_planar else None,
-        velocity_tolerance=draw(some(positive)),
-        distance_tolerance=draw(some(positive)),
-        friction_facets=draw(st.sampled_from([0, 3, 8, 32])),
+        out_of_plane_tolerance=draw(some(not_negative)) if may_be_planar else None,
+        velocity_tolerance=draw(some(not_negative)),
+        distance_tolerance=draw(some(not_negative)),
+        friction_facets=draw(st.sampled_from([None, 3, 8, 32])),
         margin_length=draw(some(positive)) if margins or statics else None,
         want_margins=margins,
         want_wrenches=draw(flags),

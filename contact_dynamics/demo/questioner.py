@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import rclpy
-from builtin_interfaces.msg import Time
 from nav_msgs.msg import Odometry
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -49,7 +48,6 @@ CURVE_POINTS: Final = 120
 
 _START_S: Final = 30.0
 _POLL_S: Final = 0.1
-_NOW: Final = Time()  # a stamp of zero asks about the newest state
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,7 +73,6 @@ class Questioner(Node):
         super().__init__("demo")
         self._toss = toss
         self._epoch_ns: int | None = None
-        self._newest = Time()
         self._now = 0.0
         self._flying_since = 0.0  # s on the recording's clock, as predicted
         self._heard = time.monotonic()
@@ -135,7 +132,7 @@ class Questioner(Node):
                 if landing is None:
                     blind_until = self._now + WINDOW
         if self.received and not self.modes:  # recordings may end as soon as the body does not move
-            self._ask_contact_mode(self._newest)  # by its stamp, since it is too old by now to be the newest
+            self._ask_contact_mode()
 
     def _flight_seen(self) -> float:
         """Return how long the body has been flying, s, less one frame, in which it may have touched."""
@@ -145,7 +142,6 @@ class Questioner(Node):
         state = body_state_from_odometry(msg, world_frame=WORLD_FRAME, p_FB_F=self._toss.body.p_FB_F)
         if self._epoch_ns is None:
             self._epoch_ns = ns_after(state.stamp_ns, -float(self._toss.times[0]))
-        self._newest = msg.header.stamp
         self._now = seconds_between(self._epoch_ns, state.stamp_ns)
         late_ns = self.get_clock().now().nanoseconds - state.stamp_ns
         self.latest = max(self.latest, to_seconds(late_ns))
@@ -168,7 +164,7 @@ class Questioner(Node):
 
     def _ask_landing(self) -> float | None:
         request = PredictTumbling.Request(
-            body_name=self._toss.body.name, rate=self._toss.rate, fit_window=self._flight_seen()
+            body_name=self._toss.body.name, rate=[self._toss.rate], fit_window=self._flight_seen()
         )
         request.sampling = request.UNTIL_CONTACT
         request.curve_points = CURVE_POINTS
@@ -185,15 +181,15 @@ class Questioner(Node):
         request = PredictImpact.Request(body_name=self._toss.body.name, fit_window=self._flight_seen())
         self.impacts.append(self._ask(request))
 
-    def _ask_contact_mode(self, stamp: Time = _NOW) -> None:
-        request = PredictContactMode.Request(body_name=self._toss.body.name, stamp=stamp)
-        self.modes.append(self._ask(request))
+    def _ask_contact_mode(self) -> None:
+        self.modes.append(self._ask(PredictContactMode.Request(body_name=self._toss.body.name)))
 
     def seconds_of(self, stamp: Any) -> float:
         """Return a stamp on the recording's clock, s."""
         return seconds_between(self._epoch_ns or 0, stamp_ns_from_msg(stamp))
 
     def _ask(self, request: Any) -> Asked:
+        request.state_source = request.STATE_AT_STAMP
         request.stamp = stamp_to_msg(self._recent[-1].stamp_ns)  # however far the toss has gone
         client = next(
             self._askers[service] for service in self._askers if isinstance(request, service.Request)

@@ -50,7 +50,7 @@ from contact_dynamics.questions.subject import NEWEST, StateSource, subject_of
 from contact_dynamics.questions.touching import contacts_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.validation import FloatArray, check_array, check_choice
+from contact_dynamics.validation import FloatArray, check_array, check_choice, check_positive
 from contact_dynamics.world import Body
 
 if TYPE_CHECKING:
@@ -81,9 +81,9 @@ class ContactModeQuestion(Record):
         velocity_tolerance: m/s, >= 0. A slower contact counts as at rest. None means the default.
         distance_tolerance: m, >= 0. A body with a smaller gap touches. None means the default.
         friction_facets: Number of edges, 3 to 32, of the pyramid that stands for a friction cone at rest in
-            space. Zero means 8 edges in the modes and 4 in the wrench sets.
-        margin_length: m. A torque divided by this length compares with a force in margins and statics. If it
-            is None or zero, the radius of gyration serves.
+            space. None means 8 edges in the modes and 4 in the wrench sets.
+        margin_length: m, > 0. A torque divided by this length compares with a force in margins and statics.
+            If it is None, the radius of gyration serves.
         want_margins: Whether the answer says how far the wrench is from another mode.
         want_wrenches: Whether the answer has the applied wrenches of every kinematically possible mode.
         want_statics: Whether the static questions are answered too.
@@ -104,7 +104,7 @@ class ContactModeQuestion(Record):
     out_of_plane_tolerance: float | None = None
     velocity_tolerance: float | None = None
     distance_tolerance: float | None = None
-    friction_facets: int = 0
+    friction_facets: int | None = None
     margin_length: float | None = None
     want_margins: bool = False
     want_wrenches: bool = False
@@ -127,7 +127,7 @@ class ContactModeQuestion(Record):
             out_of_plane_tolerance: float | None = ...,
             velocity_tolerance: float | None = ...,
             distance_tolerance: float | None = ...,
-            friction_facets: int = ...,
+            friction_facets: int | None = ...,
             margin_length: float | None = ...,
             want_margins: bool = ...,
             want_wrenches: bool = ...,
@@ -145,9 +145,10 @@ class ContactModeQuestion(Record):
             object.__setattr__(self, "gravity_W", check_array("gravity_W", self.gravity_W, (3,)))
         for name in ("out_of_plane_tolerance", "velocity_tolerance", "distance_tolerance"):
             object.__setattr__(self, name, check_optional(name, getattr(self, name)))
-        object.__setattr__(self, "margin_length", check_optional("margin_length", self.margin_length) or None)
-        if self.friction_facets != 0 and not 3 <= self.friction_facets <= MOST_FRICTION_FACETS:
-            allowed = f"0, or a whole number from 3 to {MOST_FRICTION_FACETS}"
+        if self.margin_length is not None:
+            object.__setattr__(self, "margin_length", check_positive("margin_length", self.margin_length))
+        if self.friction_facets is not None and not 3 <= self.friction_facets <= MOST_FRICTION_FACETS:
+            allowed = f"none, or a whole number from 3 to {MOST_FRICTION_FACETS}"
             raise InvalidFieldError("friction_facets", self.friction_facets, allowed)
 
 

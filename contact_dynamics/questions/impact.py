@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
@@ -96,7 +97,7 @@ class ImpactAnswer(Record):
         impact: The result of the impact.
         problem: PLANAR or SPATIAL.
         plane: The plane of motion, or None in space.
-        out_of_plane: m/s, the largest motion out of the plane, or zero in space.
+        out_of_plane: m/s, the largest motion out of the plane, or NaN in space.
         velocity_tolerance: m/s, the tolerance that was used.
         distance_tolerance: m, the tolerance that was used.
     """
@@ -152,7 +153,7 @@ def answer(question: ImpactQuestion, knowledge: Knowledge | None = None) -> Impa
         impact=resolved,
         problem=Problem.SPATIAL if problem is None else Problem.PLANAR,
         plane=None if problem is None else problem.plane,
-        out_of_plane=0.0 if problem is None else problem.out_of_plane,
+        out_of_plane=math.nan if problem is None else problem.out_of_plane,
         velocity_tolerance=strike.velocity_tolerance,
         distance_tolerance=strike.distance_tolerance,
     )

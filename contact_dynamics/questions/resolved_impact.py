@@ -91,6 +91,8 @@ class ResolvedImpact(Record):
         creates_energy: Whether there is more energy after the impact than before, beyond rounding.
         orders: (m,), the contacts struck, in each admissible order. It is empty if that was not asked for.
         order_velocities_W: (m, 6), m/s and rad/s, linear then angular velocity after each order.
+        orders_complete: Whether every order was tried. It is False if that was not asked for.
+        orders_not_converged: How many orders were left out because they reached the bound on strikes.
         covariance: (12, 12), of the state just after, in the order of `UncertainState`, or None if that was
             not asked for.
         outcome_probabilities: (7,), the probability of each outcome, by its value, or None if that was not
@@ -121,6 +123,8 @@ class ResolvedImpact(Record):
     creates_energy: bool
     orders: tuple[tuple[int, ...], ...] = ()
     order_velocities_W: FloatArray = field(default_factory=lambda: np.zeros((0, 6)))
+    orders_complete: bool = False
+    orders_not_converged: int = 0
     covariance: FloatArray | None = None
     outcome_probabilities: FloatArray | None = None
     miss_probability: float = 0.0
@@ -266,7 +270,13 @@ def sequence_resolved(impact: ImpactSequence, before: Before) -> ResolvedImpact:
 
 def with_orders(resolved: ResolvedImpact, outcomes: OrderedOutcomes) -> ResolvedImpact:
     """Return an impact with the outcomes over the admissible orders of its contacts."""
-    return replace(resolved, orders=outcomes.orders, order_velocities_W=outcomes.velocities_W)
+    return replace(
+        resolved,
+        orders=outcomes.orders,
+        order_velocities_W=outcomes.velocities_W,
+        orders_complete=outcomes.complete,
+        orders_not_converged=outcomes.not_converged,
+    )
 
 
 def with_distribution(resolved: ResolvedImpact, distribution: ImpactDistribution) -> ResolvedImpact:

@@ -18,7 +18,7 @@ from contact_dynamics.motion.integrated import ForcedMotion
 from contact_dynamics.questions.knowledge import check_optional, or_default
 from contact_dynamics.questions.touching import check_has_shape
 from contact_dynamics.records import NamedInt, Record
-from contact_dynamics.validation import FloatArray, check_array, check_unit
+from contact_dynamics.validation import FloatArray, check_array, check_positive, check_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -110,7 +110,7 @@ class AtRate(Record):
     """Samples from the state on, at a steady rate.
 
     Attributes:
-        rate: Hz, number of samples a second. None or zero means the default.
+        rate: Hz, > 0, number of samples a second. None means the default.
         duration: s, >= 0, how far to go. None means the default horizon.
 
     Raises:
@@ -122,7 +122,8 @@ class AtRate(Record):
 
     def __post_init__(self) -> None:
         """Check both numbers."""
-        object.__setattr__(self, "rate", check_optional("rate", self.rate) or None)
+        if self.rate is not None:
+            object.__setattr__(self, "rate", check_positive("rate", self.rate))
         object.__setattr__(self, "duration", check_optional("duration", self.duration))
 
 
@@ -131,7 +132,7 @@ class UntilContact(AtRate):
     """Samples at a steady rate that end with the first contact of the body with a surface of the world.
 
     Attributes:
-        rate: Hz, number of samples a second. None or zero means the default.
+        rate: Hz, > 0, number of samples a second. None means the default.
         duration: s, >= 0, how far to go. None means the default horizon.
     """
 
@@ -144,7 +145,7 @@ class UntilPlane(AtRate):
         plane_point: (3,), m, a point of the plane, world.
         plane_normal: (3,), unit, its normal, world axes.
         body_point: (3,), m, the point of the body, in its published frame F.
-        rate: Hz, number of samples a second. None or zero means the default.
+        rate: Hz, > 0, number of samples a second. None means the default.
         duration: s, >= 0, how far to go. None means the default horizon.
 
     Raises:

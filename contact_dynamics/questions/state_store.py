@@ -82,20 +82,40 @@ class StateStore:
         last = bisect_right(states, newest.stamp_ns, key=_stamp)
         return list({state.stamp_ns: state for state in states[first:last]}.values())
 
-    def at(self, body_name: str, stamp_ns: int) -> BodyState:
-        """Return the newest state with at most that stamp.
+    def around(
+        self, body_name: str, stamp_ns: int, *, now_ns: int | None = None
+    ) -> tuple[BodyState, BodyState | None]:
+        """Return the newest state with at most that stamp, and the one after it.
+
+        There is none after it (None) where the stamp is that of the state, or the state is the newest.
 
         Raises:
             NoStateError: every state that is kept has a later stamp.
-            StaleStateError: it is older than ``stamp_ns`` by more than the timeout.
+            StaleStateError: the stamp is between two states that are further apart than the timeout, or after
+                the newest, and that is older than the timeout at the present time, ``now_ns``.
         """
+        if now_ns is not None:
+            self._forget_future(body_name, now_ns)
         states = self._states.get(body_name, [])
         index = bisect_right(states, stamp_ns, key=_stamp)
         if index == 0:
             kept = f"the oldest kept has {states[0].stamp_ns} ns" if states else "none was published yet"
             message = f"state of {body_name!r} at {stamp_ns} ns: {kept}"
             raise NoStateError(message)
-        return self._fresh(body_name, states[index - 1], stamp_ns)
+        earlier = states[index - 1]
+        if earlier.stamp_ns == stamp_ns:
+            return earlier, None
+        if index == len(states):
+            return earlier if now_ns is None else self._fresh(body_name, earlier, now_ns), None
+        gap_ns = states[index].stamp_ns - earlier.stamp_ns
+        if gap_ns > self._timeout_ns:
+            message = (
+                f"state of {body_name!r} at {stamp_ns} ns: the states around it are "
+                f"{to_seconds(gap_ns):.3f} s apart, allowed is at most "
+                f"{to_seconds(self._timeout_ns):g} s (state_timeout)"
+            )
+            raise StaleStateError(message)
+        return earlier, states[index]
 
     def _forget_future(self, body_name: str, now_ns: int) -> None:
         """Forget states too far ahead of the clock, which came before the clock began or was set back."""

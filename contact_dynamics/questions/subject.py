@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from contact_dynamics.constants import seconds_between
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.motion.between_states import state_between
+from contact_dynamics.motion.covariance import covariance_along
 from contact_dynamics.motion.free_fit import FitResult, fit_free_motion
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
@@ -14,6 +17,7 @@ from contact_dynamics.rigid_body.published_frame import (
     state_of_center_of_mass,
     velocity_of_published_frame,
 )
+from contact_dynamics.tumbling import free_motion
 from contact_dynamics.validation import FloatArray, check_not_negative
 from contact_dynamics.validation_batches import check_covariance
 from contact_dynamics.world import Body
@@ -61,9 +65,11 @@ class PublishedState(Record):
     """A reference to the published state of a body, or to a fit to several states.
 
     Attributes:
-        stamp_ns: ns. The newest state with at most this stamp is taken, or the newest of all if it is None.
-        fit_window: s, >= 0. The motion is fitted to the states of the last ``fit_window`` seconds. With zero,
-            one state is taken as it is.
+        stamp_ns: ns, the time of the state. Between two published states it is interpolated
+            (`motion.between_states`). After the newest it follows the free motion under gravity, at most the
+            default horizon ahead. None means the newest state as it is.
+        fit_window: s, >= 0. The motion is fitted to the states of this last time up to ``stamp_ns``, and
+            followed to there. Zero means no fit.
 
     Raises:
         InvalidFieldError: the window is negative or not finite.
@@ -132,9 +138,9 @@ def subject_of(
     Raises:
         UnknownBodyError: the known world has no body of that name.
         NoStateError: no state of it was published, or every one that is kept has a later stamp.
-        StaleStateError: the newest state is too old.
+        StaleStateError: the newest state is too old, or those around the stamp are too far apart.
         InvalidFieldError: a published state is asked for and the body has no name, or the window cannot be
-            fitted.
+            fitted, or the stamp is further ahead of the newest state than the default horizon.
         TooLargeError: the window has more states than are fitted.
     """
     if isinstance(body, str):
@@ -143,9 +149,9 @@ def subject_of(
         return Subject(body=body, state=source)
     if isinstance(source, UncertainState):
         return Subject(body=body, state=source.state, covariance=source.covariance)
-    states = _published(body, source, knowledge)
+    states, later = _published(body, source, knowledge)
     if source.fit_window == 0.0:
-        return Subject(body=body, state=states[-1])
+        return _moved(Subject(body=body, state=states[-1]), later, source.stamp_ns, knowledge)
     if fit is None:
         best = fit_free_motion(body.mass_properties, states, gravity_W=knowledge.world.gravity_W)
     else:
@@ -155,7 +161,8 @@ def subject_of(
         position_residual=best.position_residual,
         orientation_residual=best.orientation_residual,
     )
-    return Subject(body=body, state=best.state, covariance=best.covariance, fit=quality)
+    found = Subject(body=body, state=best.state, covariance=best.covariance, fit=quality)
+    return _moved(found, None, source.stamp_ns, knowledge)
 
 
 def covariance_of(subject: Subject) -> FloatArray:
@@ -185,21 +192,48 @@ def changed_body(known: Body, mass_properties: MassProperties, p_FB_F: FloatArra
     )
 
 
-def _published(body: Body, source: PublishedState, knowledge: Knowledge) -> Sequence[BodyState]:
-    """Return the published states that are asked for, by time, as states of the body's centre of mass."""
+def _published(
+    body: Body, source: PublishedState, knowledge: Knowledge
+) -> tuple[Sequence[BodyState], BodyState | None]:
+    """Return the published states that are asked for, by time, as states of the body's centre of mass.
+
+    The second value is the state after the stamp asked for, if that is between two states.
+    """
     name = body.name
     if not name:
         raise InvalidFieldError("body_name", name, "the name of a known body, or a state of its own")
+    now_ns = None if knowledge.now_ns is None else knowledge.now_ns()
+    later: BodyState | None = None
     if source.stamp_ns is None:
-        now_ns = None if knowledge.now_ns is None else knowledge.now_ns()
         newest = knowledge.states.newest(name, now_ns=now_ns)
     else:
-        newest = knowledge.states.at(name, source.stamp_ns)
+        newest, later = knowledge.states.around(name, source.stamp_ns, now_ns=now_ns)
     window = source.fit_window
     states = knowledge.states.window(name, newest, window) if window > 0.0 else [newest]
     # States are published of the known body. The one asked about may share its name and have another mass.
     known = knowledge.world.body(name)
-    return states if body is known else [_carried_over(state, known, body) for state in states]
+    if body is not known:
+        states = [_carried_over(state, known, body) for state in states]
+        later = None if later is None else _carried_over(later, known, body)
+    return states, later
+
+
+def _moved(subject: Subject, later: BodyState | None, stamp_ns: int | None, knowledge: Knowledge) -> Subject:
+    """Return a subject at the stamp asked for: between its state and the later one, or in free motion."""
+    state = subject.state
+    if stamp_ns is None or stamp_ns == state.stamp_ns:
+        return subject
+    if later is not None:
+        return replace(subject, state=state_between(state, later, stamp_ns))
+    ahead, horizon = seconds_between(state.stamp_ns, stamp_ns), knowledge.defaults.horizon
+    if ahead > horizon:
+        found = f"{ahead:.9g} s after the newest state"
+        raise InvalidFieldError("stamp", found, f"at most {horizon:g} s, the default horizon")
+    motion = free_motion(subject.body.mass_properties, state, gravity_W=knowledge.world.gravity_W)
+    covariance = subject.covariance
+    if covariance is not None:
+        covariance = covariance_along(motion, covariance, [ahead]).covariances[0]
+    return replace(subject, state=replace(motion.state_at(ahead), stamp_ns=stamp_ns), covariance=covariance)
 
 
 def _carried_over(state: BodyState, known: Body, body: Body) -> BodyState:

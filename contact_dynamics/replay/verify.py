@@ -14,6 +14,7 @@ from contact_dynamics.recording.definitions import EVENT_SUFFIX
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
 from contact_dynamics.recording.service_calls import ServiceCall
 from contact_dynamics.replay.compare import Difference, differences
+from contact_dynamics.replay.same_definitions import check_definitions
 from contact_dynamics.replay.stand_ins import stand_in
 from contact_dynamics.replay.timeline import INTERFACES, in_order
 from contact_dynamics.validation import check_not_negative
@@ -118,7 +119,8 @@ def verify_log(
     Raises:
         NotALogError: the path has no log, or a log of something else than the server.
         ConfigurationError: its record of the run lacks a parameter, or has one that is not allowed.
-        NotSupportedError: ROS is not installed, and another log in this process gave a message other fields.
+        NotSupportedError: the log's services have other fields than this version's; or ROS is not installed,
+            and another log in this process gave a message other fields.
     """
     check_not_negative("tolerance", tolerance)
     with warnings.catch_warnings():
@@ -159,6 +161,7 @@ def _server_of(path: Path) -> tuple[dict[str, str], ServerAgain]:
         raise NotALogError(
             f"{path}: not a log of the server: no record of how its run was configured{damage}"
         )
+    check_definitions(path, definitions, run.get("version"))
     stand_in(definitions.items())
     from contact_dynamics.replay.again import ServerAgain  # it imports messages, which may exist only now
 

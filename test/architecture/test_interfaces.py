@@ -5,14 +5,18 @@ from __future__ import annotations
 import re
 from enum import IntEnum
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from contact_dynamics.contact.contact import MOST_CONTACTS
 from contact_dynamics.contact_modes.result import ModeVerdict, Refusal
 from contact_dynamics.impact import ImpactOutcome, PathEvent, RestitutionLaw, SequenceEnd
 from contact_dynamics.motion.integrated import Method
 from contact_dynamics.questions import EventKind, Problem
-from contact_dynamics_interfaces.msg import Impact, Poinsot
+from contact_dynamics.questions.sample_times import MOST_SAMPLES
+from contact_dynamics.questions.tumbling import FLIPS, MOST_COVARIANCES, MOST_CURVE_POINTS
+from contact_dynamics_interfaces.msg import ContactSet, Impact, Poinsot, Trajectory
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 
 INTERFACES = Path(__file__).parents[2] / "contact_dynamics_interfaces"
@@ -79,16 +83,37 @@ def test_enumerations_equal_those_of_the_messages(enum: type[IntEnum], message: 
     assert values == constants(message, list(values))
 
 
-def test_status_codes_have_one_meaning_at_one_offset() -> None:
-    offsets: dict[str, set[int]] = {}
-    for base, service in ((100, PredictContactMode), (200, PredictImpact), (300, PredictTumbling)):
-        found = 0
-        for name in dir(service.Response):
-            if name.isupper() and name not in dir(Impact):
-                value = getattr(service.Response, name)
-                if base < value < base + 100:
-                    offsets.setdefault(name, set()).add(value - base)
-                    found += 1
-        assert found >= 8, service
-    assert all(len(values) == 1 for values in offsets.values()), offsets
+def test_status_codes_are_the_same_in_all_services() -> None:
+    numbers: dict[str, set[int]] = {}
+    for service in (PredictContactMode, PredictImpact, PredictTumbling):
+        text = (INTERFACES / f"srv/{service.__name__}.srv").read_text(encoding="utf-8")
+        names = re.findall(r"^uint16 ([A-Z_]+) = ", text, flags=re.MULTILINE)
+        assert len(names) >= 10, service
+        for name in names:
+            numbers.setdefault(name, set()).add(getattr(service.Response, name))
+    assert all(len(values) == 1 for values in numbers.values()), numbers
+    every = [number for values in numbers.values() for number in values]
+    assert len(set(every)) == len(every), numbers
     assert hasattr(Poinsot, "SEPARATRIX")
+
+
+@pytest.mark.parametrize(
+    ("message", "field", "most"),
+    [
+        (PredictTumbling.Request, "times", MOST_SAMPLES),
+        (PredictTumbling.Request, "stamps_ns", MOST_SAMPLES),
+        (Trajectory, "times", MOST_SAMPLES),
+        (Trajectory, "orientations", 4 * MOST_SAMPLES),
+        (Trajectory, "covariances", 144 * MOST_COVARIANCES),
+        (Trajectory, "covariances_trusted", MOST_COVARIANCES),
+        (Poinsot, "flip_times", FLIPS),
+        (Poinsot, "curve_times", MOST_CURVE_POINTS),
+        (Poinsot, "polhode", 3 * MOST_CURVE_POINTS),
+        (ContactSet, "frictions", MOST_CONTACTS),
+        (ContactSet, "positions", 3 * MOST_CONTACTS),
+        (ContactSet, "surface_names", MOST_CONTACTS),
+        (Impact, "outcome_probabilities", len(ImpactOutcome)),
+    ],
+)
+def test_bounds_of_lists_are_those_of_the_physics(message: Any, field: str, most: int) -> None:
+    assert f", {most}>" in message.get_fields_and_field_types()[field]

@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from rclpy.serialization import deserialize_message, serialize_message
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.curvature import Curvatures, alike
-from contact_dynamics.errors import InvalidFieldError, NotSupportedError
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLargeError
 from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg
 
@@ -34,6 +35,16 @@ def same(one: Curvatures | None, other: Curvatures | None) -> None:
     np.testing.assert_array_equal(one.along, other.along)
     np.testing.assert_array_equal(one.across, other.across)
     np.testing.assert_array_equal(one.directions_W, other.directions_W)
+
+
+def test_more_contacts_than_the_interface_allows_are_counted() -> None:
+    """ROS does not send them, but it receives them from who does."""
+    data = bytearray(serialize_message(ContactSetMsg(frictions=[0.5] * 10_000)))
+    at = data.index((10_000).to_bytes(4, "little"))
+    data[at : at + 4] = (10_001).to_bytes(4, "little")
+    msg = deserialize_message(bytes(data[: at + 8]) + bytes(8) + bytes(data[at + 8 :]), ContactSetMsg)
+    with pytest.raises(TooLargeError, match="contacts: found 10001 contacts, allowed is at most 10000"):
+        contacts_from_msg(msg)
 
 
 def test_points_on_flats_travel_without_kinds() -> None:

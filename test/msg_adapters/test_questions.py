@@ -1,8 +1,9 @@
-"""Requests become questions: zero is left out, what is not asked about is not read, errors name the field."""
+"""Requests become questions: an empty list says nothing, what plays no part is not read."""
 
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Callable
 from typing import Any
 
@@ -63,8 +64,49 @@ def test_a_request_that_only_names_a_body_leaves_all_else_to_what_is_known(servi
 
 def test_published_states_are_named_by_stamp_and_window() -> None:
     request = PredictTumbling.Request(body_name="cube", fit_window=0.25)
+    assert read(request).state == PublishedState(stamp_ns=None, fit_window=0.25)
+    request.state_source = request.STATE_AT_STAMP
+    assert read(request).state == PublishedState(stamp_ns=0, fit_window=0.25)
     request.stamp.sec = 3
     assert read(request).state == PublishedState(stamp_ns=3_000_000_000, fit_window=0.25)
+
+
+@pytest.mark.parametrize("source", [0, 1])
+def test_a_stamp_that_the_request_does_not_ask_for_is_refused(source: int) -> None:
+    """It would be taken for the newest state otherwise."""
+    request = PredictTumbling.Request(body_name="cube", state_source=source)
+    request.stamp.nanosec = 5
+    with pytest.raises(InvalidFieldError, match=r"stamp: found 5 ns, allowed is zero, or with state_source"):
+        read(request)
+
+
+@pytest.mark.parametrize(
+    ("service", "field", "attribute"),
+    [
+        (PredictTumbling, "duration", "sampling.duration"),
+        (PredictImpact, "horizon", "horizon"),
+        (PredictImpact, "velocity_tolerance", "velocity_tolerance"),
+        (PredictImpact, "distance_tolerance", "distance_tolerance"),
+        (PredictContactMode, "out_of_plane_tolerance", "out_of_plane_tolerance"),
+        (PredictContactMode, "velocity_tolerance", "velocity_tolerance"),
+        (PredictContactMode, "distance_tolerance", "distance_tolerance"),
+    ],
+)
+def test_zero_is_a_number_and_an_empty_list_is_none(service: Any, field: str, attribute: str) -> None:
+    request = service.Request(body_name="cube")
+    if service is PredictTumbling:
+        request.sampling = request.AT_RATE
+    found = operator.attrgetter(attribute)
+    assert found(read(request)) is None
+    setattr(request, field, [0.0])
+    assert found(read(request)) == 0.0
+
+
+def test_an_inertia_without_mass_is_not_taken_for_none() -> None:
+    request = PredictTumbling.Request(body_name="cube")
+    request.inertia.ixx = 0.1
+    with pytest.raises(InvalidFieldError, match="mass: found 0"):
+        read(request)
 
 
 def explicit(service: Any) -> Any:
@@ -97,7 +139,7 @@ def test_an_inertia_makes_another_body_of_the_known_one() -> None:
     ("sampling", "kind"), [(0, AtTimes), (1, AtStamps), (2, AtRate), (3, UntilContact), (4, UntilPlane)]
 )
 def test_samplings(sampling: int, kind: type) -> None:
-    request = PredictTumbling.Request(body_name="cube", sampling=sampling, rate=0.0, duration=1.5)
+    request = PredictTumbling.Request(body_name="cube", sampling=sampling, duration=[1.5])
     request.plane_normal.z = 1.0
     question = read(request)
     assert type(question.sampling) is kind
@@ -131,7 +173,7 @@ def test_laws() -> None:
 def test_a_second_body_is_there_where_anything_is_said_of_it() -> None:
     assert read(PredictImpact.Request(body_name="cube")).other is None
     request = PredictImpact.Request(body_name="cube", other_body_name="cube")
-    request.stamp.nanosec = 7
+    request.stamp.nanosec, request.state_source = 7, request.STATE_AT_STAMP
     question = read(request)
     assert question.other is CUBE
     assert question.other_state == PublishedState(stamp_ns=7)
@@ -139,15 +181,24 @@ def test_a_second_body_is_there_where_anything_is_said_of_it() -> None:
 
 def test_what_is_not_asked_about_is_not_read() -> None:
     """A plane in space, a horizon with contacts, a length without margins: whatever stands there."""
-    impact = PredictImpact.Request(body_name="cube", contact_source=1, horizon=math.nan)
-    impact.plane_normal.z = impact.out_of_plane_tolerance = -7.0
+    impact = PredictImpact.Request(body_name="cube", contact_source=1, horizon=[math.nan])
+    impact.plane_normal.z, impact.out_of_plane_tolerance = -7.0, [-7.0]
     question = read(impact)
     assert (question.horizon, question.plane, question.out_of_plane_tolerance) == (None, None, None)
-    modes = PredictContactMode.Request(body_name="cube", problem=2, margin_length=-1.0)
+    modes = PredictContactMode.Request(body_name="cube", problem=2, margin_length=[-1.0])
     modes.plane_normal.z = 2.0
     question = read(modes)
     assert (question.problem, question.plane, question.margin_length) == (Problem.SPATIAL, None, None)
-    assert read(PredictTumbling.Request(body_name="cube", rate=-1.0)).sampling.times.shape == (0,)
+    assert read(PredictTumbling.Request(body_name="cube", rate=[-1.0])).sampling.times.shape == (0,)
+
+
+READ_WITH: dict[str, dict[str, Any]] = {
+    "rate": {"sampling": 2},
+    "margin_length": {"want_margins": True},
+    "strike_window": {"several_contacts_law": 2},
+    "most_strikes": {"several_contacts_law": 2},
+}
+"""What a request says besides, so that a field of it is read."""
 
 
 def put(path: str, value: Any) -> Callable[[Any], None]:
@@ -189,17 +240,23 @@ def put(path: str, value: Any) -> Callable[[Any], None]:
         ),
         (PredictContactMode, "contact_source", 9, InvalidFieldError, "contact_source: found 9"),
         (PredictContactMode, "problem", 9, InvalidFieldError, "problem: found 9"),
-        (PredictContactMode, "friction_facets", 2, InvalidFieldError, "friction_facets: found 2"),
+        (PredictContactMode, "friction_facets", [2], InvalidFieldError, "friction_facets: found 2"),
         (PredictImpact, "restitution_law", 9, InvalidFieldError, "restitution_law: found 9"),
         (PredictImpact, "several_contacts_law", 9, InvalidFieldError, "several_contacts_law: found 9"),
         (PredictImpact, "other_inertia.m", -1.0, InvalidFieldError, "mass: found -1"),
-        (PredictImpact, "velocity_tolerance", -1.0, InvalidFieldError, "velocity_tolerance: found -1"),
+        (PredictImpact, "velocity_tolerance", [-1.0], InvalidFieldError, "velocity_tolerance: found -1"),
+        (PredictTumbling, "rate", [0.0], InvalidFieldError, "rate: found 0"),
+        (PredictContactMode, "margin_length", [0.0], InvalidFieldError, "margin_length: found 0"),
+        (PredictImpact, "strike_window", [0.0], InvalidFieldError, "strike_window: found 0"),
+        (PredictImpact, "most_strikes", [0], InvalidFieldError, "most_strikes: found 0"),
     ],
 )
 def test_an_error_names_the_field_of_the_request(
     service: Any, path: str, value: Any, error: type[Exception], words: str
 ) -> None:
     request = explicit(service)
+    for field, asked in READ_WITH.get(path, {}).items():
+        setattr(request, field, asked)
     put(path, value)(request)
     with pytest.raises(error, match=words):
         read(request)

@@ -226,7 +226,6 @@ def brick(**fields: Any) -> ContactModeQuestion:
 @pytest.mark.parametrize(
     ("question", "words"),
     [
-        (brick(velocity_tolerance=0.0), "velocity_tolerance: found 0, which requests take as left out"),
         (brick(gravity_W=[0.0, 0.0, -1.6]), "gravity_W: found .*, allowed is the server's, or zero"),
         (
             brick(state=PublishedState(fit_window=0.1)),

@@ -56,7 +56,7 @@ EVERY_SERVICE = [
     (put("inertia.m", -1.0), "INVALID_FIELD", "mass: found -1.0, allowed is a number > 0"),
     (put("inertia.m", math.nan), "INVALID_FIELD", "mass: found nan"),
     (put("inertia.m", math.inf), "INVALID_FIELD", "mass: found inf"),
-    (put("inertia.m", 0.0), "INVALID_FIELD", "body_name: found nothing"),
+    (put("inertia.m", 0.0), "INVALID_FIELD", "mass: found 0.0"),
     (put("inertia.ixx", 3.0), "INVALID_FIELD", "I1 + I2 >= I3"),
     (put("inertia.ixy", 5.0), "INVALID_FIELD", "positive definite"),
     (put("inertia.com.x", math.nan), "INVALID_FIELD", "inertia.com"),
@@ -101,18 +101,13 @@ CONTACTS = [
         "contacts.restitutions[0]: found 1.5, allowed is a number in [0, 1]",
     ),
     (put("contacts.restitutions", [-0.5]), "INVALID_FIELD", "contacts.restitutions[0]"),
-    (
-        put("contacts.frictions", [0.5] * 1_000_000),
-        "TOO_LARGE",
-        "contacts: found 1000000 contacts, allowed is at most 10000",
-    ),
     (put("contacts.surface_velocities", [1.0, 0.0, 0.0]), "NOT_SUPPORTED", "contacts.surface_velocities"),
     (put("contacts.kinds", [3]), "INVALID_FIELD", "contacts.kinds[0]: found 3"),
     (put("contacts.kinds", [2]), "INVALID_FIELD", "contacts.body_curvatures: found 0 numbers"),
     (put("contact_source", 9), "INVALID_FIELD", "contact_source: found 9"),
     (put("contact_source", 0), "NO_CONTACT", "has no shape"),
-    (put("velocity_tolerance", -1.0), "INVALID_FIELD", "velocity_tolerance: found -1.0"),
-    (put("velocity_tolerance", math.nan), "INVALID_FIELD", "velocity_tolerance: found nan"),
+    (put("velocity_tolerance", [-1.0]), "INVALID_FIELD", "velocity_tolerance: found -1.0"),
+    (put("velocity_tolerance", [math.nan]), "INVALID_FIELD", "velocity_tolerance: found nan"),
     (put("problem", 9), "INVALID_FIELD", "problem: found 9"),
 ]
 
@@ -126,7 +121,7 @@ def out_of_plane(request: Any) -> None:
 
 def margin_length(request: Any) -> None:
     """A metric without sense, where it is used."""
-    request.want_margins, request.margin_length = True, -1.0
+    request.want_margins, request.margin_length = True, [-1.0]
 
 
 def crooked_plane(request: Any) -> None:
@@ -150,11 +145,11 @@ CASES = [
     (PredictContactMode, put("applied_wrench.force.x", math.nan), "INVALID_FIELD", "applied_wrench.force"),
     (
         PredictContactMode,
-        put("friction_facets", 2),
+        put("friction_facets", [2]),
         "INVALID_FIELD",
-        "friction_facets: found 2, allowed is 0",
+        "friction_facets: found 2, allowed is none",
     ),
-    (PredictContactMode, put("friction_facets", 33), "INVALID_FIELD", "friction_facets: found 33"),
+    (PredictContactMode, put("friction_facets", [33]), "INVALID_FIELD", "friction_facets: found 33"),
     (PredictContactMode, margin_length, "INVALID_FIELD", "margin_length: found -1.0"),
     (PredictContactMode, put("gravity", 5), "INVALID_FIELD", "gravity: found 5"),
     (PredictImpact, put("state.linear_velocity.z", 1.0), "SEPARATING", "v_n = 1 m/s"),
@@ -179,12 +174,6 @@ CASES = [
         "times[0]: found -0.1, allowed is a number >= 0",
     ),
     (PredictTumbling, put("times", [0.0, math.nan]), "INVALID_FIELD", "times"),
-    (
-        PredictTumbling,
-        put("times", [0.0] * 100_000),
-        "TOO_LARGE",
-        "times: found 100000 samples, allowed is at most 20000",
-    ),
     (
         PredictTumbling,
         put("fit_window", 0.1),
@@ -265,12 +254,12 @@ def test_an_unknown_constant_is_refused_with_the_known_ones(
 
 def bad_rate(request: Any) -> None:
     request.sampling = request.AT_RATE
-    request.rate = -5.0
+    request.rate = [-5.0]
 
 
 def too_long(request: Any) -> None:
     request.sampling = request.AT_RATE
-    request.rate, request.duration = 1000.0, 1e9
+    request.rate, request.duration = [1000.0], [1e9]
 
 
 @pytest.mark.parametrize(
@@ -320,5 +309,5 @@ def test_states_that_are_stale_or_make_no_sense(client: Client) -> None:
     assert all(answer.status in (answer.NO_STATE, answer.STALE_STATE) for answer in answers)
     assert "s old, allowed is at most 0.5 s (state_timeout)" in answers[-1].message
     asked = PredictTumbling.Request(body_name="brick", times=[0.1])
-    asked.stamp = old.header.stamp
+    asked.state_source, asked.stamp = asked.STATE_AT_STAMP, old.header.stamp
     assert client.ask(asked).status == 0

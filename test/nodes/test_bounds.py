@@ -67,7 +67,7 @@ def carried_under_strong_drag() -> Any:
     request.state.angular_velocity.x = 1.0
     request.state.covariance = (1e-6 * np.eye(12)).ravel().tolist()
     request.linear_drag, request.want_covariance = 1000.0, True
-    request.sampling, request.duration, request.rate = request.AT_RATE, 10.0, 10.0
+    request.sampling, request.duration, request.rate = request.AT_RATE, [10.0], [10.0]
     return request
 
 

@@ -141,7 +141,7 @@ def test_a_brick_at_rest_strikes_nothing(client: Client) -> None:
 
 def test_beyond_the_horizon_nothing_is_struck(client: Client) -> None:
     request = falling_brick(height=100.0)
-    request.horizon = 0.5
+    request.horizon = [0.5]
     answer = client.ask(request)
     assert answer.status == answer.NO_CONTACT
     assert "touches no surface within the horizon of 0.5 s" in answer.message
@@ -208,13 +208,13 @@ def test_a_tilted_brick_strikes_with_one_edge_and_then_with_the_other(client: Cl
 
 def test_the_window_and_the_number_of_strikes_end_a_sequence(client: Client) -> None:
     request = tilted_brick_in_time()
-    request.strike_window = 1e-4
+    request.strike_window = [1e-4]
     answer = client.ask(request)
     assert answer.status == answer.OK, answer.message
     assert answer.impact.sequence_end == Impact.NOTHING_STRIKES
     assert len(set(answer.impact.strike_contacts)) == 2  # the edge that landed
     request = tilted_brick_in_time()
-    request.most_strikes = 1
+    request.most_strikes = [1]
     answer = client.ask(request)
     assert answer.impact.sequence_end == Impact.MOST_STRIKES
     assert not answer.impact.converged
@@ -228,7 +228,7 @@ def test_a_ball_that_is_dropped_on_an_explicit_contact_comes_to_rest(client: Cli
     request.several_contacts_law = request.SEQUENTIAL_IN_TIME
     request.contacts.restitutions = [0.5]
     request.state.linear_velocity.z = -0.2
-    request.strike_window = 0.1
+    request.strike_window = [0.1]
     answer = client.ask(request)
     assert answer.status == answer.OK, answer.message
     impact = answer.impact
@@ -263,7 +263,7 @@ def test_a_contact_that_leaves_strikes_when_it_comes_back(client: Client) -> Non
     assert answer.status == answer.OK, answer.message
     assert answer.time_to_contact == pytest.approx(2.0 * 0.1 / G, abs=1e-12)
     assert answer.state_before.linear_velocity.z == pytest.approx(-0.1, abs=1e-12)
-    request.strike_window = 0.01
+    request.strike_window = [0.01]
     answer = client.ask(request)
     assert answer.status == answer.SEPARATING
     assert "comes back within the strike_window of 0.01 s" in answer.message
@@ -288,8 +288,8 @@ def test_what_strikes_in_time_are_not_asked_with(
     assert expected in answer.message
 
 
-@pytest.mark.parametrize(("field", "found"), [("strike_window", -1.0), ("strike_window", math.nan)])
-def test_a_window_that_is_none(client: Client, field: str, found: float) -> None:
+@pytest.mark.parametrize(("field", "found"), [("strike_window", [-1.0]), ("strike_window", [math.nan])])
+def test_a_window_that_is_none(client: Client, field: str, found: list[float]) -> None:
     request = tilted_brick_in_time()
     setattr(request, field, found)
     answer = client.ask(request)
@@ -405,7 +405,7 @@ def test_over_a_corner_that_stays_it_goes_on_where_asked(client: Client) -> None
     request = falling_brick(height=0.06, tilt=0.35)
     request.state.angular_velocity.z = 0.5  # so that no two corners strike at one instant
     request.several_contacts_law = request.SEQUENTIAL_IN_TIME
-    request.strike_window = 0.1
+    request.strike_window = [0.1]
     ended = client.ask(request)
     assert ended.status == ended.OK, ended.message
     assert ended.impact.sequence_end == Impact.CHATTERS
@@ -432,7 +432,7 @@ def test_a_brick_that_tips_over_its_edge_strikes_when_it_is_down(client: Client)
     height = 0.025 * math.cos(tilt) + 0.075 * math.sin(tilt)
     request = falling_brick(height=height, tilt=tilt)
     request.several_contacts_law = request.SEQUENTIAL_IN_TIME
-    request.strike_window = 0.2
+    request.strike_window = [0.2]
     answer = client.ask(request)
     assert answer.status == answer.NO_CONTACT
     assert "hold_step goes on over it" in answer.message

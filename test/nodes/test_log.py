@@ -84,7 +84,7 @@ def state(client: Client, draw: random.Random) -> Odometry:
 def questions(number: int) -> list[Any]:
     """Good and bad requests to all three services."""
     tumbling = PredictTumbling.Request(body_name="brick", sampling=PredictTumbling.Request.UNTIL_CONTACT)
-    tumbling.rate = 100.0 * (number + 1)
+    tumbling.rate = [100.0 * (number + 1)]
     mode = PredictContactMode.Request(
         state_source=PredictContactMode.Request.STATE_EXPLICIT, body_name="brick"
     )
@@ -95,7 +95,7 @@ def questions(number: int) -> list[Any]:
         PredictImpact.Request(body_name="brick"),
         mode,
         PredictTumbling.Request(body_name=f"cat {number}"),
-        PredictImpact.Request(body_name="brick", horizon=float("nan")),
+        PredictImpact.Request(body_name="brick", horizon=[float("nan")]),
         PredictContactMode.Request(body_name="brick"),  # in the air: no contact
     ]
 

@@ -6,7 +6,7 @@ import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import count
 from pathlib import Path
 from typing import Any
@@ -214,19 +214,21 @@ def test_tumbling_from_the_newest_state(servers: Servers) -> None:
 
 
 @pytest.mark.parametrize("service", [PredictTumbling, PredictImpact])
-def test_a_past_stamp_takes_the_state_before_it(servers: Servers, service: Any) -> None:
+def test_a_past_stamp_takes_the_state_between_those_around_it(servers: Servers, service: Any) -> None:
     client = servers.brick
     states = client.publisher(Odometry, "/brick/odometry")
     bodies = [Body(p=np.array([0.1 * i, 0.0, 1.0])) for i in range(4)]
     for body in bodies:
         states.publish(body.odometry("brick"))
     known(client, "brick", bodies[-1].stamp_ns)
+    half = 0.5 * (bodies[1].p + bodies[2].p)  # both have the same velocity, which leaves the middle as it is
+    middle_ns = (bodies[1].stamp_ns + bodies[2].stamp_ns) // 2
     for asked_ns, body in (
         (bodies[1].stamp_ns, bodies[1]),
-        (bodies[2].stamp_ns - 1, bodies[1]),
-        (bodies[3].stamp_ns + 1, bodies[3]),
+        (middle_ns, replace(bodies[1], p=half, stamp_ns=middle_ns)),
+        (bodies[3].stamp_ns, bodies[3]),
     ):
-        answer = client.ask(service.Request(body_name="brick", stamp=stamp_to_msg(asked_ns)))
+        answer = client.ask(service.Request(body_name="brick", state_source=2, stamp=stamp_to_msg(asked_ns)))
         assert answer.status == answer.OK, answer.message
         if service is PredictTumbling:
             check_state(answer.state, body)
@@ -234,10 +236,34 @@ def test_a_past_stamp_takes_the_state_before_it(servers: Servers, service: Any) 
             landing_ns = stamp_ns_from_msg(answer.state_before.header.stamp)
             assert landing_ns - body.stamp_ns == pytest.approx(1e9 * answer.time_to_contact, abs=1.0)
     too_old = client.ask(
-        service.Request(body_name="brick", stamp=stamp_to_msg(bodies[0].stamp_ns - 3_600_000_000_000))
+        service.Request(
+            body_name="brick", state_source=2, stamp=stamp_to_msg(bodies[0].stamp_ns - 3_600_000_000_000)
+        )
     )
     assert too_old.status == too_old.NO_STATE
     assert "the oldest kept has" in too_old.message
+
+
+def test_a_stamp_ahead_of_the_newest_state_follows_its_flight(servers: Servers) -> None:
+    """The states came a moment ago, and the question is about the moment at which an arm can move."""
+    client = servers.brick
+    states = client.publisher(Odometry, "/brick/odometry")
+    body = Body()
+    states.publish(body.odometry("brick"))
+    flight = known(client, "brick", body.stamp_ns).trajectory
+    request = PredictTumbling.Request(
+        body_name="brick", state_source=2, stamp=stamp_to_msg(body.stamp_ns + 250_000_000)
+    )
+    answer = client.ask(request)
+    assert answer.status == answer.OK, answer.message
+    assert stamp_ns_from_msg(answer.state.header.stamp) == body.stamp_ns + 250_000_000
+    for found, samples in (
+        (xyz(answer.state.pose.position), flight.positions),
+        (xyzw(answer.state.pose.orientation), flight.orientations),
+        (xyz(answer.state.linear_velocity), flight.linear_velocities),
+        (xyz(answer.state.angular_velocity), flight.angular_velocities),
+    ):
+        np.testing.assert_allclose(found, rows(samples, len(found))[1], rtol=0.0, atol=ROUNDING)
 
 
 def test_impact_after_the_newest_state(servers: Servers) -> None:

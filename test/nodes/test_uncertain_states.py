@@ -107,7 +107,7 @@ def test_a_fit_to_the_last_states_does_not_care_for_a_bad_velocity(client: Clien
         publisher.publish(msg)
     last = (count - 1) / RATE
     request = PredictTumbling.Request(body_name="brick", fit_window=1.0, times=[0.0], want_covariance=True)
-    request.stamp = msg.header.stamp
+    request.state_source, request.stamp = request.STATE_AT_STAMP, msg.header.stamp
     answers = []
 
     def all_arrived() -> bool:
@@ -124,7 +124,10 @@ def test_a_fit_to_the_last_states_does_not_care_for_a_bad_velocity(client: Clien
     assert answer.fit_position_residual < 1e-8
     assert answer.fit_orientation_residual < 1e-8
     assert len(answer.trajectory.covariances) == 144
-    raw = client.ask(PredictTumbling.Request(body_name="brick", times=[0.0], stamp=msg.header.stamp))
+    at_stamp = PredictTumbling.Request.STATE_AT_STAMP
+    raw = client.ask(
+        PredictTumbling.Request(body_name="brick", times=[0.0], state_source=at_stamp, stamp=msg.header.stamp)
+    )
     assert raw.state.linear_velocity.x != pytest.approx(0.0, abs=1.0)
     assert raw.fit_count == 0
 
@@ -140,7 +143,8 @@ def test_fits_are_of_flights_under_the_forces_asked_for(client: Client) -> None:
         msg.pose.pose.position.z = 1.0 + 0.02 * i
         publisher.publish(msg)
     request = PredictTumbling.Request(body_name="brick", fit_window=0.115, times=[0.0])
-    request.stamp, request.gravity = msg.header.stamp, PredictTumbling.Request.GRAVITY_NONE
+    request.state_source, request.stamp = request.STATE_AT_STAMP, msg.header.stamp
+    request.gravity = request.GRAVITY_NONE
     answers = []
 
     def all_arrived() -> bool:

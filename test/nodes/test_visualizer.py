@@ -482,7 +482,7 @@ def test_answers_of_a_server_are_drawn_by_a_process_beside_it(tmp_path: Path) ->
     asked = PredictTumbling.Request(
         body_name="brick", state_source=PredictTumbling.Request.STATE_EXPLICIT, state=state
     )
-    asked.sampling, asked.rate, asked.duration = PredictTumbling.Request.AT_RATE, 100.0, 0.25
+    asked.sampling, asked.rate, asked.duration = PredictTumbling.Request.AT_RATE, [100.0], [0.25]
     with (
         server_and_client(tmp_path / "log") as client,
         process("visualizer", *arguments, ready="ready") as started,
@@ -502,7 +502,7 @@ def test_a_log_is_drawn_as_what_is_heard(tmp_path: Path) -> None:
     asked = PredictTumbling.Request(
         body_name="brick", state_source=PredictTumbling.Request.STATE_EXPLICIT, state=state
     )
-    asked.sampling, asked.rate, asked.duration = PredictTumbling.Request.AT_RATE, 100.0, 0.25
+    asked.sampling, asked.rate, asked.duration = PredictTumbling.Request.AT_RATE, [100.0], [0.25]
     with server_and_client(tmp_path / "log") as client:
         publisher = client.publisher(Odometry, "/brick/odometry")
         publisher.publish(odometry(STAMP_NS, 0.1))

@@ -38,5 +38,7 @@ def test_too_many_samples_are_refused(make: Callable[[int], object]) -> None:
         make(20_001)
 
 
-def test_a_rate_of_zero_is_the_default() -> None:
-    assert AtRate(rate=0.0, duration=0.0) == AtRate(duration=0.0)
+def test_a_rate_of_zero_is_refused_and_a_duration_of_zero_is_one_sample() -> None:
+    with pytest.raises(InvalidFieldError, match="rate: found 0"):
+        AtRate(rate=0.0)
+    assert AtRate(duration=0.0).duration == 0.0

@@ -49,8 +49,69 @@ def watching(*stamps_ns: int, now_ns: int | None = None) -> Knowledge:
 def test_the_newest_state_is_taken_unless_another_is_asked_for() -> None:
     known = watching(0, 10 * MS, 20 * MS)
     assert subject_of("cube", PublishedState(), known).state.stamp_ns == 20 * MS
-    assert subject_of("cube", PublishedState(stamp_ns=15 * MS), known).state.stamp_ns == 10 * MS
+    assert subject_of("cube", PublishedState(stamp_ns=10 * MS), known).state.stamp_ns == 10 * MS
     assert subject_of(CUBE, PublishedState(stamp_ns=0), known).state.stamp_ns == 0
+
+
+def check_rising(found: BodyState, stamp_ns: int) -> None:
+    """The state is that of the toss; it is in closed form there, and a few operations on numbers near 1."""
+    then = rising(stamp_ns)
+    assert found.stamp_ns == stamp_ns
+    for name in ("p_WB_W", "q_WB", "v_WB_W", "w_WB_W"):
+        np.testing.assert_allclose(getattr(found, name), getattr(then, name), rtol=0.0, atol=1e-14)
+
+
+@pytest.mark.parametrize("stamp_ns", [1, 7 * MS, 399 * MS, 400 * MS - 1])
+def test_a_state_of_a_flight_is_interpolated_exactly(stamp_ns: int) -> None:
+    """The parabola is a cubic too, and a steady spin turns about a fixed axis."""
+    known = watching(0, 400 * MS)
+    check_rising(subject_of("cube", PublishedState(stamp_ns=stamp_ns), known).state, stamp_ns)
+
+
+def test_a_stamp_in_the_future_follows_the_free_motion() -> None:
+    known = watching(0, 10 * MS, now_ns=20 * MS)
+    check_rising(subject_of("cube", PublishedState(stamp_ns=300 * MS), known).state, 300 * MS)
+    with pytest.raises(
+        InvalidFieldError, match=r"stamp: found 2\.5 s after the newest state, allowed is at most 2"
+    ):
+        subject_of("cube", PublishedState(stamp_ns=2510 * MS), known)
+    with pytest.raises(StaleStateError, match=r"0\.600 s old"):
+        subject_of("cube", PublishedState(stamp_ns=700 * MS), watching(0, now_ns=600 * MS))
+
+
+def test_a_stamp_in_a_gap_is_refused_and_that_of_a_state_is_not() -> None:
+    """In half a second without states the body may have struck something."""
+    known = watching(0, 600 * MS, now_ns=5000 * MS)
+    with pytest.raises(
+        StaleStateError, match=r"the states around it are 0\.600 s apart, allowed is at most 0\.5"
+    ):
+        subject_of("cube", PublishedState(stamp_ns=300 * MS), known)
+    assert subject_of("cube", PublishedState(stamp_ns=600 * MS), known).state.stamp_ns == 600 * MS
+    with pytest.raises(NoStateError, match="the oldest kept has 0 ns"):
+        subject_of("cube", PublishedState(stamp_ns=-1), known)
+
+
+def test_a_fit_to_the_states_before_a_stamp_is_followed_to_it() -> None:
+    known = watching(*range(0, 200 * MS, 10 * MS))
+    subject = subject_of("cube", PublishedState(stamp_ns=155 * MS, fit_window=0.1), known)
+    assert subject.fit is not None
+    assert subject.fit.count == 11  # of 50 to 150 ms
+    assert subject.state.stamp_ns == 155 * MS
+    np.testing.assert_allclose(subject.state.p_WB_W, rising(155 * MS).p_WB_W, rtol=0.0, atol=1e-10)
+    assert subject.covariance is not None
+    at_last = subject_of("cube", PublishedState(stamp_ns=150 * MS, fit_window=0.1), known).covariance
+    assert at_last is not None
+    assert subject.covariance[0, 0] > at_last[0, 0], "it grows on the way"
+
+
+def test_a_load_is_interpolated_about_its_own_centre_of_mass() -> None:
+    """The centre moves beside the frame's origin, whose own path is no parabola."""
+    offset = np.array([0.05, 0.0, 0.0])
+    loaded = changed_body(CUBE, MassProperties(mass=3.0, I_B=0.1 * np.eye(3)), offset)
+    found = subject_of(loaded, PublishedState(stamp_ns=5 * MS), watching(0, 10 * MS)).state
+    then = subject_of(loaded, PublishedState(), watching(5 * MS)).state
+    # A circle of radius 0.05 m, on which the centre turns by 0.03 rad: r a^4 / 384 is 1e-10 m.
+    np.testing.assert_allclose(found.p_WB_W, then.p_WB_W, rtol=0.0, atol=2e-10)
 
 
 def test_an_old_state_is_refused_only_by_a_clock() -> None:

@@ -19,10 +19,13 @@ from typing import Any
 import pytest
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from mcap.reader import make_reader
+from mcap.writer import Writer
 from nav_msgs.msg import Odometry
 
 from contact_dynamics.recording import BagReader, BagWriter, LoggedMessage, NotALogError, service_calls
+from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.replay.run import main
+from contact_dynamics.replay.same_definitions import DIGESTS, digest
 from contact_dynamics.replay.verify import Verification, verify_log
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from running_server import ROOT, server_and_client
@@ -87,7 +90,7 @@ def questions(number: int) -> list[Any]:
         PredictImpact.Request(body_name="brick"),
         standing,
         PredictImpact.Request(body_name=f"cat {number}"),
-        PredictTumbling.Request(body_name="ball", duration=math.nan if number % 2 else 0.1),
+        PredictTumbling.Request(body_name="ball", duration=[math.nan if number % 2 else 0.1]),
     ]
 
 
@@ -294,6 +297,56 @@ def test_a_log_of_another_kind_is_refused_by_name(
     printed = capsys.readouterr()
     assert "none: no MCAP file here" in printed.err
     assert "predict_tumbling" in printed.out  # the others are asked all the same
+
+
+def with_other_definitions(log: Path, to: Path, old: bytes, new: bytes) -> Path:
+    """A copy of a log, as an older version would have written it: its types have another text."""
+    (whole,) = log.glob("*.mcap")
+    with whole.open("rb") as stream, to.open("wb") as copy:
+        reader, writer = make_reader(stream), Writer(copy)
+        writer.start(profile="ros2")
+        schemas: dict[int, int] = {}
+        channels: dict[int, int] = {}
+        for schema, channel, message in reader.iter_messages():
+            assert schema is not None
+            if schema.id not in schemas:
+                text = schema.data.replace(old, new)
+                schemas[schema.id] = writer.register_schema(schema.name, schema.encoding, text)
+            if channel.id not in channels:
+                channels[channel.id] = writer.register_channel(
+                    channel.topic, channel.message_encoding, schemas[schema.id], channel.metadata
+                )
+            writer.add_message(
+                channels[channel.id], message.log_time, message.data, message.publish_time, message.sequence
+            )
+        for metadata in reader.iter_metadata():
+            writer.add_metadata(metadata.name, metadata.metadata)
+        writer.finish()
+    return to
+
+
+def test_a_log_of_other_definitions_is_refused_with_their_names(
+    asked: Asked, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its questions would be read by this version's adapters, and its answers mean something else."""
+    log = with_other_definitions(asked.log, tmp_path / "older.mcap", b"time_to_contact", b"time_of_contact")
+    assert main([str(log)]) == 2
+    told = capsys.readouterr().err
+    assert "older.mcap: found other fields of PredictImpact than this program knows" in told
+    same = with_other_definitions(
+        asked.log, tmp_path / "comment.mcap", b"# Where the body", b"# Where a body"
+    )
+    assert_all_equal(verify_log(same), asked)
+
+
+def test_the_known_digests_are_those_of_the_interface_files() -> None:
+    """After a change of an interface, put here what this test finds."""
+    found = {
+        name: digest(event, find_definition(event).text)
+        for name in DIGESTS
+        for event in [f"contact_dynamics_interfaces/srv/{name}_Event"]
+    }
+    assert found == DIGESTS
 
 
 def test_questions_without_an_answer_are_told(asked: Asked, tmp_path: Path) -> None:

@@ -1,0 +1,71 @@
+"""Whether a log's services have the fields that this version reads and writes.
+
+A log holds the definitions that it was written with, and without ROS its messages are read by them. But the
+adapters are those of this version. Where a field has another name or type, they cannot read the questions, or
+they compare answers that mean something else.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from typing import TYPE_CHECKING, Final
+
+from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.recording.definitions import EVENT_SUFFIX
+from contact_dynamics.recording.message_types import message_types
+from contact_dynamics.replay.timeline import INTERFACES
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+_PACKAGE: Final = INTERFACES.partition("/")[0] + "/"
+
+DIGESTS: Final = {
+    "PredictContactMode": "b1b9b9ab683ad5ca",
+    "PredictImpact": "0e9a5c11c191d2d7",
+    "PredictTumbling": "d8fea09495ab8bd5",
+}
+"""The digest of each service's fields (`digest`). A test compares them with the interface files."""
+
+
+def digest(event_type: str, definition: str) -> str:
+    """Return a digest of the fields of a service, their order, names and types; comments do not count.
+
+    Args:
+        event_type: "package/srv/Name_Event".
+        definition: Its text, as a log holds it.
+    """
+    types = message_types(event_type, definition)
+    lines = [
+        f"{name} {field.type_name}{[field.count] if field.is_array else ''} {field.name}"
+        for name, message_type in sorted(types.items())
+        if name.startswith(_PACKAGE)
+        for field in message_type.FIELDS
+    ]
+    return hashlib.sha256("\n".join(lines).encode()).hexdigest()[:16]
+
+
+def check_definitions(path: Path, definitions: Mapping[str, str], version: str | None) -> None:
+    """Refuse a log whose services are defined otherwise than those of this version.
+
+    Args:
+        path: The log.
+        definitions: The texts of its types.
+        version: The version of this package that wrote it, as far as it says so.
+
+    Raises:
+        NotSupportedError: they are; the message says which, and which version wrote them.
+    """
+    differing = [
+        name
+        for name, known in DIGESTS.items()
+        if (event_type := f"{INTERFACES}{name}{EVENT_SUFFIX}") in definitions
+        and digest(event_type, definitions[event_type]) != known
+    ]
+    if differing:
+        raise NotSupportedError(
+            f"{path}: found other fields of {', '.join(differing)} than this program knows: another state of "
+            f"contact_dynamics wrote the log (version {version or 'not told'}), allowed is to replay "
+            "it with that"
+        )
