@@ -396,7 +396,7 @@ def test_a_refusal_is_told(bench: Bench) -> None:
     )
     bench.answer("predict_impact", response)
     drawn = bench.drawn()
-    assert drawn.last("/answers/log", "TextLog:text") == ["Impact: refused (202): body_name: found 'x'"]
+    assert drawn.last("/answers/log", "TextLog:text") == ["Impact: refused (2): body_name: found 'x'"]
     assert drawn.last("/answers/log", "TextLog:level") == ["WARN"]
     assert drawn.stamps("/answers/log", "TextLog:text") == [STAMP_NS + 7]  # no state: the event's own time
 
