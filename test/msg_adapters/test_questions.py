@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 
+from changed_requests import put
 from contact_dynamics.errors import (
     FrameMismatchError,
     InvalidFieldError,
@@ -199,18 +199,6 @@ READ_WITH: dict[str, dict[str, Any]] = {
     "most_strikes": {"several_contacts_law": 2},
 }
 """What a request says besides, so that a field of it is read."""
-
-
-def put(path: str, value: Any) -> Callable[[Any], None]:
-    """Return what sets a field of a request, given as a dotted path."""
-
-    def change(request: Any) -> None:
-        *parents, name = path.split(".")
-        for parent in parents:
-            request = getattr(request, parent)
-        setattr(request, name, value)
-
-    return change
 
 
 @pytest.mark.parametrize(

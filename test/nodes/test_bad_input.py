@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from nav_msgs.msg import Odometry
 
+from changed_requests import put
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from running_server import Client, server_and_client
 
@@ -38,18 +39,6 @@ def good(service: Any) -> Any:
     if service is PredictImpact:
         request.state.linear_velocity.z = -1.0
     return request
-
-
-def put(path: str, value: Any) -> Callable[[Any], None]:
-    """Return what sets a field of a request, given as a dotted path."""
-
-    def change(request: Any) -> None:
-        *parents, name = path.split(".")
-        for parent in parents:
-            request = getattr(request, parent)
-        setattr(request, name, value)
-
-    return change
 
 
 EVERY_SERVICE = [

@@ -456,28 +456,20 @@ def test_parameters_that_are_not_allowed_are_named(values: dict[str, Any], words
         rclpy.shutdown(context=context)
 
 
+def visualizer_with(**parameters: object) -> tuple[str, ...]:
+    """Return the arguments of a visualizer of the world that the project's file configures."""
+    assigned = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
+    return ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", *assigned)
+
+
 def test_a_file_that_cannot_be_written_ends_the_process_with_its_name(tmp_path: Path) -> None:
     path = tmp_path / "nowhere" / "a.rrd"
-    arguments = (
-        "--params-file",
-        str(ROOT / "config" / "server.yaml"),
-        "--ros-args",
-        "-p",
-        f"rrd_path:={path}",
-    )
-    with process("visualizer", *arguments, ready="nowhere/a.rrd") as started:
+    with process("visualizer", *visualizer_with(rrd_path=path), ready="nowhere/a.rrd") as started:
         assert started.wait(10.0) == 2
 
 
 def test_answers_of_a_server_are_drawn_by_a_process_beside_it(tmp_path: Path) -> None:
     path = tmp_path / "drawn.rrd"
-    arguments = (
-        "--params-file",
-        str(ROOT / "config" / "server.yaml"),
-        "--ros-args",
-        "-p",
-        f"rrd_path:={path}",
-    )
     state = body_state()
     asked = PredictTumbling.Request(
         body_name="brick", state_source=PredictTumbling.Request.STATE_EXPLICIT, state=state
@@ -485,7 +477,7 @@ def test_answers_of_a_server_are_drawn_by_a_process_beside_it(tmp_path: Path) ->
     asked.sampling, asked.rate, asked.duration = PredictTumbling.Request.AT_RATE, [100.0], [0.25]
     with (
         server_and_client(tmp_path / "log") as client,
-        process("visualizer", *arguments, ready="ready") as started,
+        process("visualizer", *visualizer_with(rrd_path=path), ready="ready") as started,
     ):
         answer = client.ask(asked)
         assert answer.status == answer.OK, answer.message
@@ -510,8 +502,7 @@ def test_a_log_is_drawn_as_what_is_heard(tmp_path: Path) -> None:
         assert answer.status == answer.OK, answer.message
     (log,) = (tmp_path / "log").iterdir()
     path = tmp_path / "drawn.rrd"
-    parameters = ("-p", f"from_log:={log}", "-p", f"rrd_path:={path}")
-    arguments = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", *parameters)
+    arguments = visualizer_with(from_log=log, rrd_path=path)
     with process("visualizer", *arguments, ready="messages of") as started:
         assert started.wait(10.0) == 0
     drawn = read_drawn(path)
@@ -531,8 +522,7 @@ def test_a_log_that_was_to_be_seen_and_is_not_ends_with_the_reason(
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-    parameters = ("-p", f"from_log:={log}", "-p", "spawn:=true", "-p", f"port:={port}")
-    arguments = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", *parameters)
+    arguments = visualizer_with(from_log=log, spawn="true", port=port)
     reason = "neither WAYLAND_DISPLAY nor WAYLAND_SOCKET nor DISPLAY is set"
     with process("visualizer", *arguments) as started:
         assert "nowhere to draw to: rerun's viewer ended with" in wait_for(started, reason)
@@ -557,8 +547,7 @@ def test_a_damaged_log_is_drawn_but_for_the_damage_which_is_told(tmp_path: Path)
     data[data.index(b"zstd", data.index(b"zstd") + 1) + 20] ^= 1
     writer.path.write_bytes(data)
     path = tmp_path / "drawn.rrd"
-    parameters = ("-p", f"from_log:={tmp_path / 'log'}", "-p", f"rrd_path:={path}")
-    arguments = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", *parameters)
+    arguments = visualizer_with(from_log=tmp_path / "log", rrd_path=path)
     with process("visualizer", *arguments) as started:
         told = wait_for(started, "messages of")
         assert started.wait(10.0) == 0
@@ -570,7 +559,6 @@ def test_a_damaged_log_is_drawn_but_for_the_damage_which_is_told(tmp_path: Path)
 
 
 def test_a_log_that_is_none_is_named(tmp_path: Path) -> None:
-    parameters = ("-p", f"from_log:={tmp_path}", "-p", f"rrd_path:={tmp_path / 'drawn.rrd'}")
-    arguments = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", *parameters)
+    arguments = visualizer_with(from_log=tmp_path, rrd_path=tmp_path / "drawn.rrd")
     with process("visualizer", *arguments, ready="no MCAP file here") as started:
         assert started.wait(10.0) == 2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 import warnings
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,7 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.viewing.measured import set_time
+from contact_dynamics.viewing.viewer_process import LOCAL
 from contact_dynamics.world import Body, Surface, World, box_vertices
 from viewing.drawn import STAMP_NS, Drawn, read_drawn
 
@@ -33,6 +35,15 @@ def strict() -> Iterator[None]:
     rr.set_strict_mode(True)
     yield
     rr.set_strict_mode(False)
+
+
+@pytest.fixture
+def free_port() -> int:
+    """A port of this machine at which nothing listens."""
+    with socket.socket() as probe:
+        probe.bind((LOCAL, 0))
+        port: int = probe.getsockname()[1]
+        return port
 
 
 @pytest.fixture

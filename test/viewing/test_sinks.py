@@ -25,14 +25,6 @@ def silent_viewer() -> Iterator[int]:
         yield listener.getsockname()[1]
 
 
-@pytest.fixture
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind((LOCAL, 0))
-        port: int = probe.getsockname()[1]
-        return port
-
-
 def draw(recording: OpenRecording) -> None:
     recording.stream.log("point", rr.Points3D([[1.0, 2.0, 3.0]]), static=True)
 
