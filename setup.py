@@ -17,13 +17,13 @@ NAME = MANIFEST.findtext("name")
 
 
 def requirements(kind: str) -> list[str]:
-    """The lines of one file of requirements/, without comments."""
+    """Return the lines of one file of requirements/, without comments."""
     lines = (HERE / "requirements" / f"{kind}.txt").read_text(encoding="utf-8").splitlines()
     return [line for line in lines if line and not line.startswith("#")]
 
 
 def files(pattern: str) -> list[str]:
-    """The paths that match, relative to this file, as setuptools needs them for data files."""
+    """Return the paths that match, relative to this file, as setuptools needs them for data files."""
     return sorted(str(path.relative_to(HERE)) for path in HERE.glob(pattern))
 
 

@@ -41,7 +41,7 @@ FEW_AND_MANY: Final = (4, 8)  # facets
 MOST_BY_FACETS: Final = 4  # contacts for which both are shown
 MOST_STRINGS: Final = 2**8  # more take minutes
 REPEATS: Final = 5
-PUSHES: Final = {"rests": 0.0, "is pushed": 0.3, "slides off": 0.6}  # of the weight; friction holds 0.5
+PUSHES: Final = {"rests": 0.0, "is pushed": 0.3, "slides off": 0.6}  # share of the weight; friction holds 0.5
 SLACK: Final = 1e-7
 LOADS: Final = {  # parts of the weight: force along x and y, torque per metre about x, y, z
     "rests": (0.0, 0.0, 0.0, 0.0, 0.0),

@@ -60,7 +60,7 @@ from contact_dynamics.world import Body, Surface, box_vertices
 SIZE: Final = (0.15, 0.09, 0.05)  # m
 MASS: Final = 0.4  # kg
 FRICTION: Final = 0.3
-RESTITUTION: Final = 0.45  # of a point mass on the contact's spring, see above
+RESTITUTION: Final = 0.45  # restitution of a point mass on the contact's spring, see above
 DAMPING_RATIO: Final = 0.3
 TIME_CONSTANT: Final = 6e-4  # s, normal to the floor
 SLIP_TIME_CONSTANT: Final = 2e-4  # s, along it

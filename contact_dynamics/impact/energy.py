@@ -29,7 +29,7 @@ def energy_change(impulse: Sequence[Real], before: Sequence[Real], after: Sequen
         impulse: N s, by components along any axes. Each component is a number, or an array with one element
             for each case.
         before: m/s, the contact's velocity before, relative to what it touches, along the same axes.
-        after: m/s, the contact's velocity afterwards, likewise.
+        after: m/s, the contact's velocity afterwards, in the same axes.
     """
     return 0.5 * _inner(impulse, [v + w for v, w in zip(before, after, strict=True)])
 

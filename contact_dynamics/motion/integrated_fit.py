@@ -96,9 +96,8 @@ def fit_motion(
 
 def _noise_of(position_residual: float, orientation_residual: float, count: int) -> StateNoise:
     """Return the noise of each component that these residuals of ``count`` poses imply."""
-    share = math.sqrt(
-        count / (3 * count - 6)
-    )  # of a vector's root mean square; six numbers are fitted to each
+    # Residuals are root mean squares of vectors, and six numbers are fitted to each.
+    share = math.sqrt(count / (3 * count - 6))
     return StateNoise(
         position=max(share * position_residual, LEAST_NOISE),
         orientation=max(share * orientation_residual, LEAST_NOISE),

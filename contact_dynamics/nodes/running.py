@@ -58,7 +58,7 @@ def run_node(
     Args:
         make_node: the node's class; it may raise `ContactDynamicsError` or `OSError`.
         verb: the verb of the command line that the node is.
-        parser: of the verb's arguments.
+        parser: the parser of the verb's arguments.
         arguments: all that follows the verb.
     """
     args = ros_arguments(parser, arguments)

@@ -70,7 +70,7 @@ class _Shown(NamedTuple):
 
     service_type: Any
     name: str  # below the server's
-    kind: str  # of its answers, in words
+    kind: str  # the kind of its answers, in words
     from_msg: Callable[..., Any]  # makes an answer of a response
     show: Callable[..., None]  # draws an answer
 
@@ -97,7 +97,7 @@ class Visualizer(Node):
         Args:
             strict: let errors in drawing raise, instead of telling each kind once.
             server_wait: s, how long to wait for the server before listening to states.
-            node_options: of `rclpy.node.Node`.
+            node_options: options of `rclpy.node.Node`.
 
         Raises:
             ConfigurationError: a parameter is missing, unknown or not allowed.

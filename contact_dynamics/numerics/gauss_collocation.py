@@ -77,7 +77,7 @@ class Collocation:
 
     def integrals(self, s: FloatArray) -> FloatArray:
         """Return the integrals from 0 to s, (n,), of the points' Lagrange polynomials, (n, count)."""
-        # of Legendre's P_k: (P_k+1 - P_k-1) / (2 k + 1), zero at -1
+        # the integral of Legendre's P_k is (P_k+1 - P_k-1) / (2 k + 1), zero at -1
         P = np.polynomial.legendre.legvander(2.0 * s - 1.0, self.count)
         k = np.arange(1, self.count)
         of_P = np.column_stack([2.0 * s, (P[:, 2:] - P[:, :-2]) / (2 * k + 1)])

@@ -50,7 +50,7 @@ class BagFile:
         self._end_ns = opened_ns
         self._opened_ns = opened_ns
         self._counts: dict[str, int] = {}  # messages given, by topic
-        self._safe_counts: dict[str, int] = {}  # of which in the file
+        self._safe_counts: dict[str, int] = {}  # messages in the file
         self._channels: dict[str, int] = {}
         self._schemas: dict[str, int] = {}
         self._file = AppendFile(path)

@@ -27,10 +27,10 @@ class LogLimits:
 
     Attributes:
         compression: How chunks are packed.
-        file_bytes: A file that has this size is finished, and another one begins. None: no limit.
-        file_seconds: s. The same for the time that a file spans. None: no limit.
+        file_bytes: A file that has this size is finished, and another one begins. None means no limit.
+        file_seconds: s. The same for the time that a file spans. None means no limit.
         kept_bytes: The oldest files are deleted, so that all files together stay below this size. It has room
-            for two files of ``file_bytes`` at least. None: no file is deleted.
+            for two files of ``file_bytes`` at least. None means that no file is deleted.
 
     Raises:
         InvalidFieldError: a limit is too small, or ``kept_bytes`` is given without ``file_bytes``.

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from typing import BinaryIO
 
 MAGIC: Final = b"\x89MCAP0\r\n"
-HEAD: Final = struct.Struct("<BQ")  # of a record: its kind, and the length of what follows
+HEAD: Final = struct.Struct("<BQ")  # the head of a record: its kind, and the length of what follows
 WINDOW: Final = 1024 * 1024  # bytes looked through at once
 
 _LONGEST_CONTENT: Final = 16 * 1024 * 1024  # bytes, of a record that is neither chunk, message nor attachment

@@ -13,8 +13,8 @@ from contact_dynamics.recording.mcap_file import HEAD, MAGIC, McapFile, demand, 
 
 _FOOTER: Final = struct.Struct("<BQQQI")  # head, start of the summary and of its offsets, checksum
 _CHECKSUM_BYTES: Final = 4
-_INDEX_BYTES: Final = 15  # of a message index beside its entries, with its head
-_ENTRY_BYTES: Final = 16  # of an entry, which is one message's
+_INDEX_BYTES: Final = 15  # bytes of a message index beside its entries, with its head
+_ENTRY_BYTES: Final = 16  # bytes of an entry, which belongs to one message
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

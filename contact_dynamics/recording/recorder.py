@@ -99,7 +99,7 @@ class Recorder:
         self._wake = threading.Event()
         self._settled = threading.Condition(self._lock)
         self._asked_to_settle = False
-        self._on_disk = 0  # of the messages given, as many are on the disk itself, or lost
+        self._on_disk = 0  # number of the messages given that are on the disk itself, or lost
         self._thread = threading.Thread(target=self._run, name="contact_dynamics log", daemon=True)
         self._thread.start()
 

@@ -61,7 +61,7 @@ def rotation_vectors(q: FloatArray, q_from: FloatArray) -> FloatArray:
     """
     q_from = np.broadcast_to(q_from, q.shape)
     u, w, u_from, w_from = q[:, :3], q[:, 3:], q_from[:, :3], q_from[:, 3:]
-    vector = w_from * u - w * u_from - np.cross(u, u_from)  # of q times the conjugate of q_from
+    vector = w_from * u - w * u_from - np.cross(u, u_from)  # the product of q and the conjugate of q_from
     scalar = np.einsum("ij,ij->i", q, q_from)
     sine = np.sqrt(np.einsum("ij,ij->i", vector, vector))
     angle = 2.0 * np.arctan2(sine, np.abs(scalar))

@@ -70,7 +70,7 @@ def closest_points(features: Features, points: FloatArray) -> FloatArray:
     normals = np.cross(b - a, c - a)
     sizes = np.einsum("ij,ij->i", normals, normals)
     p = points[:, None]
-    with np.errstate(divide="ignore", invalid="ignore"):  # of slivers only the sides count
+    with np.errstate(divide="ignore", invalid="ignore"):  # a sliver counts with its sides only
         u = np.einsum("nti,ti->nt", np.cross(b - p, c - p), normals) / sizes
         v = np.einsum("nti,ti->nt", np.cross(c - p, a - p), normals) / sizes
         inside = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0)

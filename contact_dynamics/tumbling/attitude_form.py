@@ -147,7 +147,7 @@ def bumps(xi: Any, eta: Any, peaks: tuple[Any, Any], *, functions: ModuleType = 
     steepness = math.pi**2 / h
     g = functions.exp(-steepness)
     A_cos, A_sin, B_cos, B_sin = _bump_phases(mu, functions)
-    weights = (2.0, 2.0 * g, 2.0 * g**3)  # of the pairs of bumps, in the middle of a flip
+    weights = (2.0, 2.0 * g, 2.0 * g**3)  # the values of the pairs of bumps in the middle of a flip
     A_0 = sum(weight * cos for weight, cos in zip(weights, A_cos, strict=True))
     B_0 = sum(weight * cos for weight, cos in zip(weights, B_cos, strict=True))
     size = A_0**2 + B_0**2

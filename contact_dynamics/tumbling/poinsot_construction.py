@@ -136,7 +136,7 @@ def sensitivity(motion: FreeMotion) -> float:
     excess = c2 * gap31  # L^2 - 2 T I_1
     m_T = 2.0 * gap31 * gap21 / (excess * excess * gap32)
     K_m = average_over_period(math.sqrt(m1), 1.0, 1.0, 0.0, numbers=DOUBLES)[1] / (2.0 * m1)
-    nu_T = -moments[0] / excess - K_m * m_T  # of log nu, as is the next
+    nu_T = -moments[0] / excess - K_m * m_T  # the derivative of log nu, as is the next
     nu_L = 1.0 - T2 * nu_T
     P_T = 1.0 + (P - T2) * nu_T
     P_L = P - T2 * P_T
@@ -145,7 +145,7 @@ def sensitivity(motion: FreeMotion) -> float:
     axes = [[float(x) for x in axis] for axis in rotation.axes_B]
     x, y, z, w = motion.state.q_WB.tolist()
     w_1, w_2, w_3 = rotated((-x, -y, -z, w), motion.state.w_WB_W.tolist())  # body axes
-    aa = ab = bb = 0.0  # of the gradients over w in P, of the phases' rates
+    aa = ab = bb = 0.0  # the matrix of the gradients over w in P of the phases' rates
     for moment, (x, y, z) in zip(moments, axes, strict=True):
         T_w = moment * (x * w_1 + y * w_2 + z * w_3) / rate_unit
         L_w = moment * T_w

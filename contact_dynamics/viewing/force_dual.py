@@ -53,7 +53,7 @@ def draw_force_dual(
         contacts: all contacts, in the order of the mode's letters.
         chart: how much of the plane to show.
         outlines: strips, (k, 2) each, m from the centre of mass, drawn below: the body, walls.
-        color: of the mode's wrenches, as `color_of_modes` has it in the map.
+        color: the colour of the mode's wrenches, as `color_of_modes` has it in the map.
         entity: where the picture is put.
     """
     regions = mode_regions([one], chart)

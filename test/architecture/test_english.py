@@ -1,7 +1,8 @@
-"""How texts in the sources begin, and what they name.
+"""Habits of our texts that are hard to read, as far as a program can see them, and what texts name.
 
-No text begins with "Of" or "Likewise", which says nothing without the text before it. What a docstring or a
-comment of the package names in backticks exists.
+No text begins with "Of", and none says "likewise": both say nothing without the text before them. No text has
+a telegram such as "None: not asked for" in the place of a sentence. What a docstring or a comment of the
+package names in backticks exists. Ruff sees to the first word of functions' docstrings (D401).
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import io
 import re
 import tokenize
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -31,7 +33,13 @@ COMMENTED = sorted(
 INTERFACES = sorted((ROOT / "contact_dynamics_interfaces").glob("*/*.[ms]*"))
 PACKAGE = [path for path in PYTHON if "contact_dynamics" in path.relative_to(ROOT).parts[:1]]
 NAMED = re.compile(r"(?<!`)`([A-Za-z_]\w*(?:\.\w+)*)`(?!`)")
-DANGLING = re.compile(r"(Of|Likewise)\b")
+DANGLING = re.compile(r"[Oo]f\b|[Ll]ikewise\b")
+LIKEWISE = re.compile(r"\b[Ll]ikewise\b")
+TELEGRAM = re.compile(
+    r"(?:^|[.;] |\()((?:None|Zero|Empty|True|False|NaN|Infinite|Nothing|none|zero|empty)(?: or \w+)?: )",
+    re.MULTILINE,
+)
+"""A value and a colon where a sentence begins. Fields are documented as `name: text`, by no such name."""
 FIELD = re.compile(r"^\s+\w+: (.*)$", re.MULTILINE)
 """An entry of an `Attributes` or `Args` section."""
 
@@ -66,11 +74,31 @@ def texts_of_comments(source: str) -> Iterator[str]:
     yield from comment_blocks([(i, line.split("#", 1)[1].lstrip("# ")) for i, line in lines if "#" in line])
 
 
+@cache
+def texts_of(path: Path) -> list[str]:
+    source = path.read_text(encoding="utf-8")
+    return list(texts_of_python(source) if path.suffix == ".py" else texts_of_comments(source))
+
+
 @pytest.mark.parametrize("path", [*PYTHON, *COMMENTED], ids=lambda path: str(path.relative_to(ROOT)))
 def test_no_text_begins_with_a_dangling_word(path: Path) -> None:
-    source = path.read_text(encoding="utf-8")
-    texts = texts_of_python(source) if path.suffix == ".py" else texts_of_comments(source)
-    assert [text.splitlines()[0] for text in texts if DANGLING.match(text)] == []
+    assert [text.splitlines()[0] for text in texts_of(path) if DANGLING.match(text)] == []
+
+
+@pytest.mark.parametrize("path", [*PYTHON, *COMMENTED], ids=lambda path: str(path.relative_to(ROOT)))
+def test_no_text_is_a_telegram(path: Path) -> None:
+    texts = texts_of(path)
+    assert [found for text in texts for found in (*TELEGRAM.findall(text), *LIKEWISE.findall(text))] == []
+
+
+@pytest.mark.parametrize("text", ["m. None: no limit.", "How many. Zero or less: all.", "A set (None: all)."])
+def test_a_telegram_is_seen(text: str) -> None:
+    assert TELEGRAM.search(text)
+
+
+@pytest.mark.parametrize("text", ["None means no limit.", "Whether it holds: then it ends.", "x or None."])
+def test_a_sentence_is_no_telegram(text: str) -> None:
+    assert not TELEGRAM.search(text)
 
 
 @pytest.mark.parametrize(
@@ -79,6 +107,7 @@ def test_no_text_begins_with_a_dangling_word(path: Path) -> None:
         '"""Of contacts."""',
         'X = 1\n"""Likewise."""',
         "# Of the body.",
+        "x = 1  # of the body",
         '"""A.\n\n    Attributes:\n        a: Of b.\n"""',
     ],
 )
@@ -113,5 +142,5 @@ def names() -> set[str]:
 
 @pytest.mark.parametrize("path", PACKAGE, ids=lambda path: str(path.relative_to(ROOT)))
 def test_what_a_text_names_exists(path: Path, names: set[str]) -> None:
-    texts = " ".join(texts_of_python(path.read_text(encoding="utf-8")))
+    texts = " ".join(texts_of(path))
     assert [name for name in NAMED.findall(texts) if not names.issuperset(name.split("."))] == []

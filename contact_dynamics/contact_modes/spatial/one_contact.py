@@ -112,7 +112,7 @@ def _roots(function: Callable[[float], float]) -> list[float]:
     angles = 2.0 * math.pi * np.arange(5) / 5.0
     samples = np.array([function(angle) for angle in angles.tolist()])
     terms: NDArray[np.complex128] = np.asarray(np.fft.fft(samples) / 5.0, dtype=np.complex128)
-    coefficients = terms[[2, 1, 0, 4, 3]]  # of z^4 ... z^0, z = exp(i angle)
+    coefficients = terms[[2, 1, 0, 4, 3]]  # coefficients of z^4 ... z^0, z = exp(i angle)
     largest = float(np.abs(coefficients).max())
     if largest <= ONE_CONTACT_ZERO**2:
         return []

@@ -203,7 +203,7 @@ def _compress(seen: _Contacts, start: FloatArray, least: FloatArray) -> _Impulse
     M[n : n * (d + 1), n * (d + 1) :] = group
     M[n * (d + 1) :, :n] = np.diag(seen.frictions)
     M[n * (d + 1) :, n : n * (d + 1)] = -group.T
-    scale = seen.mass * seen.speed  # of impulses, so that all unknowns are of the order of one
+    scale = seen.mass * seen.speed  # the scale of impulses, by which all unknowns are of the order of one
     given = least / scale
     q = np.concatenate(
         [

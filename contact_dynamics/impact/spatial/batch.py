@@ -126,7 +126,7 @@ class SpatialImpacts(ManyEnergies):
         velocities_after_W: (N, 3), m/s, velocities of the contacts afterwards, relative to what they touch.
         other_v_WB_W: (N, 3), m/s, velocities of the second bodies' centres of mass, or None if the bodies
             strike the fixed world.
-        other_w_WB_W: (N, 3), rad/s, angular velocities of the second bodies, or None likewise.
+        other_w_WB_W: (N, 3), rad/s, angular velocities of the second bodies, or None if the world is struck.
     """
 
     restitution_laws: NDArray[np.int64]

@@ -131,7 +131,7 @@ class MassDistribution(Record):
         axis = check_unit("axis", axis_F, 3)
         about_center = max(
             float(axis @ self.I_B @ axis), 0.0
-        )  # of a line about itself: 0, or rounding below it
+        )  # a line about itself has 0, or rounding below it
         if p_FQ_F is None:
             return about_center
         lever = np.cross(axis, self.p_FB_F - check_array("point", p_FQ_F, (3,)))

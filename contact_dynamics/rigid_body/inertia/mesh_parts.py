@@ -138,7 +138,7 @@ def _point_inside(own: FloatArray, near: FloatArray, inwards: float) -> FloatArr
             & (distance > touching)
         )
         met &= np.isfinite(distance)
-    gap = float(distance[met].min()) if met.any() else touching  # none: the part is thinner than that
+    gap = float(distance[met].min()) if met.any() else touching  # a thinner part has none
     point: FloatArray = start + 0.5 * gap * ray
     return point
 
