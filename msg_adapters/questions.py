@@ -257,7 +257,7 @@ def _is_described(inertia: Inertia) -> bool:
 
 
 def _stamp_ns(request: _SubjectRequest) -> int | None:
-    """Return the time of the published state that a request names; None: it does not name a time."""
+    """Return the time of the published state that a request names, or None if it names none."""
     if request.state_source == request.STATE_AT_STAMP:
         return stamp_ns_from_msg(request.stamp)
     if request.state_source not in {request.STATE_NEWEST, request.STATE_EXPLICIT}:
@@ -276,7 +276,7 @@ def _published(stamp_ns: int | None, fit_window: float = 0.0) -> PublishedState:
 
 
 def _optional(field: str, numbers: Sequence[Number]) -> Number | None:
-    """Return the number of a field that may be left out; None: it is."""
+    """Return the number of a field that may be left out, or None if it is."""
     if len(numbers) > 1:
         raise InvalidFieldError(field, f"{len(numbers)} numbers", "one, or none")
     return numbers[0] if numbers else None

@@ -98,7 +98,7 @@ class BagReader:
         has the order in which everything happened.
 
         Args:
-            topics: those to read; None: all.
+            topics: the topics to read. None means all.
             start_ns: messages are left out whose log time is earlier, ns since the epoch. Where a file has
                 an index, only the chunks that it names are read.
             end_ns: messages are left out whose log time is this or later.

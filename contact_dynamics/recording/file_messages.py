@@ -30,7 +30,7 @@ class StoredMessage(NamedTuple):
 
 
 class Span(NamedTuple):
-    """A stretch of log times, ns since the epoch. None: no end on that side."""
+    """A stretch of log times, ns since the epoch. None means no end on that side."""
 
     start_ns: int | None = None  # the first that belongs to it
     end_ns: int | None = None  # the first that does not
