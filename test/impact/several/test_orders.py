@@ -242,7 +242,11 @@ def test_orders_matter_where_contacts_couple() -> None:
     assert outcomes.spread.max() > 0.1
     few = outcomes_over_orders(CUBE, falling(0.05, [0.5, 0.0, -1.0]), contacts, most_orders=2)
     assert not few.complete
-    assert len(few.orders) <= 3  # the two, and the one of `several_impact`
+    fastest = several_impact(CUBE, falling(0.05, [0.5, 0.0, -1.0]), contacts)
+    assert few.orders == (
+        *outcomes.orders[:2],
+        fastest.order,
+    )  # of two priorities, and the law's
 
 
 def test_refusals() -> None:
