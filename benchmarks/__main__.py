@@ -11,7 +11,7 @@ from benchmarks._quotes import print_beside, write, write_documents
 
 
 def main() -> int:
-    """Run the benchmarks that are asked for; return the exit code."""
+    """Run the benchmarks that are asked for, and return the exit code."""
     here = Path(__file__).parent
     names = sorted(path.stem for path in here.glob("*.py") if not path.stem.startswith("_"))
     parser = argparse.ArgumentParser(

@@ -100,7 +100,7 @@ def run() -> None:
 def _predictions(
     body: MassProperties, centre: FloatArray, training: Sequence[Strike], held_out: Sequence[Strike]
 ) -> tuple[float, float]:
-    """Print the errors of each law; return mu and e as fitted under the first."""
+    """Print the errors of each law, and return mu and e as fitted under the first."""
     nominal = (BOARD.friction, BOARD.restitution)
     fitted = [
         print_both(law.name.lower(), training, held_out, nominal, _rigid(body, law)) for law in RestitutionLaw

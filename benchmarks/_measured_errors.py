@@ -80,7 +80,7 @@ def print_row(
     *,
     quoted: str = "",
 ) -> None:
-    """Print the errors of one prediction; with ``quoted``, offer their means to documents by that name."""
+    """Print the errors of one prediction. With ``quoted``, offer their means to documents by that name."""
     errors = np.array([predict(case) - case.after for case in cases])
     text = f"{name:>28} "
     text += " ".join(f"{x:6.3f}" if isinstance(x, float) else f"{x:>6}" for x in (friction, restitution))

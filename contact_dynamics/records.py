@@ -35,7 +35,8 @@ class NamedInt(enum.IntEnum):
 
 
 _LINE: Final = 100
-"""Letters of a value in a list that is shown in one line; a longer one has a line for each field."""
+"""Up to this number of letters, a value in a list is shown in one line. A longer one has a line for each
+field."""
 
 
 class Record:

@@ -31,7 +31,7 @@ def check_rows(
     allowed: str = "",
     test: Callable[[FloatArray], NDArray[np.bool_]] | None = None,
 ) -> FloatArray:
-    """Return ``value`` as finite numbers, (N, *shape); a single case becomes N = 1.
+    """Return ``value`` as finite numbers, (N, *shape). For a single case N is 1.
 
     Args:
         field: The name of the value in an error.

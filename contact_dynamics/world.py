@@ -142,7 +142,7 @@ class Surface(Record):
         object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
 
     def gaps(self, p_WP_W: FloatArray) -> FloatArray:
-        """Return the heights, (...), m, of points, (..., 3), above the surface; negative below it."""
+        """Return the heights, (...), m, of points, (..., 3), above the surface, negative below it."""
         heights: FloatArray = (p_WP_W - self.p_WS_W) @ self.normal_W
         return heights
 

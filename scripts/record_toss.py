@@ -2,9 +2,9 @@
 # ruff: noqa: T201
 """Make the recording of a tossed brick that the demo plays: contact_dynamics/measured/tosses/brick.csv.
 
-The motion comes from MuJoCo, so that a prediction of ours is compared with an engine that is not ours; the
-measurement from a model of optical motion capture. `pip install mujoco` first: it is needed for this script
-and its test alone.
+The motion comes from MuJoCo, so that a prediction of ours is compared with an engine that is not ours. The
+measurement comes from a model of optical motion capture. `pip install mujoco` first: it is needed for this
+script and its test alone.
 
     python scripts/record_toss.py [--output FILE] [--truth FILE]
 
@@ -35,7 +35,7 @@ noise complexity in an optical motion capture facility", Sensors 19 (2019) 4435,
 of which only the white one is modelled here. Markers 0.1 m apart, each off by 0.2 mm, give an orientation
 that is off by 2 mrad, or 0.1 degrees. Not modelled: calibration errors, lost markers, latency.
 
-The velocities are `causal_velocities` of the rounded noisy poses; the tracker saw the brick for one window
+The velocities are `causal_velocities` of the rounded noisy poses. The tracker saw the brick for one window
 before the first row.
 """
 
@@ -154,7 +154,7 @@ def measure(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
     n = len(motion.times)
     p_W = motion.p_WB_W + POSITION_NOISE * random.standard_normal((n, 3))
     q = turned(motion.q_WB, ORIENTATION_NOISE * random.standard_normal((n, 3)))
-    # q and -q are the same orientation; a continuous sign is what trackers publish
+    # q and -q are the same orientation, and trackers publish a continuous sign
     flips = np.cumprod(np.where(np.einsum("ij,ij->i", q[1:], q[:-1]) < 0.0, -1.0, 1.0))
     q[1:] *= flips[:, None]
     return p_W.round(DECIMALS[1]), q.round(DECIMALS[4])
@@ -232,7 +232,7 @@ of each coordinate. Restitution: of a point mass against the floor.
 
 
 def main(arguments: list[str]) -> int:
-    """Write the recording, and the truth where asked; print what happens in it."""
+    """Write the recording, and the truth if asked, and print what happens in it."""
     parser = argparse.ArgumentParser(description="Make the recording of a tossed brick with MuJoCo.")
     parser.add_argument(
         "--output", type=Path, default=DEFAULT_RECORDING, help="the recording (default: the package's own)"

@@ -44,8 +44,8 @@ class Contact(Record):
         p_WC_W: (3,), m, the contact point, world.
         normal_W: (3,), unit, into the body, world axes.
         friction: Coulomb's mu, >= 0.
-        restitution: Coefficient e, in [0, 1]; contact modes do not use it.
-        surface: The surface that it touches; empty if not known.
+        restitution: Coefficient e, in [0, 1]. Contact modes do not use it.
+        surface: The surface that it touches, or empty if it is not known.
         body_curvatures: Curvatures of the body there, one row, or None if a point of the body touches.
         surface_curvatures: Curvatures of the world there, one row, or None if a flat is touched.
 
@@ -95,8 +95,8 @@ class ContactSet(Record):
         p_WC_W: (n, 3), m, contact points, world.
         normals_W: (n, 3), unit, into the body, world axes.
         frictions: (n,), Coulomb's mu, >= 0.
-        restitutions: (n,), e, in [0, 1]; contact modes do not use them.
-        surfaces: The surface that each contact touches; empty if not known.
+        restitutions: (n,), e, in [0, 1]. Contact modes do not use them.
+        surfaces: The surface that each contact touches, or empty if it is not known.
         body_curvatures: Curvatures of the body at each contact, or None if points of the body touch.
         surface_curvatures: Curvatures of the world at each contact, or None if flats are touched.
 

@@ -57,9 +57,9 @@ class Curvatures(Record):
     """Principal curvatures of one side, body or surface, of n contacts. They are positive where convex.
 
     Attributes:
-        along: (n,), 1/m, along the direction; inf at a corner or across the edge of a blade.
+        along: (n,), 1/m, along the direction. It is inf at a corner or across the edge of a blade.
         across: (n,), 1/m, along the tangent at right angles to the direction.
-        directions_W: (n, 3), unit tangents, world axes; zero where both curvatures are equal.
+        directions_W: (n, 3), unit tangents, world axes, or zero where both curvatures are equal.
 
     Raises:
         InvalidFieldError: arrays have unequal lengths, or a number is NaN or minus infinity.

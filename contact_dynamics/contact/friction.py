@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 
 MOST_FACETS: Final = 1000
-"""Largest number of edges of a friction pyramid. It leaves out 5e-6 of friction; more only take memory."""
+"""Largest number of edges of a friction pyramid. It leaves out 5e-6 of friction, and more edges only take
+memory."""
 
 
 def check_facets(facets: int) -> int:

@@ -26,7 +26,7 @@ def velocity_accelerations(contacts: ContactSet, velocities_W: FloatArray, w_W: 
 
     Args:
         contacts: n contacts.
-        velocities_W: (n, 3), m/s, of the body's points there, world axes; normal parts are not used.
+        velocities_W: (n, 3), m/s, of the body's points there, world axes. Normal parts are not used.
         w_W: (3,), rad/s, angular velocity of the body, world axes.
     """
     added = np.zeros((len(contacts), 3))

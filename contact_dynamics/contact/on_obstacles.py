@@ -45,7 +45,7 @@ class Site(NamedTuple):
     """Where a body is nearest to an obstacle, or deepest in it.
 
     Attributes:
-        gap: Distance along the normal, m; negative where they penetrate.
+        gap: Distance along the normal, m. It is negative where they penetrate.
         normal_W: (3,), unit, out of the obstacle, into the body.
         level: The obstacle's furthest extent along the normal, m: its points have n . p <= level.
     """

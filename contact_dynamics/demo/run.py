@@ -44,7 +44,7 @@ _DRAIN_S: Final = 0.5  # for what is still on its way to log and picture when th
 
 
 def main(arguments: list[str]) -> int:
-    """Run the demo; return the exit code."""
+    """Run the demo, and return the exit code."""
     given = demo_parser().parse_args(arguments)
     try:
         toss = read_toss(given.toss)

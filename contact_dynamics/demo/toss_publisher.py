@@ -75,7 +75,7 @@ class TossPublisher(Node):
 
 
 def main(arguments: list[str]) -> int:
-    """Publish one toss; return the exit code."""
+    """Publish one toss, and return the exit code."""
     given = toss_publisher_parser().parse_args(arguments)
     try:
         toss = read_toss(given.toss)

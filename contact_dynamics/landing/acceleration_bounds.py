@@ -46,7 +46,7 @@ class Bound(NamedTuple):
 
     Attributes:
         until: End of the bound, s, later than the time asked for.
-        fall: Largest acceleration of the centre of mass against the normal, m/s^2; may be negative.
+        fall: Largest acceleration of the centre of mass against the normal, m/s^2. It may be negative.
         turning: Largest acceleration of a point relative to it, for each metre of distance, 1/s^2.
     """
 

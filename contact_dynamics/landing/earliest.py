@@ -30,7 +30,7 @@ class Landing(Record):
     """The end of a flight: the body touches.
 
     Attributes:
-        seconds: Time of the landing, s after the state's stamp; 0 if the body touches already.
+        seconds: Time of the landing, s after the state's stamp. It is 0 if the body touches already.
         state: The state of the body at that time.
         contacts: The contacts that touch and do not leave. An edge or a face has more than one.
         velocities_W: (n, 3), m/s, velocities of the body's points at the contacts, world axes.

@@ -76,8 +76,8 @@ def first_contact(
 
     Args:
         motion: the flight, in closed form or integrated (`motion_of`).
-        shape_B: the shape, body axes, from the centre of mass; or (k, 3), m, the corners of a polyhedron, or
-            one point of the body.
+        shape_B: the shape in body axes, from the centre of mass. It may also be the corners of a polyhedron,
+            (k, 3), m, or one point of the body.
         p_WS_W: (3,), m, a point of the plane, world.
         normal_W: (3,), unit normal into the free side, world axes.
         horizon: s after the state's stamp, how far to search.

@@ -69,7 +69,7 @@ FLIGHT_BETWEEN: Final = 10
 """Least number of frames between the first strike and the second. Eight in flight give the velocity."""
 
 STRIKE_HEIGHT: Final = 0.01
-"""m. A corner that turns back below this height struck the board; above it, the cube's rotation turned it."""
+"""m. A corner that turns back below this height struck the board. Above it, the cube's rotation turned it."""
 
 RISE: Final = 0.003
 """m. Between two strikes the cube flew if its lowest corner rose by this much, far above its jitter."""

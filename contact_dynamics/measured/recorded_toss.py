@@ -3,8 +3,8 @@
 Velocities are estimates from past poses alone (`velocity_estimate`), by the same method for every source. So
 a prediction from them was possible at that moment.
 
-Assumptions: one body, a box whose tracked frame has its origin at the centre of mass; one surface; world z
-up.
+It is assumed that there is one body and one surface, that z is up in the world, and that the body is a box
+whose tracked frame has its origin at the centre of mass.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Toss(Record):
 
     Attributes:
         source: Where the numbers come from, in words.
-        body: Mass properties and corners; its published frame is B itself.
+        body: Mass properties and corners. Its published frame is B itself.
         box_size: (3,), m, full side lengths along the body's axes.
         surface: The surface on which it falls, with friction and restitution.
         gravity_W: (3,), m/s^2, world axes.
@@ -68,7 +68,7 @@ class Toss(Record):
     w_WB_W: FloatArray
 
     def __post_init__(self) -> None:
-        """Check every field; the quaternions are normalised to rounding."""
+        """Check every field, and normalise the quaternions to rounding."""
         n = len(self.times)
         object.__setattr__(self, "box_size", check_array("box_size", self.box_size, (3,)))
         object.__setattr__(self, "gravity_W", check_array("gravity", self.gravity_W, (3,)))

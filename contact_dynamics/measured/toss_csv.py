@@ -49,7 +49,7 @@ _HEADER_LINE: Final = re.compile(r"# (\w+)(?: \[([^\]]*)\])?: (.*)")
 
 
 def write_toss_csv(path: Path, toss: Toss, *, prose: Sequence[str] = ()) -> None:
-    """Write ``toss`` to ``path``; the lines of ``prose`` become comments at the top."""
+    """Write ``toss`` to ``path``. The lines of ``prose`` become comments at the top."""
     header: dict[str, Any] = {
         "source": toss.source,
         "body": toss.body.name,

@@ -69,7 +69,7 @@ class CarriedCovariance(Record):
 
     Attributes:
         seconds: (n,), s after the stamp of the state that the motion began with.
-        covariances: (n, 12, 12), in the module's order; NaN where no double holds it.
+        covariances: (n, 12, 12), in the module's order, with NaN where no double holds the number.
         orientation_deviations: (n,), rad, largest standard deviation of orientation about any axis.
         trusted: (n,), whether that deviation has been below TRUSTED_DEVIATION all the way from time 0.
         method: How the covariance was carried along.
@@ -116,7 +116,8 @@ def covariance_along(
     set-up, for forced ones the integration.
 
     Raises:
-        InvalidFieldError: as `propagate_covariance`; or fewer than `FEWEST_SAMPLES` samples.
+        InvalidFieldError: an error of `propagate_covariance`, or there are fewer than `FEWEST_SAMPLES`
+            samples.
     """
     check_choice("method", method, PropagationMethod)
     start = check_covariance("covariance", covariance)

@@ -140,7 +140,7 @@ def _seen_from_the_body(motion: FreeMotion, times: FloatArray) -> FloatArray:
 
 def _of_steady_spin(K: FloatArray, times: FloatArray) -> FloatArray:
     """Return exp(K t), (n, 3, 3), for K^3 = -nu^2 K."""
-    square = -0.5 * float(np.trace(K @ K))  # nu^2; negative about the middle axis
+    square = -0.5 * float(np.trace(K @ K))  # nu^2, which is negative about the middle axis
     nu = math.sqrt(abs(square))
     angle = nu * times
     if nu == 0.0:

@@ -2,7 +2,7 @@
 
 rclpy's own signal handlers end the context at once, so that messages which have come already cannot be taken
 any more, and Python's raise `KeyboardInterrupt` wherever the process happens to be, also while it closes its
-files. Here the signals that end a process set an event, however often they come; the node then stops serving,
+files. Here the signals that end a process set an event, however often they come. The node then stops serving,
 takes what has come, and closes.
 """
 
@@ -45,18 +45,18 @@ class RunnableNode(Protocol):
         """End a service, as `rclpy.node.Node` does."""
 
     def close(self) -> bool:
-        """Finish files and sinks; return whether all of them are."""
+        """Finish files and sinks, and return whether all of them are finished."""
 
 
 def run_node(
     make_node: Callable[[], RunnableNode], *, verb: str, parser: argparse.ArgumentParser, arguments: list[str]
 ) -> int:
-    """Run a node until it is told to stop; return the exit code.
+    """Run a node until it is told to stop, and return the exit code.
 
-    That is 0; 1 where something could not be finished; or 2 for a configuration that is refused.
+    The code is 0, or 1 if something could not be finished, or 2 for a configuration that is refused.
 
     Args:
-        make_node: the node's class; it may raise `ContactDynamicsError` or `OSError`.
+        make_node: the node's class, which may raise `ContactDynamicsError` or `OSError`.
         verb: the verb of the command line that the node is.
         parser: the parser of the verb's arguments.
         arguments: all that follows the verb.
@@ -109,7 +109,7 @@ def _run(make_node: Callable[[], RunnableNode], verb: str, stop: threading.Event
 def _spin(node: RunnableNode, stop: threading.Event) -> None:
     executor = EventsExecutor()
     executor.add_node(node)
-    gc.freeze()  # what is there by now stays; to look through it for garbage would stall an answer for 30 ms
+    gc.freeze()  # the objects made so far stay, and to search them for garbage stalls an answer for 30 ms
     while not stop.is_set():
         executor.spin_once(timeout_sec=_SPIN_S)
     for service in list(node.services):

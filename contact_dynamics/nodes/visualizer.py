@@ -158,7 +158,7 @@ class Visualizer(Node):
             self._guarded("states", partial(self._picture.add_states, body_name, states))
 
     def close(self) -> bool:
-        """Draw what is left and close the sinks; return whether they took all."""
+        """Draw what is left and close the sinks. Return whether they took everything."""
         self.draw_states()
         if self._sinks.viewer is ViewerMode.NONE:
             self._guarded("the last look", self._picture.frame_all)
@@ -281,7 +281,7 @@ def _make_visualizer() -> Visualizer:
 
 
 def main(arguments: list[str]) -> int:
-    """Run the visualizer until it is told to stop, or has drawn a log; return the exit code."""
+    """Run the visualizer until it is told to stop or has drawn a log, and return the exit code."""
     exit_code = run_node(
         _make_visualizer,
         verb="visualizer",

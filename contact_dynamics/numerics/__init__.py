@@ -1,1 +1,1 @@
-"""Known numerical methods that the physics uses; no physics."""
+"""Known numerical methods that the physics uses. They contain no physics."""

@@ -130,5 +130,5 @@ ARRAYS: Final = Arithmetic(
 
 
 def within(context: Context | None) -> AbstractContextManager[object]:
-    """Return a block in which decimals have a context's digits; None for doubles, which need none."""
+    """Return a block in which decimals have a context's digits. For doubles the context is None."""
     return contextlib.nullcontext() if context is None else localcontext(context)

@@ -19,10 +19,10 @@ _TRIALS: Final = 40
 
 
 class Hull(NamedTuple):
-    """The convex hull of points in a space of d dimensions; indices are those of the points.
+    """The convex hull of points in a space of d dimensions. Indices are those of the points.
 
     Attributes:
-        vertices: (k,), the extreme points; counterclockwise in the plane.
+        vertices: (k,), the extreme points, in the plane counterclockwise.
         simplices: (s, d), the simplices of the surface, in any orientation.
         neighbors: (s, d), the neighbour of each simplex across from each of its points.
         equations: (s, d + 1), outward unit normals, then offsets: normal . x + offset <= 0 within.

@@ -38,12 +38,12 @@ def power(x: Real, exponent: float) -> Real:
 
 
 def larger(x: Real, y: Real | float) -> Real:
-    """Return the larger of two; ``y`` may be a float where ``x`` is an array."""
+    """Return the larger of two. ``y`` may be a float where ``x`` is an array."""
     return max(x, y) if isinstance(x, float) else np.maximum(x, y)
 
 
 def smaller(x: Real, y: Real | float) -> Real:
-    """Return the smaller of two; ``y`` may be a float where ``x`` is an array."""
+    """Return the smaller of two. ``y`` may be a float where ``x`` is an array."""
     return min(x, y) if isinstance(x, float) else np.minimum(x, y)
 
 

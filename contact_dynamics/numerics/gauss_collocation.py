@@ -45,7 +45,7 @@ class Collocation:
     def solutions(self, K: FloatArray, edges: FloatArray, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return Y of Y' = K Y, Y = 1 at the first edge: at edges (n + 1, m, m), and at times (k, m, m).
 
-        ``K`` are the coefficients at `nodes_of` the edges, (n, count, m, m); the edges ascend or descend, and
+        ``K`` are the coefficients at `nodes_of` the edges, (n, count, m, m). The edges ascend or descend, and
         the times lie between them.
         """
         lengths = np.diff(edges)

@@ -61,7 +61,8 @@ def gauss_newton(
     Args:
         model: the start.
         misses_of: a model's weighted residuals, (m,), measured less computed.
-        derivatives_of: how what is computed changes with k parameters, (m, k), weighted alike; m >= k.
+        derivatives_of: the derivatives of what is computed by k parameters, (m, k), m >= k, with the same
+            weights.
         moved: a model changed by steps of the parameters, (k,).
         negligible: (m,), changes of what is computed, weighted, that count as none.
     """

@@ -54,7 +54,8 @@ def least_force(columns: Sequence[Vector3], target: Vector3, absent: Sequence[Ve
     Args:
         columns: Unit vectors whose positive combinations hold ``target``.
         target: The sum.
-        absent: Orthonormal directions orthogonal to all columns; the part of ``target`` there is left out.
+        absent: Orthonormal directions orthogonal to all columns. The part of ``target`` along them is left
+            out.
     """
     if not columns:
         return []

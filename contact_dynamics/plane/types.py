@@ -103,7 +103,7 @@ class PlanarContact(Record):
         r: Position of the contact from the centre of mass, m.
         normal: Unit normal into the body.
         friction: Coulomb's mu, >= 0.
-        restitution: Coefficient e, in [0, 1]; contact modes do not use it.
+        restitution: Coefficient e, in [0, 1]. Contact modes do not use it.
         body_curvature: Curvature of the body there, 1/m, positive where convex, inf at a corner.
         surface_curvature: Curvature of the surface there, 1/m, positive where convex, inf at a corner.
 
@@ -178,7 +178,7 @@ def check_vector2(field: str, value: Vector2) -> Vector2:
         x, y = value
     except (TypeError, ValueError):
         raise InvalidFieldError(field, value, "two finite numbers") from None
-    # The common case first; NaN compares as false.
+    # The common case comes first. NaN compares as false.
     if type(x) is float and type(y) is float and abs(x) + abs(y) <= LARGEST_NUMBER:
         return (x, y)
     return (_check_number(field, x), _check_number(field, y))

@@ -1,11 +1,11 @@
 """Questions as Python objects: what is asked, what is known when it is asked, and what the answer says.
 
 State a `TumblingQuestion`, an `ImpactQuestion` or a `ContactModeQuestion`, and `ask` it (`asking`). A
-service's request becomes one of these, and its answer becomes the response; a notebook, a test or a log asks
+service's request becomes one of these, and its answer becomes the response. A notebook, a test or a log asks
 the same question without ROS.
 
 Each kind has a file with its question, its answer and a function ``answer``. `tumbling` says where a free
-body will be (lectures 24, 25). `impact` says which velocities follow (lecture 27); its question is in
+body will be (lectures 24, 25). `impact` says which velocities follow (lecture 27). Its question is in
 `impact_question`, and `which_impact` finds the contacts that it means. `contact_modes` says which contacts
 separate, slide or stay (lecture 26).
 

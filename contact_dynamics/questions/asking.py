@@ -34,8 +34,8 @@ def ask(
             is known but what the question says.
 
     Raises:
-        ContactDynamicsError: something is asked for that is not known, not allowed or not supported; the
-            message says what.
+        ContactDynamicsError: something is asked for that is not known, not allowed or not supported. The
+            message names it.
     """
     if isinstance(question, TumblingQuestion):
         return tumbling.answer(question, knowledge)

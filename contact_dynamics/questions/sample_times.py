@@ -178,11 +178,11 @@ class UntilPlane(AtRate):
 
 
 Sampling: TypeAlias = "AtTimes | AtStamps | AtRate"
-"""When a trajectory is sampled; `UntilContact` and `UntilPlane` are kinds of `AtRate`."""
+"""The ways to sample a trajectory. `UntilContact` and `UntilPlane` are kinds of `AtRate`."""
 
 
 class EventKind(NamedInt):
-    """What ends a trajectory; the numbers are those of the service."""
+    """What ends a trajectory. Messages have the same numbers."""
 
     CONTACT = 1
     """A vertex of the body reached a surface (`UntilContact`)."""
@@ -199,7 +199,7 @@ class Event(Record):
         seconds: s after the state's stamp.
         point_W: (3,), m, the point of the body that arrives, world.
         velocity_W: (3,), m/s, its velocity, world axes.
-        surface: The name of the surface; empty for the plane of the question.
+        surface: The name of the surface, or empty for the plane of the question.
     """
 
     kind: EventKind
@@ -303,7 +303,7 @@ def _check_reach(
 def check_turns(
     field: str, motion: FreeMotion | ForcedMotion, times: FloatArray, most: float, when: str
 ) -> None:
-    """Refuse times, (n,), s, by which a body turns more than ``most``, at its present rate; say why."""
+    """Refuse times, (n,), s, by which a body turns more than ``most`` at its present rate, and say why."""
     w_WB_W = motion.state.w_WB_W
     turns = float(np.abs(times).max(initial=0.0)) * math.sqrt(w_WB_W @ w_WB_W) / (2.0 * math.pi)
     if turns > most:

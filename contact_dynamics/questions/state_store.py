@@ -87,7 +87,7 @@ class StateStore:
     ) -> tuple[BodyState, BodyState | None]:
         """Return the newest state with at most that stamp, and the one after it.
 
-        There is none after it (None) where the stamp is that of the state, or the state is the newest.
+        The one after it is None if the state has that stamp itself, or is the newest.
 
         Raises:
             NoStateError: every state that is kept has a later stamp.

@@ -39,10 +39,11 @@ class BagFile:
         """Create the file, and begin it with the record of the run.
 
         Args:
-            path: where. `FileExistsError` is raised if it is there.
+            path: the path of the file. If it exists, `FileExistsError` is raised.
             run: how the run was made, with the package's version.
             compression: how chunks are packed.
-            opened_ns: now, ns since the epoch: what the file spans before its first message.
+            opened_ns: the present time, ns since the epoch, which is the span of the file before its first
+                message.
         """
         self.path = path
         self.failure: str | None = None
@@ -77,7 +78,7 @@ class BagFile:
 
     @property
     def summary(self) -> FileSummary:
-        """What a death of this process can no longer take."""
+        """The content of the file that a death of this process can no longer take."""
         return FileSummary(
             name=self.path.name,
             # Before the first message the start is when the file was opened, not the end of time as rosbag2
@@ -88,7 +89,7 @@ class BagFile:
         )
 
     def add_topic(self, name: str, definition: TypeDefinition, qos: tuple[str, ...]) -> None:
-        """Write what defines a topic."""
+        """Write the definition of a topic."""
         with self._cut_back_on_failure():
             type_name = definition.type_name
             if type_name not in self._schemas:

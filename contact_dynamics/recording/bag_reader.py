@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.recording.file_messages import StoredMessage
 
-_MOST_TOLD: Final = 5  # places of damage that are told one by one
+_MOST_TOLD: Final = 5  # number of damaged places that are listed one by one
 _NAME: Final = re.compile(r"(_(?P<number>\d+))?(?P<kind>\.mcap|\.db3)(\.zstd|\.zst|\.lz4)?$")
 
 
@@ -45,7 +45,7 @@ class LoggedMessage:
         data: The serialised message (CDR).
         log_time_ns: When the message was received, ns since the epoch.
         publish_time_ns: When its source made it, ns since the epoch.
-        definition: The text of its type in the log, in MCAP's ros2msg form; empty if it has another form.
+        definition: The text of its type in the log, which is empty unless it has MCAP's form ros2msg.
     """
 
     topic: str
@@ -70,7 +70,7 @@ class BagReader:
         """
         path = Path(path)
         self.paths = _files_of(path) if path.is_dir() else [path]
-        self.losses: list[Loss] = []  # what the last reading had to pass over, by then
+        self.losses: list[Loss] = []  # the stretches that the last reading has had to leave out so far
         if not self.paths or not self.paths[0].is_file():
             raise NotALogError(f"{path}: no MCAP file here, and no .db3 file")
 
@@ -99,9 +99,9 @@ class BagReader:
 
         Args:
             topics: the topics to read. None means all.
-            start_ns: messages are left out whose log time is earlier, ns since the epoch. Where a file has
+            start_ns: the earliest log time, ns since the epoch. Earlier messages are left out. If a file has
                 an index, only the chunks that it names are read.
-            end_ns: messages are left out whose log time is this or later.
+            end_ns: the end of the log times, ns. Messages of this time or later are left out.
         """
         span = Span(start_ns, end_ns)
         self.losses = []
@@ -163,7 +163,7 @@ class BagReader:
                 before = len(self.losses)
                 try:
                     yield file
-                finally:  # also where the reading ends early: what was passed over until then
+                finally:  # this happens also if the reading ends early
                     losses = [replace(loss, path=path) for loss in file.losses]
                     if cut is not None:
                         losses.append(
@@ -176,7 +176,7 @@ class BagReader:
 
 
 def _files_of(folder: Path) -> list[Path]:
-    """Return the files of a bag; where a packed one has been unpacked beside, the plain one."""
+    """Return the files of a bag. If a packed file has been unpacked beside it, the plain one is taken."""
     matches = {path: match for path in folder.iterdir() if (match := _NAME.search(path.name)) is not None}
     files = [path for path in matches if path.suffix not in SUFFIXES or path.with_suffix("") not in matches]
     return sorted(files, key=lambda path: (int(matches[path]["number"] or 0), path.name))

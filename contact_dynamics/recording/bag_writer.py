@@ -223,7 +223,7 @@ class BagWriter:
         self._file.finish("\n".join(metadata_lines(self._summary([self._file.summary]))))
 
     def _is_full(self, log_time_ns: int) -> bool:
-        """Tell whether the file has reached its limit, before a message of some time."""
+        """Return whether the file has reached its limit before a message of some time."""
         begun_ns = self._file.start_ns
         if begun_ns is None:
             return False
@@ -234,7 +234,7 @@ class BagWriter:
         return span is not None and log_time_ns - begun_ns >= span * NS_PER_S
 
     def _next_file(self) -> None:
-        """Finish the file, begin another one, and delete the oldest ones where there is a limit."""
+        """Finish the file, begin another one, and delete the oldest ones if there is a limit."""
         self._finish_file()
         file = self._begun_file(self._deleted + len(self._finished) + 1)
         self._finished.append(_Finished(summary=self._file.summary, size=self._file.size))
@@ -244,7 +244,7 @@ class BagWriter:
         self._delete_oldest()
 
     def _begun_file(self, number: int) -> BagFile:
-        """Return another file with all topics; where the disk refuses, nothing of it is left."""
+        """Return another file with all topics. If the disk refuses, nothing of the file is left."""
         try:
             file = self._new_file(number)
             try:
@@ -307,8 +307,8 @@ def _topic_summary(name: str, topic: _Topic) -> TopicSummary:
     return TopicSummary(
         name=name,
         type_name=definition.type_name,
-        # rosbags refuses the whole folder where this does not match its own hash of the text, which for an
-        # event, written out as a message, it cannot; the true hash stands in the channel.
+        # rosbags refuses the whole folder if this is not its own hash of the text. It cannot be for an event,
+        # which is written out as a message. The channel has the true hash.
         type_hash="" if definition.is_service_event else definition.type_hash,
         qos=topic.qos,
     )
@@ -322,7 +322,7 @@ def _stamp_within(definition: TypeDefinition, data: bytes, *, otherwise_ns: int)
         read = leading_stamp_ns
     if read is None:
         return otherwise_ns
-    return max(0, read(data))  # MCAP has no time before the epoch; the message itself keeps its stamp
+    return max(0, read(data))  # MCAP has no time before the epoch, but the message itself keeps its stamp
 
 
 def _checked_time(field: str, value: object) -> int:

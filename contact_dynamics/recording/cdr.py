@@ -34,7 +34,7 @@ _NUMBERS: Final = {
 
 
 def decode_without_ros(message: LoggedMessage) -> Message:
-    """Return the message logged, with the fields of its type; of a service's event, those of the event.
+    """Return the message logged, with the fields of its type, or of its event if it is a service's.
 
     Raises:
         InvalidFieldError: the log does not describe its type, or the bytes are no message of it.

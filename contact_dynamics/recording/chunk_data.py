@@ -36,7 +36,7 @@ def uncompressed(compression: bytes, data: bytes, size: int) -> bytes:
 
 
 def _zstd_pieces(data: bytes) -> Iterator[bytes]:
-    import zstandard  # it comes with the mcap library, as lz4 does; a log needs one of them at most
+    import zstandard  # it comes with the mcap library, as lz4 does, and a log needs one of them at most
 
     reader = zstandard.ZstdDecompressor().stream_reader(data)
     while piece := reader.read(_PIECE):

@@ -1,4 +1,4 @@
-"""What the readers of all kinds of files give to `bag_reader`."""
+"""The types that the readers of all kinds of files give to `bag_reader`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Topic(NamedTuple):
-    """A topic, its type, and the text of the type: empty where it has another form than MCAP's ros2msg."""
+    """A topic, its type, and the text of the type, which is empty unless it has MCAP's form ros2msg."""
 
     name: str
     type_name: str
@@ -21,7 +21,7 @@ class Topic(NamedTuple):
 
 
 class StoredMessage(NamedTuple):
-    """A message as a file has it; times in ns since the epoch."""
+    """A message as a file has it. Times are in ns since the epoch."""
 
     topic: Topic
     data: bytes
@@ -32,21 +32,21 @@ class StoredMessage(NamedTuple):
 class Span(NamedTuple):
     """A stretch of log times, ns since the epoch. None means no end on that side."""
 
-    start_ns: int | None = None  # the first that belongs to it
-    end_ns: int | None = None  # the first that does not
+    start_ns: int | None = None  # the first time that belongs to it
+    end_ns: int | None = None  # the first time after it
 
     def __contains__(self, log_time_ns: object) -> bool:
-        """Tell whether a time belongs to it."""
+        """Return whether a time belongs to it."""
         if not isinstance(log_time_ns, int):
             return False
         return not self.is_before(log_time_ns) and not self.is_after(log_time_ns)
 
     def is_before(self, log_time_ns: int) -> bool:
-        """Tell whether a time is too early to belong to it."""
+        """Return whether a time is too early to belong to it."""
         return self.start_ns is not None and log_time_ns < self.start_ns
 
     def is_after(self, log_time_ns: int) -> bool:
-        """Tell whether a time is too late to belong to it."""
+        """Return whether a time is too late to belong to it."""
         return self.end_ns is not None and log_time_ns >= self.end_ns
 
 
@@ -77,7 +77,7 @@ class MessageFile(Protocol):
 
     @property
     def losses(self) -> list[Loss]:
-        """What could not be read by now."""
+        """The stretches that could not be read so far."""
 
     def __enter__(self) -> Self:
         """Open the file."""
@@ -92,4 +92,4 @@ class MessageFile(Protocol):
         """Return the text of each type that the file describes, by the type's name."""
 
     def run(self) -> dict[str, str] | None:
-        """Return the record of the run that made it, or None if there is none that is whole."""
+        """Return the record of the run that made it, or None if the record is missing or damaged."""

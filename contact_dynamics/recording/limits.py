@@ -1,4 +1,4 @@
-"""How a log is cut into files, packed, and kept: what bounds a log that is written for weeks."""
+"""Limits of a log that is written for weeks: how it is cut into files and packed, and which are kept."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from typing import Final
 
 from contact_dynamics.errors import InvalidFieldError
 
-_LEAST_FILE_BYTES: Final = 64 * 1024  # less than a chunk would make a file of every chunk
+_LEAST_FILE_BYTES: Final = 64 * 1024  # with less than a chunk, every chunk would be a file
 _LEAST_FILE_SECONDS: Final = 1.0
-_FILES_KEPT: Final = 2  # a limit on all files has room for as many
+_FILES_KEPT: Final = 2  # number of files for which a limit on all files must have room
 
 
 class Compression(enum.Enum):
-    """How the chunks of a log are packed, by MCAP's names."""
+    """The ways in which chunks can be packed, by MCAP's names."""
 
     NONE = "none"
     LZ4 = "lz4"
@@ -23,7 +23,7 @@ class Compression(enum.Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LogLimits:
-    """What bounds the files of a log. The defaults bound nothing.
+    """The limits of a log's files. By default there are none.
 
     Attributes:
         compression: How chunks are packed.

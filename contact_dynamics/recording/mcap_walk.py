@@ -44,7 +44,7 @@ WalkedRecord: TypeAlias = Schema | Channel | Message | Metadata
 
 
 class McapWalk:
-    """One walk through a file; `losses` is complete when `records` has ended."""
+    """One walk through a file. `losses` is complete when `records` has ended."""
 
     def __init__(self, file: McapFile) -> None:
         """Start at the head of the file.

@@ -165,7 +165,7 @@ def _default(text: str, type_name: str, *, is_array: bool) -> Any:
 
 
 def _value(text: str, type_name: str) -> Any:
-    """Return a constant or a default; what follows a number is a comment."""
+    """Return a constant or a default. What follows a number is a comment."""
     if type_name in {"string", "wstring"}:
         quoted = re.match(r"""(["'])(.*)\1""", text)
         return quoted[2] if quoted else text

@@ -1,8 +1,8 @@
-"""What is packed as a whole: files and messages of rosbag2's compression modes FILE and MESSAGE.
+"""Unpacks files and messages of rosbag2's compression modes FILE and MESSAGE, which pack each as a whole.
 
-A packed file becomes a temporary one, piece by piece, since a reader has to jump about in it. A serialised
-message begins with a zero byte, and packed data begin with a magic number that does not, so each shows by
-itself which it is.
+A packed file is unpacked piece by piece into a temporary one, because a reader has to jump about in it. A
+serialised message begins with a zero byte, and the magic number of packed data does not, so the first byte
+shows which of the two it is.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ MAGICS: Final = {b"\x28\xb5\x2f\xfd": b"zstd", b"\x04\x22\x4d\x18": b"lz4"}
 """The first bytes of packed data, and MCAP's name of the packing."""
 
 SUFFIXES: Final = (".zstd", ".zst", ".lz4")
-"""How the name of a packed file ends."""
+"""The ending of a packed file's name."""
 
 MOST_BYTES: Final = 64 * 1024 * 1024
 """The size of the largest message that is unpacked, bytes."""
@@ -35,7 +35,7 @@ def unpacked_message(data: bytes) -> bytes:
     """Return a message as it was serialised.
 
     Raises:
-        InvalidFieldError: it is damaged, or larger than `MOST_BYTES`.
+        InvalidFieldError: the message is damaged, or larger than `MOST_BYTES`.
     """
     compression = MAGICS.get(data[:4])
     if compression is None:
@@ -51,7 +51,7 @@ def unpacked_message(data: bytes) -> bytes:
 
 @contextmanager
 def unpacked_file(path: Path) -> Iterator[tuple[Path, str | None]]:
-    """Yield where the content of a file is, and why it ends early: None where it does not.
+    """Yield the path of a file's content, and why it ends early, or None if it does not.
 
     The content of a packed file is in a temporary one, which is deleted afterwards.
     """

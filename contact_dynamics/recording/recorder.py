@@ -149,9 +149,9 @@ class Recorder:
             )
 
     def settle(self, *, timeout_s: float = 10.0) -> bool:
-        """Wait until the disk itself has all messages handed over so far; return whether it has them.
+        """Wait until the disk itself has all messages handed over so far. Return whether it has them.
 
-        It has not where the log has ended, or where it hangs for longer than ``timeout_s``.
+        It does not if the log has ended, or if the disk hangs for longer than ``timeout_s``.
         """
         with self._lock:
             given = self._given
@@ -242,5 +242,5 @@ class Recorder:
 
 
 def _size(data: object) -> int:
-    # What is not bytes is no concern here: the writer refuses it.
+    # The writer refuses what is not bytes.
     return _ITEM_BYTES + (len(data) if isinstance(data, bytes) else 0)

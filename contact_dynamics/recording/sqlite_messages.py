@@ -1,7 +1,7 @@
-"""The messages of a ``.db3`` file of rosbag2, which is an SQLite database.
+"""Reads the messages of a ``.db3`` file of rosbag2, which is an SQLite database.
 
-SQLite has no checksums of its own, so a flipped bit within a message is not found. Where the structure of the
-file is damaged, what can be reached on both sides of the damage is read.
+SQLite has no checksums of its own, so a flipped bit within a message is not found. If the structure of the
+file is damaged, the reader gives what it can reach on both sides of the damage.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class SqliteMessages:
         """Open the file.
 
         Raises:
-            NotALogError: it is no database of rosbag2.
+            NotALogError: the file is not a database of rosbag2.
         """
         with self._path.open("rb") as stream:
             if stream.read(len(_HEADER)) != _HEADER:
@@ -77,7 +77,7 @@ class SqliteMessages:
                 yield StoredMessage(known[topic_id], data, timestamp, timestamp)
 
     def definitions(self) -> dict[str, str]:
-        """Return the text of each type; bags from before ROS 2 Iron have none."""
+        """Return the text of each type. Bags from before ROS 2 Iron have none."""
         with suppress(sqlite3.Error):
             rows = self._database.execute(
                 "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions"
@@ -86,13 +86,13 @@ class SqliteMessages:
         return {}
 
     def run(self) -> None:
-        """Return None: the server writes no database."""
+        """Return None, because the server writes no database."""
 
     def _opened(self) -> sqlite3.Connection:
-        """Return a connection that writes nothing, also not what a writer that was killed has left beside."""
+        """Return a connection that writes nothing, not even what a killed writer has left beside the file."""
         address = self._path.resolve().as_uri()
         error: Exception | None = None
-        for options in ("mode=ro", "mode=ro&immutable=1"):  # the latter where the folder cannot be written
+        for options in ("mode=ro", "mode=ro&immutable=1"):  # the latter for folders that cannot be written
             database = sqlite3.connect(f"{address}?{options}", uri=True, check_same_thread=False)
             try:
                 if hasattr(database, "setlimit"):  # not yet in Python 3.10
@@ -127,7 +127,7 @@ class SqliteMessages:
         }
 
     def _rows(self, query: str, bounds: tuple[int, ...]) -> Iterator[Any]:
-        """Yield rows by their number; behind damage, go on with ever larger steps until rows come again."""
+        """Yield rows by their number. After damage, go on in ever larger steps until rows come again."""
         last, end = 0, self._last_id()
         step = 1
         while last < end:

@@ -1,4 +1,4 @@
-"""The texts of the types that body states are published as, for recordings that do not hold them.
+"""The texts of the types of published states, for recordings that do not contain them.
 
 Bags of rosbag2 in SQLite from before ROS 2 Iron name the types of their topics and nothing more. These types
 have been the same since ROS 2 began.
@@ -31,7 +31,7 @@ _TEXTS: Final = {
 
 
 def standard_definition(type_name: str) -> str:
-    """Return the text of "package/msg/Name" in MCAP's ros2msg form; empty for a type that is not known."""
+    """Return the text of "package/msg/Name" in MCAP's ros2msg form, or an empty one for an unknown type."""
     name = type_name.replace("/msg/", "/")
     return _DEFINITIONS.get(name, "")
 

@@ -68,7 +68,7 @@ class ServerAgain:
         return frozenset({*self._sources, CLOCK})
 
     def receive(self, message: LoggedMessage) -> None:
-        """Take a message about a body, or a tick of the simulated time; ignore what the server ignored."""
+        """Take a message about a body, or a tick of the simulated time. Ignore what the server ignored."""
         if message.topic == CLOCK:
             self._tick(leading_stamp_ns(message.data))
             return

@@ -1,8 +1,8 @@
-"""Whether a log's services have the fields that this version reads and writes.
+"""Checks that a log's services have the fields that this version reads and writes.
 
-A log holds the definitions that it was written with, and without ROS its messages are read by them. But the
-adapters are those of this version. Where a field has another name or type, they cannot read the questions, or
-they compare answers that mean something else.
+Without ROS, the messages of a log are read by the definitions in the log. The adapters, however, are those of
+this version. If a field has another name or type, they cannot read the questions, or they compare answers
+that mean something else.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ DIGESTS: Final = {
 
 
 def digest(event_type: str, definition: str) -> str:
-    """Return a digest of the fields of a service, their order, names and types; comments do not count.
+    """Return a digest of the fields of a service, of their order, names and types. Comments do not count.
 
     Args:
         event_type: "package/srv/Name_Event".
@@ -55,7 +55,7 @@ def check_definitions(path: Path, definitions: Mapping[str, str], version: str |
         version: The version of this package that wrote it, as far as it says so.
 
     Raises:
-        NotSupportedError: they are; the message says which, and which version wrote them.
+        NotSupportedError: there is such a service. The message names it, and the version that wrote the log.
     """
     differing = [
         name

@@ -119,7 +119,7 @@ def verify_log(
     Raises:
         NotALogError: the path has no log, or a log of something else than the server.
         ConfigurationError: its record of the run lacks a parameter, or has one that is not allowed.
-        NotSupportedError: the log's services have other fields than this version's; or ROS is not installed,
+        NotSupportedError: the log's services have other fields than this version's, or ROS is not installed,
             and another log in this process gave a message other fields.
     """
     check_not_negative("tolerance", tolerance)

@@ -31,8 +31,8 @@ class MassProperties(Record):
         I_B: (3, 3), kg m^2, about the centre of mass, in body axes.
 
     Raises:
-        InvalidFieldError: the mass is not > 0; or the inertia is not symmetric, not positive definite, or has
-            principal moments that no distribution of mass has (I1 + I2 >= I3).
+        InvalidFieldError: the mass is not > 0, or the inertia is not symmetric or not positive definite, or
+            it has principal moments that no distribution of mass has (I1 + I2 >= I3).
     """
 
     mass: float
@@ -101,7 +101,7 @@ class BodyState(Record):
             """Take whatever NumPy makes arrays of."""
 
     def __post_init__(self) -> None:
-        """Check all fields; the quaternion is normalised to rounding."""
+        """Check all fields, and normalise the quaternion to rounding."""
         object.__setattr__(self, "p_WB_W", check_array("position", self.p_WB_W, (3,)))
         object.__setattr__(self, "q_WB", check_unit("orientation", self.q_WB, 4))
         object.__setattr__(self, "v_WB_W", check_array("linear_velocity", self.v_WB_W, (3,)))

@@ -27,7 +27,7 @@ class Features(NamedTuple):
     Attributes:
         corners: (k, 3), m.
         normals: (f, 3), unit, outward.
-        edges: (e, 3), unit directions of edges; parallel edges have one.
+        edges: (e, 3), unit directions of edges. Parallel edges have one.
         triangles: (t, 3, 3), m, the corners of the triangles that the faces consist of.
     """
 

@@ -59,12 +59,12 @@ class AttitudeForm(Record):
 
 SWITCH: Final = 1.0
 """Value of pi K'/K below which theta functions are summed as bumps. There both forms reach the last bit with
-nine terms or fewer; well above it bumps would need more of them, well below it the series' terms would
-cancel."""
+nine terms or fewer. Well above it, more bumps would be needed, and well below it, the terms of the series
+would cancel."""
 
 
 def attitude_form(rotation: Tumble[Scalar] | Spin[Scalar], numbers: Arithmetic[Scalar]) -> AttitudeForm:
-    """Return the attitude about L as a function of time; its value at time 0 is up to a turn about L."""
+    """Return the attitude about L as a function of time. Its value at time 0 is up to a turn about L."""
     pi, zero = numbers.pi, numbers.number(0.0)
     with within(numbers.rates):
         if isinstance(rotation, Spin):
@@ -101,7 +101,7 @@ def zeros(a2: Number, c2: Number, m: Number, numbers: Arithmetic[Number]) -> tup
 def harmonics(xi: Any, eta: Any, peaks: tuple[Any, Any], *, functions: ModuleType = math) -> Harmonics:
     """Sum the theta series up to their last term that matters: q = exp(-2 (xi + eta)), r = exp(-xi).
 
-    All may be arrays (n,), with NumPy for ``functions``; ``peaks`` are a and c.
+    All may be arrays (n,), with NumPy for ``functions``. ``peaks`` are a and c.
     """
     r, p = functions.exp(-xi), functions.exp(-2.0 * eta)  # p = q e^{2 xi}
     q, s = p * r * r, p * (r * r) * (r * r)  # s = q e^{-2 xi}
@@ -171,7 +171,7 @@ def one_flip(x: float, peaks: tuple[float, float]) -> OneFlip:
 
 
 def _bump_phases(mu: Any, functions: ModuleType) -> tuple[Three, Three, Three, Three]:
-    """Return cos, sin of the phases of three bumps to one side, in A and in B'; the others' are opposite."""
+    """Return cos, sin of the phases of three bumps to one side, in A and in B'. The others are opposite."""
     tops = [(k + 0.5) * math.pi for k in range(3)]
     A, B = [top * (mu - 0.5) for top in tops], [top * (mu + 0.5) for top in tops]
     return (

@@ -3,7 +3,7 @@
 All take the complementary modulus k' = sqrt(1 - m) or Carlson's symmetric arguments, never the parameter m
 itself. Near the middle axis m equals 1 to more digits than a double has, and the difference 1 - m matters.
 
-Both kinds of number of `arithmetic` go through the same formulas; decimals have the digits of the caller's
+Both kinds of number of `arithmetic` go through the same formulas. Decimals have the digits of the caller's
 context.
 """
 
@@ -20,9 +20,9 @@ def average_over_period(
 ) -> tuple[Number, Number]:
     """Return pi / 2K, and the average over u of (a cn^2 u + b sn^2 u) / (cn^2 u + p sn^2 u).
 
-    For k' = ``kc`` > 0 and p > 0; for a, b >= 0 all terms are positive. The average is Bulirsch's complete
-    integral cel(kc, p, a, b) / K(kc), and pi / 2K, Gauss's mean of 1 and k', comes with it (R. Bulirsch,
-    Numerische Mathematik 13, 305, 1969).
+    It is required that k' = ``kc`` > 0 and p > 0. For a, b >= 0 all terms are positive. The average is
+    Bulirsch's complete integral cel(kc, p, a, b) / K(kc), and pi / 2K, Gauss's mean of 1 and k', comes with
+    it (R. Bulirsch, Numerische Mathematik 13, 305, 1969).
     """
     sqrt = numbers.sqrt
     e, m, p = kc, numbers.number(1.0), sqrt(p)

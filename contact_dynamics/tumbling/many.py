@@ -74,7 +74,7 @@ def states_of_many(
     times = np.broadcast_to(_times(seconds, n), (n,))
     R_WP = matrices_of(q) @ R_BP
     turn, w_P = rotations_of_many(moments, np.einsum("nij,ni->nj", R_WP, w), times)
-    # The turn is in principal axes at time 0; as a rotation of the world it is R_WP turn R_WP^T.
+    # The turn is in principal axes at time 0. As a rotation of the world it is R_WP turn R_WP^T.
     onto_W = np.einsum("nij,nj->ni", R_WP, turn[:, :3])
     then = products(np.column_stack([onto_W, turn[:, 3]]), q)
     w_then = np.einsum("nij,nj->ni", matrices_of(then) @ R_BP, w_P)
@@ -102,7 +102,7 @@ def _times(seconds: ArrayLike, n: int) -> FloatArray:
 
 
 def _unit(q: FloatArray) -> FloatArray:
-    """Return quaternions (n, 4) scaled to norm 1; refuse those that are not so within tolerance."""
+    """Return quaternions (n, 4) scaled to norm 1, or refuse those that do not have it within tolerance."""
     norms = np.sqrt(np.einsum("ni,ni->n", q, q))
     off = np.flatnonzero(np.abs(norms - 1.0) > UNIT_LENGTH_TOLERANCE)
     if len(off):
@@ -157,7 +157,7 @@ def rotations_of_many(
 
 
 def flips_of_many(moments: ArrayLike, w_P: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """Return the time, s, of one flip of each body, and the time from flip to flip; (n,) each.
+    """Return the times, s, (n,), of one flip of each body, and the times from flip to flip, (n,).
 
     Every zero of the component along the middle axis counts as a flip here, whatever the rotation. Steady
     spin has no flips, and its times are NaN. Arguments and errors are those of `rotations_of_many`.

@@ -9,7 +9,7 @@ Frames: W is the world, B the body at its centre of mass, P the principal axes i
 world turned so that its z axis is along the angular momentum.
 
 Not covered: torque, drag, gravity gradients. The answer is exact to rounding for the doubles given. Near the
-middle axis a small change of the doubles changes it much; `contact_dynamics.tumbling.poinsot_construction`
+middle axis a small change of the doubles changes it much. `contact_dynamics.tumbling.poinsot_construction`
 says how much.
 """
 
@@ -57,7 +57,7 @@ FEW: Final = 16
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Trajectory(Record):
-    """A motion at n times; row i belongs to ``seconds[i]``.
+    """A motion at n times. Row i belongs to ``seconds[i]``.
 
     Attributes:
         seconds: (n,), s after the stamp of the state that the motion began with.
@@ -257,7 +257,7 @@ def free_motion(
     `constants.REMEMBERED` rotations are kept.
 
     Raises:
-        InvalidFieldError: gravity is not three finite numbers; a number is beyond what doubles can square
+        InvalidFieldError: gravity is not three finite numbers, or a number is beyond what doubles can square
             (`LARGEST_NUMBER`).
     """
     check_choice("precision", precision, Precision)

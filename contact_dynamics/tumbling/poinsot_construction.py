@@ -47,13 +47,14 @@ class Poinsot(Record):
         regime: What the rotation is called.
         rotational_energy: T, J.
         L_W: (3,), kg m^2/s, angular momentum, world axes: the normal of the invariable plane.
-        invariable_plane_distance: rad/s, 2 T / |L|; NaN at rest.
-        polhode_period: s; inf on the separatrix, NaN where the angular velocity is constant.
-        precession_per_period: Turn about L in one period, rad; NaN where there is no period.
+        invariable_plane_distance: rad/s, 2 T / |L|, or NaN at rest.
+        polhode_period: s. It is inf on the separatrix, and NaN where the angular velocity is constant.
+        precession_per_period: Turn about L in one period, rad, or NaN without a period.
         principal_moments: (3,), kg m^2, ascending.
         principal_axes_B: (3, 3), whose columns are their axes in body coordinates (`inertia.principal_axes`).
         ellipsoid_semi_axes: (3,), rad/s, of the energy ellipsoid, along those axes: sqrt(2 T / I).
-        sensitivity: Attitude error per rad turned and relative error of the rate; NaN at rest.
+        sensitivity: Attitude error for each rad turned and each unit of relative error of the rate, or NaN at
+            rest.
     """
 
     regime: Regime
@@ -102,7 +103,7 @@ def semi_axes(rotational_energy: float, principal_moments: FloatArray) -> FloatA
 
 
 def polhode_period(rotation: Rotation) -> float:
-    """Return the time, s, until w in the body repeats; inf on the separatrix, NaN where it is constant."""
+    """Return the time, s, until w in the body repeats. It is inf on the separatrix, NaN for a constant w."""
     if isinstance(rotation, Spin):
         return math.nan
     if rotation.m1 == 0:
@@ -175,7 +176,7 @@ class RollingCurves(Record):
     Arcs of the two between the same rows have equal length.
 
     Attributes:
-        seconds: (n,), s after the state's stamp, ascending; all 0 where nothing moves.
+        seconds: (n,), s after the state's stamp, ascending. All are 0 if nothing moves.
         polhode_B: (n, 3), rad/s, angular velocity in body axes.
         herpolhode_W: (n, 3), rad/s, the same in world axes, in the invariable plane.
     """
@@ -252,7 +253,8 @@ def _amplitudes(rotation: Tumble[Decimal] | Tumble[float], count: int) -> FloatA
 def herpolhode(motion: FreeMotion, seconds: ArrayLike) -> FloatArray:
     """Return the herpolhode at times (n,), s: points (n, 3), rad/s, in the invariable plane.
 
-    The axes of the plane are world axes turned so that z lies along L; z is the plane's distance, 2 T / |L|.
+    The axes of the plane are world axes turned so that z lies along L. The coordinate z is the plane's
+    distance, 2 T / |L|.
     """
     times = check_array("times", seconds, (None,))
     w_W = motion.at(times).w_WB_W

@@ -52,14 +52,14 @@ class Tumble(Generic[Scalar]):
         axes_B: Unit axes 1, 2, 3 in body coordinates, as 3 rows.
         L: Magnitude of the angular momentum, kg m^2/s.
         m: Parameter of the elliptic functions, in [0, 1].
-        m1: 1 - m, in [0, 1]; 0 on the separatrix.
+        m1: 1 - m, in [0, 1]. It is 0 on the separatrix.
         a2: The square of a, 1 - c^2, > 0.
         b2: The square of b.
         c2: The square of c.
         omega_p: du/dt, rad/s, < 0 where axis 3 is the minor one.
         u0: The value of u at time 0.
         quarter: pi / 2K, 0 on the separatrix.
-        precession: Mean rate about L, rad/s; on the separatrix the rate in the far past and future.
+        precession: Mean rate about L, rad/s. On the separatrix it is the rate in the far past and future.
     """
 
     moments: tuple[Scalar, Scalar, Scalar]
@@ -97,7 +97,7 @@ def tumble_or_spin(
         about_major = from_middle > 0 or on_separatrix
         first, third = (0, 2) if about_major else (2, 0)
         I1, I2, I3 = frame.moments[first], frame.moments[1], frame.moments[third]
-        # With the sign of I3 - I1, as d1 to d3 are; it cancels wherever they are used.
+        # It has the sign of I3 - I1, as d1 to d3 do. The sign cancels wherever they are used.
         gap21, gap32, gap31 = (low, high, both) if about_major else (-high, -low, -both)
         axes_B = _jacobis_axes(frame, w, first, third)
         w1, w2, w3 = (_dot(axis, w_B) for axis in axes_B)

@@ -29,7 +29,7 @@ class Regime(NamedInt):
 
 
 def regime_of(frame: PrincipalFrame[Decimal], rotation: Rotation) -> Regime:
-    """Return the name of a rotation; moments within `EQUAL_MOMENTS_TOLERANCE` count as equal."""
+    """Return the name of a rotation. Moments within `EQUAL_MOMENTS_TOLERANCE` count as equal."""
     if isinstance(rotation, Spin) and rotation.rate == 0:
         return Regime.AT_REST
     small, middle, large = frame.moments

@@ -2,7 +2,7 @@
 
 The applied wrenches that can bring a mode about are pos({a} + {-c_i}): a its accelerations, c_i the edges of
 the friction cones that its letters allow. Each is a point of the oriented plane, anticlockwise on the left,
-clockwise on the right; the mode's wrenches are the convex hull, which may pass through infinity from one to
+clockwise on the right. The mode's wrenches are the convex hull, which may pass through infinity from one to
 the other. The body's outline is drawn below, so that a point is the centre that a motion would have.
 """
 

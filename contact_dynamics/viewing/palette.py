@@ -50,7 +50,7 @@ SURFACE: Final[Color] = (150, 160, 150, 70)
 """Translucent grey: a surface of the world."""
 
 SURFACE_GRID: Final[Color] = (170, 180, 170, 70)
-"""Lines on it, 0.1 m apart; on a large surface 1 m, 10 m and so on."""
+"""Lines on it, 0.1 m apart, or on a large surface 1 m, 10 m and so on."""
 
 STICKING_LINE: Final[Color] = (95, 210, 105, 255)
 """Green, in impulse space: impulses after which the contact does not slide."""

@@ -43,7 +43,7 @@ class ViewerProcess:
     """A viewer that was started, or that listened already."""
 
     def __init__(self, port: int, *, on_problem: Callable[[str], object]) -> None:
-        """Start a viewer, unless one listens at the port; wait until it is open.
+        """Start a viewer, unless one listens at the port, and wait until it is open.
 
         Afterwards ``problem`` says why there is none, and is empty if there is one. ``on_problem`` is called
         with what happens to the viewer later.

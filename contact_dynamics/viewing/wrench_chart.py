@@ -104,7 +104,7 @@ class DirectionChart:
         return 2
 
     def wrenches(self) -> tuple[FloatArray, NDArray[np.bool_]]:
-        """Return the wrench of unit size at each point; each disc keeps areas (Lambert's projection)."""
+        """Return the wrench of unit size at each point. Each disc keeps areas (Lambert's projection)."""
         u, v, part = _plane_grid(self)
         square = u * u + v * v
         stretched = np.sqrt(np.maximum(2.0 - square, 0.0))

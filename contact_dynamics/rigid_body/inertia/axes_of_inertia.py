@@ -58,7 +58,7 @@ class InertiaEllipsoid(Record):
     Attributes:
         I_B: (3, 3), kg m^2.
         level: The number a, kg m^4 where r is in m.
-        semi_axes: (3,), m, descending: sqrt(a / I); inf where a moment is 0.
+        semi_axes: (3,), m, descending: sqrt(a / I), which is inf where a moment is 0.
         R_BP: (3, 3), whose columns are the directions of the semi-axes, in body axes.
     """
 
@@ -93,7 +93,7 @@ def principal_axes(I_B: ArrayLike) -> PrincipalAxes:
 
 @lru_cache(maxsize=REMEMBERED)
 def axes_of_bytes(data: bytes) -> PrincipalAxes:
-    """Return `principal_axes` for the bytes of a symmetric matrix of doubles, unchecked; remembered."""
+    """Return `principal_axes` for the bytes of a symmetric matrix of doubles, unchecked. Results are kept."""
     frame = principal_frame(np.frombuffer(data, dtype=np.float64))
     low, middle, high = frame.moments
     first, second, third = (np.array([float(x) for x in axis]) for axis in frame.axes_B)

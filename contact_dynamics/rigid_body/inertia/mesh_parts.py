@@ -2,7 +2,7 @@
 
 A surface may have several parts that share no edge. A part with a positive volume is a solid. It must not lie
 within another, because its mass would count twice. A part with a negative volume is a cavity. It must lie
-within a solid; otherwise it is inside out. This is tested at one point just inside each part: the winding
+within a solid. Otherwise it is inside out. This is tested at one point just inside each part: the winding
 number of the others about it, a sum of solid angles, is 0 or 1 (Van Oosterom and Strackee 1983).
 
 Not covered: surfaces that cut through themselves or each other. Their volumes count by winding number.

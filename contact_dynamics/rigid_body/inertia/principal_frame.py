@@ -43,7 +43,7 @@ class PrincipalFrame(Generic[Scalar]):
 
 
 def principal_frame(I_B: FloatArray) -> PrincipalFrame[Decimal]:
-    """Return the principal frame of a (3, 3) inertia matrix, kg m^2, body axes; remembered per matrix."""
+    """Return the principal frame of a (3, 3) inertia matrix, kg m^2, body axes. Frames are kept by matrix."""
     return _of_bytes(I_B.tobytes())
 
 
