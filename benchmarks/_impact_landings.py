@@ -4,11 +4,12 @@ The recordings are those of `_impact_tosses`. The benchmark takes pairs of fligh
 frames between them, in which more than one corner can have struck. Each law takes the state at the end of the
 first flight, and predicts the velocities at the beginning of the second:
 
-* one strike: the corner that lands first, and free flight from there on;
-* at once: all corners that are then within `ALONE` of the floor, one after the other at that instant;
-* in time: the strikes that follow, each when it comes (`impact_sequence`). It ends where a corner stays on
-  the floor: how many do is printed. From there on free flight is assumed, which then is wrong;
-* held: the same, going on in steps over corners that stay, with mu and e of the strikes of a single corner.
+* one strike: the corner that lands first strikes, and free flight follows;
+* at once: all corners that are then within `ALONE` of the floor strike one after the other at that instant;
+* in time: the strikes follow, each when it comes (`impact_sequence`). This ends when a corner stays on the
+  floor, and the benchmark prints how many do. Free flight is then assumed, which is wrong;
+* held: the strikes follow in the same way, and steps go on over corners that stay, with mu and e of the
+  strikes of a single corner.
 """
 
 from __future__ import annotations

@@ -3,37 +3,38 @@
 """Make the recording of a tossed brick that the demo plays: contact_dynamics/measured/tosses/brick.csv.
 
 The motion comes from MuJoCo, so that a prediction of ours is compared with an engine that is not ours. The
-measurement comes from a model of optical motion capture. `pip install mujoco` first: it is needed for this
-script and its test alone.
+measurement comes from a model of optical motion capture. Run `pip install mujoco` first. Only this script and
+its test need it.
 
     python scripts/record_toss.py [--output FILE] [--truth FILE]
 
 The same version of MuJoCo on the same kind of machine gives the same bytes. After some bounces the motion
 depends on the last bits of every step, so another version may give another end of the same toss.
 
-Motion. A brick of 15 x 9 x 5 cm and 0.4 kg, uniform, leaves the hand about a metre above the floor, tumbling.
-Its contact with the floor in MuJoCo is a stiff damped spring with a friction cone:
+**The motion.** A uniform brick of 15 x 9 x 5 cm and 0.4 kg leaves the hand about a metre above the floor and
+tumbles. Its contact with the floor in MuJoCo is a stiff damped spring with a friction cone.
 
-* Steps of a hundred-thousandth of a second, so that a strike of 0.6 ms takes about 60; elliptic cone;
-  integrator `implicit`, which has the gyroscopic terms.
-* Normal direction: `solref` of time constant 0.6 ms and damping ratio zeta = 0.3. A point mass leaves such a
-  spring at exp(-zeta / s (pi - atan2(2 zeta s, 1 - 2 zeta^2))) = 0.45 of its speed of approach, s = sqrt(1 -
-  zeta^2): the restitution in the header. In a corner's strike with friction the same contact gives other
-  ratios: at the first strike of this toss the corner leaves at 0.44 of its normal speed, and restitution has
-  0.39 of the impulse of compression. The spring gives way by 0.5 mm.
-* Friction 0.3 with `solreffriction` of its own, time constant 0.2 ms. MuJoCo's friction opposes slip like a
-  damper, with the cone as its limit. At the default, the normal's time constant, a strike is over before the
-  damper has stopped the slip, under a force far below the cone: viscous, not Coulomb. Far shorter, and its
-  convex cone makes the demand for friction push the body off the floor, in strikes of a hundredth of a
-  millisecond. At 0.2 ms the first strike's slip of 0.7 m/s ends at 4 mm/s, and strikes last as long as the
-  spring says.
+* A step is a hundred-thousandth of a second, so a strike of 0.6 ms takes about 60 steps. The cone is
+  elliptic. The integrator is `implicit`, which has the gyroscopic terms.
+* In the normal direction `solref` has the time constant 0.6 ms and the damping ratio zeta = 0.3. A point mass
+  leaves such a spring at exp(-zeta / s (pi - atan2(2 zeta s, 1 - 2 zeta^2))) = 0.45 of its speed of approach,
+  with s = sqrt(1 - zeta^2). This is the restitution in the header. When a corner strikes with friction, the
+  same contact gives other ratios. At the first strike of this toss the corner leaves at 0.44 of its normal
+  speed, and restitution has 0.39 of the impulse of compression. The spring gives way by 0.5 mm.
+* Friction is 0.3, and `solreffriction` has its own time constant of 0.2 ms. MuJoCo's friction opposes slip
+  like a damper, with the cone as its limit. By default it has the normal's time constant. A strike is then
+  over before the damper has stopped the slip, and the force stays far below the cone, so that friction is
+  viscous and not Coulomb's. With a far shorter time constant, the convex cone makes friction push the body
+  off the floor, in strikes of a hundredth of a millisecond. At 0.2 ms the first strike's slip of 0.7 m/s ends
+  at 4 mm/s, and strikes last as long as the spring says.
 
-Measurement. Each coordinate of the position gets white noise of 0.2 mm, each component of the orientation 0.1
-degrees. P. Merriaux et al., "A study of Vicon system positioning performance", Sensors 17 (2017) 1591,
-measured 0.15 mm mean error of markers at rest and up to 2 mm when fast; P. Skurowski, M. Pawlyta, "On the
-noise complexity in an optical motion capture facility", Sensors 19 (2019) 4435, find several kinds of noise,
-of which only the white one is modelled here. Markers 0.1 m apart, each off by 0.2 mm, give an orientation
-that is off by 2 mrad, or 0.1 degrees. Not modelled: calibration errors, lost markers, latency.
+**The measurement.** Each coordinate of the position has white noise of 0.2 mm, and each component of the
+orientation has 0.1 degrees. P. Merriaux et al., "A study of Vicon system positioning performance", Sensors 17
+(2017) 1591, measured 0.15 mm mean error of markers at rest and up to 2 mm when fast. P. Skurowski and M.
+Pawlyta, "On the noise complexity in an optical motion capture facility", Sensors 19 (2019) 4435, find several
+kinds of noise. Only the white one is modelled here. Markers that are 0.1 m apart and each off by 0.2 mm give
+an orientation that is off by 2 mrad, or 0.1 degrees. Calibration errors, lost markers and latency are not
+modelled.
 
 The velocities are `causal_velocities` of the rounded noisy poses. The tracker saw the brick for one window
 before the first row.
