@@ -316,9 +316,13 @@ LEAST_PIVOT: Final = 1e-30
 """Relative to its diagonal entry. A pivot of an inertia matrix is at least this, since only rounding can make
 it smaller."""
 
-STRAIGHT: Final = 1e-12
-"""Relative to the sliding law's scale. A direction of sliding that turns more slowly counts as invariant. It
-turns by the rounding of contact axes and inertia, about 1e-15, which an unstable direction would amplify."""
+STRAIGHT: Final = 4e-15
+"""Relative to the sliding law's scale. A direction that repels its neighbours counts as invariant if it turns
+more slowly at first. It then turns by the rounding of contact axes and inertia, which it would amplify."""
+
+SETTLED_TURN: Final = 8e-15
+"""rad. A direction of sliding this close to an invariant one that attracts it counts as that one. The series
+of a stretch leave up to 2e-15 of it, and never less."""
 
 UNCOUPLED: Final = 1e-15
 """Relative to the tangential inverse inertia. A slower turn than this is the rounding of a coupling that is

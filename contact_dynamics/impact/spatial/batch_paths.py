@@ -28,7 +28,7 @@ from contact_dynamics.impact.spatial.stop import (
     turns_slowly,
 )
 from contact_dynamics.impact.spatial.taylor import SlidingSeries, value
-from contact_dynamics.tolerances import AT_THE_STOP, ESCAPE_ARRIVED, LAST_TERM, STOPPED, STRAIGHT, UNCOUPLED
+from contact_dynamics.tolerances import AT_THE_STOP, ESCAPE_ARRIVED, LAST_TERM, STOPPED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -122,7 +122,6 @@ class _Slide:
         self.ends_before = np.full(len(self.u1), -1)
         slowest = STOPPED * self.first_speed
         whole = self.sliding
-        still = np.maximum(STRAIGHT * whole.scale, UNCOUPLED * (whole.l1 + whole.l2))
         for stretch in range(MOST_STRETCHES):
             if lanes.size <= FEW:
                 for lane in lanes.tolist():
@@ -132,12 +131,13 @@ class _Slide:
             speed = np.sqrt(u1 * u1 + u2 * u2)
             d1, d2 = u1 / speed, u2 / speed
             speeding, lifting = law.speeding(d1, d2), law.lifting(d1, d2)
-            straight = abs(law.turning(d1, d2)) <= still[lanes]
-            if stretch > 0:
-                straight &= law.attraction(d1, d2) < 0.0
-            straight |= (speeding < 0.0) & (speed <= slowest[lanes])
-            on = np.flatnonzero(straight)
-            self._straight(lanes[on], (d1[on], d2[on]), speed[on], speeding[on], lifting[on])
+            kept = law.keeps(d1, d2, started=stretch > 0)
+            on = np.flatnonzero(kept)
+            self._straight(lanes[on], taken_law(law, on).settled(d1[on], d2[on]), speed[on])
+            slow = ~kept & (speeding < 0.0) & (speed <= slowest[lanes])
+            on = np.flatnonzero(slow)
+            self._straight(lanes[on], (d1[on], d2[on]), speed[on])
+            straight = kept | slow
             smooth = ~straight & (law.mu == 0.0)
             self._without_friction(lanes[smooth])
             goes_on = ~(straight | smooth)
@@ -170,16 +170,10 @@ class _Slide:
                 ends_before=None if self.ends_before[lane] < 0 else bool(self.ends_before[lane]),
             )
 
-    def _straight(
-        self,
-        lanes: Lanes,
-        d: tuple[FloatArray, FloatArray],
-        speed: FloatArray,
-        speeding: FloatArray,
-        lifting: FloatArray,
-    ) -> None:
+    def _straight(self, lanes: Lanes, d: tuple[FloatArray, FloatArray], speed: FloatArray) -> None:
         """Take lanes straight on, at most to the stop."""
-        mu = self.sliding.mu[lanes]
+        law = taken_law(self.sliding, lanes)
+        mu, speeding, lifting = law.mu, law.speeding(*d), law.lifting(*d)
         length = np.where(speeding < 0.0, speed / -speeding, math.inf)
         gone = self.progress.go_straight(lanes, length, (-mu * d[0], -mu * d[1]), lifting)
         final = np.where(self.progress.over[lanes], speed + speeding * gone, 0.0)

@@ -17,7 +17,7 @@ from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
 from contact_dynamics.impact.spatial.stop import Stop, stop_ahead
 from contact_dynamics.impact.spatial.taylor import SlidingSeries, crossing, value
 from contact_dynamics.numerics.elementwise import Number
-from contact_dynamics.tolerances import STOPPED, STRAIGHT, UNCOUPLED
+from contact_dynamics.tolerances import STOPPED
 
 MOST_STRETCHES: Final = 2000
 
@@ -108,16 +108,14 @@ def slide(
     """
     u1, u2 = u
     slowest = STOPPED * first_speed
-    still = max(STRAIGHT * sliding.scale, UNCOUPLED * (sliding.l1 + sliding.l2))
     with_work = progress.rule.needs_work
     for _ in range(MOST_STRETCHES):
         speed = math.sqrt(u1 * u1 + u2 * u2)
         d1, d2 = u1 / speed, u2 / speed
         speeding, lifting = sliding.speeding(d1, d2), sliding.lifting(d1, d2)
-        straight = abs(sliding.turning(d1, d2)) <= still
-        if (straight and (not started or sliding.attraction(d1, d2) < 0.0)) or (
-            speeding < 0.0 and speed <= slowest
-        ):
+        if sliding.keeps(d1, d2, started=started):
+            return _slide_straight(sliding, sliding.settled(d1, d2), speed, progress)
+        if speeding < 0.0 and speed <= slowest:
             return _slide_straight(sliding, (d1, d2), speed, progress)
         if sliding.mu == 0.0:
             # Without friction u changes along a line, which misses 0.

@@ -24,10 +24,14 @@ import math
 from typing import Final, NamedTuple
 
 from contact_dynamics.numerics.elementwise import Number, larger, sqrt
-from contact_dynamics.tolerances import ESCAPE_ARRIVED
+from contact_dynamics.tolerances import ESCAPE_ARRIVED, SETTLED_TURN, SMALLEST, STRAIGHT, UNCOUPLED
 
 ESCAPE_ROUNDS: Final = 60
 """Bound on the iterations for the direction in which a contact leaves. They converge quadratically."""
+
+TERMS_ROUNDING: Final = 1.0 / 16.0
+"""Share of the terms that a turning is summed from which counts beside the attraction: 16 times less than
+`SETTLED_TURN` are two roundings."""
 
 
 class SlidingLaw(NamedTuple):
@@ -72,6 +76,31 @@ class SlidingLaw(NamedTuple):
     def attraction(self, d1: Number, d2: Number) -> Number:
         """Return the derivative of `turning` in the angle. It is negative where neighbours come closer."""
         return self.mu * (self.l1 - self.l2) * (d1 * d1 - d2 * d2) - self.k1 * d1 - self.k2 * d2
+
+    def keeps(self, d1: Number, d2: Number, *, started: bool) -> Number:
+        """Return whether sliding keeps the unit direction (d1, d2), to rounding.
+
+        A direction that attracts its neighbours is kept once no more than rounding is left of its turning.
+        One that repels them is kept within the rounding of the coefficients, and only at first: sliding that
+        has swerved leaves such directions.
+        """
+        turning, attraction = abs(self.turning(d1, d2)), self.attraction(d1, d2)
+        terms = abs(self.k2 * d1) + abs(self.k1 * d2) + self.mu * abs((self.l1 - self.l2) * d1 * d2)
+        settled = (attraction < 0.0) & (turning <= SETTLED_TURN * larger(-attraction, TERMS_ROUNDING * terms))
+        if started:
+            return settled
+        rounding = larger(STRAIGHT * self.scale, UNCOUPLED * (self.l1 + self.l2))
+        return settled | ((attraction >= 0.0) & (turning <= rounding))
+
+    def settled(self, d1: Number, d2: Number) -> tuple[Number, Number]:
+        """Return the invariant direction beside a kept one that attracts, and else the direction itself.
+
+        It is one of Newton's steps away. The rates along it are right even where they are small beside the
+        rate at which neighbours come closer, as for slender bodies.
+        """
+        attraction = self.attraction(d1, d2)
+        step = (attraction < 0.0) * self.turning(d1, d2) / (attraction - SMALLEST)
+        return d1 + step * d2, d2 - step * d1
 
     def lifting(self, d1: Number, d2: Number) -> Number:
         """Return dv_n/dp, 1/kg, while sliding in the unit direction (d1, d2). It is negative if that jams."""

@@ -36,10 +36,6 @@ SURE: Final = 0.5
 """Length of a stretch, in s, where the last terms underflow to zero, so that they do not say how far the
 series reaches. The direction hardly turns over this length."""
 
-WITH_WORK: Final = 0.85
-"""Part of the length that is used where the work is asked for. The work is a product of two series, so it
-leaves out more at the same degree, by a factor of some 0.85^-24 = 50."""
-
 MOST_ITERATIONS: Final = 100
 
 _SHARES: Final = tuple(1.0 / n for n in range(1, ORDER + 2))
@@ -101,8 +97,13 @@ class SlidingSeries:
         self.normal_velocity = _integral(self.lifting)  # m/s
         self.normal_velocity[0] = v_n
         self.normal_work = self._work(q, per_scale) if with_work else []  # J
-        length = smaller(*(_reach(first, (u1[n], u2[n], q[n]), n) for n in (ORDER, ORDER - 1)))
-        self.length = WITH_WORK * length if with_work else length
+        length = smaller(*(_reach(first, (u1[n], u2[n], _SHARES[n] * q[n]), n) for n in (ORDER, ORDER - 1)))
+        if with_work:
+            # The work is a product of two series, which leaves out more than either.
+            work = self.normal_work
+            size = larger(abs(work[1]), abs(work[2]))
+            length = smaller(length, smaller(*(_reach(size, (work[n],), n) for n in (ORDER + 1, ORDER))))
+        self.length = length
 
     def _work(self, q: list[Number], per_scale: Number) -> list[Number]:
         v = self.normal_velocity
@@ -168,18 +169,18 @@ def _integral(series: list[Number]) -> list[Number]:
     return [0.0 * series[0], *map(mul, _SHARES, series)]
 
 
-def _reach(speed: Number, terms: tuple[Number, Number, Number], n: int) -> Number:
-    """Return the length at which the largest of the ``terms`` of degree ``n`` is `TRUNCATION` of ``speed``.
+def _reach(size: Number, terms: tuple[Number, ...], n: int) -> Number:
+    """Return the length at which the largest of the ``terms`` of degree ``n`` is `TRUNCATION` of ``size``.
 
-    The terms are those of u and of |u|, which has singularities of its own if the normal does not couple with
-    u. Of |u| only the integral matters.
+    For the velocities, the terms are those of u and of the integral of |u|. Of |u| only the integral matters,
+    and |u| has singularities of its own if the normal does not couple with u.
     """
-    x, y, q = terms
-    if isinstance(x, float):
-        term = max(abs(x), abs(y), _SHARES[n] * abs(q))
-        return min((TRUNCATION * speed / term) ** (1.0 / n), LONGEST) if term > 0.0 else SURE
-    term = larger(larger(abs(x), abs(y)), _SHARES[n] * abs(q))
+    term = abs(terms[0])
+    for other in terms[1:]:
+        term = larger(term, abs(other))
+    if isinstance(term, float):
+        return min((TRUNCATION * size / term) ** (1.0 / n), LONGEST) if term > 0.0 else SURE
     some = term > 0.0
     reach = np.full(len(term), SURE)
-    reach[some] = np.minimum(power(TRUNCATION * speed[some] / term[some], 1.0 / n), LONGEST)
+    reach[some] = np.minimum(power(TRUNCATION * size[some] / term[some], 1.0 / n), LONGEST)
     return reach
