@@ -20,7 +20,7 @@ export PIP_USER := 0
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-matrix test-slow coverage lint types bench setup venv clean FORCE
+.PHONY: help demo test test-matrix test-slow coverage lint types bench docs setup venv clean FORCE
 
 help: ## print this
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | while IFS='	' read -r name text; do \
@@ -57,6 +57,11 @@ types: $(MADE)/test ## mypy
 
 bench: $(MADE)/bench ## measure speed and accuracy, peers beside us; WRITE=1 renews the numbers in the documents
 	@$(BIN)/python -m benchmarks $(if $(WRITE),--write)
+
+# material prints an advertisement for its successor unless this is set.
+docs: $(MADE)/test ## the documents as a site with a reference, in site/
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --quiet
+	@echo "Open site/index.html in a browser."
 
 setup: $(MADE)/package $(MADE)/interfaces ## make the environment in .venv and nothing else
 venv: setup
@@ -97,9 +102,9 @@ $(MADE)/package: setup.py package.xml pyproject.toml Makefile $(wildcard config 
 	@ln -sfn "$(CURDIR)"/executables $(VENV)/lib/contact_dynamics
 	@touch $@
 
-$(MADE)/test: requirements/test.txt $(MADE)/package $(MADE)/interfaces
+$(MADE)/test: requirements/test.txt requirements/docs.txt $(MADE)/package $(MADE)/interfaces
 	@echo "Installing what the tests need."
-	@$(INSTALL) -c requirements/constraints.txt -r requirements/test.txt
+	@$(INSTALL) -c requirements/constraints.txt -r requirements/test.txt -r requirements/docs.txt
 	@touch $@
 
 $(MADE)/bench: requirements/bench.txt $(MADE)/test

@@ -14,7 +14,7 @@ done
 rmdir "$1"-matrix 2>/dev/null || true
 
 # setuptools and the tools of `make test` fill these again.
-rm -rf contact_dynamics.egg-info coverage_html .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache
+rm -rf contact_dynamics.egg-info coverage_html site .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache
 
 # The name shows that a folder is the demo's, and files in it that only the demo writes.
 for run in demo_output/[0-9][0-9][0-9][0-9]-[0-9][0-9]-[0-9][0-9]_*; do

@@ -16,7 +16,7 @@ from mypy import api
 from contact_dynamics import BodyState, ContactSet, MassProperties
 from running_server import ROOT
 
-PAGES = ("README.md", "docs/*.md", "contact_dynamics_interfaces/README.md")
+PAGES = ("README.md", "docs/*.md", "docs/tutorials/*.md", "contact_dynamics_interfaces/README.md")
 BLOCK = re.compile(r"```python\n(.*?)```", re.DOTALL)
 
 

@@ -1,0 +1,48 @@
+"""The site of the documents: every page is in its menu, and every link leads somewhere."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from running_server import ROOT
+
+MENU = (ROOT / "mkdocs.yml").read_text(encoding="utf-8").partition("\nnav:\n")[2]
+
+
+def test_the_menu_has_every_page() -> None:
+    listed = re.findall(r": (\S+\.md)$", MENU, re.MULTILINE)
+    assert len(listed) == len(set(listed))
+    written = {str(path.relative_to(ROOT / "docs")) for path in (ROOT / "docs").rglob("*.md")}
+    assert written <= set(listed)
+
+
+def test_the_reference_has_every_chapter_that_users_call() -> None:
+    from contact_dynamics import __all__ as names
+
+    chapters = {name for name in names if (ROOT / "contact_dynamics" / name).is_dir()}
+    assert chapters
+    assert chapters <= {path.stem for path in (ROOT / "docs" / "api").glob("*.md")}
+
+
+def test_the_site_is_built_without_a_complaint(tmp_path: Path) -> None:
+    """MkDocs is strict here: a link or an anchor that leads nowhere is an error, in docstrings too."""
+    pytest.importorskip("mkdocs", reason="NOT RUN: the site, because MkDocs is not installed")
+    pytest.importorskip("mkdocstrings", reason="NOT RUN: the site, because mkdocstrings is not installed")
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--site-dir", str(tmp_path)]
+    environment = os.environ | {"NO_MKDOCS_2_WARNING": "1"}
+    built = subprocess.run(
+        command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False, timeout=300
+    )
+    assert built.returncode == 0, built.stdout + built.stderr
+    reference = (tmp_path / "api" / "tumbling.html").read_text(encoding="utf-8")
+    assert "contact_dynamics.tumbling.free_motion" in reference
+    # Markers of numbers from the benchmarks stay in the sources, and links to sources become names.
+    readme = (tmp_path / "readme.html").read_text(encoding="utf-8")
+    assert "bench:" not in readme
+    assert "config/server.yaml</code></a>" not in readme
