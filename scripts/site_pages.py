@@ -1,7 +1,8 @@
 """A hook of MkDocs: pages that stand outside of docs/, and links that leave docs/.
 
-The documents are written for people who read them in the repository, so they link to sources and to pages beside
-docs/. The site gets those pages too. A link to a source file becomes its name, because the site has no sources.
+The documents are written for people who read them in the repository, so they link to sources and to pages
+beside docs/. The site gets those pages too. A link to a source file becomes its name, because the site has no
+sources.
 """
 
 from __future__ import annotations
