@@ -21,6 +21,7 @@ from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.nodes.log import Log
 from contact_dynamics.recording import BagReader, DamagedLogWarning
+from contact_dynamics.recording.limits import LogLimits
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 from oracles.rigid_flight import about, fly, matrix
@@ -464,7 +465,13 @@ def test_logs_begun_at_the_same_moment_do_not_meet(tmp_path: Path) -> None:
     problems: list[str] = []
 
     def log(number: int) -> Path | None:
-        log = Log(str(tmp_path), run={"number": str(number)}, on_problem=problems.append)
+        log = Log(
+            str(tmp_path),
+            run={"number": str(number)},
+            limits=LogLimits(),
+            on_problem=problems.append,
+            on_deleted=problems.append,
+        )
         log.start()
         log.close()
         return log.folder
