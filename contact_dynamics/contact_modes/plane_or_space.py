@@ -46,7 +46,6 @@ def contact_modes(
         InvalidFieldError: ``problem`` is not a problem.
         TooLargeError: the problem is in space, and more contacts touch than are answered, or the search takes
             too many trials.
-        UndecidedError: the problem is in the plane, and rounding decides whether any mode is consistent.
 
     Source: lecture 26.
     """
@@ -93,7 +92,6 @@ def mode_margins(
     Raises:
         InvalidFieldError: ``problem`` is not a problem with its answer, or the length is not > 0.
         TooLargeError: as for `contact_modes`, or the friction pyramids in space have more than 128 edges.
-        UndecidedError: as for `contact_modes`.
     """
     if isinstance(problem, PlanarContactProblem) and not isinstance(answer, SpatialModeAnswer):
         return planar_mode_margins(problem, answer, margin_length=margin_length)

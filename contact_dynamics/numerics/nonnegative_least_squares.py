@@ -96,7 +96,7 @@ def _few_forces(matrix: FloatArray, right: FloatArray) -> FloatArray:
     return x
 
 
-def exact_combination(columns: Sequence[Vector3], target: Vector3) -> tuple[list[float], float]:
+def exact_combination(columns: Sequence[Vector3], target: Vector3) -> tuple[list[Decimal], float]:
     """Return an x >= 0 whose sum x_i columns_i is nearest to a target, and its distance, in decimals.
 
     If there are many such x, it is the one of least sum of squares if Newton's method finds it, or else one
@@ -113,7 +113,7 @@ def exact_combination(columns: Sequence[Vector3], target: Vector3) -> tuple[list
         left = [a - b for a, b in zip(right, met, strict=True)]
         least = _least_exact_forces(rows, met)
         acting = few if least is None else least
-        return [float(acting.get(i, 0)) for i in range(len(rows))], float(_inner(left, left).sqrt())
+        return [acting.get(i, Decimal(0)) for i in range(len(rows))], float(_inner(left, left).sqrt())
 
 
 def distance_from_cone(columns: Sequence[Vector3], target: Vector3) -> float:
@@ -123,7 +123,7 @@ def distance_from_cone(columns: Sequence[Vector3], target: Vector3) -> float:
     """
     x, distance = exact_combination(columns, target)
     size = math.sqrt(sum(part * part for part in target))
-    return distance if sum(x) <= _LARGEST_SHARE * size else math.inf
+    return distance if float(sum(x)) <= _LARGEST_SHARE * size else math.inf
 
 
 def _least_exact_forces(rows: list[_Decimals], right: _Decimals) -> dict[int, Decimal] | None:

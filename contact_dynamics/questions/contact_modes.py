@@ -324,6 +324,7 @@ def _planar_answer(
         wrench_sets=sets,
         statics=at_rest,
         settled=settled,
+        undecided=found.undecided,
         problem=Problem.PLANAR,
         plane=plane,
         out_of_plane=problem.out_of_plane,

@@ -19,25 +19,22 @@ from typing import TYPE_CHECKING
 from contact_dynamics.contact_modes.letters import SEPARATES
 from contact_dynamics.contact_modes.planar.coincident import coincident
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
-from contact_dynamics.contact_modes.planar.judgement import judge_all
+from contact_dynamics.contact_modes.planar.judgement import Judged, judge_all
 from contact_dynamics.contact_modes.planar.one_contact import single_contact_modes
-from contact_dynamics.contact_modes.planar.problem import beyond_grip, planar_case
+from contact_dynamics.contact_modes.planar.problem import beyond_grip, never_slipping, planar_case
 from contact_dynamics.contact_modes.planar.result import PlanarMode, PlanarModeAnswer
 from contact_dynamics.contact_modes.result import ModeVerdict, RefusedMode, verdict_on
-from contact_dynamics.errors import UndecidedError
 from contact_dynamics.tolerances import LARGEST_GRIP
 
 if TYPE_CHECKING:
-    from contact_dynamics.contact_modes.planar.problem import PlanarContactProblem
+    from contact_dynamics.contact_modes.planar.enumeration import Cell
+    from contact_dynamics.contact_modes.planar.problem import PlanarCase, PlanarContactProblem
 
 
 def planar_contact_modes(problem: PlanarContactProblem) -> PlanarModeAnswer:
     """Return the verdict on a contact set, all consistent modes, and why the others are refused.
 
     Without contacts the only mode is the empty string, and the body moves freely.
-
-    Raises:
-        UndecidedError: no mode is consistent with friction up to `LARGEST_GRIP`, and a contact has more.
 
     Source: lecture 26, table and "Basic approach".
     """
@@ -47,6 +44,8 @@ def planar_contact_modes(problem: PlanarContactProblem) -> PlanarModeAnswer:
     approaching = tuple(i for i, (_, v_n) in enumerate(velocities) if v_n < 0.0)
     modes: list[PlanarMode] = []
     refused: list[RefusedMode] = []
+    undecided = ""
+    undecided_modes: list[str] = []
     a_tolerance = 0.0
     if not approaching:
         touching = [i for i, (_, v_n) in enumerate(velocities) if v_n == 0.0]
@@ -68,26 +67,56 @@ def planar_contact_modes(problem: PlanarContactProblem) -> PlanarModeAnswer:
                 contacts if same is None else [contacts[i] for i in same.firsts],
                 velocities if same is None else [velocities[i] for i in same.firsts],
             )
-            modes, refused = judge_all(case, kinematic_cells(case), accuracy)
+            (modes, refused, undecided_modes), undecided = _judged(case, accuracy)
             if same is not None:
                 modes = [same.consistent(mode, accuracy * case.load) for mode in modes]
                 refused = [same.refused(mode) for mode in refused]
+                undecided_modes = [same.letters_of_all(mode) for mode in undecided_modes]
             a_tolerance = accuracy * case.load / body.mass
-            if not modes and any(beyond_grip(contact, case.rho) for contact in contacts):
-                raise UndecidedError(
-                    "no mode is consistent with friction of at most "
-                    f"{LARGEST_GRIP:g} over the arm in radii of gyration, and a contact has more"
-                )
     found = tuple(modes)
+    verdict = ModeVerdict.UNDECIDED if undecided else verdict_on(found)
     return PlanarModeAnswer(
-        verdict=ModeVerdict.IMPACT if approaching else verdict_on(found),
+        verdict=ModeVerdict.IMPACT if approaching else verdict,
         modes=found,
         refused=tuple(refused),
         approaching=approaching,
         contact_velocities=velocities,
         velocity_tolerance=problem.velocity_tolerance,
         acceleration_tolerance=a_tolerance,
+        undecided=undecided,
+        undecided_modes=tuple(undecided_modes),
     )
+
+
+def _judged(case: PlanarCase, accuracy: float) -> tuple[Judged, str]:
+    """Return what mechanics says about all modes of a case, and what is undecided and why."""
+    cells = kinematic_cells(case)
+    judged = judge_all(case, cells, accuracy)
+    if any(beyond_grip(contact, case.rho) for contact in case.contacts):
+        return _whatever_the_grip(case, cells, accuracy, judged)
+    if judged.undecided:
+        return judged, f"rounding decides whether forces bring about {', '.join(judged.undecided)}"
+    return judged, ""
+
+
+def _whatever_the_grip(
+    case: PlanarCase, cells: dict[str, Cell], accuracy: float, judged: Judged
+) -> tuple[Judged, str]:
+    """Leave those modes undecided that are consistent only with less or only with infinite friction."""
+    holding = {mode.mode for mode in judge_all(never_slipping(case), cells, accuracy).consistent}
+    doubtful = {mode.mode for mode in judged.consistent}.symmetric_difference(holding).union(judged.undecided)
+    if not doubtful:
+        return judged, ""
+    certain = Judged(
+        [mode for mode in judged.consistent if mode.mode not in doubtful],
+        [mode for mode in judged.refused if mode.mode not in doubtful],
+        sorted(doubtful),
+    )
+    reason = (
+        f"friction beyond {LARGEST_GRIP:g} over the arm in radii of gyration is not told apart, and it "
+        f"decides about {', '.join(certain.undecided)}"
+    )
+    return certain, reason
 
 
 def _spin(problem: PlanarContactProblem) -> float:

@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 
 _WIDE: Final = 0.1
 """Sine. The search for rows to start with ends at the first pair that makes this angle or more."""
+_ALMOST_OPPOSITE: Final = -0.9
+"""Cosine. Sectors whose rays make a smaller one are given in two halves."""
 MANY: Final = 24
 """Number of rows above which arrays are faster than loops."""
 
@@ -167,7 +169,11 @@ class PolyhedralCone:
         if not lines:
             count = len(rays)
             pairs = [(i, (i + 1) % count) for i in range(count)] if count > 2 else [(0, 1)][: count // 2]
-            return [Sector(rays[i], rays[j], self.tight[i] & self.tight[j]) for i, j in pairs]
+            return [
+                sector
+                for i, j in pairs
+                for sector in self._parts(Sector(rays[i], rays[j], self.tight[i] & self.tight[j]))
+            ]
         if len(lines) == 1:
             line = lines[0]
             return [
@@ -180,6 +186,22 @@ class PolyhedralCone:
             turn = (one, two, opposite(one), opposite(two), one)
             return [Sector(turn[i], turn[i + 1], self.all_rows) for i in range(4)]
         return []
+
+    def _parts(self, sector: Sector) -> list[Sector]:
+        """Return two halves of a sector of almost 180 degrees, or else the sector.
+
+        A sum of its two rays would be little more than rounding.
+        """
+        start, end, tight = sector
+        if dot(start, end) > _ALMOST_OPPOSITE or not tight:
+            return [sector]
+        middle = _rounded(
+            cross(
+                self.rows[(tight & -tight).bit_length() - 1], decimal_vector(start) if self.exact else start
+            )
+        )
+        middle = middle if dot(middle, end) > 0.0 else opposite(middle)
+        return [Sector(start, middle, tight), Sector(middle, end, tight)]
 
     def _begin(self) -> tuple[int, ...]:
         """Start with two or three independent rows and return their indices, or () if all are parallel."""

@@ -60,7 +60,7 @@ class _Unknown(NamedTuple):
 class IndependentModes:
     """The modes of one problem whose equations are independent. It solves and judges them."""
 
-    __slots__ = ("_accuracy", "_case", "_equations", "_load", "_scale", "_wrench")
+    __slots__ = ("_accuracy", "_case", "_equations", "_load", "_never_slips", "_scale", "_wrench")
 
     def __init__(self, case: PlanarCase, accuracy: float) -> None:
         """Prepare to judge modes. Numbers within the relative ``accuracy`` count as zero."""
@@ -69,6 +69,8 @@ class IndependentModes:
         self._wrench: Vector4 = (*case.w, case.mass * self._scale)
         self._load = _size(self._wrench)
         self._accuracy = accuracy
+        # Without a finite friction there is no equation for sliding.
+        self._never_slips = any(row.friction == math.inf for row in case.rows)
         # The equations of each contact's letter are computed when a mode first has that letter.
         self._equations: dict[tuple[int, int], tuple[_Equation, ...]] = {}
 
@@ -87,7 +89,7 @@ class IndependentModes:
         return self._motion_refusal(mode, letters, unknowns, sizes) or forces
 
     def _unknowns(self, letters: Letters) -> list[_Unknown] | None:
-        if len(letters) > _MOST_EQUATIONS:
+        if len(letters) > _MOST_EQUATIONS or self._never_slips:
             return None
         equations: list[_Equation] = []
         for letter in letters:

@@ -6,7 +6,7 @@ A few edges are computed in plain floats and many in arrays, whichever is faster
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -20,7 +20,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.contact_modes.planar.problem import ContactRow
+    from contact_dynamics.plane.types import Vector2
     from contact_dynamics.validation import FloatArray
+
+_SMOOTH: Final = ((0.0, 1.0),)
+"""The only edge of a contact without friction is its normal."""
 
 
 class Edges(NamedTuple):
@@ -28,12 +32,12 @@ class Edges(NamedTuple):
 
     Attributes:
         positions: The position of each edge's contact in the rows of the case.
-        slopes: The ratio f_t / f_n of each edge.
-        wrenches: The wrench of a force along each edge whose normal part is 1.
+        forces: One force (f_t, f_n) along each edge. Its normal part is 1, or 0 where friction is infinite.
+        wrenches: The wrench of that force.
     """
 
     positions: list[int]
-    slopes: list[float]
+    forces: list[Vector2]
     wrenches: list[Vector3]
 
 
@@ -44,7 +48,7 @@ class Reactions(NamedTuple):
 
     Attributes:
         edges: The indices of the edges whose wrenches have such a part.
-        lengths: The size of that part for each of them, for a normal force of 1.
+        lengths: The size of that part for each of them.
         units: The negated part of each of them, as a unit vector.
     """
 
@@ -56,23 +60,35 @@ class Reactions(NamedTuple):
 def friction_edges(rows: Sequence[ContactRow], letters: Letters) -> Edges:
     """Return the edges of the forces that the letters of a mode allow."""
     positions: list[int] = []
-    slopes: list[float] = []
+    forces: list[Vector2] = []
     for position, letter in letters:
-        friction = rows[position].friction
-        if letter != RIGHT:
+        for force in edge_forces(rows[position].friction, letter):
             positions.append(position)
-            slopes.append(friction)
-        if letter == RIGHT or (letter == FIXED and friction > 0.0):
-            positions.append(position)
-            slopes.append(-friction)
+            forces.append(force)
     if len(positions) > MANY:
         both = np.array([rows[position].N + rows[position].T for position in positions])
-        return Edges(positions, slopes, _rows(both[:, :3] + np.array(slopes)[:, None] * both[:, 3:]))
+        sizes = np.array(forces)
+        return Edges(positions, forces, _rows(sizes[:, 1:] * both[:, :3] + sizes[:, :1] * both[:, 3:]))
     wrenches = []
-    for position, slope in zip(positions, slopes, strict=True):
+    for position, (f_t, f_n) in zip(positions, forces, strict=True):
         N, T = rows[position].N, rows[position].T
-        wrenches.append((N[0] + slope * T[0], N[1] + slope * T[1], N[2] + slope * T[2]))
-    return Edges(positions, slopes, wrenches)
+        wrenches.append((f_n * N[0] + f_t * T[0], f_n * N[1] + f_t * T[1], f_n * N[2] + f_t * T[2]))
+    return Edges(positions, forces, wrenches)
+
+
+def edge_forces(friction: float, letter: int) -> tuple[Vector2, ...]:
+    """Return a force (f_t, f_n) along each edge of the forces that a letter allows.
+
+    If friction is infinite, the tangential force may have any size, also without a normal force.
+    """
+    if friction == 0.0:
+        return _SMOOTH
+    left, right = (-friction, 1.0), (friction, 1.0)
+    if friction == math.inf:
+        left, right = (-1.0, 0.0), (1.0, 0.0)
+    if letter == FIXED:
+        return (right, left, (0.0, 1.0)) if friction == math.inf else (right, left)
+    return (left,) if letter == RIGHT else (right,)
 
 
 def reactions(lift: Lift | None, wrenches: Sequence[Vector3]) -> Reactions:
@@ -97,7 +113,7 @@ def sharp_reactions(
     sharp = []
     for edge in acting:
         row = rows[edges.positions[edge]]
-        reaction = sharp_reaction(row.N, row.T, edges.slopes[edge])
+        reaction = sharp_reaction(row.N, row.T, edges.forces[edge])
         if lift is not None:
             one, two = (decimal_vector(axis) for axis in lift.across)
             reaction = (dot(reaction, one), dot(reaction, two), 0 * reaction[2])
@@ -105,14 +121,14 @@ def sharp_reactions(
     return sharp
 
 
-def sharp_reaction(N: Vector3, T: Vector3, slope: float) -> Vector3:
-    """Return the reaction to N + slope T in decimals.
+def sharp_reaction(N: Vector3, T: Vector3, force: Vector2) -> Vector3:
+    """Return the reaction to a force (f_t, f_n) in decimals.
 
-    If friction is large, floats would lose N in the sum.
+    If friction is large, floats would lose the normal part in the sum.
     """
     (n_x, n_y, n_z), (t_x, t_y, t_z) = decimal_vector(N), decimal_vector(T)
-    factor, _, _ = decimal_vector((slope, 0.0, 0.0))
-    return (-n_x - factor * t_x, -n_y - factor * t_y, -n_z - factor * t_z)
+    f_t, f_n, _ = decimal_vector((*force, 0.0))
+    return (-f_n * n_x - f_t * t_x, -f_n * n_y - f_t * t_y, -f_n * n_z - f_t * t_z)
 
 
 def _many_reactions(lift: Lift | None, wrenches: Sequence[Vector3]) -> Reactions:

@@ -10,14 +10,15 @@ of the wrenches that can bring it about (`wrench_cone`), and its forces are some
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.contact_modes.planar.determined import IndependentModes
 from contact_dynamics.contact_modes.planar.enumeration import FIXED, RIGHT, Cell
 from contact_dynamics.contact_modes.planar.result import PlanarMode
 from contact_dynamics.contact_modes.planar.wrench_cone import ModeWrenches
-from contact_dynamics.contact_modes.result import Refusal, RefusedMode
-from contact_dynamics.numerics.vectors import Vector3, dot, norm
+from contact_dynamics.contact_modes.result import ModeVerdict, Refusal, RefusedMode, verdict_on
+from contact_dynamics.numerics.vectors import Vector3, combined, dot, norm, scaled
 from contact_dynamics.tolerances import FORCES_ROUNDING
 
 if TYPE_CHECKING:
@@ -26,73 +27,102 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.planar.problem import PlanarCase
     from contact_dynamics.plane.types import Vector2
 
-_EVIDENCE: Final = 3.0
+EVIDENCE: Final = 3.0
 """Forces are evidence if they miss what the letters say by no more than this number of tolerances."""
 
 
-def judge_all(
-    case: PlanarCase, cells: Mapping[str, Cell], accuracy: float
-) -> tuple[list[PlanarMode], list[RefusedMode]]:
-    """Return the consistent and the refused modes among ``cells``, in alphabetical order."""
+class Judged(NamedTuple):
+    """What mechanics says about some modes, in alphabetical order.
+
+    Attributes:
+        consistent: The modes that it allows.
+        refused: The modes that it does not allow.
+        undecided: The modes that it may allow. Rounding decides whether their forces bring them about.
+    """
+
+    consistent: list[PlanarMode]
+    refused: list[RefusedMode]
+    undecided: list[str]
+
+    @property
+    def verdict(self) -> ModeVerdict:
+        """Return the verdict if these are all modes."""
+        return ModeVerdict.UNDECIDED if self.undecided else verdict_on(self.consistent)
+
+
+def judge_all(case: PlanarCase, cells: Mapping[str, Cell], accuracy: float) -> Judged:
+    """Return what mechanics says about the modes ``cells``."""
     consistent: list[PlanarMode] = []
     refused: list[RefusedMode] = []
+    undecided: list[str] = []
     independent = IndependentModes(case, accuracy)
     for mode, cell in sorted(cells.items()):
         forces = independent.forces(mode, cell.letters)
-        outcome: PlanarMode | RefusedMode
+        outcome: PlanarMode | RefusedMode | None
         if forces is None:
             outcome = _from_cone(case, mode, cell, accuracy)
         elif isinstance(forces, RefusedMode):
             outcome = forces
-        elif _misses(case, cell, forces) > _allowed(case, accuracy, forces):
-            outcome = _judged(case, mode, cell, accuracy, exact=True)[0]
         else:
-            outcome = _consistent(case, mode, cell, forces, unique=(True, True))
+            outcome = _shown(case, mode, cell, forces, accuracy)
         if isinstance(outcome, PlanarMode):
             consistent.append(outcome)
+        elif outcome is None:
+            undecided.append(mode)
         else:
             refused.append(outcome)
-    return consistent, refused
+    return Judged(consistent, refused, undecided)
 
 
-def _from_cone(case: PlanarCase, mode: str, cell: Cell, accuracy: float) -> PlanarMode | RefusedMode:
+def _shown(
+    case: PlanarCase, mode: str, cell: Cell, forces: list[Vector2], accuracy: float
+) -> PlanarMode | RefusedMode | None:
+    """Return the mode that the solution of its own equations gives.
+
+    Forces within the tolerance of a friction cone are put into it. If they then do not bring about what the
+    letters say, they are no evidence, and the mode is decided again with more digits.
+    """
+    inside = _in_cones(case, cell, forces)
+    q = _acceleration(case, cell, inside)
+    if _misses(case, cell, q) > _allowed(case, accuracy, inside) or (
+        inside != forces and _contradiction(case, cell, q)
+    ):
+        return _judged(case, mode, cell, accuracy, exact=True)
+    return _consistent(case, mode, cell, inside, q, unique=(True, True))
+
+
+def _from_cone(case: PlanarCase, mode: str, cell: Cell, accuracy: float) -> PlanarMode | RefusedMode | None:
     """Decide a mode whose equations are not independent by the cone of its wrenches.
 
     If the forces do not bring about what the letters say, they are no evidence. Then the mode is decided
     again with more digits.
     """
-    outcome, certain = _judged(case, mode, cell, accuracy, exact=False)
-    return outcome if certain else _judged(case, mode, cell, accuracy, exact=True)[0]
+    outcome = _judged(case, mode, cell, accuracy, exact=False)
+    return _judged(case, mode, cell, accuracy, exact=True) if outcome is None else outcome
 
 
 def _judged(
     case: PlanarCase, mode: str, cell: Cell, accuracy: float, *, exact: bool
-) -> tuple[PlanarMode | RefusedMode, bool]:
-    """Return the decision on a mode, and whether it is certain."""
+) -> PlanarMode | RefusedMode | None:
+    """Return the decision on a mode, or None if there are forces for it that do not bring it about."""
     wrenches = ModeWrenches(case, cell, exact=exact)
     shortfall = wrenches.shortfall(accuracy)
     if shortfall is not None:
-        return RefusedMode(mode=mode, refusal=Refusal.NO_SOLUTION, contact=-1, amount=shortfall), True
-    shares, unique = wrenches.solution(accuracy)
-    sums = dict.fromkeys(wrenches.edges.positions, (0.0, 0.0))
-    for position, slope, share in zip(wrenches.edges.positions, wrenches.edges.slopes, shares, strict=True):
-        f_t, f_n = sums[position]
-        sums[position] = (f_t + slope * share, f_n + share)
-    forces = [sums[position] for position, _ in cell.letters]
-    allowed = _EVIDENCE * (accuracy + FORCES_ROUNDING) * (case.load + sum(shares))
+        return RefusedMode(mode=mode, refusal=Refusal.NO_SOLUTION, contact=-1, amount=shortfall)
+    found = wrenches.solution(accuracy)
+    forces = _in_cones(case, cell, [found.forces[position] for position, _ in cell.letters])
+    newton = _acceleration(case, cell, forces)
+    q = newton if found.motion is None else _with_motion(case, newton, found.motion)
+    missed = case.mass * norm(combined(1.0, newton, -1.0, q)) + _misses(case, cell, q)
     # Close to the boundary, the rounding of the forces may be larger than the strict inequalities.
-    lost = _contradiction(case, cell, forces)
-    if lost is not None:
-        contact, amount = lost
-        refused = RefusedMode(mode=mode, refusal=Refusal.WRONG_MOTION, contact=contact, amount=amount)
-        return refused, wrenches.dual.exact
-    certain = wrenches.dual.exact or _misses(case, cell, forces) <= allowed
-    return _consistent(case, mode, cell, forces, unique=unique), certain
+    if _contradiction(case, cell, q) or missed > _allowed(case, accuracy, forces):
+        return None
+    return _consistent(case, mode, cell, forces, q, unique=(found.forces_unique, found.motion_unique))
 
 
 def _allowed(case: PlanarCase, accuracy: float, forces: list[Vector2]) -> float:
     """Return by how much, N, the forces of a mode may miss what its letters say."""
-    return _EVIDENCE * (accuracy + FORCES_ROUNDING) * (case.load + sum(f_n for _, f_n in forces))
+    return EVIDENCE * (accuracy + FORCES_ROUNDING) * (case.load + sum(f_n for _, f_n in forces))
 
 
 def _consistent(
@@ -100,10 +130,10 @@ def _consistent(
     mode: str,
     cell: Cell,
     forces: list[Vector2],
+    q: Vector3,
     *,
     unique: tuple[bool, bool],
 ) -> PlanarMode:
-    q = _acceleration(case, cell, forces)
     alpha = q[2] / case.rho
     square = case.omega * case.omega
     accelerations: list[Vector2] = []
@@ -115,12 +145,9 @@ def _consistent(
         c_y = a_y + alpha * r_x - square * r_y
         accelerations.append((c_x * n_y - c_y * n_x, c_x * n_x + c_y * n_y))
     all_forces: list[Vector2] = [(0.0, 0.0)] * len(case.contacts)
-    for (position, letter), (f_t, f_n) in zip(cell.letters, forces, strict=True):
-        row = case.rows[position]
-        index = row.contact
-        edge = row.friction * f_n
-        if f_n > 0.0:  # the force is moved by its rounding, so that it does not leave the friction cone
-            all_forces[index] = (max(-edge, min(edge, f_t)), f_n)
+    for (position, letter), force in zip(cell.letters, forces, strict=True):
+        index = case.rows[position].contact
+        all_forces[index] = force
         # The accelerations that the mode says are zero are given as zero, without rounding.
         accelerations[index] = (0.0 if letter == FIXED else accelerations[index][0], 0.0)
     forces_unique, motion_unique = unique
@@ -135,9 +162,21 @@ def _consistent(
     )
 
 
-def _misses(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> float:
-    """Return the largest acceleration, times mass, N, that the letters say is zero and the forces do not."""
-    q = _acceleration(case, cell, forces)
+def _in_cones(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> list[Vector2]:
+    """Return the forces, with those that leave their friction cones by a little moved into them."""
+    inside = []
+    for (position, _), (f_t, f_n) in zip(cell.letters, forces, strict=True):
+        friction = case.rows[position].friction
+        edge = friction * f_n
+        if f_n > 0.0:
+            inside.append((max(-edge, min(edge, f_t)), f_n))
+        else:
+            inside.append((f_t, 0.0) if friction == math.inf else (0.0, 0.0))
+    return inside
+
+
+def _misses(case: PlanarCase, cell: Cell, q: Vector3) -> float:
+    """Return the largest acceleration, times mass, N, that the letters say is zero and ``q`` says is not."""
     most = 0.0
     for position, letter in cell.letters:
         row = case.rows[position]
@@ -147,12 +186,8 @@ def _misses(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> float:
     return most
 
 
-def _contradiction(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> tuple[int, float] | None:
-    """Return the first contact that should separate or start to slide but does not, and its acceleration.
-
-    Returns None if all contacts move as their letters say.
-    """
-    q = _acceleration(case, cell, forces)
+def _contradiction(case: PlanarCase, cell: Cell, q: Vector3) -> bool:
+    """Return whether a contact that should separate or start to slide does not."""
     size = norm(q)
     staying = dict(cell.letters)
     for position, row in enumerate(case.rows):
@@ -165,8 +200,8 @@ def _contradiction(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> tuple
         else:
             continue
         if value <= FORCES_ROUNDING * length * size:
-            return row.contact, value
-    return None
+            return True
+    return False
 
 
 def _acceleration(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> Vector3:
@@ -177,3 +212,12 @@ def _acceleration(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> Vector
         y += f_n * row.N[1] + f_t * row.T[1]
         z += f_n * row.N[2] + f_t * row.T[2]
     return (x / case.mass, y / case.mass, z / case.mass)
+
+
+def _with_motion(case: PlanarCase, newton: Vector3, motion: Vector3) -> Vector3:
+    """Return the acceleration that ``motion``, N, gives, and ``newton`` along a line of symmetry."""
+    x, y, _ = scaled(motion, 1.0 / case.mass)
+    if case.lift is None:
+        return scaled(motion, 1.0 / case.mass)
+    one, two = case.lift.across
+    return combined(1.0, combined(x, one, y, two), dot(newton, case.lift.line), case.lift.line)

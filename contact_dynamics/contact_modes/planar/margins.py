@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.contact_modes.letters import PLANAR_LETTERS, SEPARATES
+from contact_dynamics.contact_modes.letters import SEPARATES
+from contact_dynamics.contact_modes.planar.answer import planar_contact_modes
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.judgement import judge_all
 from contact_dynamics.contact_modes.planar.problem import touching_case
@@ -15,7 +16,7 @@ from contact_dynamics.contact_modes.planar.wrench_sets import (
     WrenchHalfSpace,
     wrench_set_of,
 )
-from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
+from contact_dynamics.contact_modes.result import ModeVerdict
 from contact_dynamics.plane.types import PlanarWrench
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import BEYOND_MARGIN
@@ -79,11 +80,10 @@ def planar_mode_margins(
     if case is None:
         return _of_free_motion(problem, length)
     cells = kinematic_cells(case)
-    consistent = judge_all(case, cells, accuracy)[0] if answer is None else answer.modes
+    if answer is None:
+        answer = planar_contact_modes(problem)
+    consistent = answer.modes
     present = tuple(mode.mode for mode in consistent)
-    if len(problem.contacts) == 1:
-        # This is the order in which `one_contact` tries the letters.
-        present = tuple(sorted(present, key=PLANAR_LETTERS.index))
     found = []
     for mode in present:
         margin, side = _nearest(wrench_set_of(case, mode, cells[mode]), wrench, length)
@@ -94,7 +94,7 @@ def planar_mode_margins(
                     margin=math.inf,
                     length=length,
                     change=_NO_WRENCH,
-                    verdict_beyond=verdict_on(consistent),
+                    verdict_beyond=answer.verdict,
                     modes_beyond=present,
                 )
             )
@@ -102,15 +102,15 @@ def planar_mode_margins(
         way = side.outward(length)
         step = margin + BEYOND_MARGIN * max(margin, math.hypot(*wrench.f, wrench.moment / length))
         beyond = _stepped(wrench, step, way)
-        there, _ = judge_all(case._replace(w=(*beyond.f, beyond.moment / case.rho)), cells, accuracy)
+        there = judge_all(case._replace(w=(*beyond.f, beyond.moment / case.rho)), cells, accuracy)
         found.append(
             PlanarModeMargin(
                 mode=mode,
                 margin=margin,
                 length=length,
                 change=_stepped(_NO_WRENCH, margin, way),
-                verdict_beyond=verdict_on(there),
-                modes_beyond=tuple(one.mode for one in there),
+                verdict_beyond=there.verdict,
+                modes_beyond=tuple(one.mode for one in there.consistent),
             )
         )
     return tuple(found)

@@ -60,6 +60,9 @@ class _ContactAxes(NamedTuple):
         det: 1/kg^2, the determinant a c - b^2, which is positive.
         w_t: m/s^2, the tangential acceleration without a contact force.
         w_n: m/s^2, the normal acceleration without a contact force.
+        alpha: rad/s^2, the angular acceleration without a contact force.
+        u_t: m/s^2, the part of w_t that does not come from it.
+        u_n: m/s^2, the part of w_n that does not come from it.
         terms: m/s^2, the sum of the absolute terms of w_t and w_n, which bounds their rounding.
         friction: The coefficient of friction.
         load: N/kg^(1/2), the size of (f, moment / rho) and of the forces that the centripetal terms need,
@@ -74,6 +77,9 @@ class _ContactAxes(NamedTuple):
     det: float
     w_t: float
     w_n: float
+    alpha: float
+    u_t: float
+    u_n: float
     terms: float
     friction: float
     load: float
@@ -152,9 +158,9 @@ def _contact_axes(
     per_mass = 1.0 / body.mass
     per_inertia = 1.0 / body.inertia
     alpha = wrench.moment * per_inertia
-    w_t = (f_x * n_y - f_y * n_x) * per_mass - r_n * alpha - w * w * r_t
     rolling = contact.gap_acceleration(v_t, w)
-    w_n = (f_x * n_x + f_y * n_y) * per_mass + r_t * alpha - w * w * r_n + rolling
+    u_t = (f_x * n_y - f_y * n_x) * per_mass - w * w * r_t
+    u_n = (f_x * n_x + f_y * n_y) * per_mass - w * w * r_n + rolling
     force = (f_x * f_x + f_y * f_y) * per_mass + wrench.moment * alpha
     centripetal = w * w * (abs(r_t) + abs(r_n)) + abs(rolling)
     axes = _ContactAxes(
@@ -163,14 +169,17 @@ def _contact_axes(
         per_mass=per_mass,
         per_inertia=per_inertia,
         det=per_mass * (per_mass + (r_t * r_t + r_n * r_n) * per_inertia),
-        w_t=w_t,
-        w_n=w_n,
+        w_t=u_t - r_n * alpha,
+        w_n=u_n + r_t * alpha,
+        alpha=alpha,
+        u_t=u_t,
+        u_n=u_n,
         terms=(abs(f_x) + abs(f_y)) * per_mass + (abs(r_t) + abs(r_n)) * abs(alpha) + centripetal,
         friction=min(contact.friction, LARGEST_NUMBER),
         load=math.sqrt(force) + centripetal / math.sqrt(per_mass),
         accuracy=accuracy,
     )
-    if abs(w_n) <= axes.tolerance(axes.along(0.0, 1.0), axes.terms):
+    if abs(axes.w_n) <= axes.tolerance(axes.along(0.0, 1.0), axes.terms):
         axes = axes._replace(w_n=0.0)
     return axes
 
@@ -210,8 +219,11 @@ def _sliding(axes: _ContactAxes, *, direction: float, at_rest: bool) -> _Solutio
 def _fixed(axes: _ContactAxes) -> _Solution | _Failure:
     a, c = axes.along(1.0, 0.0), axes.along(0.0, 1.0)
     b = -axes.r_t * axes.r_n * axes.per_inertia
-    f_n = (b * axes.w_t - a * axes.w_n) / axes.det
-    f_t = (b * axes.w_n - c * axes.w_t) / axes.det
+    # In (b w_t - a w_n) and (b w_n - c w_t) the terms of the angular acceleration cancel except for one each.
+    # The others are left out, because their rounding is large if the contact is far from the centre of mass.
+    u_t, u_n, alpha = axes.u_t, axes.u_n, axes.alpha
+    f_n = (b * u_t - a * u_n - axes.per_mass * axes.r_t * alpha) / axes.det
+    f_t = (b * u_n - c * u_t + axes.per_mass * axes.r_n * alpha) / axes.det
     terms_n, terms_t = (abs(b) + a) * axes.terms / axes.det, (abs(b) + c) * axes.terms / axes.det
     if f_n < -axes.tolerance(a / axes.det, terms_n):
         return _Failure(Refusal.PULLS, f_n)

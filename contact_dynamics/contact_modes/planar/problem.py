@@ -19,6 +19,7 @@ acceleration, and one for the centripetal terms.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -261,6 +262,16 @@ def effective_friction(contact: PlanarContact, length: float) -> float:
 def beyond_grip(contact: PlanarContact, length: float) -> bool:
     """Return whether the contact acts with less friction than it has."""
     return effective_friction(contact, length) < contact.friction
+
+
+def never_slipping(case: PlanarCase) -> PlanarCase:
+    """Return the case with infinite friction at contacts that act with less friction than they have."""
+    contacts, rho = case.contacts, case.rho
+    rows = [
+        row._replace(friction=math.inf) if beyond_grip(contacts[row.contact], rho) else row
+        for row in case.rows
+    ]
+    return case._replace(rows=rows)
 
 
 def _unhindered(twist: Vector3, resting: list[Vector3]) -> Vector3:

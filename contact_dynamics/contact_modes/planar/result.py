@@ -44,13 +44,15 @@ class PlanarModeAnswer(Record):
     Attributes:
         verdict: The verdict on the whole contact set.
         modes: All consistent modes.
-        refused: All other modes that are possible kinematically, each with the reason against it.
+        refused: The modes that are possible kinematically and not consistent, each with the reason.
         approaching: The indices of the contacts that approach. There are some exactly if the verdict is
             IMPACT.
         contact_velocities: m/s, the velocity (v_t, v_n) of the body's point at each contact. Values within
             tolerance are 0.
         velocity_tolerance: m/s. Velocities of contacts up to this size counted as zero.
         acceleration_tolerance: m/s^2. Accelerations of the centre of mass up to this size counted as zero.
+        undecided: What could not be decided, and why. It is empty unless the verdict is UNDECIDED.
+        undecided_modes: The modes that are possible kinematically and neither consistent nor refused.
     """
 
     verdict: ModeVerdict
@@ -60,8 +62,12 @@ class PlanarModeAnswer(Record):
     contact_velocities: tuple[Vector2, ...]
     velocity_tolerance: float
     acceleration_tolerance: float
+    undecided: str = ""
+    undecided_modes: tuple[str, ...] = ()
 
     @property
     def kinematic_modes(self) -> tuple[str, ...]:
         """Return every mode that some acceleration realises without penetration, in alphabetical order."""
-        return tuple(sorted([found.mode for found in self.modes] + [found.mode for found in self.refused]))
+        consistent = [found.mode for found in self.modes]
+        refused = [found.mode for found in self.refused]
+        return tuple(sorted([*consistent, *refused, *self.undecided_modes]))

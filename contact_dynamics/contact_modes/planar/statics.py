@@ -16,20 +16,29 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from contact_dynamics.contact_modes.letters import STICKS
 from contact_dynamics.contact_modes.planar.answer import planar_contact_modes
 from contact_dynamics.contact_modes.planar.cone import PolyhedralCone
-from contact_dynamics.contact_modes.planar.friction_edges import sharp_reaction
-from contact_dynamics.contact_modes.planar.problem import AT_REST, contact_rows, effective_friction
+from contact_dynamics.contact_modes.planar.enumeration import FIXED
+from contact_dynamics.contact_modes.planar.friction_edges import edge_forces, sharp_reaction
+from contact_dynamics.contact_modes.planar.judgement import EVIDENCE
+from contact_dynamics.contact_modes.planar.problem import (
+    AT_REST,
+    contact_rows,
+    effective_friction,
+)
 from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict
+from contact_dynamics.errors import UndecidedError
 from contact_dynamics.numerics.nonnegative_least_squares import distance_from_cone
-from contact_dynamics.numerics.vectors import Vector3, dot, normalised
-from contact_dynamics.plane.force_dual import friction_cone
+from contact_dynamics.numerics.vectors import Vector3, combined, dot, normalised, opposite
+from contact_dynamics.tolerances import FORCES_ROUNDING
 from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.contact_modes.planar.problem import PlanarContactProblem
+    from contact_dynamics.contact_modes.planar.result import PlanarMode, PlanarModeAnswer
     from contact_dynamics.plane.types import PlanarContact
 
 
@@ -43,6 +52,7 @@ def planar_statics(problem: PlanarContactProblem, *, margin_length: float | None
 
     Raises:
         InvalidFieldError: the length is not > 0.
+        UndecidedError: it is not decided whether the body can stay, for a reason that the message says.
 
     Source: Mason 5.5 to 6.5 and lecture 26; D. E. Whitney, J. Dyn. Sys. Meas. Control 104 (1982), jamming and
     wedging.
@@ -54,54 +64,68 @@ def planar_statics(problem: PlanarContactProblem, *, margin_length: float | None
     )
     answer = planar_contact_modes(replace(problem, velocity=AT_REST))
     target = (wrench.f[0], wrench.f[1], wrench.moment / length)
-    balance = _balance(contacts, length)
-    smooth = _balance([replace(contact, friction=0.0) for contact in contacts], length)
-    room = _room(balance, target, accuracy)
-    equilibrium = Certainty.NO
-    if room >= 0.0:
-        alone = answer.verdict == ModeVerdict.UNIQUE and answer.modes[0].motion_unique
-        equilibrium = Certainty.CERTAIN if alone else Certainty.POSSIBLE
-    held_without = _room(smooth, target, accuracy) >= 0.0
+    rho = body.radius_of_gyration
+    frictions = [effective_friction(contact, rho) for contact in contacts]
+    balance = _balance(contacts, frictions, length)
+    smooth = _balance(contacts, [0.0] * len(contacts), length)
+    equilibrium = _equilibrium(answer, problem)
+    held_without = _holds(smooth, target, accuracy)
     return BodyStatics(
         equilibrium=equilibrium,
         jammed=Certainty.NO if held_without else equilibrium,
         wedged=_press_on_each_other(balance),
-        stable_disturbance=room if room >= 0.0 else math.nan,
+        stable_disturbance=math.nan if equilibrium == Certainty.NO else _room(balance, target),
         margin_length=length,
     )
 
 
-def _balance(contacts: Sequence[PlanarContact], length: float) -> PolyhedralCone:
+def _balance(contacts: Sequence[PlanarContact], frictions: Sequence[float], length: float) -> PolyhedralCone:
     """Return the dual of the cone of wrenches that contact forces can balance."""
-    gripping = [replace(one, friction=effective_friction(one, length)) for one in contacts]
-    pairs = [friction_cone(one) if one.friction > 0.0 else friction_cone(one)[:1] for one in gripping]
-    edges = [edge for pair in pairs for edge in pair]
-    reactions = [normalised((-edge.f[0], -edge.f[1], -edge.moment / length)) for edge in edges]
-
-    def sharp() -> list[Vector3]:
-        return [
-            sharp_reaction(*contact_rows(one, length), slope)
-            for one, pair in zip(gripping, pairs, strict=True)
-            for slope in (one.friction, -one.friction)[: len(pair)]
-        ]
-
-    return PolyhedralCone(reactions, sharp=sharp)
+    edges = [
+        (*contact_rows(contact, length), force)
+        for contact, friction in zip(contacts, frictions, strict=True)
+        for force in edge_forces(friction, FIXED)
+    ]
+    reactions = [normalised(opposite(combined(f_n, N, f_t, T))) for N, T, (f_t, f_n) in edges]
+    return PolyhedralCone(reactions, sharp=lambda: [sharp_reaction(*edge) for edge in edges])
 
 
-def _room(balance: PolyhedralCone, target: Vector3, accuracy: float) -> float:
-    """Return how far inside the cone dual to ``balance`` the wrench lies, N, or -1 if it is outside."""
+def _equilibrium(answer: PlanarModeAnswer, problem: PlanarContactProblem) -> Certainty:
+    """Return whether a body stays according to its modes, which statics so never contradict."""
+    resting = STICKS * len(problem.contacts)
+    if resting in answer.undecided_modes:
+        raise UndecidedError(f"whether the body stays is not known: {answer.undecided}")
+    fixed = [mode for mode in answer.modes if mode.mode == resting]
+    if not any(_stays(mode, problem) for mode in fixed):
+        return Certainty.NO
+    alone = answer.verdict == ModeVerdict.UNIQUE and fixed[0].motion_unique
+    return Certainty.CERTAIN if alone else Certainty.POSSIBLE
+
+
+def _stays(mode: PlanarMode, problem: PlanarContactProblem) -> bool:
+    """Return whether a body does not accelerate in a mode. It may turn about a single place that is fixed."""
+    body, wrench = problem.body, problem.wrench
+    rho = body.radius_of_gyration
+    load = math.hypot(*wrench.f, wrench.moment / rho)
+    forces = sum(abs(f_t) + f_n for f_t, f_n in mode.contact_forces)
+    size = body.mass * math.hypot(*mode.acceleration, rho * mode.angular_acceleration)
+    return size <= EVIDENCE * (problem.acceleration_tolerance + FORCES_ROUNDING) * (load + forces)
+
+
+def _holds(balance: PolyhedralCone, target: Vector3, accuracy: float) -> bool:
+    """Return whether the cone dual to ``balance`` contains the wrench."""
     tolerance = accuracy * math.sqrt(dot(target, target))
-    heights = [dot(facet, target) for facet in balance.rays]
     if balance.exact:
-        if distance_from_cone(balance.rows, target) > tolerance:
-            return -1.0
-    elif any(abs(dot(line, target)) > tolerance for line in balance.lineality) or (
-        heights and min(heights) < -tolerance
-    ):
-        return -1.0
+        return distance_from_cone(balance.rows, target) <= tolerance
+    outside = any(abs(dot(line, target)) > tolerance for line in balance.lineality)
+    return not outside and all(dot(facet, target) >= -tolerance for facet in balance.rays)
+
+
+def _room(balance: PolyhedralCone, target: Vector3) -> float:
+    """Return how far inside the cone dual to ``balance`` the wrench lies, N, or 0 on its boundary."""
     if balance.lineality:
         return 0.0
-    return max(0.0, min(heights, default=math.inf))
+    return max(0.0, min((dot(facet, target) for facet in balance.rays), default=math.inf))
 
 
 def _press_on_each_other(balance: PolyhedralCone) -> bool:

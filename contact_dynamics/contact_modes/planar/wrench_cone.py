@@ -13,24 +13,27 @@ see `problem`.
 from __future__ import annotations
 
 import math
+from decimal import Decimal
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.contact_modes.planar.cone import PolyhedralCone, bits, decimal_vector
 from contact_dynamics.contact_modes.planar.enumeration import Cell
 from contact_dynamics.contact_modes.planar.friction_edges import friction_edges, reactions, sharp_reactions
 from contact_dynamics.contact_modes.planar.problem import PlanarCase, lifted
+from contact_dynamics.numerics.arithmetic import DECIMALS, within
 from contact_dynamics.numerics.linear_spaces import orthonormal
 from contact_dynamics.numerics.nonnegative_least_squares import (
     distance_from_cone,
     exact_combination,
     least_force,
 )
-from contact_dynamics.numerics.vectors import Vector3, dot, norm, normalised, opposite
+from contact_dynamics.numerics.vectors import Vector3, combined, dot, norm, normalised, opposite, scaled
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from contact_dynamics.plane.types import Vector2
 
 _MOST_INDEPENDENT: Final = 3
 """No more wrenches can be independent in the plane."""
@@ -48,10 +51,29 @@ class HalfSpace(NamedTuple):
     b: float
 
 
+class Evidence(NamedTuple):
+    """Forces that bring a mode about, and its motion.
+
+    Attributes:
+        forces: N, the force (f_t, f_n) at each position in the rows of the case.
+        motion: N, mass times the acceleration across the line of symmetry, or None if Newton's law gives it
+            accurately enough. It is a combination of the mode's rays, so that it satisfies strict
+            inequalities that the rounding of the forces would hide. Its third coordinate is a height if there
+            is such a line.
+        forces_unique: Whether these are the only forces.
+        motion_unique: Whether this is the only motion.
+    """
+
+    forces: dict[int, Vector2]
+    motion: Vector3 | None
+    forces_unique: bool
+    motion_unique: bool
+
+
 class ModeWrenches:
     """The cone of the applied wrenches of one mode, and where the problem's own wrench lies in it."""
 
-    __slots__ = ("_case", "_common", "_rays", "_reactions", "_target", "dual", "edges")
+    __slots__ = ("_case", "_common", "_rays", "_reactions", "_sharp_lengths", "_target", "dual", "edges")
 
     def __init__(self, case: PlanarCase, cell: Cell, *, exact: bool = False) -> None:
         """Build the cone. The rows of ``dual`` are the rays of the accelerations, and then the reactions.
@@ -63,6 +85,7 @@ class ModeWrenches:
         self._rays = cell.rays
         self.edges = friction_edges(case.rows, cell.letters)
         self._reactions = reactions(lift, self.edges.wrenches)
+        self._sharp_lengths: list[Decimal] = []
         self.dual = PolyhedralCone([*cell.rays, *self._reactions.units], exact=exact, sharp=self._sharp_rows)
         self._target = lifted(lift, case.w, case.mass * lift.scale * lift.scale if lift else 0.0)
         self._common = self.dual.all_rows
@@ -70,7 +93,9 @@ class ModeWrenches:
     def _sharp_rows(self) -> list[Vector3]:
         rays = [decimal_vector(ray) for ray in self._rays]
         case = self._case
-        return [*rays, *sharp_reactions(case.lift, case.rows, self.edges, self._reactions.edges)]
+        sharp = sharp_reactions(case.lift, case.rows, self.edges, self._reactions.edges)
+        self._sharp_lengths = [Decimal(dot(row, row)).sqrt() for row in sharp]
+        return [*rays, *sharp]
 
     def generated_by(self) -> tuple[list[Vector3], list[Vector3]]:
         """Return vertices, N, and rays. Each wrench of the mode is an average of vertices plus some rays."""
@@ -138,11 +163,8 @@ class ModeWrenches:
         self._common = common
         return None if strict else 0.0
 
-    def solution(self, accuracy: float) -> tuple[list[float], tuple[bool, bool]]:
-        """Return the least forces, as f_n along each of ``edges``, and whether forces and motion are unique.
-
-        Call it only if `shortfall` has returned None.
-        """
+    def solution(self, accuracy: float) -> Evidence:
+        """Return the least forces. Call it only if `shortfall` has returned None."""
         tolerance = accuracy * norm(self._target)
         target = self._target
         fixed: list[Vector3] = list(self.dual.lineality)
@@ -161,21 +183,52 @@ class ModeWrenches:
         rest = (target[0] - share * inner[0], target[1] - share * inner[1], target[2] - share * inner[2])
         if self.dual.exact:
             used = list(range(len(self.dual.rows)))
-            found, _ = exact_combination(self.dual.rows, rest)
+            motion: Vector3 | None
+            shares, _ = exact_combination(self.dual.rows, rest)
+            forces = self._exact_forces(shares)
+            motion = scaled(inner, share)
+            for ray, more in zip(self._rays, shares, strict=False):
+                motion = combined(1.0, motion, float(more), ray)
         else:
             absent = [_three(unit) for unit in orthonormal(fixed)]
             used = bits(self._common)
-            found = least_force([self.dual.rows[i] for i in used], rest, absent)
-        wrenches = self.edges.wrenches
-        shares = [0.0] * len(wrenches)
+            motion = None
+            forces = self._forces(used, least_force([self.dual.rows[i] for i in used], rest, absent))
         # Edges that have no reaction act along the line of symmetry, and any of them may act.
         idle = set(self._reactions.edges)
-        for column, value in zip(used, found, strict=True):
+        for column in used:
             if column >= len(self._rays):
-                edge = self._reactions.edges[column - len(self._rays)]
-                shares[edge] = value / self._reactions.lengths[column - len(self._rays)]
-                idle.remove(edge)
-        return shares, self._uniqueness([wrench for i, wrench in enumerate(wrenches) if i not in idle])
+                idle.remove(self._reactions.edges[column - len(self._rays)])
+        acting = [wrench for i, wrench in enumerate(self.edges.wrenches) if i not in idle]
+        return Evidence(forces, motion, *self._uniqueness(acting))
+
+    def _forces(self, used: list[int], shares: list[float]) -> dict[int, Vector2]:
+        """Return (f_t, f_n) at each position from the shares of the rows ``used``."""
+        sums: dict[int, Vector2] = dict.fromkeys(self.edges.positions, (0.0, 0.0))
+        for column, share in zip(used, shares, strict=True):
+            index = column - len(self._rays)
+            if index >= 0:
+                edge = self._reactions.edges[index]
+                position, (t, n) = self.edges.positions[edge], self.edges.forces[edge]
+                f_n = share / self._reactions.lengths[index]
+                f_t, before = sums[position]
+                sums[position] = (f_t + t * f_n, before + n * f_n)
+        return sums
+
+    def _exact_forces(self, shares: list[Decimal]) -> dict[int, Vector2]:
+        """Return (f_t, f_n) at each position from the shares of all rows.
+
+        The sums are in decimals, because the edges of contacts that never slip nearly cancel in them.
+        """
+        tangential = dict.fromkeys(self.edges.positions, Decimal(0))
+        normal = dict.fromkeys(self.edges.positions, Decimal(0))
+        with within(DECIMALS.sums):
+            for index, edge in enumerate(self._reactions.edges):
+                position, (t, n) = self.edges.positions[edge], self.edges.forces[edge]
+                size = shares[len(self._rays) + index] / self._sharp_lengths[index]
+                tangential[position] += Decimal(t) * size
+                normal[position] += Decimal(n) * size
+        return {position: (float(tangential[position]), float(normal[position])) for position in normal}
 
     def _uniqueness(self, acting: list[Vector3]) -> tuple[bool, bool]:
         """Return whether forces and motion are unique if edges with the wrenches ``acting`` can act."""
