@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from rclpy.service import Service
 
-_SPIN_S: Final = 0.1
+_SPIN_S: Final = 0.01
 _DRAIN_S: Final = 0.2  # for messages that have come and are not taken yet when the node is told to stop
 
 
@@ -43,6 +43,9 @@ class RunnableNode(Protocol):
 
     def destroy_service(self, service: Service) -> bool:
         """End a service, as `rclpy.node.Node` does."""
+
+    def attend(self) -> None:
+        """Do what is due between two callbacks; it is called at least a hundred times a second."""
 
     def close(self) -> bool:
         """Finish files and sinks, and return whether all of them are finished."""
@@ -112,8 +115,10 @@ def _spin(node: RunnableNode, stop: threading.Event) -> None:
     gc.freeze()  # the objects made so far stay, and to search them for garbage stalls an answer for 30 ms
     while not stop.is_set():
         executor.spin_once(timeout_sec=_SPIN_S)
+        node.attend()
     for service in list(node.services):
         node.destroy_service(service)
     drained = time.monotonic() + _DRAIN_S
     while time.monotonic() < drained:
         executor.spin_once(timeout_sec=0.1 * _DRAIN_S)
+        node.attend()

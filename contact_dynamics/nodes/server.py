@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 from nav_msgs.msg import Path
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
-from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.service_introspection import ServiceIntrospectionState
 from rosgraph_msgs.msg import Clock
@@ -22,6 +21,7 @@ from rosgraph_msgs.msg import Clock
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes.arguments import VISUALIZER_PARAMETERS, server_parser
 from contact_dynamics.nodes.call_times import CallTimes
+from contact_dynamics.nodes.inbox import InboxNode
 from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_unknown_parameters
 from contact_dynamics.nodes.parameters import read_server_parameters
@@ -36,6 +36,9 @@ from msg_adapters.path import path_from_trajectory
 from msg_adapters.status import report_error
 
 if TYPE_CHECKING:
+    from rclpy.subscription import Subscription
+
+    from contact_dynamics.nodes.inbox import Taken
     from contact_dynamics.nodes.services import Request, Service
     from msg_adapters.status import Response
 
@@ -53,7 +56,7 @@ PATH_QOS = QoSProfile(depth=1)
 """Queue of the predicted trajectory as a path. It is a picture, and only the newest one matters."""
 
 
-class Server(Node):
+class Server(InboxNode):
     """The node `contact_dynamics`."""
 
     def __init__(self, **node_options: Any) -> None:
@@ -97,20 +100,28 @@ class Server(Node):
                 world_frame=parameters.world_frame,
                 p_FB_F=parameters.world.body(topics.body_name).p_FB_F,
                 states=states,
-                record=self._log.record,
+                record=self._record,
             )
             for topic, type_name in types.items():
                 self._log.add_topic(topic, type_name, STATE_QOS)
         self._log_clock()
         self._path = self.create_publisher(Path, "~/predicted_path", PATH_QOS)
+        self._events: list[Subscription] = []
         for service in SERVICES:
             self._serve(service)
         self._log.start()
         bodies = ", ".join(body.name for body in parameters.world.bodies) or "none"
         self.get_logger().info(f"ready: bodies {bodies}; log {self._log.folder or 'off'}")
 
+    def attend(self) -> None:
+        """Take messages, and the events of the answer that has just left."""
+        super().attend()
+        for events in self._events:
+            self.empty(events)
+
     def close(self) -> bool:
         """Finish the log and say where it is; return True, since a log that fails has been told."""
+        self.take_messages()
         self.get_logger().info(self._log.close())
         return True
 
@@ -119,7 +130,9 @@ class Server(Node):
         times = CallTimes(lambda: self.get_clock().now().nanoseconds)
 
         def handle(request: Request, response: Response) -> Response:
+            self.take_messages()
             self._asked_ns = times.begin()
+            self.note_question(time.time_ns())
             start = time.perf_counter()
             try:
                 served.serve(request, response, self._knowledge, world_frame=self._world_frame)
@@ -136,28 +149,31 @@ class Server(Node):
             times.end()
             return response
 
-        def record(data: bytes) -> None:
-            happened = times.of_event(data)
+        def record(event: Taken) -> None:
+            happened = times.of_event(event.data)
             self._log.record(
-                events, data, log_time_ns=happened.log_time_ns, publish_time_ns=happened.publish_time_ns
+                events, event.data, log_time_ns=happened.log_time_ns, publish_time_ns=happened.publish_time_ns
             )
 
         service = self.create_service(service_type, f"~/{served.name}", handle, qos_profile=SERVICE_QOS)
         service.configure_introspection(self.get_clock(), EVENT_QOS, ServiceIntrospectionState.CONTENTS)
         events = f"{service.service_name}/_service_event"
         self._log.add_topic(events, f"contact_dynamics_interfaces/srv/{served.type_name}_Event", EVENT_QOS)
-        self.create_subscription(service_type.Event, events, record, EVENT_QOS, raw=True)
+        self._events.append(self.subscribe(service_type.Event, events, record, EVENT_QOS, in_rounds=False))
 
     def _log_clock(self) -> None:
         """Log the simulated time, which the stamps of states and events are of, where there is one."""
         if not self._parameters["use_sim_time"].value:
             return
 
-        def record(data: bytes) -> None:
-            self._log.record(topic, data)
+        def record(tick: Taken) -> None:
+            self._record(topic, tick)
 
-        topic: str = self.create_subscription(Clock, "/clock", record, CLOCK_QOS, raw=True).topic_name
+        topic: str = self.subscribe(Clock, "/clock", record, CLOCK_QOS).topic_name
         self._log.add_topic(topic, "rosgraph_msgs/msg/Clock", CLOCK_QOS)
+
+    def _record(self, topic: str, taken: Taken) -> None:
+        self._log.record(topic, taken.data, log_time_ns=taken.received_ns)
 
     def _publish_path(self, response: PredictTumbling.Response) -> None:
         """Publish the newest trajectory for RViz, if somebody listens."""

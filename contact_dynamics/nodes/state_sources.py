@@ -33,12 +33,14 @@ class StateSource:
         parameter: The parameter that names it.
         type_name: "package/msg/Name".
         state_from: Function from a message to a state, or to None if another message must complete it.
+        is_whole: Whether each message is a state by itself. It can then be read later, or never.
     """
 
     topic: str
     parameter: str
     type_name: str
     state_from: Callable[[Any], BodyState | None]
+    is_whole: bool = False
 
 
 def state_sources(topics: StateTopics, *, world_frame: str, p_FB_F: FloatArray) -> tuple[StateSource, ...]:
@@ -51,6 +53,7 @@ def state_sources(topics: StateTopics, *, world_frame: str, p_FB_F: FloatArray) 
                 parameter=f"body.{topics.body_name}.odometry_topic",
                 type_name="nav_msgs/msg/Odometry",
                 state_from=lambda msg: body_state_from_odometry(msg, world_frame=world_frame, p_FB_F=p_FB_F),
+                is_whole=True,
             )
         )
     if topics.pose:

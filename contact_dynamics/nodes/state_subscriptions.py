@@ -1,20 +1,24 @@
 """Subscriptions to published states: each message is logged as it came and kept as a state.
 
-The messages come as bytes. The log keeps these bytes, so it has exactly what was sent, and one
-deserialisation gives the state.
+They are raw: the log takes the bytes, so that it holds what was sent. To make a state of them takes forty
+times as long as to receive them. So of messages that are states by themselves only the stamp is read, until a
+question needs one. The first message of a topic is read at once, and then one each half second and whichever
+differs in its length or its frame, so that what is wrong with a topic is told although nobody asks.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
 
 from rclpy.qos import QoSProfile
-from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.serialization import deserialize_message
 
+from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes.refused_messages import RefusedMessages
 from contact_dynamics.nodes.state_sources import state_sources
+from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
 from contact_dynamics.recording.decoding import message_class
 
 if TYPE_CHECKING:
@@ -22,7 +26,9 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
+    from contact_dynamics.nodes.inbox import InboxNode, Taken
     from contact_dynamics.nodes.parameters import StateTopics
+    from contact_dynamics.nodes.state_sources import StateSource
     from contact_dynamics.questions.state_store import StateStore
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
@@ -31,15 +37,18 @@ STATE_QOS = QoSProfile(depth=1000)
 """The queue is reliable and deep. A second of states at 1 kHz may wait for a stalled process, and the log
 loses none."""
 
+_EXAMINE_EVERY_NS: Final = NS_PER_S // 2
+_FRAME_AT: Final = 12  # bytes before a header's frame: encapsulation and stamp
+
 
 def subscribe_to_states(
-    node: Node,
+    node: InboxNode,
     topics: StateTopics,
     *,
     world_frame: str,
     p_FB_F: FloatArray,
     states: StateStore,
-    record: Callable[[str, bytes], None],
+    record: Callable[[str, Taken], object],
 ) -> dict[str, str]:
     """Subscribe to a body's states, record every message, keep every state. Return topics and their types.
 
@@ -47,30 +56,10 @@ def subscribe_to_states(
     not kept.
     """
     refused = RefusedMessages(node.get_logger().warning)
-
-    def keep(make_state: Callable[[], BodyState | None], topic: str) -> None:
-        try:
-            state = make_state()
-            if state is not None:
-                states.add(topics.body_name, state, now_ns=present_ns(node))
-        except (ContactDynamicsError, RuntimeError) as error:  # bytes that are no message raise the latter
-            refused.add(topic, error)
-
-    def subscribe(msg_type: type[Any], topic: str, state_from: Callable[[Any], BodyState | None]) -> str:
-        def receive(data: bytes) -> None:
-            record(resolved, data)
-            keep(lambda: state_from(deserialize_message(data, msg_type)), resolved)
-
-        overrides = QoSOverridingOptions.with_default_policies()
-        subscription = node.create_subscription(
-            msg_type, topic, receive, STATE_QOS, raw=True, qos_overriding_options=overrides
-        )
-        resolved: str = subscription.topic_name
-        return resolved
-
     types: dict[str, str] = {}
     for source in state_sources(topics, world_frame=world_frame, p_FB_F=p_FB_F):
-        types[subscribe(message_class(source.type_name), source.topic, source.state_from)] = source.type_name
+        received = _StateTopic(node, source, topics.body_name, states=states, record=record, refused=refused)
+        types[received.topic] = source.type_name
     return types
 
 
@@ -79,3 +68,72 @@ def present_ns(node: Node) -> int | None:
     clock = node.get_clock()
     now_ns: int = clock.now().nanoseconds
     return None if now_ns == 0 and clock.ros_time_is_active else now_ns
+
+
+class _StateTopic:
+    """One topic with messages about a body."""
+
+    def __init__(
+        self,
+        node: InboxNode,
+        source: StateSource,
+        body_name: str,
+        *,
+        states: StateStore,
+        record: Callable[[str, Taken], object],
+        refused: RefusedMessages,
+    ) -> None:
+        self._node = node
+        self._source = source
+        self._body_name = body_name
+        self._states = states
+        self._record = record
+        self._refused = refused
+        self._msg_type: type[Any] = message_class(source.type_name)
+        self._length = 0  # the last messages that were examined have it
+        self._frame = b""  # and they have this frame
+        self._examined_ns = 0
+        subscription = node.subscribe(
+            self._msg_type, source.topic, self._receive, STATE_QOS, may_override=True
+        )
+        self.topic: str = subscription.topic_name
+
+    def _receive(self, taken: Taken) -> None:
+        self._record(self.topic, taken)
+        data, clock = taken.data, self._node.get_clock()
+        now_ns = present_ns(self._node) if clock.ros_time_is_active else taken.received_ns
+        try:
+            stamp_ns = leading_stamp_ns(data)
+            if self._source.is_whole and self._is_as_before(taken):
+                self._states.add_unread(self._body_name, stamp_ns, partial(self._read, data), now_ns=now_ns)
+                return
+            state = self._read(data)
+            if state is not None:
+                self._states.add(self._body_name, state, now_ns=now_ns)
+                self._examined_ns, self._length = taken.received_ns, len(data)
+                self._frame = _leading_frame(data)
+        except ContactDynamicsError as error:
+            self._refused.add(self.topic, error)
+
+    def _is_as_before(self, taken: Taken) -> bool:
+        """Tell whether a message looks like the one that was examined a moment ago."""
+        data = taken.data
+        return (
+            len(data) == self._length
+            and data.startswith(self._frame, _FRAME_AT)
+            and 0 <= taken.received_ns - self._examined_ns < _EXAMINE_EVERY_NS
+        )
+
+    def _read(self, data: bytes) -> BodyState | None:
+        """Return the state that a message is, or None if it is none or completes none."""
+        try:
+            return self._source.state_from(deserialize_message(data, self._msg_type))
+        except (ContactDynamicsError, RuntimeError) as error:  # bytes that are no message raise the latter
+            self._refused.add(self.topic, error)
+            return None
+
+
+def _leading_frame(data: bytes) -> bytes:
+    """Return the frame of a header, with the four bytes before it that tell its length."""
+    letters = int.from_bytes(data[_FRAME_AT : _FRAME_AT + 4], "little" if data[1] else "big")
+    return data[_FRAME_AT : _FRAME_AT + 4 + letters]

@@ -20,12 +20,12 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.clock import Clock, ClockType
-from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 from service_msgs.msg import ServiceEventInfo
 
 from contact_dynamics.nodes.arguments import visualizer_parser
+from contact_dynamics.nodes.inbox import InboxNode
 from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_unknown_parameters
 from contact_dynamics.nodes.parameters import ConfigurationError, read_server_parameters
 from contact_dynamics.nodes.running import run_node
@@ -44,6 +44,7 @@ from msg_adapters.tumbling import tumbling_answer_from_msg
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from rclpy.node import Node
     from rclpy.subscription import Subscription
 
     from contact_dynamics.rigid_body.body import BodyState
@@ -88,7 +89,7 @@ _SHOWN: Final = (
 )
 
 
-class Visualizer(Node):
+class Visualizer(InboxNode):
     """The node `contact_dynamics_visualizer`."""
 
     def __init__(self, *, strict: bool = False, server_wait: float = 0.0, **node_options: Any) -> None:
@@ -126,10 +127,9 @@ class Visualizer(Node):
                 world_frame=parameters.world_frame,
                 p_FB_F=parameters.world.body(topics.body_name).p_FB_F,
                 states=self._states,
-                record=lambda _topic, _data: None,
+                record=lambda _topic, _taken: None,
             )
-            raw = [subscription for subscription in self.subscriptions if subscription.topic_name in types]
-            self._receivers |= {subscription.topic_name: subscription.callback for subscription in raw}
+            self._receivers |= {topic: partial(self.deliver, topic) for topic in types}
         self.create_timer(DRAW_PERIOD_S, self.draw_states, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.get_logger().info(f"ready: draws {server} to {self._recording.description}")
 
@@ -154,6 +154,7 @@ class Visualizer(Node):
 
     def draw_states(self) -> None:
         """Draw the states that came since the last time."""
+        self.take_messages()
         for body_name, states in self._states.take().items():
             self._guarded("states", partial(self._picture.add_states, body_name, states))
 
@@ -222,6 +223,19 @@ class _WaitingStates(StateStore):
     def add(self, body_name: str, state: BodyState, *, now_ns: int | None = None) -> None:  # noqa: ARG002
         """Keep a state whatever its stamp: those of a log are not of this clock."""
         self._waiting.setdefault(body_name, []).append(state)
+
+    def add_unread(
+        self,
+        body_name: str,
+        stamp_ns: int,  # noqa: ARG002  the state has it too
+        read: Callable[[], BodyState | None],
+        *,
+        now_ns: int | None = None,  # noqa: ARG002  as above
+    ) -> None:
+        """Read and keep a state, as all are drawn."""
+        state = read()
+        if state is not None:
+            self.add(body_name, state)
 
     def take(self) -> dict[str, list[BodyState]]:
         waiting, self._waiting = self._waiting, {}

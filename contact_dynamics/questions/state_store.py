@@ -1,37 +1,57 @@
-"""Keeps the published states of each body for as long as questions about the past are answered."""
+"""Keeps the published states of each body for as long as questions about the past are answered.
+
+A state can be handed over unread: as its stamp, and a function that reads it. It is read when a question
+needs it, and most never are. So a thousand states a second cost little more than the memory they take.
+"""
 
 from __future__ import annotations
 
-from bisect import bisect_left, bisect_right, insort
-from typing import TYPE_CHECKING, Final
+from bisect import bisect_left, bisect_right
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from contact_dynamics.constants import to_ns, to_seconds
 from contact_dynamics.errors import InvalidFieldError, NoStateError, StaleStateError
+from contact_dynamics.rigid_body.body import BodyState
 
 if TYPE_CHECKING:
-    from contact_dynamics.rigid_body.body import BodyState
+    from collections.abc import Callable
+
+    ReadState: TypeAlias = Callable[[], BodyState | None]
+    """Reads a state, or returns None if it cannot be read, which the function itself then tells."""
 
 FUTURE_TOLERANCE: Final = 0.5
 """s. By default a stamp may be ahead of the clock by this much. The clocks of two machines that NTP keeps
 differ by far less."""
 
+MOST_STATES: Final = 20_000
+"""States of one body that are kept, where nothing else is said: 20 s at 1 kHz, some 20 MB of Odometry."""
+
 
 class StateStore:
     """Published states by body, sorted by their stamps. When new ones come, those beyond the history go."""
 
-    def __init__(self, *, history: float, timeout: float, future_tolerance: float = FUTURE_TOLERANCE) -> None:
+    def __init__(
+        self,
+        *,
+        history: float,
+        timeout: float,
+        future_tolerance: float = FUTURE_TOLERANCE,
+        most_states: int = MOST_STATES,
+    ) -> None:
         """Begin without states.
 
         Args:
             history: s, for how long states are kept.
             timeout: s. A state that is older when it is asked about is refused.
             future_tolerance: s. A state whose stamp is farther ahead of the clock is refused.
+            most_states: how many of a body are kept, however fast they come. The oldest go first.
         """
         self._history = history
         self._history_ns = to_ns(history)
         self._timeout_ns = to_ns(timeout)
         self._future_tolerance_ns = to_ns(future_tolerance)
-        self._states: dict[str, list[BodyState]] = {}
+        self._most_states = most_states
+        self._tracks: dict[str, _Track] = {}
 
     def add(self, body_name: str, state: BodyState, *, now_ns: int | None = None) -> None:
         """Keep a state. ``now_ns`` is the present time, ns. Without it, any stamp is accepted.
@@ -40,24 +60,21 @@ class StateStore:
             InvalidFieldError: its stamp is ahead of the present time by more than the tolerance. Such a state
                 would stay the newest until the clock came to it.
         """
-        if now_ns is not None:
-            ahead_ns = state.stamp_ns - now_ns
-            if ahead_ns > self._future_tolerance_ns:
-                raise InvalidFieldError(
-                    "stamp",
-                    f"{to_seconds(ahead_ns):.3f} s ahead of the clock",
-                    f"at most {to_seconds(self._future_tolerance_ns):g} s (future_tolerance)",
-                )
-            self._forget_future(body_name, now_ns)
-        states = self._states.setdefault(body_name, [])
-        insort(states, state, key=_stamp)
-        oldest = states[-1].stamp_ns - self._history_ns
-        if states[0].stamp_ns < oldest:
-            del states[: bisect_right(states, oldest - 1, key=_stamp)]
+        self._keep(body_name, state.stamp_ns, state, now_ns)
+
+    def add_unread(
+        self, body_name: str, stamp_ns: int, read: ReadState, *, now_ns: int | None = None
+    ) -> None:
+        """Keep a state of that stamp, ns, which ``read`` returns when a question needs it; else as `add`.
+
+        Raises:
+            InvalidFieldError: as `add`.
+        """
+        self._keep(body_name, stamp_ns, read, now_ns)
 
     def clear(self) -> None:
         """Forget all states, as when the clock is set back and their stamps become times to come."""
-        self._states.clear()
+        self._tracks.clear()
 
     def newest(self, body_name: str, *, now_ns: int | None = None) -> BodyState:
         """Return the newest state. Without the present time, ns, it may be of any age.
@@ -68,19 +85,19 @@ class StateStore:
         """
         if now_ns is not None:
             self._forget_future(body_name, now_ns)
-        states = self._states.get(body_name)
-        if not states:
+        track = self._tracks.get(body_name, _Track())
+        state = track.last(len(track.stamps))
+        if state is None:
             message = f"state of {body_name!r}: none was published yet"
             raise NoStateError(message)
-        return states[-1] if now_ns is None else self._fresh(body_name, states[-1], now_ns)
+        return state if now_ns is None else self._fresh(body_name, state, now_ns)
 
     def window(self, body_name: str, newest: BodyState, seconds: float) -> list[BodyState]:
         """Return the states of the last ``seconds`` up to ``newest``, by time, and one for each stamp."""
-        states = self._states.get(body_name, [])
+        track = self._tracks.get(body_name, _Track())
         # No more than the history is kept, so a longer window is as long as the history.
-        first = bisect_left(states, newest.stamp_ns - to_ns(min(seconds, self._history)), key=_stamp)
-        last = bisect_right(states, newest.stamp_ns, key=_stamp)
-        return list({state.stamp_ns: state for state in states[first:last]}.values())
+        first_ns = newest.stamp_ns - to_ns(min(seconds, self._history))
+        return list({state.stamp_ns: state for state in track.between(first_ns, newest.stamp_ns)}.values())
 
     def around(
         self, body_name: str, stamp_ns: int, *, now_ns: int | None = None
@@ -96,18 +113,18 @@ class StateStore:
         """
         if now_ns is not None:
             self._forget_future(body_name, now_ns)
-        states = self._states.get(body_name, [])
-        index = bisect_right(states, stamp_ns, key=_stamp)
-        if index == 0:
-            kept = f"the oldest kept has {states[0].stamp_ns} ns" if states else "none was published yet"
+        track = self._tracks.get(body_name, _Track())
+        earlier = track.last(bisect_right(track.stamps, stamp_ns))
+        if earlier is None:
+            kept = f"the oldest kept has {track.stamps[0]} ns" if track.stamps else "none was published yet"
             message = f"state of {body_name!r} at {stamp_ns} ns: {kept}"
             raise NoStateError(message)
-        earlier = states[index - 1]
         if earlier.stamp_ns == stamp_ns:
             return earlier, None
-        if index == len(states):
+        later = track.first(bisect_right(track.stamps, stamp_ns))
+        if later is None:
             return earlier if now_ns is None else self._fresh(body_name, earlier, now_ns), None
-        gap_ns = states[index].stamp_ns - earlier.stamp_ns
+        gap_ns = later.stamp_ns - earlier.stamp_ns
         if gap_ns > self._timeout_ns:
             message = (
                 f"state of {body_name!r} at {stamp_ns} ns: the states around it are "
@@ -115,14 +132,30 @@ class StateStore:
                 f"{to_seconds(self._timeout_ns):g} s (state_timeout)"
             )
             raise StaleStateError(message)
-        return earlier, states[index]
+        return earlier, later
+
+    def _keep(self, body_name: str, stamp_ns: int, state: BodyState | ReadState, now_ns: int | None) -> None:
+        if now_ns is not None:
+            ahead_ns = stamp_ns - now_ns
+            if ahead_ns > self._future_tolerance_ns:
+                raise InvalidFieldError(
+                    "stamp",
+                    f"{to_seconds(ahead_ns):.3f} s ahead of the clock",
+                    f"at most {to_seconds(self._future_tolerance_ns):g} s (future_tolerance)",
+                )
+            self._forget_future(body_name, now_ns)
+        track = self._tracks.get(body_name)
+        if track is None:
+            track = self._tracks[body_name] = _Track()
+        track.add(stamp_ns, state)
+        track.forget_before(track.stamps[-1] - self._history_ns, most=self._most_states)
 
     def _forget_future(self, body_name: str, now_ns: int) -> None:
         """Forget states too far ahead of the clock, which came before the clock began or was set back."""
-        states = self._states.get(body_name, [])
+        track = self._tracks.get(body_name)
         latest = now_ns + self._future_tolerance_ns
-        if states and states[-1].stamp_ns > latest:
-            del states[bisect_right(states, latest, key=_stamp) :]
+        if track and track.stamps and track.stamps[-1] > latest:
+            track.forget_after(latest)
 
     def _fresh(self, body_name: str, state: BodyState, asked_ns: int) -> BodyState:
         age_ns = asked_ns - state.stamp_ns
@@ -135,5 +168,67 @@ class StateStore:
         return state
 
 
-def _stamp(state: BodyState) -> int:
-    return state.stamp_ns
+class _Track:
+    """The states of one body in order of their stamps, read or unread."""
+
+    __slots__ = ("_states", "stamps")
+
+    def __init__(self) -> None:
+        self.stamps: list[int] = []
+        self._states: list[BodyState | ReadState] = []
+
+    def add(self, stamp_ns: int, state: BodyState | ReadState) -> None:
+        if not self.stamps or stamp_ns >= self.stamps[-1]:  # nearly always
+            self.stamps.append(stamp_ns)
+            self._states.append(state)
+            return
+        index = bisect_right(self.stamps, stamp_ns)
+        self.stamps.insert(index, stamp_ns)
+        self._states.insert(index, state)
+
+    def last(self, end: int) -> BodyState | None:
+        """Return the last state before an index that can be read; forget those that cannot."""
+        while end > 0:
+            end -= 1
+            state = self._read(end)
+            if state is not None:
+                return state
+            del self.stamps[end], self._states[end]
+        return None
+
+    def first(self, begin: int) -> BodyState | None:
+        """Return the first state from an index on that can be read; forget those that cannot."""
+        while begin < len(self.stamps):
+            state = self._read(begin)
+            if state is not None:
+                return state
+            del self.stamps[begin], self._states[begin]
+        return None
+
+    def between(self, first_ns: int, last_ns: int) -> list[BodyState]:
+        """Return the states from one stamp to another, both included; forget those that cannot be read."""
+        begin, end = bisect_left(self.stamps, first_ns), bisect_right(self.stamps, last_ns)
+        found = [self._read(index) for index in range(begin, end)]
+        readable = [state for state in found if state is not None]
+        if len(readable) < len(found):
+            self._states[begin:end] = readable
+            self.stamps[begin:end] = [state.stamp_ns for state in readable]
+        return readable
+
+    def forget_before(self, oldest_ns: int, *, most: int) -> None:
+        surplus = max(bisect_left(self.stamps, oldest_ns), len(self.stamps) - most)
+        if surplus > 0:
+            del self.stamps[:surplus], self._states[:surplus]
+
+    def forget_after(self, latest_ns: int) -> None:
+        kept = bisect_right(self.stamps, latest_ns)
+        del self.stamps[kept:], self._states[kept:]
+
+    def _read(self, index: int) -> BodyState | None:
+        state = self._states[index]
+        if isinstance(state, BodyState):
+            return state
+        read = state()
+        if read is not None:
+            self._states[index] = read
+        return read

@@ -87,7 +87,7 @@ class Bench:
             for name, service in SERVICES.items()
         }
         self.received = 0
-        for subscription in self.visualizer.subscriptions:
+        for subscription in [*self.visualizer.subscriptions, *self.visualizer.inbox]:
             subscription.callback = self._counting(subscription.callback)
         publishers = [self.states, *self._events.values()]
         self.spin_until(lambda: all(publisher.get_subscription_count() == 1 for publisher in publishers))

@@ -1,0 +1,84 @@
+"""States that are handed over unread: read when a question needs one, once; forgotten if it is none."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from contact_dynamics.errors import NoStateError
+from contact_dynamics.questions import StateStore
+from contact_dynamics.rigid_body.body import BodyState
+
+
+def state(stamp_ns: int) -> BodyState:
+    zero = (0.0, 0.0, 0.0)
+    return BodyState(p_WB_W=zero, q_WB=(0.0, 0.0, 0.0, 1.0), v_WB_W=zero, w_WB_W=zero, stamp_ns=stamp_ns)
+
+
+class Reads:
+    """Functions that read a state, and the stamps that they were called for."""
+
+    def __init__(self) -> None:
+        self.stamps: list[int] = []
+
+    def of(self, stamp_ns: int, *, readable: bool = True) -> Callable[[], BodyState | None]:
+        def read() -> BodyState | None:
+            self.stamps.append(stamp_ns)
+            return state(stamp_ns) if readable else None
+
+        return read
+
+
+def store_of(reads: Reads, stamps: list[int], *, broken: frozenset[int] = frozenset()) -> StateStore:
+    store = StateStore(history=1.0, timeout=1.0)
+    for stamp_ns in stamps:
+        store.add_unread("ball", stamp_ns, reads.of(stamp_ns, readable=stamp_ns not in broken))
+    return store
+
+
+def test_only_what_is_asked_for_is_read_and_only_once() -> None:
+    reads = Reads()
+    store = store_of(reads, [1, 3, 2, 4])
+    assert [store.newest("ball").stamp_ns for _ in range(3)] == [4, 4, 4]
+    assert store.around("ball", 2)[0].stamp_ns == 2
+    assert reads.stamps == [4, 2]
+    assert [each.stamp_ns for each in store.window("ball", store.newest("ball"), 2e-9)] == [2, 3, 4]
+    assert reads.stamps == [4, 2, 3]
+
+
+def test_what_cannot_be_read_is_passed_over_and_forgotten() -> None:
+    reads = Reads()
+    store = store_of(reads, [1, 2, 3, 4, 5], broken=frozenset({2, 4, 5}))
+    assert store.newest("ball").stamp_ns == 3
+    assert store.newest("ball").stamp_ns == 3
+    assert reads.stamps == [5, 4, 3]
+    assert [each.stamp_ns for each in store.window("ball", store.newest("ball"), 1.0)] == [1, 3]
+    assert [each.stamp_ns for each in store.window("ball", store.newest("ball"), 1.0)] == [1, 3]
+    assert reads.stamps == [5, 4, 3, 1, 2]
+
+
+def test_the_states_around_a_stamp_are_those_that_can_be_read() -> None:
+    store = store_of(Reads(), [1, 2, 4, 5, 7], broken=frozenset({2, 5}))
+    earlier, later = store.around("ball", 3)
+    assert later is not None
+    assert (earlier.stamp_ns, later.stamp_ns) == (1, 4)
+    earlier, later = store.around("ball", 5)
+    assert later is not None
+    assert (earlier.stamp_ns, later.stamp_ns) == (4, 7)
+
+
+def test_of_a_body_whose_states_all_cannot_be_read_none_is_known() -> None:
+    store = store_of(Reads(), [1, 2], broken=frozenset({1, 2}))
+    with pytest.raises(NoStateError, match="none was published yet"):
+        store.newest("ball")
+    with pytest.raises(NoStateError, match="none was published yet"):
+        store.around("ball", 5)
+
+
+def test_no_more_are_kept_than_stated_and_the_oldest_go_first() -> None:
+    reads = Reads()
+    store = StateStore(history=1.0, timeout=1.0, most_states=3)
+    for stamp_ns in (5, 1, 4, 2, 3):
+        store.add_unread("ball", stamp_ns, reads.of(stamp_ns))
+    assert [each.stamp_ns for each in store.window("ball", store.newest("ball"), 1.0)] == [3, 4, 5]
