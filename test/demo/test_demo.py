@@ -392,7 +392,7 @@ def test_help_of_the_command_names_every_verb() -> None:
         (["--toss", "nowhere.csv"], "TOSS: found no file 'nowhere.csv'"),
         (["--toss", f"{ROOT / 'README.md'}"], "README.md, allowed is a toss recording"),
         (["--toss", f"{DEFAULT_RECORDING}#1"], "allowed is no index: a .csv holds one toss"),
-        (["--output", f"{ROOT / 'README.md'}"], "README.md', allowed is a folder to write in"),
+        (["--output", f"{ROOT / 'README.md'}"], f"{str(ROOT / 'README.md')!r}, allowed is a folder"),
     ],
 )
 def test_a_wrong_argument_is_named_and_nothing_is_started(
