@@ -441,7 +441,8 @@ ROUND_CONE_ON_CONE: Final = 1e-12
 """Relative to the largest force. A force may lie so far outside of its cone."""
 
 ROUND_CONE_REACHED: Final = 1e-10
-"""Relative. If all forces together have a smaller effect in some direction, it counts as none."""
+"""Relative. All forces together count as having at least this effect in every direction. So what they leave
+unbalanced is not divided by rounding."""
 
-ROUND_CONE_ROUNDING: Final = 1e-15
-"""Relative. Doubles lose so much in a step or two."""
+ROUND_CONE_ROUNDING: Final = 1e-13
+"""Relative. A smaller remainder is rounding, and refutes nothing."""

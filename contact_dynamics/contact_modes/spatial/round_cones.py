@@ -28,6 +28,7 @@ from contact_dynamics.tolerances import (
     ROUND_CONE_REACHED,
     ROUND_CONE_ROUNDING,
     ROW_TOLERANCE,
+    SMALLEST,
 )
 
 if TYPE_CHECKING:
@@ -63,15 +64,29 @@ def sticking(search: Search) -> FloatArray:
     return np.vstack([np.zeros((0, 7)), *rows])
 
 
-def held_by_round_cones(search: Search, rows: FloatArray) -> Held:
+def held_by_round_cones(search: Search, rows: FloatArray, *, smooth: bool = False) -> Held:
     """Return forces at all touching contacts, within their round cones, that make rows of the motion vanish.
 
     Args:
         search: The case. What slides already counts as at rest.
         rows: (k, 7), of about unit length.
+        smooth: Whether friction is left out.
     """
     demand = _demand(search, rows)
-    return Held(None, certain=True) if demand is None else _nearest(demand, search)
+    if demand is None:
+        return Held(None, certain=True)
+    normals, frictions = _cones(search)
+    return _nearest(demand, normals, 0.0 * frictions if smooth else frictions)
+
+
+def wedged_by_round_cones(search: Search) -> Held:
+    """Return forces within the round cones of all touching contacts that balance each other, not all zero."""
+    normals, frictions = _cones(search)
+    wrenches = search.mass @ search.of_forces
+    effects = np.vstack([wrenches, normals.ravel()])  # the last row is the sum of normal forces, which is one
+    images = effects.reshape(len(effects), len(normals), 3).transpose(1, 0, 2)
+    target = np.eye(len(effects))[-1]
+    return _nearest(_Demand(np.ascontiguousarray(images), target, np.ones(len(target))), normals, frictions)
 
 
 def polished(search: Search, rows: FloatArray, forces: FloatArray) -> FloatArray:
@@ -138,31 +153,33 @@ def _demand(search: Search, rows: FloatArray, tolerance: float = ROW_TOLERANCE) 
     units = search.mass if len(equations) == len(start) else equations[:, :-1]
     target, effects = -(units @ start), units @ search.of_forces
     load = float(np.linalg.norm(target))
-    # Contacts that are nearly the same have little effect in some directions, where little is demanded.
-    units, sizes, _ = np.linalg.svd(effects, full_matrices=False)
-    reached = sizes > ROUND_CONE_REACHED * sizes.max(initial=0.0)
-    units, sizes = units[:, reached], sizes[reached]
-    if float(np.linalg.norm(target - units @ (units.T @ target))) > ROUND_CONE_HELD * load:
-        return None
+    # Contacts that are nearly the same have little effect in some directions, where little is demanded. The
+    # further columns give units of directions in which they have no effect at all.
+    units, sizes, _ = np.linalg.svd(np.hstack([effects, np.zeros((len(effects),) * 2)]), full_matrices=False)
+    sizes = np.maximum(sizes, ROUND_CONE_REACHED * sizes.max(initial=0.0) if n > 0 else 1.0)
     images = ((units.T / sizes[:, None]) @ effects).reshape(len(sizes), n, 3).transpose(1, 0, 2)
     return _Demand(
         np.ascontiguousarray(images), units.T @ target / sizes, sizes / load if load > 0.0 else sizes
     )
 
 
-def _nearest(demand: _Demand, search: Search) -> Held:
+def _cones(search: Search) -> tuple[FloatArray, FloatArray]:
+    """Return the axes, (n, 3), and the coefficients of friction, (n,), of the round cones."""
+    normals = np.array([one.normal for one in search.touching]).reshape(-1, 3)
+    return normals, np.array([one.friction for one in search.touching])
+
+
+def _nearest(demand: _Demand, normals: FloatArray, frictions: FloatArray) -> Held:
     """Return forces within the round cones whose images sum to the target, or are nearest to it."""
     images, target, sizes = demand
     load = float(np.linalg.norm(target))
-    normals = np.array([one.normal for one in search.touching]).reshape(-1, 3)
-    frictions = np.array([one.friction for one in search.touching])
     owners: list[int] = []
     edges: list[FloatArray] = []
     spans, shares = np.zeros((len(target), 0)), np.zeros(0)
     rest = target
     for _ in range(_MOST_EDGES):
         left = float(np.linalg.norm(rest))
-        if left <= ROUND_CONE_ROUNDING * load or float(np.linalg.norm(sizes * rest)) <= ROUND_CONE_HELD:
+        if float(np.linalg.norm(sizes * rest)) <= ROUND_CONE_HELD:
             forces = np.zeros_like(normals)
             for i, edge, share in zip(owners, edges, shares.tolist(), strict=True):
                 forces[i] += share * edge
@@ -171,12 +188,15 @@ def _nearest(demand: _Demand, search: Search) -> Held:
         along = (power * normals).sum(axis=1)
         across = power - along[:, None] * normals
         slopes = np.sqrt((across * across).sum(axis=1))
-        best_of_each = normals + across * (frictions / np.where(slopes > 0.0, slopes, 1.0))[:, None]
+        slopes[slopes <= ROUND_CONE_ROUNDING * np.abs(along)] = 0.0  # rounding has no direction
+        best_of_each = (
+            normals + across * np.where(slopes > 0.0, frictions / (slopes + SMALLEST), 0.0)[:, None]
+        )
         effects = np.sqrt(((images @ best_of_each[:, :, None]) ** 2).sum(axis=(1, 2)))
         cosines = (along + frictions * slopes) / np.where(effects > 0.0, effects, 1.0)
         best = int(cosines.argmax()) if len(cosines) else -1
         helps = float(cosines[best]) if len(cosines) else 0.0
-        if helps * _MOST_FORCE * load <= left:
+        if helps * _MOST_FORCE * load <= left and left > ROUND_CONE_ROUNDING * load:
             return Held(None, certain=True)
         if helps <= ROUND_CONE_NO_HELP:
             break

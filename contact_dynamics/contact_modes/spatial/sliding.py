@@ -141,7 +141,7 @@ def _rays(rows: FloatArray) -> FloatArray:
             distinct.append(row)
     if d <= 1:
         return np.array([[1.0], [-1.0]])[:, :d] if d else np.zeros((0, 0))
-    chosen = np.array(list(itertools.combinations(distinct, d - 1)))
+    chosen = np.array(list(itertools.combinations(distinct, d - 1))).reshape(-1, d - 1, d)
     spread, basis = np.linalg.svd(chosen)[1:]
     rays = basis[spread[:, -1] > ROW_TOLERANCE, -1]
     return np.vstack([rays, -rays])

@@ -1,10 +1,13 @@
 """Static questions in space: does a body at rest stay, is it jammed or wedged, which disturbance can it take?
 
-The questions are those of the plane (`planar.statics`), but pyramids inside the friction cones replace them.
-So the answer is on the safe side: a body that is said to stay does stay, and the disturbance is one that it
-surely takes. If a property holds by less than the pyramids leave out, a part 1 - cos(pi / facets) of
-friction, the answer may deny it. The wrenches that contact forces can balance are a polyhedral cone in R^6,
-with torques divided by a length. Its facets are the extreme rays of the dual cone.
+The questions are those of the plane (`planar.statics`). Round cones decide whether forces balance the wrench,
+with and without friction, and whether contacts press against each other (`round_cones`). Such an answer comes
+with forces or with a motion that refutes them. Where rounding hides both, the question is undecided.
+
+The disturbance that the body can take is found with pyramids inside the friction cones. The wrenches that
+their forces can balance are a polyhedral cone in R^6, with torques divided by a length, whose facets are the
+extreme rays of the dual cone. So the disturbance is one that the body surely takes. It lies between those of
+round cones with the contacts' coefficients of friction and with cos(pi / facets) of these.
 """
 
 from __future__ import annotations
@@ -20,13 +23,14 @@ from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVe
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
 from contact_dynamics.contact_modes.spatial.cone import cone_of
 from contact_dynamics.contact_modes.spatial.problem import MOST_EDGES, search_of, spatial_case
-from contact_dynamics.contact_modes.spatial.round_cones import held_by_round_cones
+from contact_dynamics.contact_modes.spatial.round_cones import held_by_round_cones, wedged_by_round_cones
+from contact_dynamics.contact_modes.spatial.wrenches import distinct
 from contact_dynamics.errors import TooLargeError, UndecidedError
-from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, ROW_TOLERANCE
 from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialCase, SpatialContactProblem
+    from contact_dynamics.contact_modes.spatial.round_cones import Held
     from contact_dynamics.validation import FloatArray
 
 
@@ -59,33 +63,29 @@ def spatial_statics(problem: SpatialContactProblem, *, margin_length: float | No
         else normal[None, :]
         for normal, friction, away in zip(contacts.normals_W, contacts.frictions, start, strict=True)
     ]
-    target = np.concatenate([force, torque / length])
-    room, wedged = _room(_rows(arms, pyramids, length), target)
-    smooth, _ = _room(_rows(arms, [normal[None, :] for normal in contacts.normals_W], length), target)
     at_rest = replace(problem, state=replace(state, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)), sharpen=True)
-    balanced = _is_balanced(at_rest)
-    equilibrium = Certainty.NO
-    if balanced:
+    case = cast("SpatialCase", spatial_case(at_rest))  # at rest no contact approaches
+    search = search_of(case, friction_facets)
+    wedged = _decided(wedged_by_round_cones(search), "balance with each other")
+    equilibrium, jammed, room = Certainty.NO, Certainty.NO, math.nan
+    if _decided(held_by_round_cones(search, np.eye(6, 7)), "balance with the wrench"):
         answer = spatial_contact_modes(at_rest)
         alone = answer.verdict == ModeVerdict.UNIQUE and answer.modes[0].motion_unique
         equilibrium = Certainty.CERTAIN if alone else Certainty.POSSIBLE
+        smooth = held_by_round_cones(search, np.eye(6, 7), smooth=True)
+        jammed = Certainty.NO if _decided(smooth, "balance without friction") else equilibrium
+        room = _room(_rows(arms, pyramids, length), np.concatenate([force, torque / length]), wedged=wedged)
     return BodyStatics(
-        equilibrium=equilibrium,
-        jammed=Certainty.NO if smooth >= 0.0 else equilibrium,
-        wedged=wedged,
-        stable_disturbance=max(0.0, room) if balanced else math.nan,
-        margin_length=length,
+        equilibrium=equilibrium, jammed=jammed, wedged=wedged, stable_disturbance=room, margin_length=length
     )
 
 
-def _is_balanced(problem: SpatialContactProblem) -> bool:
-    """Return whether contact forces within round cones balance the wrench on a body at rest."""
-    case = cast("SpatialCase", spatial_case(problem))  # at rest no contact approaches
-    held = held_by_round_cones(search_of(case, problem.friction_facets), np.eye(6, 7))
+def _decided(held: Held, what: str) -> bool:
+    """Return whether there are forces, or raise an error that names what could not be decided."""
     if held.forces is None and not held.certain:
         raise UndecidedError(
-            "contacts: found forces whose balance with the wrench hangs on rounding, allowed are "
-            "wrenches that are clearly balanced or clearly not"
+            f"contacts: found forces whose {what} hangs on rounding, allowed are contacts and wrenches that "
+            "are clearly balanced or clearly not"
         )
     return held.forces is not None
 
@@ -100,22 +100,23 @@ def _rows(arms: FloatArray, pyramids: list[FloatArray], length: float) -> FloatA
     return unit
 
 
-def _room(rows: FloatArray, target: FloatArray) -> tuple[float, bool]:
-    """Return how far inside the cone of positive combinations of rows a wrench lies, and if it is wedged.
+def _room(rows: FloatArray, target: FloatArray, *, wedged: bool) -> float:
+    """Return how far inside the cone of positive combinations of rows a wrench surely lies, N.
 
-    The distance is in N, and negative where the wrench lies outside. The contacts are wedged if some
-    combination of rows vanishes whose coefficients are not all zero.
+    Rows that nearly agree are one row, which makes the cone smaller if anything. It is 0 where rounding hides
+    how far inside the wrench lies.
+
+    Args:
+        rows: (k, 6), unit.
+        target: (6,), the wrench.
+        wedged: Whether contact forces can balance each other, without which no cone holds every wrench.
     """
-    tolerance = max(ACCELERATION_TOLERANCE, ROW_TOLERANCE) * float(np.linalg.norm(target))
     if len(rows) == 0:
-        return (0.0 if float(np.linalg.norm(target)) <= tolerance else -1.0), False
-    cone = cone_of(rows)
-    lines, facets, wedged = cone.lines.T, cone.rays, not bool(cone.strict.all())
-    if np.any(np.abs(target @ lines) > tolerance):
-        return -1.0, wedged
-    heights = facets @ target
-    if np.any(heights < -tolerance):
-        return -1.0, wedged
-    if lines.shape[1] > 0:
-        return 0.0, wedged
-    return max(0.0, float(heights.min(initial=math.inf))), wedged
+        return 0.0
+    try:
+        cone = cone_of(distinct(rows))
+    except UndecidedError:
+        return 0.0
+    if len(cone.lines) or (len(cone.rays) == 0 and not wedged):
+        return 0.0
+    return max(0.0, float((cone.rays @ target).min(initial=math.inf)))

@@ -17,7 +17,7 @@ from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.contact_modes.spatial.kinematic import cone_faces
 from contact_dynamics.contact_modes.spatial.sliding import open_faces
 from contact_dynamics.contact_modes.spatial.wrenches import Way
-from contact_dynamics.errors import TooLargeError
+from contact_dynamics.errors import TooLargeError, UndecidedError
 from contact_dynamics.numerics.linear_spaces import null_space
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
@@ -36,6 +36,7 @@ def ways_of(search: Search) -> list[tuple[Way, ...]]:
 
     Raises:
         TooLargeError: more than `MOST_MEETINGS` sets of planes meet in lines.
+        UndecidedError: rounding decides which ways of sliding there are.
     """
     touching = search.touching
     height = np.eye(1, 7, 6)
@@ -59,6 +60,9 @@ def ways_of(search: Search) -> list[tuple[Way, ...]]:
                 ways[i] = _way(signs[at : at + len(cuts[i])], len(search.pyramids[i].edges))
                 at += len(cuts[i])
             found[tuple(ways)] = None
+    rest = tuple(Way(STAYS if one.frame is None else STICKS, -1) for one in search.pyramids)
+    if rest not in found and not any(np.any(contact.point[:, -1]) for contact in touching):
+        raise _undecided()  # nothing keeps a body from resting
     return list(found)
 
 
@@ -112,7 +116,7 @@ def _way(signs: list[int], count: int) -> Way:
             return Way(STAYS, 2 * k + 1)
         if sign > 0 and after < 0:
             return Way(STAYS, 2 * ((k + 1) % count))
-    raise ArithmeticError(f"no direction has the signs {signs}")
+    raise _undecided()
 
 
 def _check_size(rows: FloatArray) -> None:
@@ -124,3 +128,10 @@ def _check_size(rows: FloatArray) -> None:
             f"{meetings} sets of planes that part their ways of sliding",
             f"at most {MOST_MEETINGS}: fewer contacts, or fewer friction_facets",
         )
+
+
+def _undecided() -> UndecidedError:
+    return UndecidedError(
+        "contacts: found ways of sliding that rounding decides, allowed are contacts and normals that are "
+        "either the same or clearly apart"
+    )

@@ -132,6 +132,21 @@ def test_two_soft_less_fingers_cannot_hold_a_twist_but_three_hold_all() -> None:
     assert loose.stable_disturbance == 0.0
 
 
+@pytest.mark.parametrize("heading", [0.0, 0.2, 0.39, 1.0, 2.2])
+@pytest.mark.parametrize("more", [-1e-6, 1e-6])
+def test_two_fingers_wedge_up_to_the_angle_of_friction_in_any_direction(heading: float, more: float) -> None:
+    # The line of the fingers leans against their normals by nearly all that friction allows.
+    lean = (1.0 + more) * MU
+    up = np.array([1.0, lean * math.cos(heading), lean * math.sin(heading)])
+    fingers = touching([tuple(-up), tuple(up)], [(1.0, 0.0, 0.0), (-1.0, 0.0, 0.0)])
+    found = statics(
+        SpatialContactProblem(
+            body=BODY, state=STATE, contacts=fingers, force_W=(0.0, 0.0, 0.0), friction_facets=5
+        )
+    )
+    assert found.wedged == (more < 0.0)
+
+
 @pytest.mark.parametrize("seed", range(16))
 def test_planar_cases_have_the_planes_answer(seed: int) -> None:
     """Contacts in pairs on both sides of the plane, and a wrench within it."""

@@ -1,0 +1,185 @@
+"""Modes, statics, margins and wrench sets of one question in space, which never contradict each other."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact_modes import (
+    BodyStatics,
+    Certainty,
+    ModeVerdict,
+    SpatialContactProblem,
+    SpatialModeAnswer,
+    contact_modes,
+    mode_margins,
+    statics,
+    wrench_sets,
+)
+from contact_dynamics.errors import TooLargeError, UndecidedError
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from oracles.equilibria_in_space import KINDS, resting
+
+AT_REST = BodyState(
+    p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
+)
+BODY = MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5]))
+FLOOR = [(x, y, -0.1) for x in (-0.1, 0.1) for y in (-0.1, 0.1)]
+HELD = 1e-9  # relative to the load: what counts as balanced
+ALIKE = 1e-5  # relative to the load: two computations of one distance, from hulls of nearly the same points
+
+
+class Draw(NamedTuple):
+    """A problem, and whether its load was made of forces inside of the friction cones."""
+
+    problem: SpatialContactProblem
+    rests: bool
+
+
+def drawn(seed: int) -> Draw:
+    """Return a problem: degenerate, on the border of what friction holds, or drawn at random."""
+    chance = np.random.default_rng(seed)
+    kind = seed % 3
+    if kind == 0:
+        case = resting(int(chance.integers(10_000)))
+        points, normals, frictions, wrench = case.points, case.normals, case.frictions, case.wrench
+    elif kind == 1:  # a box that is pushed with all its friction, more or less
+        points, normals = np.array(FLOOR), np.tile([0.0, 0.0, 1.0], (4, 1))
+        frictions = np.full(4, 0.5)
+        share = 1.0 + float(chance.choice([-1.0, 0.0, 1.0]) * 10.0 ** chance.uniform(-15.0, -3.0))
+        heading = chance.uniform(0.0, 2.0 * math.pi)
+        push = 5.0 * share * np.array([math.cos(heading), math.sin(heading)])
+        wrench = np.array([*push, -10.0, -0.1 * push[1], 0.1 * push[0], 0.0])
+    else:
+        n = int(chance.integers(2, 5))
+        points, normals = chance.normal(size=(n, 3)), chance.normal(size=(n, 3))
+        normals /= np.linalg.norm(normals, axis=1)[:, None]
+        frictions, wrench = chance.choice([0.0, 0.3, 1.0, 3.0], size=n), chance.normal(size=6)
+    problem = SpatialContactProblem(
+        body=BODY,
+        state=AT_REST,
+        contacts=ContactSet(p_WC_W=points, normals_W=normals, frictions=frictions),
+        force_W=wrench[:3],
+        torque_W=wrench[3:],
+        friction_facets=4,
+    )
+    return Draw(problem, rests=kind == 0)
+
+
+def at_rest(answer: SpatialModeAnswer, problem: SpatialContactProblem) -> bool:
+    """Whether a mode has no acceleration at all."""
+    load = float(np.abs(problem.wrench_W).max())
+    return any(
+        max(np.abs(mode.acceleration_W).max(), np.abs(mode.angular_acceleration_W).max()) <= HELD * load
+        for mode in answer.modes
+    )
+
+
+def has_one_motion(problem: SpatialContactProblem) -> bool:
+    """Whether contacts that stick keep the body from moving."""
+    rough = problem.contacts.frictions > 0.0
+    rows = [np.hstack([np.eye(3), -cross(p)]) for p in problem.contacts.p_WC_W[rough]]
+    sizes = np.linalg.svd(np.vstack([np.zeros((6, 6)), *rows]), compute_uv=False)
+    return bool(sizes[5] > 0.01 * sizes[0])
+
+
+def cross(p: np.ndarray) -> np.ndarray:
+    return np.array([[0.0, -p[2], p[1]], [p[2], 0.0, -p[0]], [-p[1], p[0], 0.0]])
+
+
+def check_modes_and_statics(answer: SpatialModeAnswer, held: BodyStatics, draw: Draw) -> None:
+    problem = draw.problem
+    assert answer.verdict != ModeVerdict.INCONSISTENT or not draw.rests
+    assert not (draw.rests and held.equilibrium == Certainty.NO)
+    if held.equilibrium == Certainty.NO:
+        assert not at_rest(answer, problem)
+        assert (held.jammed, math.isnan(held.stable_disturbance)) == (Certainty.NO, True)
+        return
+    assert at_rest(answer, problem)
+    assert held.stable_disturbance >= 0.0
+    assert held.jammed in {Certainty.NO, held.equilibrium}
+    if held.equilibrium == Certainty.CERTAIN:
+        assert (answer.verdict, len(answer.modes)) == (ModeVerdict.UNIQUE, 1)
+    if math.isinf(held.stable_disturbance):
+        assert held.wedged
+
+
+def check_disturbance(held: BodyStatics, problem: SpatialContactProblem, seed: int) -> None:
+    """Check that the body can stay under changes of the wrench that it is said to take."""
+    way = np.random.default_rng(seed).normal(size=6)
+    room = min(held.stable_disturbance, 10.0 * float(np.linalg.norm(problem.wrench_W)))
+    length = held.margin_length
+    change = 0.999 * room * way / np.linalg.norm(way) * [1.0, 1.0, 1.0, length, length, length]
+    moved = replace(problem, force_W=problem.force_W + change[:3], torque_W=problem.torque_W + change[3:])
+    assert statics(moved).equilibrium != Certainty.NO
+
+
+def check(seed: int) -> str:
+    """Check one draw, and return what was undecided."""
+    draw = drawn(seed)
+    problem = draw.problem
+    n = len(problem.contacts)
+    answer = contact_modes(problem)
+    try:
+        held = statics(problem)
+    except UndecidedError:
+        return "statics"
+    check_modes_and_statics(answer, held, draw)
+    if held.stable_disturbance > 0.0:
+        check_disturbance(held, problem, seed)
+    letters = [mode.mode for mode in answer.modes]
+    load = float(np.linalg.norm(problem.wrench_W))
+    try:
+        margins = mode_margins(problem, answer)
+        (still,) = wrench_sets(problem, modes=["f" * n]) if np.all(problem.contacts.frictions) else (None,)
+    except (UndecidedError, TooLargeError):
+        return "margins or sets"
+    assert [margin.mode for margin in margins] == letters
+    assert not any(margin.margin < 0.0 for margin in margins)
+    if still is not None:
+        depth = still.depth(problem.wrench_W, held.margin_length)
+        if depth > ALIKE * load:
+            assert "f" * n in letters
+            if has_one_motion(problem):
+                assert held.equilibrium != Certainty.NO
+                if held.stable_disturbance > 0.0:
+                    assert depth == pytest.approx(held.stable_disturbance, rel=ALIKE, abs=ALIKE * load)
+        for margin in margins:
+            if margin.mode == "f" * n and margin.margin > ALIKE * load:
+                assert margin.margin == pytest.approx(depth, rel=ALIKE, abs=ALIKE * load)
+    return ""
+
+
+@pytest.mark.parametrize("block", range(4))
+def test_answers_do_not_contradict_each_other(block: int) -> None:
+    undecided = [check(seed) for seed in range(3 * block, 3 * block + 3)]
+    assert undecided.count("") >= 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("block", range(60))
+def test_hundreds_of_answers_do_not_contradict_each_other(block: int) -> None:
+    undecided = [check(seed) for seed in range(20 * block, 20 * block + 20)]
+    assert undecided.count("") >= 10
+
+
+@pytest.mark.parametrize("seed", range(len(KINDS)))
+def test_statics_do_not_depend_on_the_order_of_contacts(seed: int) -> None:
+    problem = drawn(3 * seed).problem
+    order = np.random.default_rng(seed).permutation(len(problem.contacts))
+    contacts = ContactSet(
+        p_WC_W=problem.contacts.p_WC_W[order],
+        normals_W=problem.contacts.normals_W[order],
+        frictions=problem.contacts.frictions[order],
+    )
+    before, after = statics(problem), statics(replace(problem, contacts=contacts))
+    assert (after.equilibrium, after.jammed, after.wedged) == (
+        before.equilibrium,
+        before.jammed,
+        before.wedged,
+    )
