@@ -29,6 +29,7 @@ from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.many import rotation_vectors, turned
 
 if TYPE_CHECKING:
+    from contact_dynamics.measured.poses import MeasuredPoses
     from contact_dynamics.measured.recorded_toss import Toss
     from contact_dynamics.validation import FloatArray
 
@@ -48,6 +49,23 @@ REST_SPEED: Final = 0.02
 
 REST_SPIN: Final = 0.2
 """rad/s. Mean angular speed over `REST_SPAN` below which a body of a decimetre rests."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class FlightMeeting(Record):
+    """Where one flight passes into the next, by their poses alone.
+
+    Attributes:
+        time: When the poses of both flights agree best, s, on the recording's clock.
+        time_std: Standard deviation of that time, s.
+        before: The state at that time, from the flight that ends.
+        after: The state at that time, from the flight that begins.
+    """
+
+    time: float
+    time_std: float
+    before: MeasuredState
+    after: MeasuredState
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -132,23 +150,32 @@ def corner_heights(toss: Toss, state: BodyState) -> FloatArray:
 
 
 def _strike(toss: Toss, before: slice, after: slice) -> MeasuredStrike:
-    count = max(FEWEST_FRAMES, round(FIT_SPAN * toss.rate))
+    meeting = meeting_of_flights(toss, before, after)
+    heights = 0.5 * (corner_heights(toss, meeting.before.state) + corner_heights(toss, meeting.after.state))
+    return MeasuredStrike(
+        time=meeting.time,
+        time_std=meeting.time_std,
+        before=meeting.before,
+        after=meeting.after,
+        heights=heights,
+    )
+
+
+def meeting_of_flights(poses: MeasuredPoses, before: slice, after: slice) -> FlightMeeting:
+    """Return when one flight passes into the next, with at most `MOST_BETWEEN` frames between them."""
+    count = max(FEWEST_FRAMES, round(FIT_SPAN * poses.rate))
     fit_after = fit_flight(
-        toss, slice(after.start, min(after.stop, after.start + count)), reference=after.start
+        poses, slice(after.start, min(after.stop, after.start + count)), reference=after.start
     )
     stop = before.stop
     while True:
-        fit_before = fit_flight(toss, slice(max(before.start, stop - count), stop))
+        fit_before = fit_flight(poses, slice(max(before.start, stop - count), stop))
         time, time_std = _crossing(fit_before, fit_after)
         # a frame just past the strike may have passed for flight: then the crossing comes before it
-        if time >= toss.times[stop - 1] - time_std or stop - 1 - before.start < FEWEST_FRAMES:
+        if time >= poses.times[stop - 1] - time_std or stop - 1 - before.start < FEWEST_FRAMES:
             break
         stop -= 1
-    state_before, state_after = fit_before.at(time), fit_after.at(time)
-    heights = 0.5 * (corner_heights(toss, state_before.state) + corner_heights(toss, state_after.state))
-    return MeasuredStrike(
-        time=time, time_std=time_std, before=state_before, after=state_after, heights=heights
-    )
+    return FlightMeeting(time=time, time_std=time_std, before=fit_before.at(time), after=fit_after.at(time))
 
 
 def _crossing(before: FlightFit, after: FlightFit) -> tuple[float, float]:

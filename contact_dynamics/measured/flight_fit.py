@@ -26,7 +26,7 @@ from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.many import matrices_of, rotation_vectors, turned
 
 if TYPE_CHECKING:
-    from contact_dynamics.measured.recorded_toss import Toss
+    from contact_dynamics.measured.poses import MeasuredPoses
     from contact_dynamics.validation import FloatArray
 
 FEWEST_FRAMES: Final = 4
@@ -122,29 +122,29 @@ class FlightFit(Record):
         return self._inverse_inertia(q) @ self.L_W
 
 
-def fit_flight(toss: Toss, frames: slice, *, reference: int | None = None) -> FlightFit:
+def fit_flight(poses: MeasuredPoses, frames: slice, *, reference: int | None = None) -> FlightFit:
     """Return the free flight that fits the poses of ``frames`` (a slice of at least `FEWEST_FRAMES`) best.
 
     ``reference`` is the frame to which the fit refers in time and orientation. The default is the last one.
     """
     if reference is None:
         reference = frames.stop - 1
-    times = toss.times[frames] - toss.times[reference]
-    gravity_W, I_B = toss.gravity_W, toss.body.mass_properties.I_B
+    times = poses.times[frames] - poses.times[reference]
+    gravity_W, I_B = poses.gravity_W, poses.body.mass_properties.I_B
 
     line = np.column_stack([np.ones_like(times), times])
-    straight = toss.p_WB_W[frames] - 0.5 * np.square(times)[:, None] * gravity_W
-    (p_W, v_W), cov_p = _least_squares(line, straight, toss.position_noise)
+    straight = poses.p_WB_W[frames] - 0.5 * np.square(times)[:, None] * gravity_W
+    (p_W, v_W), cov_p = _least_squares(line, straight, poses.position_noise)
 
-    theta = rotation_vectors(toss.q_WB[frames], toss.q_WB[reference])
-    R = matrices_of(toss.q_WB[frames])
+    theta = rotation_vectors(poses.q_WB[frames], poses.q_WB[reference])
+    R = matrices_of(poses.q_WB[frames])
     rates = _inverse_left_jacobians(theta) @ (R @ np.linalg.inv(I_B) @ R.transpose(0, 2, 1))
     turned = _integral(rates, times)
     design = np.concatenate([np.broadcast_to(np.eye(3), turned.shape), turned], axis=2).reshape(-1, 6)
-    solution, cov_rotation = _least_squares(design, theta.reshape(-1, 1), toss.orientation_noise)
+    solution, cov_rotation = _least_squares(design, theta.reshape(-1, 1), poses.orientation_noise)
     return FlightFit(
-        reference=float(toss.times[reference]),
-        q_reference=toss.q_WB[reference],
+        reference=float(poses.times[reference]),
+        q_reference=poses.q_WB[reference],
         p_W=p_W,
         v_W=v_W,
         theta_W=solution[:3, 0],

@@ -21,7 +21,7 @@ from contact_dynamics.rotations.many import rotation_vectors
 
 if TYPE_CHECKING:
     from contact_dynamics.measured.flight_fit import FlightFit
-    from contact_dynamics.measured.recorded_toss import Toss
+    from contact_dynamics.measured.poses import MeasuredPoses
 
 SPAN: Final = 0.047
 """s. Length of the shortest flight, and of the part of a longer one that predicts its next frame."""
@@ -37,20 +37,20 @@ ORIENTATION_SLACK: Final = 5e-3
 """rad. Error within `SPAN` that an inertia off by some percent may add."""
 
 
-def find_flights(toss: Toss) -> list[slice]:
+def find_flights(poses: MeasuredPoses) -> list[slice]:
     """Return the flights, as slices of frames, in the order of time."""
-    shortest = max(5, round(SPAN * toss.rate) + 1)
+    shortest = max(5, round(SPAN * poses.rate) + 1)
     flights = []
     begin = 0
-    while begin + shortest <= len(toss):
+    while begin + shortest <= len(poses):
         end = begin + shortest
         stretch = slice(begin, end)
-        if not _falls(toss, stretch) or _worst(toss, fit_flight(toss, stretch), stretch) > 1.0:
+        if not _falls(poses, stretch) or _worst(poses, fit_flight(poses, stretch), stretch) > 1.0:
             begin += 1
             continue
-        while end < len(toss):
-            fit = fit_flight(toss, slice(end - shortest, end))
-            if _worst(toss, fit, slice(end, end + 1)) > 1.0:
+        while end < len(poses):
+            fit = fit_flight(poses, slice(end - shortest, end))
+            if _worst(poses, fit, slice(end, end + 1)) > 1.0:
                 break
             end += 1
         flights.append(slice(begin, end))
@@ -58,23 +58,23 @@ def find_flights(toss: Toss) -> list[slice]:
     return flights
 
 
-def _falls(toss: Toss, frames: slice) -> bool:
+def _falls(poses: MeasuredPoses, frames: slice) -> bool:
     """Return whether the acceleration along gravity is more than half of it."""
-    times = toss.times[frames] - toss.times[frames.start]
+    times = poses.times[frames] - poses.times[frames.start]
     powers = np.column_stack([np.ones_like(times), times, 0.5 * times * times])
-    acceleration = np.linalg.lstsq(powers, toss.p_WB_W[frames] @ toss.gravity_W, rcond=None)[0][2]
-    return float(acceleration) > 0.5 * float(toss.gravity_W @ toss.gravity_W)
+    acceleration = np.linalg.lstsq(powers, poses.p_WB_W[frames] @ poses.gravity_W, rcond=None)[0][2]
+    return float(acceleration) > 0.5 * float(poses.gravity_W @ poses.gravity_W)
 
 
-def _worst(toss: Toss, fit: FlightFit, frames: slice) -> float:
+def _worst(poses: MeasuredPoses, fit: FlightFit, frames: slice) -> float:
     """Return the largest deviation of the frames' poses from the fit, as a fraction of what is allowed."""
     worst = 0.0
     for frame in range(frames.start, frames.stop):
-        expected = fit.at(float(toss.times[frame]))
-        p_std = np.hypot(toss.position_noise, expected.position_std)
-        q_std = np.hypot(toss.orientation_noise, expected.orientation_std)
-        p_off = np.abs(toss.p_WB_W[frame] - expected.state.p_WB_W)
-        q_off = np.abs(rotation_vectors(toss.q_WB[frame : frame + 1], expected.state.q_WB)[0])
+        expected = fit.at(float(poses.times[frame]))
+        p_std = np.hypot(poses.position_noise, expected.position_std)
+        q_std = np.hypot(poses.orientation_noise, expected.orientation_std)
+        p_off = np.abs(poses.p_WB_W[frame] - expected.state.p_WB_W)
+        q_off = np.abs(rotation_vectors(poses.q_WB[frame : frame + 1], expected.state.q_WB)[0])
         p_worst = float(p_off.max()) / (DEVIATIONS * p_std + POSITION_SLACK)
         q_worst = float((q_off / (DEVIATIONS * q_std + ORIENTATION_SLACK)).max())
         worst = max(worst, p_worst, q_worst)
