@@ -50,7 +50,9 @@ setup(
     package_data={"": ["py.typed", "*.csv", "*.npz"]},
     zip_safe=False,
     install_requires=requirements("core"),
-    extras_require={kind: requirements(kind) for kind in ("jazzy", "view", "test", "bench", "docs")},
+    extras_require={
+        kind: requirements(kind) for kind in ("jazzy", "view", "evaluate", "test", "bench", "docs")
+    },
     entry_points={"console_scripts": ["contact-dynamics = contact_dynamics.command_line:main"]},
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),

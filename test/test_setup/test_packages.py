@@ -44,13 +44,16 @@ SOURCES = (
 KEYS = {
     "catkin_pkg": "python3-catkin-pkg-modules",
     "colcon_core": "python3-colcon-common-extensions",
+    "dask": None,
     "hypothesis": "python3-hypothesis",
     "lz4": "mcap-ros2-support",  # the mcap library needs it, and zstandard
+    "matplotlib": None,
     "mcap": "mcap-ros2-support",
     "mcap_ros2": "mcap-ros2-support",
     "mpmath": None,
     "mypy": "python3-mypy",
     "numpy": "python3-numpy",
+    "pyarrow": None,
     "pytest": "python3-pytest",
     "rerun": None,
     "rosbags": "python3-rosbags-pip",
@@ -59,6 +62,9 @@ KEYS = {
     "yaml": "python3-yaml",
     "zstandard": "mcap-ros2-support",
 }
+
+EVALUATION = ("dask", "matplotlib", "pyarrow")
+"""What the options of `contact-dynamics evaluate` need, each the one that says so."""
 
 
 def imported(folder: str) -> tuple[set[str], set[str]]:
@@ -102,8 +108,14 @@ def test_package_xml_declares_what_the_tests_import_beside_and_nothing_else() ->
 def test_what_has_no_rosdep_key_is_named_beside_the_keys() -> None:
     text = MANIFESTS[0].read_text(encoding="utf-8")
     needed = set().union(*(imported(folder)[0] for folder in ("contact_dynamics", "test")))
-    assert {module for module in needed if KEYS.get(module, module) is None} == {"mpmath", "rerun"}
+    assert {module for module in needed if KEYS.get(module, module) is None} == {
+        *("mpmath", "rerun"),
+        *EVALUATION,
+    }
     assert "rerun-sdk" in text
+    assert "requirements/evaluate.txt" in text
+    listed = (ROOT / "requirements" / "evaluate.txt").read_text(encoding="utf-8")
+    assert all(module in listed for module in EVALUATION)
     assert "pip install mpmath" in text
 
 
