@@ -57,6 +57,12 @@ VERBS: Final = {
         (),
         "ask the questions of a log again and compare the answers",
     ),
+    "evaluate": Verb(
+        "contact_dynamics.evaluation.run",
+        "contact_dynamics.evaluation.arguments:evaluate_parser",
+        (),
+        "compare predictions with what came, in logs and recorded tosses",
+    ),
     "toss_publisher": Verb(
         "contact_dynamics.demo.toss_publisher",
         "contact_dynamics.demo.arguments:toss_publisher_parser",

@@ -66,6 +66,47 @@ meet it."""
 DECIMALS_MET: Final = Decimal("1e-30")
 """Relative. A target counts as met exactly if this much of it is left."""
 
+# evaluation
+
+LANDING_GAP: Final = 0.015
+"""m. A flight that ends with the body this near to a surface ended by landing on it. Tracked frames and
+shapes are off by some millimetres, and a body of 2 m/s comes 6 mm nearer between two frames of 150 Hz. A hand
+that catches is farther from the floor."""
+
+TOUCHING_GAP: Final = 0.003
+"""m. A point of a body at rest or sliding that is this near to a surface touches it: the error of tracked
+frame, shape and surface together."""
+
+IMPACT_SPAN: Final = 0.04
+"""s. A flight that begins this soon after the end of the one before is separated from it by one impact, at
+one corner or at several. Longer stretches without flight are mostly sliding or rocking."""
+
+SHARP_VELOCITY: Final = 0.15
+"""m/s, and rad/s times the radius of gyration. If the velocities beside an impact are measured with larger
+standard deviations, the impact is not compared. Velocities change by 1 m/s and more."""
+
+MODE_SPAN: Final = 0.05
+"""s. A mode is looked for in windows of this length. It is short, because recordings stop soon after a body
+does; longer than a bounce of 2 mm."""
+
+MODE_SPEED: Final = 0.02
+"""m/s. A contact point that is slower over `MODE_SPAN` does not move along its surface: friction of 0.2 ends
+such a slide in 10 ms. The noise of the window's velocity is added."""
+
+LEAST_POSITION_NOISE: Final = 1e-6
+"""m. No tracker is better. Where a body's poses repeat to the bit, their scatter says nothing of the rest."""
+
+LEAST_ORIENTATION_NOISE: Final = 1e-6
+"""rad. As `LEAST_POSITION_NOISE`, at a metre."""
+
+SAME_EVENT: Final = 0.01
+"""s. Events of one kind, found in one recording by two versions of the code, are the same if they are this
+close."""
+
+HOLD_STEP: Final = 1e-3
+"""s. Steps in which a body goes on over a corner that stays, where strikes in time are evaluated. In one step
+a corner of 1 m/s moves by a millimetre, which is within the error of tracked frames and shapes."""
+
 # rigid_body
 
 SYMMETRY_TOLERANCE: Final = 1e-9

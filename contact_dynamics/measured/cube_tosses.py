@@ -110,6 +110,15 @@ def read_cube_toss(path: Path, *, index: int | None = None) -> Toss:
     )
 
 
+def count_cube_tosses(path: Path) -> int:
+    """Return the number of tosses in a file.
+
+    Raises:
+        InvalidFieldError: an array is missing or has another shape.
+    """
+    return len(_load(path)[1]) - 1
+
+
 def default_index(data: FloatArray, offsets: Sequence[int]) -> int:
     """Return the toss with the longest flight that ends in a clean strike of a single corner.
 

@@ -43,6 +43,7 @@ CHAPTERS = (
     "measured",
     "nodes",
     "replay",
+    "evaluation",
     "demo",
     "command_line",
     "__main__",

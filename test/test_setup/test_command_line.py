@@ -17,6 +17,7 @@ ROOT = Path(__file__).parents[2]
 BROUGHT = ("numpy", "numpy.libs", "scipy", "scipy.libs", "mcap", "lz4", "zstandard", "typing_extensions.py")
 OPTIONS = {
     "demo": ["--toss", "--view", "--output", "--quiet"],
+    "evaluate": ["--against", "--dask", "--results", "--rerun", "RECORDING"],
     "replay": ["--tolerance", "LOG"],
     "server": ["--params-file", "--ros-args", *SERVER_PARAMETERS],
     "toss_publisher": ["--toss", "--listeners"],

@@ -1,0 +1,273 @@
+"""Each event's questions, asked as they would have been some time before, with the states known by then."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.constants import ns_after, seconds_between
+from contact_dynamics.contact_modes.result import ModeVerdict
+from contact_dynamics.errors import ContactDynamicsError, NotSupportedError
+from contact_dynamics.evaluation.comparison import Comparison
+from contact_dynamics.evaluation.differences import (
+    arrival_std,
+    in_deviations,
+    pose_difference,
+    velocity_difference,
+)
+from contact_dynamics.evaluation.found_event import EventKind
+from contact_dynamics.evaluation.settings import Method
+from contact_dynamics.questions.asking import ask
+from contact_dynamics.questions.contact_modes import ContactModeQuestion
+from contact_dynamics.questions.knowledge import Knowledge
+from contact_dynamics.questions.sample_times import AtStamps, UntilContact
+from contact_dynamics.questions.state_store import StateStore
+from contact_dynamics.questions.subject import PublishedState
+from contact_dynamics.questions.tumbling import TumblingQuestion
+from contact_dynamics.questions.which_impact import ImpactQuestion
+from contact_dynamics.records import Record
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.tumbling import free_motion
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from contact_dynamics.evaluation.found_event import FoundEvent
+    from contact_dynamics.evaluation.motion import MeasuredMotion
+    from contact_dynamics.evaluation.settings import Law, Settings
+    from contact_dynamics.questions.impact import ImpactAnswer
+    from contact_dynamics.questions.knowledge import Defaults
+    from contact_dynamics.tumbling import Trajectory
+    from contact_dynamics.world import World
+
+FEWEST_ASKED: Final = 5
+"""Least number of states since the flight, the rest or the slide began, for a question about its end."""
+
+_SPARSE: Final = 1.0  # Hz: of a flight until contact, only its end counts
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Informed(Record):
+    """What whoever asks knows besides the states.
+
+    Attributes:
+        world: Bodies, surfaces and gravity. They may be others than those the events were found with.
+        defaults: Tolerances, and how far ahead a contact is looked for.
+        state_timeout: s, how old the newest state may be.
+    """
+
+    world: World
+    defaults: Defaults
+    state_timeout: float
+
+
+def compare_event(
+    number: int, event: FoundEvent, motion: MeasuredMotion, informed: Informed, settings: Settings
+) -> Iterator[Comparison]:
+    """Yield a row for each question about an event; none where too few states were known before it."""
+    for horizon in settings.horizons:
+        asked_ns = event.asked_ns(horizon)
+        states = motion.known_by(asked_ns, since=event.first_sample)
+        if len(states) < FEWEST_ASKED:
+            continue
+        store = StateStore(history=settings.fit_window, timeout=informed.state_timeout)
+        for state in states:
+            store.add(event.body, state)
+        known = Knowledge(
+            world=informed.world,
+            states=store,
+            defaults=informed.defaults,
+            now_ns=lambda asked_ns=asked_ns: asked_ns,  # type: ignore[misc]  # bound now, not when called
+        )
+        row = Comparison(
+            event=number,
+            kind=event.kind,
+            body=event.body,
+            surface=event.surface,
+            time=event.time,
+            horizon=horizon,
+            method=Method.NEWEST,
+            measured_mode=event.mode,
+        )
+        yield from _ASKERS[event.kind](row, event, known, settings)
+
+
+def _source(method: Method, settings: Settings) -> PublishedState:
+    return PublishedState(fit_window=0.0 if method is Method.NEWEST else settings.fit_window)
+
+
+def _flight(row: Comparison, event: FoundEvent, known: Knowledge, settings: Settings) -> Iterator[Comparison]:
+    for method in (Method.FIT, Method.NEWEST):
+        yield _or_refusal(
+            replace(row, method=method),
+            lambda one: _pose_at_end(one, event, known, _source(one.method, settings)),
+        )
+
+
+def _pose_at_end(row: Comparison, event: FoundEvent, known: Knowledge, source: PublishedState) -> Comparison:
+    is_fit = row.method is Method.FIT
+    answer = ask(
+        TumblingQuestion(
+            body=event.body,
+            state=source,
+            sampling=AtStamps(stamps_ns=[event.time_ns]),
+            want_covariance=is_fit,
+        ),
+        known,
+    )
+    state = _sample(answer.trajectory, 0)
+    pose, distance = pose_difference(state, event.state), None
+    if answer.covariance is not None:
+        stds = np.array([*[event.position_std] * 3, *event.orientation_std])
+        distance = in_deviations(pose, answer.covariance.covariances[0, :6, :6], stds)
+    return _with_state(row, state, event, distance=distance, degrees=6)
+
+
+def _landing(
+    row: Comparison, event: FoundEvent, known: Knowledge, settings: Settings
+) -> Iterator[Comparison]:
+    for method in (Method.FIT, Method.NEWEST):
+        yield _or_refusal(
+            replace(row, method=method),
+            lambda one: _first_contact(one, event, known, _source(one.method, settings)),
+        )
+
+
+def _first_contact(
+    row: Comparison, event: FoundEvent, known: Knowledge, source: PublishedState
+) -> Comparison:
+    answer = ask(
+        TumblingQuestion(
+            body=event.body,
+            state=source,
+            sampling=UntilContact(rate=_SPARSE),
+            want_covariance=row.method is Method.FIT,
+        ),
+        known,
+    )
+    if answer.event is None:
+        return replace(row, refused="no contact within the horizon")
+    state = _sample(answer.trajectory, len(answer.trajectory) - 1)
+    landing_ns = ns_after(answer.state.stamp_ns, answer.event.seconds)
+    error, distance = seconds_between(event.time_ns, landing_ns), None
+    if answer.covariance is not None:
+        std = arrival_std(answer.event, state, answer.covariance.covariances[-1, :6, :6], known.world)
+        if std is not None and std + event.time_std > 0.0:
+            distance = abs(error) / float(np.hypot(std, event.time_std))
+    return replace(_with_state(row, state, event, distance=distance, degrees=1), time_error=error)
+
+
+def _impact(row: Comparison, event: FoundEvent, known: Knowledge, settings: Settings) -> Iterator[Comparison]:
+    for law in settings.laws:
+        yield _or_refusal(
+            replace(row, method=Method.FIT, law=law),
+            lambda one: _after(one, event, known, _asked_impact(one, event, known, settings)),
+        )
+    for method in (Method.NEWEST, Method.NO_IMPACT):
+        yield _or_refusal(
+            replace(row, method=method, law=settings.laws[0] if method is Method.NEWEST else None),
+            lambda one: _after(one, event, known, _asked_impact(one, event, known, settings)),
+        )
+
+
+def _asked_impact(row: Comparison, event: FoundEvent, known: Knowledge, settings: Settings) -> ImpactAnswer:
+    law: Law = row.law or settings.laws[0]
+    question = ImpactQuestion(
+        body=event.body,
+        state=_source(row.method, settings),
+        restitution_law=law.restitution_law,
+        several_contacts_law=law.several_contacts_law,
+        want_covariance=row.method is Method.FIT and law is settings.laws[0],
+    )
+    try:
+        return ask(question, known)
+    except NotSupportedError:  # covariances are carried through one contact alone
+        if not question.want_covariance:
+            raise
+        return ask(replace(question, want_covariance=False), known)
+
+
+def _after(row: Comparison, event: FoundEvent, known: Knowledge, answer: ImpactAnswer) -> Comparison:
+    """Return the row with the state after the impact, flown on for as long as the measured one took."""
+    state, covariance, lasted = answer.impact.state, answer.impact.covariance, 0.0
+    if row.method is Method.NO_IMPACT:
+        state, covariance = answer.state, None
+    elif answer.impact.strikes:  # only those that were over when the next flight began
+        strike = [strike for strike in answer.impact.strikes if strike.seconds <= event.duration][-1]
+        state, lasted = strike.state_after, strike.seconds
+    body = known.world.body(event.body).mass_properties
+    state = free_motion(body, state, gravity_W=known.world.gravity_W).state_at(event.duration - lasted)
+    distance = None
+    if covariance is not None:
+        stds = np.array([*[event.velocity_std] * 3, *event.angular_velocity_std])
+        distance = in_deviations(velocity_difference(state, event.state), covariance[6:, 6:], stds)
+    return _with_state(row, state, event, distance=distance, degrees=6)
+
+
+def _modes(
+    row: Comparison,
+    event: FoundEvent,
+    known: Knowledge,
+    settings: Settings,  # noqa: ARG001  as every asker
+) -> Iterator[Comparison]:
+    yield _or_refusal(row, lambda one: _mode(one, event, known))
+
+
+def _mode(row: Comparison, event: FoundEvent, known: Knowledge) -> Comparison:
+    answer = ask(ContactModeQuestion(body=event.body), known)
+    modes = [mode.mode for mode in answer.modes] if answer.verdict is not ModeVerdict.IMPACT else []
+    return replace(
+        row,
+        predicted_mode="|".join(modes) or answer.verdict.name,
+        mode_is_right=any(_does(mode) is event.kind for mode in modes),
+    )
+
+
+def _does(mode: str) -> EventKind | None:
+    """Return what a body does in a mode: it rests, or slides without a contact leaving; None: another."""
+    if set(mode) <= {"f"}:
+        return EventKind.REST
+    return None if "s" in mode else EventKind.SLIDING
+
+
+def _or_refusal(row: Comparison, answered: Callable[[Comparison], Comparison]) -> Comparison:
+    try:
+        return answered(row)
+    except ContactDynamicsError as error:
+        return replace(row, refused=f"{type(error).__name__}: {error}")
+
+
+def _sample(trajectory: Trajectory, i: int) -> BodyState:
+    return BodyState(
+        p_WB_W=trajectory.p_WB_W[i],
+        q_WB=trajectory.q_WB[i],
+        v_WB_W=trajectory.v_WB_W[i],
+        w_WB_W=trajectory.w_WB_W[i],
+    )
+
+
+def _with_state(
+    row: Comparison, state: BodyState, event: FoundEvent, *, distance: float | None, degrees: int
+) -> Comparison:
+    pose, velocity = pose_difference(state, event.state), velocity_difference(state, event.state)
+    return replace(
+        row,
+        position_error=float(np.linalg.norm(pose[:3])),
+        attitude_error=float(np.linalg.norm(pose[3:])),
+        velocity_error=float(np.linalg.norm(velocity[:3])),
+        spin_error=float(np.linalg.norm(velocity[3:])),
+        distance=distance,
+        degrees=0 if distance is None else degrees,
+        predicted=np.concatenate([state.p_WB_W, state.q_WB, state.v_WB_W, state.w_WB_W]),
+    )
+
+
+_ASKERS: Final = {
+    EventKind.FLIGHT: _flight,
+    EventKind.LANDING: _landing,
+    EventKind.IMPACT: _impact,
+    EventKind.REST: _modes,
+    EventKind.SLIDING: _modes,
+}

@@ -1,0 +1,130 @@
+"""The states of a log's bodies, read without ROS, with when each was known to whoever asked."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.constants import to_ns
+from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
+from contact_dynamics.evaluation.asking import Informed
+from contact_dynamics.evaluation.motion import motions_of
+from contact_dynamics.evaluation.recording import Recording
+from contact_dynamics.nodes.parameter_file import ParameterFile
+from contact_dynamics.nodes.parameters import ServerParameters, read_server_parameters
+from contact_dynamics.nodes.run_record import PARAMETERS, LoggedParameters
+from contact_dynamics.recording.bag_reader import BagReader
+from contact_dynamics.recording.cdr import decode_without_ros
+from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
+from contact_dynamics.replay.stand_ins import stand_in
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+    from typing import Any
+
+    from contact_dynamics.nodes.parameters import ParameterSource
+    from contact_dynamics.rigid_body.body import BodyState
+
+_OURS: Final = "contact_dynamics_interfaces/"
+
+ONE_CLOCK_S: Final = 1.0
+"""Largest median difference of a state's arrival and its stamp at which both count as times of one clock, s.
+Clocks that NTP keeps differ by far less, and simulated time differs by years."""
+
+
+def parameters_of(source: ParameterSource) -> tuple[ServerParameters, Informed]:
+    """Return what a configuration says, and what of it those know who ask.
+
+    Raises:
+        ConfigurationError: a parameter is missing, or has a value that is not allowed.
+    """
+    parameters = read_server_parameters(source)
+    informed = Informed(
+        world=parameters.world, defaults=parameters.defaults, state_timeout=parameters.state_timeout
+    )
+    return parameters, informed
+
+
+def recording_of_log(path: Path, *, config: Path | None = None) -> Recording:
+    """Return the states of a log's bodies, and what its server was configured with.
+
+    Args:
+        path: A bag folder, or an ``.mcap`` file.
+        config: File of the server's parameters, instead of the log's own record.
+
+    Raises:
+        NotALogError: it is no log, or there are neither a record of its configuration nor ``config``.
+        ConfigurationError: a parameter is missing, or has a value that is not allowed.
+        InvalidFieldError: the log has no state of any configured body.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DamagedLogWarning)  # told in the result
+        log = BagReader(path)
+        source: ParameterSource
+        if config is not None:
+            source = ParameterFile(config)
+        else:
+            run = log.run()
+            if PARAMETERS not in run and "world_frame" not in run:
+                raise NotALogError(
+                    f"{path}: found no record of how its run was configured, needed is --config"
+                    f"{f' ({log.damage})' if log.damage else ''}"
+                )
+            source = LoggedParameters(run)
+        parameters, informed = parameters_of(source)
+        found = _states(log, parameters, source)
+    motions = [
+        motion
+        for body in parameters.world.bodies
+        for motion in motions_of(
+            body,
+            parameters.world,
+            [state for state, _ in found[body.name]],
+            arrivals_ns=_on_stamps_clock(found[body.name]),
+        )
+    ]
+    if not any(found.values()):
+        bodies = ", ".join(found) or "none"
+        raise InvalidFieldError(
+            str(path), "no state of a configured body", f"states of one of them: {bodies}"
+        )
+    return Recording(motions=tuple(motions), informed=informed, damage=log.damage or "")
+
+
+def _states(
+    log: BagReader, parameters: ServerParameters, source: ParameterSource
+) -> dict[str, list[tuple[BodyState, int]]]:
+    """Return the states by body, in the order in which they came, with the log_time of each, ns."""
+    stand_in((name, text) for name, text in log.definitions().items() if not name.startswith(_OURS))
+    from contact_dynamics.nodes.state_sources import state_sources  # imports what now stands in for ROS
+
+    found: dict[str, list[tuple[BodyState, int]]] = {body.name: [] for body in parameters.world.bodies}
+    readers: dict[str, tuple[str, Callable[[Any], BodyState | None]]] = {}
+    for topics in parameters.topics:
+        p_FB_F = parameters.world.body(topics.body_name).p_FB_F
+        for each in state_sources(topics, world_frame=parameters.world_frame, p_FB_F=p_FB_F):
+            topic = source.resolved_topic(each.parameter, each.topic)
+            readers[topic] = (topics.body_name, each.state_from)
+    for message in log.messages(readers.keys()):
+        body_name, state_from = readers[message.topic]
+        try:
+            state = state_from(decode_without_ros(message))
+        except ContactDynamicsError:  # the server refused it too
+            continue
+        if state is not None:
+            found[body_name].append((state, message.log_time_ns))
+    return found
+
+
+def _on_stamps_clock(found: Sequence[tuple[BodyState, int]]) -> list[int]:
+    """Return when the states were known, ns on the clock of their stamps.
+
+    Where the log was written by another clock, as in simulated time, each state counts as known at its stamp.
+    """
+    delays = [log_time_ns - state.stamp_ns for state, log_time_ns in found]
+    if not delays or abs(float(np.median(delays))) > to_ns(ONE_CLOCK_S):
+        return [state.stamp_ns for state, _ in found]
+    return [log_time_ns for _, log_time_ns in found]

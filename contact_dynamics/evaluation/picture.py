@@ -1,0 +1,249 @@
+"""Events side by side in rerun: each has a place of its own, with what was measured and what was predicted.
+
+Blue grey is the measured body at the event, with its path shortly before and after. Orange outlines are where
+it was predicted to be, one for each horizon, fainter the longer ahead. At impacts, arrows are the velocities
+of the centre of mass afterwards: blue as measured, yellow as predicted under each law. The table beside them
+says by number how far the predictions were off.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import rerun as rr
+import rerun.blueprint as rrb
+
+from contact_dynamics.evaluation.events import find_events
+from contact_dynamics.evaluation.found_event import EventKind
+from contact_dynamics.evaluation.report import COLUMNS, UNITS
+from contact_dynamics.evaluation.settings import Method
+from contact_dynamics.records import Record
+from contact_dynamics.viewing import palette
+from contact_dynamics.viewing.entities import entity
+from contact_dynamics.viewing.scene import solid, tangents
+from contact_dynamics.viewing.shape import drawn_shape
+from contact_dynamics.viewing.sinks import APPLICATION
+from contact_dynamics.viewing.trajectory import outline
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    from contact_dynamics.evaluation.comparison import Comparison
+    from contact_dynamics.evaluation.found_event import FoundEvent
+    from contact_dynamics.evaluation.motion import MeasuredMotion
+    from contact_dynamics.evaluation.result import Evaluation
+    from contact_dynamics.evaluation.sources import Source
+    from contact_dynamics.validation import FloatArray
+
+MOST_DRAWN: Final = 48
+"""Events that are drawn, the first ones: more could not be told apart."""
+
+COLUMN_COUNT: Final = 6
+"""Events in one row."""
+
+TRAIL_S: Final = 0.08
+"""s of the measured path on either side of an event."""
+
+_APART: Final = 2.6  # sizes of the largest body from place to place
+_ARROW: Final = 1.0  # length of the longest arrow, in sizes of the body
+_EVENTS: Final = "events"
+_TABLE: Final = "table"
+_FAINTEST: Final = 0.35
+_WIDTH: Final = -1.8  # negative: points of the screen
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class _Cell(Record):
+    """What is drawn at one place."""
+
+    name: str
+    event: FoundEvent
+    motion: MeasuredMotion
+    rows: tuple[Comparison, ...]
+    impact: FoundEvent | None
+    impact_rows: tuple[Comparison, ...]
+
+
+def write_picture(
+    path: Path, evaluation: Evaluation, sources: Sequence[Source], *, config: Path | None
+) -> int:
+    """Draw the first events of an evaluation into a file, and return how many were drawn.
+
+    Args:
+        path: The file, which is replaced.
+        evaluation: What came of the recordings.
+        sources: The recordings, which are read again as far as their events are drawn.
+        config: What their bodies were described with; see `Source.read`.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    cells = []
+    for cell in _cells(evaluation, sources, config):
+        cells.append(cell)
+        if len(cells) == MOST_DRAWN:
+            break
+    recording = rr.RecordingStream(APPLICATION)
+    recording.set_sinks(rr.FileSink(str(path)))
+    recording.send_blueprint(_blueprint(cells))
+    apart = _APART * max((drawn_shape(cell.motion.body.shape).size for cell in cells), default=1.0)
+    for number, cell in enumerate(cells):
+        _draw(recording, number, cell, apart)
+    table = rr.TextDocument(_table(cells), media_type=rr.MediaType.MARKDOWN)
+    recording.log(_TABLE, table, static=True)
+    recording.disconnect()
+    return len(cells)
+
+
+def _cells(evaluation: Evaluation, sources: Sequence[Source], config: Path | None) -> Iterator[_Cell]:
+    """Yield the flights' ends, with the impacts there, the rests and the slides, in their order."""
+    named = {source.name: source for source in sources}
+    for result in evaluation.results:
+        if result.problem or result.source not in named:
+            continue
+        recording = named[result.source].read(config=config)
+        found = [(event, motion) for motion in recording.motions for event in find_events(motion)]
+        numbers = {(event.kind, event.body, event.time_ns): i for i, (event, _) in enumerate(found)}
+        for number, (event, motion) in enumerate(found):
+            landed = (EventKind.LANDING, event.body)
+            ends_in_landing = event.kind is EventKind.FLIGHT and any(
+                key[:2] == landed and found[i][0].first_sample == event.first_sample
+                for key, i in numbers.items()
+            )
+            if event.kind is EventKind.IMPACT or ends_in_landing:
+                continue
+            struck = numbers.get((EventKind.IMPACT, event.body, event.time_ns))
+            is_struck = event.kind is EventKind.LANDING and struck is not None
+            yield _Cell(
+                name=f"{result.source.rpartition('/')[2]}, {event.kind.value} at {event.time:.3f} s",
+                event=event,
+                motion=motion,
+                rows=_rows(result.comparisons, number),
+                impact=found[struck][0] if is_struck and struck is not None else None,
+                impact_rows=_rows(result.comparisons, struck) if is_struck else (),
+            )
+
+
+def _rows(rows: Sequence[Comparison], number: int | None) -> tuple[Comparison, ...]:
+    return tuple(row for row in rows if row.event == number and not row.refused)
+
+
+def _draw(recording: rr.RecordingStream, number: int, cell: _Cell, apart: float) -> None:
+    path = entity(_EVENTS, f"{number:02d} {cell.name}")
+    motion, event = cell.motion, cell.event
+    shape = drawn_shape(motion.body.shape)
+    up_W = _up(motion)
+    u_W, v_W = tangents(up_W)
+    place = apart * ((number % COLUMN_COUNT) * u_W - (number // COLUMN_COUNT) * v_W)
+    at_W = event.state.p_WB_W
+    recording.log(path, rr.Transform3D(translation=place - at_W), static=True)
+    pose = rr.Transform3D(translation=at_W, quaternion=rr.Quaternion(xyzw=event.state.q_WB))
+    recording.log(f"{path}/measured", pose, static=True)
+    if len(shape.triangles_B) > 0:
+        recording.log(f"{path}/measured/faces", solid(shape, palette.MEASURED), static=True)
+    edges = rr.LineStrips3D(list(shape.edges_B), colors=palette.MEASURED_EDGE, radii=_WIDTH)
+    recording.log(f"{path}/measured/edges", edges, static=True)
+    near = np.abs(motion.times - event.time) <= TRAIL_S
+    trail = rr.LineStrips3D([motion.p_WB_W[near]], colors=palette.MEASURED, radii=_WIDTH)
+    recording.log(f"{path}/path", trail, static=True)
+    fits = [row for row in cell.rows if row.method is Method.FIT and row.predicted is not None]
+    for rank, row in enumerate(sorted(fits, key=lambda each: each.horizon)):
+        if row.predicted is None:
+            continue
+        color = palette.translucent(palette.PREDICTED, max(_FAINTEST, 1.0 - 0.25 * rank))
+        lines = outline(shape, row.predicted[:3], row.predicted[3:7])
+        strips = rr.LineStrips3D(list(lines), colors=color, radii=_WIDTH)
+        recording.log(entity(f"{path}/predicted", f"{1e3 * row.horizon:.0f} ms before"), strips, static=True)
+    _draw_velocities(recording, path, cell, shape.size)
+    below_W = at_W - 0.75 * shape.size * up_W
+    name = f"{number} {event.kind.value}"
+    label = rr.Points3D([below_W], labels=[name], radii=0.0, show_labels=True)
+    recording.log(f"{path}/label", label, static=True)
+
+
+def _draw_velocities(recording: rr.RecordingStream, path: str, cell: _Cell, size: float) -> None:
+    if cell.impact is None:
+        return
+    shortest = min((row.horizon for row in cell.impact_rows), default=0.0)
+    predicted = {
+        row.law.value: row.predicted[7:10]
+        for row in cell.impact_rows
+        if row.method is Method.FIT
+        and row.law is not None
+        and row.predicted is not None
+        and row.horizon == shortest
+    }
+    measured = cell.impact.state.v_WB_W
+    longest = max(float(np.linalg.norm(v)) for v in [measured, *predicted.values()])
+    scale = _ARROW * size / longest if longest > 0.0 else 0.0
+    at_W = cell.event.state.p_WB_W
+    for name, velocity, color in (
+        ("measured", measured, palette.MEASURED),
+        *((name, velocity, palette.AFTER_IMPACT) for name, velocity in predicted.items()),
+    ):
+        arrow = rr.Arrows3D(origins=[at_W], vectors=[scale * velocity], colors=color, radii=_WIDTH)
+        recording.log(entity(path, "velocity after", name), arrow, static=True)
+
+
+def _table(cells: Sequence[_Cell]) -> str:
+    """Return a row for each event, with the errors of its shortest horizon, in Markdown."""
+    lines = ["| | event | asked | answer |", "| --- | --- | --- | --- |"]
+    for number, cell in enumerate(cells):
+        lines += [f"| {number} | {cell.name} | {answer} |" for answer in _answers(cell)]
+    return "\n".join(lines)
+
+
+def _answers(cell: _Cell) -> Iterator[str]:
+    for rows, event in ((cell.rows, cell.event), (cell.impact_rows, cell.impact)):
+        if event is None or not rows:
+            continue
+        row = min(rows, key=lambda each: (each.horizon, list(Method).index(each.method)))
+        asked = f"{1e3 * row.horizon:.0f} ms before{f', {row.law.value}' if row.law else ''}"
+        if row.predicted_mode:
+            yield f"{asked} | {row.predicted_mode.replace('|', ' or ')}, measured {row.measured_mode}"
+            continue
+        errors = [
+            f"{UNITS[name][1] * error:.2g} {UNITS[name][0].rpartition(' ')[2]}"
+            for name in COLUMNS[event.kind]
+            if (error := getattr(row, name)) is not None
+        ]
+        yield f"{asked} | off by {', '.join(errors)}"
+
+
+def _up(motion: MeasuredMotion) -> FloatArray:
+    size = float(np.linalg.norm(motion.gravity_W))
+    return -motion.gravity_W / size if size > 0.0 else np.array([0.0, 0.0, 1.0])
+
+
+def _blueprint(cells: Sequence[_Cell]) -> rrb.Blueprint:
+    apart = _APART * max((drawn_shape(cell.motion.body.shape).size for cell in cells), default=1.0)
+    up_W = _up(cells[0].motion) if cells else np.array([0.0, 0.0, 1.0])
+    u_W, v_W = tangents(up_W)
+    columns = min(COLUMN_COUNT, max(1, len(cells)))
+    row_count = math.ceil(max(1, len(cells)) / COLUMN_COUNT)
+    middle = 0.5 * apart * ((columns - 1) * u_W - (row_count - 1) * v_W)
+    distance = apart * max(0.95 * columns, 0.9 * row_count, 1.0)
+    eye = rrb.EyeControls3D(
+        kind=rrb.Eye3DKind.Orbital,
+        position=middle + distance * (0.75 * up_W - 0.65 * v_W),
+        look_target=middle,
+        eye_up=up_W,
+    )
+    view = rrb.Spatial3DView(
+        origin="/",
+        contents=f"{_EVENTS}/**",
+        name="Events, measured and predicted",
+        background=rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor),
+        line_grid=False,
+        eye_controls=eye,
+    )
+    return rrb.Blueprint(
+        rrb.Horizontal(view, rrb.TextDocumentView(origin=_TABLE, name="How far off"), column_shares=[3, 2]),
+        rrb.BlueprintPanel(state=rrb.PanelState.Collapsed),
+        rrb.SelectionPanel(state=rrb.PanelState.Collapsed),
+        rrb.TimePanel(state=rrb.PanelState.Hidden),
+    )

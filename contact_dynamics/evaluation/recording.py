@@ -1,0 +1,107 @@
+"""A recording to evaluate: the states of its bodies, and what whoever asked about them knew besides."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from contact_dynamics.evaluation.asking import Informed, compare_event
+from contact_dynamics.evaluation.events import find_events
+from contact_dynamics.evaluation.motion import motions_of
+from contact_dynamics.questions.knowledge import Defaults
+from contact_dynamics.records import Record
+from contact_dynamics.tolerances import TOUCHING_GAP
+from contact_dynamics.world import World
+
+if TYPE_CHECKING:
+    from contact_dynamics.evaluation.comparison import Comparison
+    from contact_dynamics.evaluation.found_event import FoundEvent
+    from contact_dynamics.evaluation.motion import MeasuredMotion
+    from contact_dynamics.evaluation.settings import Settings
+    from contact_dynamics.measured.recorded_toss import Toss
+
+SLOW: Final = 5.0
+"""Standard deviations of a corner's measured velocity, within which a contact of a toss counts as at rest."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Recording(Record):
+    """What one log or one toss holds.
+
+    Attributes:
+        motions: The measured states, by body and in stretches without gaps.
+        informed: What is known besides them.
+        damage: What of the log could not be read, in words; empty if all was whole.
+    """
+
+    motions: tuple[MeasuredMotion, ...]
+    informed: Informed
+    damage: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Evaluated(Record):
+    """What came of one recording.
+
+    Attributes:
+        events: The events that were found, in the order of bodies and time.
+        comparisons: A row for each question about each of them.
+        states: Number of measured states.
+        seconds: s of measured motion, over all bodies.
+        damage: What of the recording could not be read, in words; empty if all was whole.
+    """
+
+    events: tuple[FoundEvent, ...]
+    comparisons: tuple[Comparison, ...]
+    states: int
+    seconds: float
+    damage: str = ""
+
+
+def evaluate_recording(
+    recording: Recording, settings: Settings, *, informed: Informed | None = None
+) -> Evaluated:
+    """Find the events of a recording, ask about each beforehand, and compare.
+
+    Args:
+        recording: What was measured, and what is known besides. The events are found with the latter.
+        settings: What is asked.
+        informed: What whoever asks knows instead. None: the same.
+    """
+    events: list[FoundEvent] = []
+    rows: list[Comparison] = []
+    for motion in recording.motions:
+        for event in find_events(motion):
+            rows += compare_event(len(events), event, motion, informed or recording.informed, settings)
+            events.append(event)
+    return Evaluated(
+        events=tuple(events),
+        comparisons=tuple(rows),
+        states=sum(len(motion) for motion in recording.motions),
+        seconds=sum(float(motion.times[-1] - motion.times[0]) for motion in recording.motions),
+        damage=recording.damage,
+    )
+
+
+def recording_of_toss(toss: Toss) -> Recording:
+    """Return a recorded toss as a recording. Each state was known at its stamp.
+
+    The tolerances are those of the demo: what lies within the noise of the measured velocities counts as
+    none.
+    """
+    world = World(bodies=(toss.body,), surfaces=(toss.surface,), gravity_W=toss.gravity_W)
+    states = [toss.state(sample) for sample in range(len(toss))]
+    slow = SLOW * toss.contact_speed_noise
+    defaults = Defaults(velocity_tolerance=slow, distance_tolerance=TOUCHING_GAP, out_of_plane_tolerance=slow)
+    return Recording(
+        motions=tuple(
+            motions_of(
+                toss.body,
+                world,
+                states,
+                arrivals_ns=[state.stamp_ns for state in states],
+                noise=(toss.position_noise, toss.orientation_noise),
+            )
+        ),
+        informed=Informed(world=world, defaults=defaults, state_timeout=0.5),
+    )

@@ -1,0 +1,137 @@
+"""What came of an evaluation: of one recording, and of all, as objects and as JSON."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, fields
+from enum import Enum
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.evaluation.comparison import Comparison
+from contact_dynamics.evaluation.found_event import EventKind, FoundEvent
+from contact_dynamics.evaluation.settings import Law, Method
+from contact_dynamics.records import Record
+from contact_dynamics.rigid_body.body import BodyState
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from contact_dynamics.evaluation.recording import Evaluated
+
+FORMAT: Final = "contact_dynamics evaluation 1"
+"""What the JSON of an evaluation says that it is."""
+
+_ENUMS: Final[dict[str, type[Enum]]] = {"kind": EventKind, "method": Method, "law": Law}
+_ARRAYS: Final = frozenset({"predicted", "orientation_std", "angular_velocity_std"})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class SourceResult(Record):
+    """What came of one recording.
+
+    Attributes:
+        source: Its name.
+        digest: Hash of its content.
+        problem: Why it was not evaluated; empty if it was.
+        damage: What of it could not be read; empty if all was whole.
+        states: Number of measured states.
+        seconds: s of measured motion, over all bodies.
+        events: The events that were found.
+        comparisons: A row for each question about each of them.
+    """
+
+    source: str
+    digest: str = ""
+    problem: str = ""
+    damage: str = ""
+    states: int = 0
+    seconds: float = 0.0
+    events: tuple[FoundEvent, ...] = ()
+    comparisons: tuple[Comparison, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Evaluation(Record):
+    """What came of all recordings.
+
+    Attributes:
+        versions: Versions of what evaluated, by name, with a hash of the package's own code.
+        configuration: Where bodies and surfaces were described, in words.
+        results: What came of each recording, in the order in which they were given.
+    """
+
+    versions: dict[str, str]
+    configuration: str
+    results: tuple[SourceResult, ...]
+
+    def rows(self) -> list[tuple[str, Comparison]]:
+        """Return all comparisons, each with its recording's name."""
+        return [(result.source, row) for result in self.results for row in result.comparisons]
+
+    def write_json(self, path: Path) -> None:
+        """Write all of it; `read_evaluation` reads it back to the last bit."""
+        content = {"format": FORMAT, **self.to_dict()}
+        path.write_text(json.dumps(content) + "\n", encoding="utf-8")
+
+
+def result_of(source: str, digest: str, evaluated: Evaluated) -> SourceResult:
+    """Return what came of a recording under its name."""
+    return SourceResult(
+        source=source,
+        digest=digest,
+        damage=evaluated.damage,
+        states=evaluated.states,
+        seconds=evaluated.seconds,
+        events=evaluated.events,
+        comparisons=evaluated.comparisons,
+    )
+
+
+def read_evaluation(path: Path) -> Evaluation:
+    """Return an evaluation that was written as JSON.
+
+    Raises:
+        InvalidFieldError: the file is none.
+        OSError: it cannot be read.
+    """
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        if content["format"] != FORMAT:
+            raise InvalidFieldError(f"{path}: format", content["format"], repr(FORMAT))
+        return Evaluation(
+            versions=dict(content["versions"]),
+            configuration=str(content["configuration"]),
+            results=tuple(source_result(each) for each in content["results"]),
+        )
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        if isinstance(error, InvalidFieldError):
+            raise
+        allowed = "the JSON that evaluate --json has written"
+        raise InvalidFieldError(str(path), f"{type(error).__name__}: {error}", allowed) from error
+
+
+def source_result(content: dict[str, Any]) -> SourceResult:
+    """Return what came of a recording from its `to_dict`; what is missing raises `KeyError`."""
+    plain = {field.name: content[field.name] for field in fields(SourceResult)}
+    plain["events"] = tuple(FoundEvent(**_typed(FoundEvent, each)) for each in plain["events"])
+    plain["comparisons"] = tuple(Comparison(**_typed(Comparison, each)) for each in plain["comparisons"])
+    return SourceResult(**plain)
+
+
+def _typed(kind: type[FoundEvent | Comparison], content: dict[str, Any]) -> dict[str, Any]:
+    return {field.name: _value(field.name, content[field.name]) for field in fields(kind)}
+
+
+def _value(name: str, plain: Any) -> Any:
+    if plain is None:
+        return None
+    if name in _ENUMS:
+        return _ENUMS[name][plain]
+    if name in _ARRAYS:
+        return np.array(plain, dtype=np.float64)
+    if name == "state":
+        return BodyState(**plain)
+    return plain

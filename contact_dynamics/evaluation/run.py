@@ -1,0 +1,160 @@
+"""`contact-dynamics evaluate`: recordings are evaluated, and the result is printed, written and drawn."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.evaluation.arguments import evaluate_parser
+from contact_dynamics.evaluation.job import Job, code_versions, failed
+from contact_dynamics.evaluation.log_states import parameters_of
+from contact_dynamics.evaluation.plots import write_plots
+from contact_dynamics.evaluation.progress import Progress
+from contact_dynamics.evaluation.report import report, report_changes
+from contact_dynamics.evaluation.result import Evaluation, SourceResult, read_evaluation, source_result
+from contact_dynamics.evaluation.results_folder import ResultsFolder
+from contact_dynamics.evaluation.settings import Law, Settings
+from contact_dynamics.evaluation.significance import changes
+from contact_dynamics.evaluation.sources import find_sources
+from contact_dynamics.evaluation.tables import write_csv, write_parquet
+from contact_dynamics.evaluation.workers import run_jobs
+from contact_dynamics.nodes.parameter_file import ParameterFile
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Sequence
+
+    from contact_dynamics.evaluation.sources import Source
+
+SOME_BAD: Final = 1
+"""Exit code: some recordings could not be evaluated."""
+
+NOTHING: Final = 2
+"""Exit code: none could, or an argument is wrong."""
+
+
+def main(arguments: list[str]) -> int:
+    """Evaluate; return the exit code."""
+    parser = evaluate_parser()
+    given = parser.parse_args(arguments)
+    if not given.recordings:  # here, so that a mistyped option is named first
+        parser.error("found no RECORDING, needed is one at least")
+    try:
+        return _evaluate(given)
+    except (ContactDynamicsError, OSError) as error:
+        print(f"contact-dynamics evaluate: {error}", file=sys.stderr)
+        return NOTHING
+
+
+def _evaluate(given: argparse.Namespace) -> int:
+    settings = Settings(
+        horizons=given.horizons,
+        laws=tuple(Law(name) for name in given.laws),
+        fit_window=given.fit_window,
+    )
+    _check_writable(given)
+    against = _against(given.against)
+    if given.config is not None:
+        parameters_of(ParameterFile(given.config))  # a mistake in it is told once, and not for each recording
+    sources, refused = find_sources(given.recordings)
+    nameless = [SourceResult(source=name, problem=reason) for name, reason in refused]
+    evaluation = _all(given, settings, sources, nameless)
+    print(report(evaluation), flush=True)
+    _write(given, evaluation)
+    if given.against is not None:
+        other = against or _all(given, settings, sources, [], asked_with=given.against)
+        print(report_changes(changes(evaluation, other), names=(_name(given), str(given.against))))
+    bad = sum(bool(result.problem) for result in evaluation.results)
+    return 0 if bad == 0 else NOTHING if bad == len(evaluation.results) else SOME_BAD
+
+
+def _name(given: argparse.Namespace) -> str:
+    return "what the recordings say" if given.config is None else str(given.config)
+
+
+def _against(path: Path | None) -> Evaluation | None:
+    """Return the evaluation to compare with, if it is one; check a configuration before the long work."""
+    if path is None:
+        return None
+    if path.suffix == ".json":
+        return read_evaluation(path)
+    parameters_of(ParameterFile(path))
+    return None
+
+
+def _check_writable(given: argparse.Namespace) -> None:
+    """Find out before the long work whether what it is to write can be written."""
+    for path in (given.json, given.csv, given.parquet, given.rerun):
+        if path is not None:
+            with path.open("ab"):
+                pass
+    for folder in (given.plots, given.results):
+        if folder is not None:
+            folder.mkdir(parents=True, exist_ok=True)
+
+
+def _all(
+    given: argparse.Namespace,
+    settings: Settings,
+    sources: Sequence[Source],
+    nameless: Sequence[SourceResult],
+    *,
+    asked_with: Path | None = None,
+) -> Evaluation:
+    """Evaluate what is not in the folder of results yet."""
+    jobs = [
+        Job(source=source, settings=settings, config=given.config, asked_with=asked_with)
+        for source in sources
+    ]
+    folder = None if given.results is None else ResultsFolder(given.results)
+    found: dict[int, dict[str, Any]] = {}
+    left = []
+    for number, job in enumerate(jobs):
+        try:
+            content = None if folder is None else folder.find(job)
+        except OSError as error:
+            content = failed(job, error).to_dict()
+        if content is None:
+            left.append(number)
+        else:
+            found[number] = content
+    if found:
+        print(f"{len(found)} of {len(jobs)} recordings were evaluated before", file=sys.stderr)
+    progress = Progress(len(left))
+    try:
+        for done, content in run_jobs([jobs[i] for i in left], processes=given.jobs, dask=given.dask):
+            job = jobs[left[done]]
+            if folder is not None:
+                folder.put(job, content)
+            found[left[done]] = content
+            progress.tell(job.source.name)
+    finally:
+        progress.end()
+    return Evaluation(
+        versions=code_versions(),
+        configuration=f"described by {_name(given)}",
+        results=(*(source_result(found[number]) for number in range(len(jobs))), *nameless),
+    )
+
+
+def _write(given: argparse.Namespace, evaluation: Evaluation) -> None:
+    if given.json is not None:
+        evaluation.write_json(given.json)
+    if given.csv is not None:
+        write_csv(given.csv, evaluation)
+    if given.parquet is not None:
+        write_parquet(given.parquet, evaluation)
+    if given.plots is not None:
+        for path in write_plots(given.plots, evaluation):
+            print(f"drawn: {path}")
+    if given.rerun is not None:
+        _draw(given, evaluation)
+
+
+def _draw(given: argparse.Namespace, evaluation: Evaluation) -> None:
+    from contact_dynamics.evaluation.picture import write_picture  # imports rerun
+
+    drawn = write_picture(given.rerun, evaluation, find_sources(given.recordings)[0], config=given.config)
+    print(f"drawn: {given.rerun} with {drawn} events")

@@ -1,0 +1,128 @@
+"""What can be evaluated: logs with states, and recorded tosses; found in folders, named, and read."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
+from contact_dynamics.evaluation.log_states import recording_of_log
+from contact_dynamics.evaluation.recording import recording_of_toss
+from contact_dynamics.measured.cube_tosses import count_cube_tosses
+from contact_dynamics.measured.read_toss import read_toss
+from contact_dynamics.records import Record
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from contact_dynamics.evaluation.recording import Recording
+
+LOG: Final = ".mcap"
+TOSS: Final = ".csv"
+TOSSES: Final = ".npz"
+
+_BLOCK: Final = 1 << 20  # bytes that are read at once
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Source(Record):
+    """One recording to evaluate, before it is read.
+
+    Attributes:
+        path: A log's folder or its ``.mcap`` file, or a file of tosses.
+        index: Number of the toss in an ``.npz``. None: the file is one recording.
+    """
+
+    path: Path
+    index: int | None = None
+
+    @property
+    def name(self) -> str:
+        """How it is named in tables: its path, with the number of the toss."""
+        return str(self.path) if self.index is None else f"{self.path}#{self.index}"
+
+    def digest(self) -> str:
+        """Return a hash of the content, 64 hexadecimal digits; where it lies plays no part.
+
+        Raises:
+            OSError: it cannot be read.
+        """
+        path = self.path.resolve()
+        files = sorted(path.glob(f"*{LOG}")) if path.is_dir() else [path]
+        hashes = [_hash_of(file, file.stat().st_mtime_ns) for file in files]
+        return hashlib.sha256(" ".join([*hashes, str(self.index)]).encode()).hexdigest()
+
+    def read(self, *, config: Path | None = None) -> Recording:
+        """Return what it holds.
+
+        Args:
+            config: File of the server's parameters that describes bodies, surfaces and topics. None: a log's
+                own record of them; a toss describes its body and its surface itself.
+
+        Raises:
+            ContactDynamicsError: it cannot be understood; the message says what is wrong.
+            OSError: it cannot be read.
+        """
+        if self.path.suffix in {TOSS, TOSSES}:
+            return recording_of_toss(read_toss(self.path, index=self.index))
+        return recording_of_log(self.path, config=config)
+
+
+def find_sources(paths: Iterable[str]) -> tuple[list[Source], list[tuple[str, str]]]:
+    """Return what the paths of a command line name, in their order.
+
+    A path is a log's folder, an ``.mcap`` file, a toss in CSV, an ``.npz`` of tosses, one toss of it
+    (``tosses.npz#17``), or a folder in which all of these are looked for, at any depth.
+
+    Returns:
+        The sources, and the paths that name none, each with the reason.
+    """
+    sources: list[Source] = []
+    refused: list[tuple[str, str]] = []
+    for text in paths:
+        try:
+            found = list(_sources_at(text))
+            if not found:
+                raise InvalidFieldError(
+                    text, "no recording in it", f"a folder with {LOG}, {TOSS} or {TOSSES}"
+                )
+            sources += found
+        except (ContactDynamicsError, OSError) as error:  # noqa: PERF203  the others still count
+            refused.append((text, str(error)))
+    return list(dict.fromkeys(sources)), refused
+
+
+def _sources_at(text: str) -> Iterator[Source]:
+    path, mark, index = text.rpartition("#")
+    if mark and index.isdigit() and not Path(text).exists():
+        yield Source(path=Path(path), index=int(index))
+        return
+    at = Path(text)
+    if at.is_file():
+        yield from _sources_of_file(at)
+        return
+    if not at.is_dir():
+        raise InvalidFieldError(text, "no such file or folder", f"a log, a {TOSS}, a {TOSSES}, or a folder")
+    files = sorted(file for file in at.rglob("*") if file.suffix in {LOG, TOSS, TOSSES} and file.is_file())
+    yield from dict.fromkeys(source for file in files for source in _sources_of_file(file))
+
+
+def _sources_of_file(file: Path) -> Iterator[Source]:
+    if file.suffix == TOSSES:
+        yield from (Source(path=file, index=index) for index in range(count_cube_tosses(file)))
+    elif file.suffix == LOG and (file.parent / "metadata.yaml").is_file():
+        yield Source(path=file.parent)  # a bag's folder, whose files are one log
+    else:
+        yield Source(path=file)
+
+
+@lru_cache(maxsize=1024)
+def _hash_of(file: Path, modified_ns: int) -> str:  # noqa: ARG001  a file that was changed is read again
+    digest = hashlib.sha256()
+    with file.open("rb") as stream:
+        while block := stream.read(_BLOCK):
+            digest.update(block)
+    return digest.hexdigest()

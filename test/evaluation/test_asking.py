@@ -1,0 +1,149 @@
+"""Questions as they would have been asked: with the states that had arrived, and no others."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from contact_dynamics.evaluation.asking import compare_event
+from contact_dynamics.evaluation.comparison import Comparison
+from contact_dynamics.evaluation.events import find_events
+from contact_dynamics.evaluation.found_event import EventKind, FoundEvent
+from contact_dynamics.evaluation.motion import MeasuredMotion
+from contact_dynamics.evaluation.recording import Recording, evaluate_recording, recording_of_toss
+from contact_dynamics.evaluation.settings import Law, Method, Settings
+from contact_dynamics.evaluation.summary import is_inside
+from contact_dynamics.measured.read_toss import read_toss
+from contact_dynamics.rigid_body.body import BodyState
+from evaluation.made_motion import bounces, only_motion
+
+QUICK = Settings(horizons=(0.05,), laws=(Law.POISSON,))
+
+
+@pytest.fixture(scope="module")
+def brick() -> Recording:
+    return recording_of_toss(read_toss())
+
+
+@pytest.fixture(scope="module")
+def events(brick: Recording) -> list[FoundEvent]:
+    return find_events(only_motion(brick))
+
+
+def rows_of(
+    event: FoundEvent, motion: MeasuredMotion, brick: Recording, settings: Settings
+) -> list[Comparison]:
+    return list(compare_event(0, event, motion, brick.informed, settings))
+
+
+def changed_after(motion: MeasuredMotion, stamp_ns: int, *, by_arrival: bool) -> MeasuredMotion:
+    """The same states, but those after a time are nonsense."""
+    nonsense = BodyState(
+        p_WB_W=[9.0, 9.0, 9.0], q_WB=[1.0, 0.0, 0.0, 0.0], v_WB_W=[9.0] * 3, w_WB_W=[9.0] * 3
+    )
+    times = motion.arrivals_ns if by_arrival else [state.stamp_ns for state in motion.states]
+    states = [
+        state if time <= stamp_ns else replace(nonsense, stamp_ns=state.stamp_ns)
+        for state, time in zip(motion.states, times, strict=True)
+    ]
+    return replace(motion, states=tuple(states))
+
+
+# The brick slides for too short a time to ask before; rests and slides are asked alike.
+@pytest.mark.parametrize("kind", [kind for kind in EventKind if kind is not EventKind.SLIDING])
+def test_no_state_after_the_question_plays_a_part(
+    brick: Recording, events: list[FoundEvent], kind: EventKind
+) -> None:
+    motion = only_motion(brick)
+    event = max((each for each in events if each.kind is kind), key=lambda each: each.time - each.since)
+    settings = replace(QUICK, horizons=(0.02,))
+    rows = rows_of(event, motion, brick, settings)
+    assert rows
+    later = changed_after(motion, event.asked_ns(0.02), by_arrival=False)
+    assert [row.to_dict() for row in rows_of(event, later, brick, settings)] == [
+        row.to_dict() for row in rows
+    ]
+    before = changed_after(motion, event.asked_ns(0.02) - 10_000_000, by_arrival=False)
+    assert [row.to_dict() for row in rows_of(event, before, brick, settings)] != [
+        row.to_dict() for row in rows
+    ]
+
+
+def test_a_state_that_had_not_arrived_plays_no_part(brick: Recording, events: list[FoundEvent]) -> None:
+    on_time = only_motion(brick)
+    late = replace(on_time, arrivals_ns=tuple(stamp + 30_000_000 for stamp in on_time.arrivals_ns))
+    event = next(each for each in events if each.kind is EventKind.LANDING)
+    rows = rows_of(event, late, brick, QUICK)
+    later = changed_after(late, event.asked_ns(0.05), by_arrival=True)
+    assert [row.to_dict() for row in rows_of(event, later, brick, QUICK)] == [row.to_dict() for row in rows]
+    # what is known 80 ms before the event on time is known 50 ms before it with 30 ms of delay
+    earlier = rows_of(event, on_time, brick, replace(QUICK, horizons=(0.08,)))
+    assert [row.time_error for row in rows] == [row.time_error for row in earlier]
+
+
+def test_too_few_states_before_an_event_make_no_question(brick: Recording, events: list[FoundEvent]) -> None:
+    event = next(each for each in events if each.kind is EventKind.LANDING)
+    long_before = replace(QUICK, horizons=(event.time - event.since - 0.01,))
+    assert rows_of(event, only_motion(brick), brick, long_before) == []
+
+
+def test_the_fit_beats_both_baselines_on_the_brick(brick: Recording) -> None:
+    """The newest velocity is noisy in flight, and ignoring an impact is wrong by metres a second."""
+    rows = evaluate_recording(brick, replace(QUICK, horizons=(0.05, 0.1))).comparisons
+
+    def median(kind: EventKind, method: Method, error: str) -> float:
+        found = [getattr(row, error) for row in rows if (row.kind, row.method) == (kind, method)]
+        return float(np.median(found))
+
+    for error in ("position_error", "attitude_error"):
+        assert median(EventKind.FLIGHT, Method.FIT, error) < 0.5 * median(
+            EventKind.FLIGHT, Method.NEWEST, error
+        )
+    for error in ("velocity_error", "spin_error"):
+        assert median(EventKind.IMPACT, Method.FIT, error) < 0.3 * median(
+            EventKind.IMPACT, Method.NO_IMPACT, error
+        )
+    modes = [row for row in rows if row.kind is EventKind.REST]
+    assert modes
+    assert all(row.mode_is_right and row.predicted_mode == row.measured_mode == "ffff" for row in modes)
+
+
+def test_what_is_refused_is_said_in_the_row(brick: Recording, events: list[FoundEvent]) -> None:
+    event = next(each for each in events if each.kind is EventKind.LANDING)
+    nobody = replace(brick.informed.world, bodies=())
+    rows = list(compare_event(0, event, only_motion(brick), replace(brick.informed, world=nobody), QUICK))
+    assert len(rows) == 2
+    assert all("'brick'" in row.refused and row.time_error is None for row in rows)
+
+
+def coverage(seeds: range) -> dict[EventKind, list[Comparison]]:
+    """The predictions with covariances about balls that fly through white noise, in an exact world."""
+    found: dict[EventKind, list[Comparison]] = {EventKind.FLIGHT: [], EventKind.LANDING: []}
+    for seed in seeds:
+        rows = evaluate_recording(bounces(seed=seed).recording, replace(QUICK, horizons=(0.1,))).comparisons
+        for row in rows:
+            if row.kind in found and row.distance is not None:
+                found[row.kind].append(row)
+    return found
+
+
+def test_covariances_cover_where_nothing_but_white_noise_is_in_the_way() -> None:
+    """Within a few deviations of a binomial share; with distances that were twice as large it fails."""
+    for rows in coverage(range(4)).values():
+        assert len(rows) == 16
+        distances = [row.distance for row in rows if row.distance is not None]
+        expected = np.sqrt(rows[0].degrees)
+        assert 0.65 * expected < np.sqrt(np.mean(np.square(distances))) < 1.5 * expected
+
+
+@pytest.mark.slow
+def test_shares_inside_the_regions_are_those_stated() -> None:
+    for rows in coverage(range(60)).values():
+        n = len(rows)
+        assert n == 240
+        for level in (0.5, 0.9, 0.95):
+            share = sum(bool(is_inside(row, level)) for row in rows) / n
+            # four deviations; flights of one ball share nothing but the ball
+            assert share == pytest.approx(level, abs=4.0 * np.sqrt(level * (1.0 - level) / n))

@@ -1,0 +1,103 @@
+"""States read from logs: the same events as from the toss itself, whatever clock and configuration."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from contact_dynamics.evaluation.events import find_events
+from contact_dynamics.evaluation.log_states import recording_of_log
+from contact_dynamics.evaluation.recording import Recording, recording_of_toss
+from contact_dynamics.measured.read_toss import read_toss
+from contact_dynamics.nodes.parameters import ConfigurationError
+from contact_dynamics.recording.errors import NotALogError
+from evaluation.made_logs import EPOCH_NS, parameters_of_toss, write_log
+from evaluation.made_motion import only_motion
+
+
+def happened(recording: Recording) -> list[tuple[str, str, float]]:
+    return [(event.kind.value, event.surface, event.time) for event in find_events(only_motion(recording))]
+
+
+def assert_same_events(found: Recording, expected: Recording) -> None:
+    """The noise is estimated from a log and stated by a toss: times may differ within their deviations."""
+    ours, theirs = happened(found), happened(expected)
+    assert [event[:2] for event in ours] == [event[:2] for event in theirs]
+    assert [event[2] for event in ours] == pytest.approx([event[2] for event in theirs], abs=2e-3)
+
+
+def test_a_log_has_the_events_of_the_toss_that_it_holds(tmp_path: Path) -> None:
+    toss = read_toss()
+    found = recording_of_log(write_log(tmp_path / "log"))
+    motion = only_motion(found)
+    assert len(motion) == len(toss)
+    assert motion.p_WB_W == pytest.approx(toss.p_WB_W, abs=1e-12)
+    assert motion.states[100].v_WB_W == pytest.approx(toss.v_WB_W[100], abs=1e-12)
+    assert motion.states[100].w_WB_W == pytest.approx(toss.w_WB_W[100], abs=1e-12)
+    assert motion.position_noise == pytest.approx(toss.position_noise, rel=0.1)
+    assert motion.orientation_noise == pytest.approx(toss.orientation_noise, rel=0.1)
+    assert_same_events(found, recording_of_toss(toss))
+
+
+def test_a_state_is_known_when_it_arrived(tmp_path: Path) -> None:
+    motion = only_motion(recording_of_log(write_log(tmp_path / "log", delay_ns=12_000_000)))
+    assert {
+        arrival - state.stamp_ns for arrival, state in zip(motion.arrivals_ns, motion.states, strict=True)
+    } == {12_000_000}
+
+
+def test_under_another_clock_a_state_is_known_at_its_stamp(tmp_path: Path) -> None:
+    """In simulated time stamps are seconds from 0, and log_time is the machine's."""
+    motion = only_motion(recording_of_log(write_log(tmp_path / "log", clock_offset_ns=EPOCH_NS - 10**9)))
+    assert motion.states[0].stamp_ns < 2 * 10**9
+    assert list(motion.arrivals_ns) == [state.stamp_ns for state in motion.states]
+
+
+def test_a_configuration_beside_the_log_is_used_instead_of_its_own(tmp_path: Path) -> None:
+    log = write_log(tmp_path / "log", with_run=False)
+    with pytest.raises(NotALogError, match="needed is --config"):
+        recording_of_log(log)
+    parameters = parameters_of_toss(tmp_path / "other", read_toss())
+    surface = parameters["surfaces"][0]
+    parameters[f"surface.{surface}.friction"] = 0.77
+    config = tmp_path / "other.yaml"
+    config.write_text(json.dumps({"/**": {"ros__parameters": parameters}}), encoding="utf-8")
+    found = recording_of_log(log, config=config)
+    assert found.informed.world.surfaces[0].friction == 0.77
+    assert_same_events(found, recording_of_toss(read_toss()))
+
+
+def test_a_log_without_states_of_a_configured_body_is_refused(tmp_path: Path) -> None:
+    log = write_log(tmp_path / "log", with_run=False)
+    parameters = parameters_of_toss(tmp_path / "other", read_toss())
+    name = parameters["bodies"][0]
+    parameters[f"body.{name}.odometry_topic"] = "/elsewhere"
+    config = tmp_path / "other.yaml"
+    config.write_text(json.dumps({"/**": {"ros__parameters": parameters}}), encoding="utf-8")
+    with pytest.raises(ValueError, match="no state of a configured body"):
+        recording_of_log(log, config=config)
+
+
+def test_a_log_that_was_cut_short_is_evaluated_as_far_as_it_goes(tmp_path: Path) -> None:
+    log = write_log(tmp_path / "log")
+    (file,) = log.glob("*.mcap")
+    file.write_bytes(file.read_bytes()[: -file.stat().st_size // 3])
+    try:
+        found = recording_of_log(log)
+    except ValueError:  # all states are in one chunk, which is lost as a whole
+        pytest.skip("one chunk holds all of this log")
+    assert "damaged or was cut short" in found.damage
+    assert 12 <= len(only_motion(found)) < len(read_toss())
+
+
+def test_a_wrong_parameter_is_named(tmp_path: Path) -> None:
+    log = write_log(tmp_path / "log", with_run=False)
+    parameters = parameters_of_toss(tmp_path / "other", read_toss())
+    name = parameters["bodies"][0]
+    parameters[f"body.{name}.mass"] = -1.0
+    config = tmp_path / "other.yaml"
+    config.write_text(json.dumps({"/**": {"ros__parameters": parameters}}), encoding="utf-8")
+    with pytest.raises(ConfigurationError, match=f"body.{name}.mass"):
+        recording_of_log(log, config=config)

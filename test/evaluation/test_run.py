@@ -1,0 +1,212 @@
+"""The command: its tables and files, what it goes on from, what it says of what went wrong."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from contact_dynamics.evaluation.arguments import evaluate_parser
+from contact_dynamics.evaluation.result import read_evaluation
+from contact_dynamics.evaluation.run import main
+from contact_dynamics.evaluation.settings import Settings
+from contact_dynamics.measured.read_toss import DEFAULT_RECORDING, read_toss
+from evaluation.made_logs import parameters_of_toss, write_log
+from replay.test_verify import BLOCKED
+from running_server import ROOT
+from viewing.drawn import read_drawn
+
+QUICK = ("--horizons", "50", "--laws", "poisson")
+BRICK = str(DEFAULT_RECORDING)
+
+
+def test_the_arguments_name_what_the_settings_have() -> None:
+    given, default = evaluate_parser().parse_args([]), Settings()
+    assert given.laws == tuple(law.value for law in default.laws)
+    assert given.horizons == default.horizons
+    assert given.fit_window == default.fit_window
+    assert evaluate_parser().parse_args(["--horizons", "20,50,100,200"]).horizons == default.horizons
+
+
+def test_everything_it_writes_has_the_same_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet", reason="pyarrow is not installed")
+    pytest.importorskip("matplotlib", reason="matplotlib of requirements/test.txt is not installed")
+    names = {kind: tmp_path / f"out.{kind}" for kind in ("json", "csv", "parquet")}
+    files = [text for kind, path in names.items() for text in (f"--{kind}", str(path))]
+    assert main([BRICK, *QUICK, *files, "--plots", str(tmp_path / "plots")]) == 0
+    printed = capsys.readouterr().out
+    assert "events: 4 flight, 4 landing, 3 impact, 1 rest, 1 sliding" in printed
+    assert "first contacts: when, where and how does it land?  (brick on floor)" in printed
+    rows = read_evaluation(names["json"]).results[0].comparisons
+    with names["csv"].open(encoding="utf-8") as stream:
+        listed = list(csv.DictReader(stream))
+    columns = parquet.read_table(names["parquet"]).to_pydict()
+    assert len(listed) == len(columns["kind"]) == len(rows) > 0
+    for i, row in enumerate(rows):
+        assert listed[i]["kind"] == columns["kind"][i] == row.kind.value
+        assert columns["time_error"][i] == row.time_error
+        assert listed[i]["time_error"] == ("" if row.time_error is None else repr(row.time_error))
+        if row.predicted is not None:
+            assert columns["predicted_qw"][i] == row.predicted[6]
+    drawn = {path.name for path in (tmp_path / "plots").iterdir()}
+    assert drawn == {"flight-brick.png", "landing-brick-floor.png", "impact-brick-floor.png", "coverage.png"}
+    assert all((tmp_path / "plots" / name).read_bytes().startswith(b"\x89PNG") for name in drawn)
+
+
+def test_the_picture_has_each_event_measured_and_predicted(tmp_path: Path) -> None:
+    assert main([BRICK, *QUICK, "--rerun", str(tmp_path / "events.rrd")]) == 0
+    paths = read_drawn(tmp_path / "events.rrd").entities
+    events = {path.split("/")[2] for path in paths if path.startswith("/events/")}
+    assert len(events) == 6  # 4 landings, with their flights and impacts, a slide and a rest
+    landings = [name for name in events if "landing" in name]
+    assert len(landings) == 4
+    for name in landings:
+        assert f"/events/{name}/measured/edges" in paths
+        assert any(path.startswith(f"/events/{name}/predicted/50") for path in paths)
+    struck = [name for name in landings if any(path.endswith("poisson") and name in path for path in paths)]
+    assert len(struck) == 3
+
+
+def test_it_needs_no_ros(tmp_path: Path) -> None:
+    log = write_log(tmp_path / "log")
+    done = subprocess.run(
+        [sys.executable, "-c", BLOCKED, "evaluate", str(log), BRICK, *QUICK],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "AMENT_PREFIX_PATH": ""},
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.startswith("2 recordings, 960 states")
+
+
+def test_a_folder_is_searched_and_what_is_bad_in_it_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_log(tmp_path / "deep" / "log")
+    (tmp_path / "bad.mcap").write_bytes(b"no log")
+    assert main([str(tmp_path), str(tmp_path / "nowhere"), *QUICK]) == 1
+    printed = capsys.readouterr().out
+    assert printed.startswith("1 recordings, 480 states")
+    assert "not evaluated: 2 recordings" in printed
+    assert f"{tmp_path / 'bad.mcap'}: NotALogError" in printed
+    assert f"{tmp_path / 'nowhere'}: found no such file or folder" in printed
+    assert main([str(tmp_path / "bad.mcap"), *QUICK]) == 2
+
+
+def test_another_configuration_is_compared_on_the_same_events(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With no friction and no restitution the brick's impacts are predicted far worse, its flights alike."""
+    toss = read_toss()
+    parameters = parameters_of_toss(tmp_path, toss)
+    parameters[f"surface.{toss.surface.name}.friction"] = 0.0
+    parameters[f"surface.{toss.surface.name}.restitution"] = 0.0
+    other = tmp_path / "other.yaml"
+    other.write_text(json.dumps({"/**": {"ros__parameters": parameters}}), encoding="utf-8")
+    assert main([BRICK, *QUICK, "--against", str(other)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    place = next(line.split() for line in lines if "flight, 50 ms, fit" in line and "place" in line)
+    speed = next(line.split() for line in lines if "impact, 50 ms, poisson" in line and "velocity" in line)
+    assert place[6:9] == ["4", place[7], place[7]]  # four events, equal errors
+    assert float(speed[8]) > 3.0 * float(speed[7])
+
+
+def test_two_results_are_compared_and_equal_ones_do_not_differ(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = tmp_path / "before.json"
+    assert main([BRICK, *QUICK, "--json", str(before)]) == 0
+    assert main([BRICK, *QUICK, "--against", str(before)]) == 0
+    table = capsys.readouterr().out.partition("from A, ")[2].splitlines()
+    rows = [line for line in table if " ms, " in line and "error" not in line]
+    assert len(rows) >= 6
+    assert all(line.rstrip().endswith("0 to 0        1") for line in rows)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (["--against", "nowhere.json"], "nowhere.json"),
+        (["--against", "nowhere.yaml"], "nowhere.yaml: cannot be read"),
+        (["--config", "nowhere.yaml"], "nowhere.yaml: cannot be read"),
+        (["--json", "nowhere/out.json"], "nowhere/out.json"),
+    ],
+)
+def test_what_cannot_be_read_or_written_is_said_before_the_work(
+    arguments: list[str],
+    named: str,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main([BRICK, *arguments]) == 2
+    told = capsys.readouterr()
+    assert named in told.err
+    assert told.out == ""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (["--horizons", "20,soon"], "found 'soon'"),
+        (["--laws", "hooke"], "found 'hooke', allowed is poisson, newton, energetic, in time"),
+        (["--jobs", "0"], "found '0', allowed is a whole number >= 1"),
+        ([], "found no RECORDING"),
+    ],
+)
+def test_a_wrong_argument_is_named(
+    arguments: list[str], named: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        main([*([BRICK] if arguments else []), *arguments])
+    assert named in capsys.readouterr().err
+
+
+def test_killed_in_the_middle_it_goes_on_with_the_rest(tmp_path: Path) -> None:
+    """The results that were there stay untouched, the others are made, and the numbers are the same."""
+    for seed in range(4):
+        write_log(tmp_path / "logs" / f"log{seed}", seed=seed)
+    results = tmp_path / "results"
+    command = [
+        *(sys.executable, "-m", "contact_dynamics", "evaluate", str(tmp_path / "logs")),
+        *(*QUICK, "--results", str(results), "--json", str(tmp_path / "resumed.json")),
+    ]
+    first = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 120.0
+    while len(list(results.glob("*.json"))) < 2:
+        assert first.poll() is None, "it ended before it could be killed"
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    first.send_signal(signal.SIGKILL)
+    first.wait()
+    there = {path: path.stat().st_mtime_ns for path in results.glob("*.json")}
+    assert 2 <= len(there) < 4
+    second = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    assert f"{len(there)} of 4 recordings were evaluated before" in second.stderr
+    after = {path: path.stat().st_mtime_ns for path in results.glob("*.json")}
+    assert len(after) == 4
+    assert {path: after[path] for path in there} == there
+    assert main([str(tmp_path / "logs"), *QUICK, "--json", str(tmp_path / "at_once.json")]) == 0
+    resumed, at_once = (
+        json.loads((tmp_path / f"{name}.json").read_text()) for name in ("resumed", "at_once")
+    )
+    assert resumed == at_once
+
+
+def test_a_damaged_result_is_made_again(tmp_path: Path) -> None:
+    results = tmp_path / "results"
+    assert main([BRICK, *QUICK, "--results", str(results)]) == 0
+    (kept,) = results.glob("*.json")
+    whole = kept.read_bytes()
+    kept.write_bytes(whole[:-100])
+    assert main([BRICK, *QUICK, "--results", str(results)]) == 0
+    assert kept.read_bytes() == whole

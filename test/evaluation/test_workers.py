@@ -1,0 +1,113 @@
+"""One process, several, and Dask: the same numbers to the bit; a bad recording or worker stops nobody."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.evaluation.job import Job, run_job
+from contact_dynamics.evaluation.recording import Recording
+from contact_dynamics.evaluation.result import source_result
+from contact_dynamics.evaluation.settings import Law, Settings
+from contact_dynamics.evaluation.sources import Source
+from contact_dynamics.evaluation.workers import run_jobs
+from contact_dynamics.measured.read_toss import DEFAULT_RECORDING
+from evaluation.made_logs import write_log
+
+QUICK = Settings(horizons=(0.05,), laws=(Law.POISSON,))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class DeadlySource(Source):
+    """A recording that kills whoever reads it."""
+
+    def read(self, *, config: Path | None = None) -> Recording:  # noqa: ARG002
+        os.kill(os.getpid(), signal.SIGKILL)
+        raise AssertionError
+
+
+@pytest.fixture(scope="module")
+def jobs(tmp_path_factory: pytest.TempPathFactory) -> list[Job]:
+    """A toss, two logs of it with noise, and a file that is none."""
+    folder = tmp_path_factory.mktemp("logs")
+    logs = [write_log(folder / f"log{seed}", seed=seed) for seed in range(2)]
+    bad = folder / "bad.mcap"
+    bad.write_bytes(b"no log at all")
+    sources = [Source(path=path) for path in (DEFAULT_RECORDING, *logs, bad)]
+    return [Job(source=source, settings=QUICK) for source in sources]
+
+
+@pytest.fixture(scope="module")
+def alone(jobs: list[Job]) -> list[dict[str, Any]]:
+    return [run_job(job) for job in jobs]
+
+
+def test_a_bad_recording_is_named_and_the_rest_are_done(jobs: list[Job], alone: list[dict[str, Any]]) -> None:
+    assert [bool(content["problem"]) for content in alone] == [False, False, False, True]
+    assert alone[-1]["source"] == str(jobs[-1].source.path)
+    assert alone[-1]["problem"].startswith("NotALogError: ")
+    assert all(content["comparisons"] for content in alone[:-1])
+
+
+def test_a_result_comes_back_from_json_to_the_bit(alone: list[dict[str, Any]]) -> None:
+    for content in alone:
+        assert source_result(json.loads(json.dumps(content))).to_dict() == content
+
+
+def test_two_processes_give_the_numbers_of_one(jobs: list[Job], alone: list[dict[str, Any]]) -> None:
+    shared = dict(run_jobs(jobs, processes=2))
+    assert [shared[i] for i in range(len(jobs))] == alone
+
+
+def test_a_recording_that_kills_its_process_is_named_and_the_rest_are_done(
+    jobs: list[Job], alone: list[dict[str, Any]]
+) -> None:
+    deadly = Job(source=DeadlySource(path=jobs[0].source.path), settings=QUICK)
+    done = dict(run_jobs([jobs[0], deadly, jobs[3]], processes=2))
+    assert done[0] == alone[0]
+    assert done[2] == alone[3]
+    assert done[1]["problem"].startswith("BrokenProcessPool")
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning")
+def test_dask_gives_the_numbers_of_one_process(jobs: list[Job], alone: list[dict[str, Any]]) -> None:
+    pytest.importorskip("distributed", reason="dask[distributed] of requirements/test.txt is not installed")
+    shared = dict(run_jobs(jobs, dask="local:2"))
+    assert [shared[i] for i in range(len(jobs))] == alone
+
+
+@pytest.mark.parametrize("address", ["local:", "local:0", "local:two"])
+def test_an_address_that_is_none_is_refused(jobs: list[Job], address: str) -> None:
+    pytest.importorskip("distributed", reason="dask[distributed] of requirements/test.txt is not installed")
+    with pytest.raises(InvalidFieldError, match="--dask"):
+        list(run_jobs(jobs, dask=address))
+
+
+def test_a_key_tells_content_settings_and_configuration_apart(jobs: list[Job], tmp_path: Path) -> None:
+    config = tmp_path / "a.yaml"
+    config.write_text("/**: {ros__parameters: {horizon: 1.0}}", encoding="utf-8")
+    job = jobs[0]
+    others = [
+        jobs[1],
+        replace(job, settings=Settings(horizons=(0.06,), laws=(Law.POISSON,))),
+        replace(job, config=config),
+        replace(job, asked_with=config),
+    ]
+    keys = {each.key() for each in [job, *others]}
+    assert len(keys) == 5
+    config.write_text("/**: {ros__parameters: {horizon: 2.0}}", encoding="utf-8")
+    assert {each.key() for each in others[2:]}.isdisjoint(keys)
+
+
+def test_a_key_does_not_depend_on_where_a_recording_lies(tmp_path: Path) -> None:
+    moved = tmp_path / "moved.csv"
+    moved.write_bytes(DEFAULT_RECORDING.read_bytes())
+    keys = {Job(source=Source(path=path), settings=QUICK).key() for path in (DEFAULT_RECORDING, moved)}
+    assert len(keys) == 1
