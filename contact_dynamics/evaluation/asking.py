@@ -21,12 +21,12 @@ from contact_dynamics.evaluation.found_event import EventKind
 from contact_dynamics.evaluation.settings import Method
 from contact_dynamics.questions.asking import ask
 from contact_dynamics.questions.contact_modes import ContactModeQuestion
+from contact_dynamics.questions.impact_question import ImpactQuestion
 from contact_dynamics.questions.knowledge import Knowledge
 from contact_dynamics.questions.sample_times import AtStamps, UntilContact
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.subject import PublishedState
 from contact_dynamics.questions.tumbling import TumblingQuestion
-from contact_dynamics.questions.which_impact import ImpactQuestion
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import free_motion

@@ -8,7 +8,7 @@ from typing import Final
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
-from contact_dynamics.questions.which_impact import InTime
+from contact_dynamics.questions.impact_question import InTime
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import HOLD_STEP
 from contact_dynamics.validation import check_choice, check_positive
