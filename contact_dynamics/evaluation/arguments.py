@@ -13,7 +13,7 @@ HORIZONS: Final = (0.02, 0.05, 0.1, 0.2)
 """s, as in `settings`; a test holds the two together."""
 
 FIT_WINDOW: Final = 0.1
-"""s, likewise."""
+"""s, as in `settings`, held by the same test."""
 
 
 def evaluate_parser() -> argparse.ArgumentParser:

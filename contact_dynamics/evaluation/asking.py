@@ -226,7 +226,7 @@ def _mode(row: Comparison, event: FoundEvent, known: Knowledge) -> Comparison:
 
 
 def _does(mode: str) -> EventKind | None:
-    """Return what a body does in a mode: it rests, or slides without a contact leaving; None: another."""
+    """Return what a body does in a mode: it rests, or slides without a contact leaving, or else None."""
     if set(mode) <= {"f"}:
         return EventKind.REST
     return None if "s" in mode else EventKind.SLIDING

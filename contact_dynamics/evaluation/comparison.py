@@ -25,8 +25,8 @@ class Comparison(Record):
         time: When the event was, s after the recording's first state.
         horizon: How long before it was asked, s.
         method: What the prediction was made from.
-        law: The law of the impact. None: no impact was asked about.
-        refused: Why there was no answer. Empty: there was one.
+        law: The law of the impact. It is None where no impact was asked about.
+        refused: Why there was no answer. It is empty if there was one.
         time_error: s, predicted less measured.
         position_error: m, distance of the centre of mass from where it was.
         attitude_error: rad, angle to the attitude that it had.

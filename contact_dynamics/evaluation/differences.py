@@ -47,7 +47,7 @@ def in_deviations(difference: FloatArray, covariance: FloatArray, stds: FloatArr
 
 
 def arrival_std(event: Event, state: BodyState, covariance: FloatArray, world: World) -> float | None:
-    """Return the standard deviation, s, of the time at which a point arrives at a flat; None: at an obstacle.
+    """Return the standard deviation, s, of the time of arrival at a flat, or None at an obstacle.
 
     The point's height has the variance J C J^T of the pose's covariance C, (6, 6), with J = (n, r x n). It is
     divided by the speed of approach. This is first order in the deviations.

@@ -49,7 +49,8 @@ class FoundEvent(Record):
         orientation_std: (3,), rad, of its rotation vector.
         velocity_std: m/s, of each component.
         angular_velocity_std: (3,), rad/s.
-        gap: m, height of the body's lowest point above the surface then; negative below it. None: no flat.
+        gap: m, height of the body's lowest point above the surface then; negative below it.
+            It is None without a flat.
         duration: s, from the first contact of an impact to the beginning of the flight after it; 0 otherwise.
         mode: The letters of the contacts of a rest or a slide, as measured; empty otherwise.
     """

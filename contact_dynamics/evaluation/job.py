@@ -33,7 +33,8 @@ class Job(Record):
     Attributes:
         source: The recording.
         settings: What is asked.
-        config: File of parameters that describes bodies, surfaces and topics. None: the recording's own.
+        config: File of parameters that describes bodies, surfaces and topics. If it is None, the
+            recording says so itself.
         asked_with: File of parameters that whoever asks knows instead, where it is not that of the events.
     """
 

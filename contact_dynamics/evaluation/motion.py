@@ -100,7 +100,7 @@ def motions_of(
         states: Its states in any order. Of several with one stamp, the last one counts.
         arrivals_ns: When each of them was known, ns, on the clock of the stamps.
         noise: Standard deviations of a position's coordinates, m, and of an orientation's components, rad.
-            None: they are estimated.
+            If it is None, they are estimated.
     """
     by_stamp = {state.stamp_ns: (state, arrival) for state, arrival in zip(states, arrivals_ns, strict=True)}
     ordered = [by_stamp[stamp] for stamp in sorted(by_stamp)]

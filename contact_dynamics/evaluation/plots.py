@@ -26,7 +26,7 @@ NOMINAL: Final = tuple(np.linspace(0.05, 0.99, 48).tolist())
 _DRAWN: Final = (EventKind.FLIGHT, EventKind.LANDING, EventKind.IMPACT)
 _COLORS: Final = ("#e08a1e", "#3f7fb5", "#3f9b52", "#9059b0", "#8a8a8a", "#c0c0c0")
 _UNUSUAL: Final = re.compile(r"[^A-Za-z0-9._-]+")
-_BOX: Final = 0.8  # of the space between horizons, shared by the methods
+_BOX: Final = 0.8  # the methods share this part of the space between horizons
 
 
 def write_plots(folder: Path, evaluation: Evaluation) -> list[Path]:

@@ -66,7 +66,7 @@ def evaluate_recording(
     Args:
         recording: What was measured, and what is known besides. The events are found with the latter.
         settings: What is asked.
-        informed: What whoever asks knows instead. None: the same.
+        informed: What whoever asks knows. If it is None, they know the same.
     """
     events: list[FoundEvent] = []
     rows: list[Comparison] = []

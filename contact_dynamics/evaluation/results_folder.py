@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 
     from contact_dynamics.evaluation.job import Job
 
-_KEY_DIGITS: Final = 24  # of 64: two of a billion jobs would share them with a probability of 1e-11
+_KEY_DIGITS: Final = (
+    24  # the key has 64; two of a billion jobs share the first 24 with a probability of 1e-11
+)
 _LONGEST_NAME: Final = 80
 _UNUSUAL: Final = re.compile(r"[^A-Za-z0-9._-]+")
 
@@ -36,7 +38,7 @@ class ResultsFolder:
         self._path = path
 
     def find(self, job: Job) -> dict[str, Any] | None:
-        """Return the result of a job that was done before under any name; None: it has to be done.
+        """Return the result of a job that was done before under any name, or None if there is none.
 
         Raises:
             OSError: the recording cannot be read.

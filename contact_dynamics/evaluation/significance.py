@@ -50,14 +50,20 @@ class Change(Record):
     """One error of one group under two evaluations.
 
     Attributes:
-        kind: What happened. body: The body's name. surface: The surface's name; empty for flights. horizon: s
-        before the event. method: What the predictions were made from. law: The law of the impact. None: no
-        impact was asked about. error: Which error, of `ERRORS`, or ``wrong_mode``, which is 1 where the mode
-        is wrong and 0 otherwise. pairs: Events that both evaluations answered. units: What is taken as
-        independent, "recordings" or "events". first: Mean size of the error under the first evaluation.
-        second: Mean size of the error under the second one. low: Lower end of the 95 % interval of the mean
-        difference, second less first. high: Upper end of it. probability: Of so large a difference by chance,
-        adjusted for the number of tests.
+        kind: What happened.
+        body: The body's name.
+        surface: The surface's name; empty for flights.
+        horizon: s before the event.
+        method: What the predictions were made from.
+        law: The law of the impact. It is None where no impact was asked about.
+        error: Which error, of `ERRORS`, or ``wrong_mode``, which is 1 where the mode is wrong, else 0.
+        pairs: Events that both evaluations answered.
+        units: What is taken as independent, "recordings" or "events".
+        first: Mean size of the error under the first evaluation.
+        second: Mean size of the error under the second one.
+        low: Lower end of the 95 % interval of the mean difference, second less first.
+        high: Upper end of it.
+        probability: How probable so large a difference is by chance, adjusted for the number of tests.
     """
 
     kind: EventKind

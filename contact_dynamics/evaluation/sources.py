@@ -33,7 +33,7 @@ class Source(Record):
 
     Attributes:
         path: A log's folder or its ``.mcap`` file, or a file of tosses.
-        index: Number of the toss in an ``.npz``. None: the file is one recording.
+        index: Number of the toss in an ``.npz``, or None where the file is one recording.
     """
 
     path: Path
@@ -59,8 +59,8 @@ class Source(Record):
         """Return what it holds.
 
         Args:
-            config: File of the server's parameters that describes bodies, surfaces and topics. None: a log's
-                own record of them; a toss describes its body and its surface itself.
+            config: File of the server's parameters that describes the bodies, surfaces and topics of a log.
+                If it is None, the log's own record counts. A toss describes its body and surface itself.
 
         Raises:
             ContactDynamicsError: it cannot be understood; the message says what is wrong.

@@ -53,12 +53,13 @@ class Summary(Record):
         surface: The surface's name; empty for flights.
         horizon: s before the event.
         method: What the predictions were made from.
-        law: The law of the impact. None: no impact was asked about.
+        law: The law of the impact. It is None where no impact was asked about.
         asked: How many questions there were.
         refused: How many of them had no answer.
         errors: The distribution of each error of `ERRORS` that there is.
-        modes_right: Share of the modes that were right. None: no modes were asked about.
-        covered: Share of the measured values inside of the regions of `LEVELS`. Empty: no covariances.
+        modes_right: Share of the modes that were right. It is None where no modes were asked about.
+        covered: Share of the measured values inside of the regions of `LEVELS`. It is empty
+            without covariances.
         covariances: How many predictions had covariances.
     """
 
@@ -90,7 +91,7 @@ def group_of(row: Comparison) -> Group:
 
 
 def is_inside(row: Comparison, level: float) -> bool | None:
-    """Return whether what was measured is inside of the region of that probability; None: no covariance."""
+    """Return whether what was measured is inside of the region of that probability, or None without one."""
     from scipy.special import gammaincinv
 
     if row.distance is None:

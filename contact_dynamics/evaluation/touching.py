@@ -21,7 +21,7 @@ class Touch(Record):
 
     Attributes:
         surface: Name of the nearest surface.
-        gap: m, height of the body's lowest point above it, negative below. None: it is an obstacle, whose
+        gap: m, height of the body's lowest point above it, negative below. It is None at an obstacle, whose
             contacts tell no height.
         contacts: All contacts, with whichever surface.
     """

@@ -32,7 +32,8 @@ def run_jobs(jobs: Sequence[Job], *, processes: int = 1, dask: str = "") -> Iter
     Args:
         jobs: What is to be done.
         processes: How many processes of this machine share the work; 1: this one alone.
-        dask: Address of a Dask scheduler, or ``local:N`` for N workers here. Empty: without Dask.
+        dask: Address of a Dask scheduler, or ``local:N`` for N workers here. If it is
+            empty, Dask takes no part.
 
     Raises:
         InvalidFieldError: the address is none.

@@ -53,7 +53,7 @@ class ParameterFile:
         if not isinstance(found, wanted) or (isinstance(found, bool) and wanted is not bool):
             message = f"{self._path}: {name}: found {found!r}, needed is: {description}"
             raise ConfigurationError(message)
-        number: Any = found  # of the default's type: bounds are given where that is a number
+        number: Any = found  # it has the default's type, which is a number where there are bounds
         if bounds is not None and not bounds[0] <= number <= bounds[1]:
             message = f"{self._path}: {name}: found {found!r}, allowed is {bounds[0]:g} to {bounds[1]:g}"
             raise ConfigurationError(message)
