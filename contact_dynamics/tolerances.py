@@ -357,6 +357,11 @@ LEAST_PIVOT: Final = 1e-30
 """Relative to its diagonal entry. A pivot of an inertia matrix is at least this, since only rounding can make
 it smaller."""
 
+LARGEST_ARM: Final = 1e7
+"""In radii of gyration, about the axis with the largest. A contact in space that is farther from the centre
+of mass is refused in an impact. Its responses to impulses in different directions differ by the square of
+this, which leaves doubles two digits."""
+
 STRAIGHT: Final = 4e-15
 """Relative to the sliding law's scale. A direction that repels its neighbours counts as invariant if it turns
 more slowly at first. It then turns by the rounding of contact axes and inertia, which it would amplify."""

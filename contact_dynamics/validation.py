@@ -58,6 +58,15 @@ def check_within(field: str, value: Any, lowest: float, highest: float) -> float
     return number
 
 
+def check_whole(field: str, value: Any, lowest: int, highest: int | None = None) -> int:
+    """Return ``value`` as a whole number of at least ``lowest`` and, if given, at most ``highest``."""
+    whole = isinstance(value, (int, np.integer)) and not isinstance(value, (bool, np.bool_))
+    if not whole or value < lowest or (highest is not None and value > highest):
+        most = "" if highest is None else f" and <= {highest}"
+        raise InvalidFieldError(field, value, f"a whole number >= {lowest}{most}")
+    return int(value)
+
+
 def check_choice(field: str, value: Any, kind: type[Choice]) -> Choice:
     """Return ``value`` if it is a member of the enumeration ``kind``. Names and numbers are refused."""
     if isinstance(value, kind):

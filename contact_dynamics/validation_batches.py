@@ -11,6 +11,7 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.tolerances import (
+    LARGEST_NUMBER,
     LENGTH_ROUNDING,
     NEGATIVE_VARIANCE_TOLERANCE,
     SYMMETRY_TOLERANCE,
@@ -57,6 +58,16 @@ def check_positive_rows(field: str, value: ArrayLike) -> FloatArray:
     return check_rows(field, value, (), "a number > 0", lambda x: x > 0.0)
 
 
+def check_sizes(field: str, rows: FloatArray) -> FloatArray:
+    """Return numbers > 0 if none is beyond `LARGEST_NUMBER` or below its inverse."""
+    least = 1.0 / LARGEST_NUMBER
+    for i in np.flatnonzero((rows < least) | (rows > LARGEST_NUMBER))[:1]:
+        raise InvalidFieldError(
+            f"{field}[{i}]", float(rows[i]), f"a number from {least:g} to {LARGEST_NUMBER:g}"
+        )
+    return rows
+
+
 def check_not_negative_rows(field: str, value: ArrayLike) -> FloatArray:
     """Return numbers >= 0, (N,)."""
     return check_rows(field, value, (), "a number >= 0", lambda x: x >= 0.0)
@@ -71,8 +82,9 @@ def check_unit_rows(field: str, value: ArrayLike, width: int) -> FloatArray:
     """Return vectors scaled to norm 1, (N, width), as `check_unit` scales each."""
     rows = check_rows(field, value, (width,))
     norms = np.zeros(len(rows))
-    for column in rows.T:
-        norms += column * column
+    with np.errstate(over="ignore"):  # what overflows is no unit vector either
+        for column in rows.T:
+            norms += column * column
     norms = np.sqrt(norms)
     off = abs(norms - 1.0)
     for i in np.flatnonzero(off > UNIT_LENGTH_TOLERANCE)[:1]:

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.vectors import tangents_towards
+from contact_dynamics.validation import check_whole
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
@@ -25,9 +25,7 @@ memory."""
 
 def check_facets(facets: int) -> int:
     """Return the number of a friction pyramid's edges, or raise `InvalidFieldError`."""
-    if not isinstance(facets, (int, np.integer)) or not 3 <= facets <= MOST_FACETS:
-        raise InvalidFieldError("friction_facets", facets, f"a whole number >= 3 and <= {MOST_FACETS}")
-    return int(facets)
+    return check_whole("friction_facets", facets, 3, MOST_FACETS)
 
 
 def linearised_cone(

@@ -20,10 +20,18 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.impact.planar.batch import planar_impacts
 from contact_dynamics.impact.spatial.batch import StrikingBodies, spatial_impacts
+from contact_dynamics.impact.spatial.one_contact import check_striking
 from contact_dynamics.records import Record
 from contact_dynamics.rotations.many import products, quaternions_of, rotated
 from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, VELOCITY_TOLERANCE
-from contact_dynamics.validation import FloatArray, check_array, check_choice
+from contact_dynamics.validation import (
+    FloatArray,
+    check_array,
+    check_choice,
+    check_magnitude,
+    check_not_negative,
+    check_whole,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -33,6 +41,9 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
 MOST_SAMPLES: Final = 1_000_000
+
+MOST_VARIANCE: Final = 1e12
+"""In squares of SI units. Rotations by more than 1e6 rad have no digits left that say where a point is."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -82,15 +93,17 @@ def planar_impact_distribution(
 
     Raises:
         InvalidFieldError: the covariance is not symmetric and positive semidefinite, or the number of samples
-            is odd or outside [2, 1 000 000].
+            is odd or outside [2, 1 000 000]. A covariance beyond
+            `MOST_VARIANCE` and a seed that is no whole number >= 0 are refused too.
     """
+    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     draws = np.array([*velocity.v, velocity.w]) + _draw(covariance, 3, samples, seed)
     v, w = draws[:, :2], draws[:, 2]
     arm, normal = np.array(contact.r), np.array(contact.normal)
     v_n = (v + w[:, None] * np.array([-arm[1], arm[0]])) @ normal
     # Half the tolerance counts here, because the impact judges the approach again by a sum that rounds
     # differently.
-    strikes = v_n <= 0.5 * velocity_tolerance
+    strikes = v_n <= 0.5 * tolerance
     after = draws.copy()
     outcomes = np.zeros(0, dtype=np.int64)
     if strikes.any():
@@ -104,7 +117,7 @@ def planar_impact_distribution(
             frictions=contact.friction,
             restitutions=contact.restitution,
             restitution_law=restitution_law,
-            velocity_tolerance=velocity_tolerance,
+            velocity_tolerance=tolerance,
         )
         after[strikes] = np.column_stack((impacts.v, impacts.w))
         outcomes = impacts.outcomes
@@ -142,16 +155,19 @@ def spatial_impact_distribution(
 
     Raises:
         InvalidFieldError: `spatial_impact` refuses a number, the covariance is not symmetric and positive
-            semidefinite, or the number of samples is odd or outside [2, 1 000 000].
+            semidefinite, or the number of samples is odd or outside [2, 1 000 000]. A covariance beyond
+            `MOST_VARIANCE` and a seed that is no whole number >= 0 are refused too.
     """
     check_choice("restitution_law", restitution_law, RestitutionLaw)
+    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
+    check_striking(body, state, contact.p_WC_W)
     draws = _draw(covariance, 12, samples, seed)
     turns = quaternions_of(draws[:, 3:6])
     arms, normal = rotated(turns, contact.p_WC_W - state.p_WB_W), contact.normal_W
     after = np.concatenate((state.v_WB_W, state.w_WB_W)) + draws[:, 6:]
     v_n = (after[:, :3] + np.cross(after[:, 3:], arms)) @ normal
     # Half the tolerance counts here too, for the same reason as in the plane.
-    strikes = v_n <= 0.5 * velocity_tolerance
+    strikes = v_n <= 0.5 * tolerance
     outcomes = np.zeros(0, dtype=np.int64)
     if strikes.any():
         impacts = spatial_impacts(
@@ -167,7 +183,7 @@ def spatial_impact_distribution(
             frictions=contact.friction,
             restitutions=contact.restitution,
             restitution_laws=restitution_law,
-            velocity_tolerance=velocity_tolerance,
+            velocity_tolerance=tolerance,
         )
         after[strikes] = np.concatenate((impacts.v_WB_W, impacts.w_WB_W), axis=1)
         outcomes = impacts.outcomes
@@ -177,8 +193,9 @@ def spatial_impact_distribution(
 
 def _draw(covariance: ArrayLike, size: int, samples: int, seed: int) -> FloatArray:
     """Return drawn deviations from the mean, (samples, size), in opposite pairs."""
-    matrix = check_array("covariance", covariance, (size, size))
-    if not 2 <= samples <= MOST_SAMPLES or samples % 2:
+    matrix = check_magnitude("covariance", check_array("covariance", covariance, (size, size)), MOST_VARIANCE)
+    check_whole("seed", seed, 0)
+    if check_whole("samples", samples, 2, MOST_SAMPLES) % 2:
         raise InvalidFieldError("samples", samples, f"an even number in [2, {MOST_SAMPLES}]")
     largest = float(abs(matrix).max())
     values, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))

@@ -44,7 +44,13 @@ from contact_dynamics.tolerances import (
     VELOCITY_TOLERANCE,
 )
 from contact_dynamics.tumbling import Precision, free_motion
-from contact_dynamics.validation import check_array, check_choice, check_not_negative, check_positive
+from contact_dynamics.validation import (
+    check_array,
+    check_choice,
+    check_not_negative,
+    check_positive,
+    check_whole,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -214,7 +220,7 @@ class _Sequence:
         self.staying: tuple[int, ...] = ()
 
     def run(self, state: BodyState, window: float, most_strikes: int) -> ImpactSequence:
-        most = round(check_positive("most_strikes", most_strikes))
+        most = check_whole("most_strikes", most_strikes, 1)
         end = self._strike_on(state, window, most)
         if end == SequenceEnd.NOTHING_STRIKES and not self.strikes:
             end = SequenceEnd.WINDOW_ENDED

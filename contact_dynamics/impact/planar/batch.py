@@ -17,12 +17,13 @@ from contact_dynamics.impact.energy import ManyEnergies
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw, refuse_unknown
 from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import FloatArray, check_choice, check_not_negative
+from contact_dynamics.validation import FloatArray, check_choice, check_magnitude, check_not_negative
 from contact_dynamics.validation_batches import (
     check_not_negative_rows,
     check_positive_rows,
     check_rows,
     check_share_rows,
+    check_sizes,
     check_unit_rows,
     common_length,
 )
@@ -106,18 +107,19 @@ def planar_impacts(
     Raises:
         SeparatingContactError: a contact's normal velocity is above the tolerance; the message names the
             first.
-        InvalidFieldError: a number is not allowed; the message names the field and the first row.
+        InvalidFieldError: a number is not allowed or beyond `LARGEST_NUMBER`, or a mass or an inertia is
+            below its inverse. The message names the field and the first row.
     """
     check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     fields = {
-        "masses": check_positive_rows("masses", masses),
-        "inertias": check_positive_rows("inertias", inertias),
+        "masses": check_sizes("masses", check_positive_rows("masses", masses)),
+        "inertias": check_sizes("inertias", check_positive_rows("inertias", inertias)),
         "frictions": check_not_negative_rows("frictions", frictions),
         "restitutions": check_share_rows("restitutions", restitutions),
-        "v": check_rows("v", v, (2,)),
-        "w": check_rows("w", w),
-        "r": check_rows("r", r, (2,)),
+        "v": check_magnitude("v", check_rows("v", v, (2,))),
+        "w": check_magnitude("w", check_rows("w", w)),
+        "r": check_magnitude("r", check_rows("r", r, (2,))),
         "normals": check_unit_rows("normals", normals, 2),
     }
     count = common_length(fields)

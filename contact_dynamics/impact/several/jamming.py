@@ -23,16 +23,18 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.contact.friction import check_facets
 from contact_dynamics.contact.kinds import velocity_accelerations
 from contact_dynamics.contact.velocities import spatial_contact_velocities
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralImpact, SeveralVerdict
+from contact_dynamics.impact.spatial.one_contact import check_striking
 from contact_dynamics.numerics.lemke import solve_complementarity
 from contact_dynamics.numerics.vectors import point_jacobians, tangents_towards
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, inverse_mass_matrix
-from contact_dynamics.tolerances import HELD_INDEPENDENT, SHORT_TIMES, VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_array, check_not_negative
+from contact_dynamics.tolerances import HELD_INDEPENDENT, LARGEST_NUMBER, SHORT_TIMES, VELOCITY_TOLERANCE
+from contact_dynamics.validation import check_array, check_magnitude, check_unit, check_within
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -42,6 +44,9 @@ if TYPE_CHECKING:
 
 MOST_JAMMED_CONTACTS: Final = 64
 """Longest list of contacts accepted. Its complementarity problem takes a second or so."""
+
+MOST_DIRECTIONS: Final = 2048
+"""Bound on the directions of friction over all contacts. Their complementarity problem takes 40 MB."""
 
 _ZERO: Final = 100.0
 """A speed counts as zero up to this multiple of the change of velocity in the short time. An impulse counts
@@ -94,20 +99,30 @@ def jamming_impact(
         velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero.
 
     Raises:
-        InvalidFieldError: no contacts, a wrench that is not finite, a negative tolerance, too few facets.
-        TooLargeError: more than `MOST_JAMMED_CONTACTS` contacts.
+        InvalidFieldError: there are no contacts, a number is not finite or beyond `LARGEST_NUMBER`, the
+            tolerance is negative, the plane's normal is not unit, or the facets are no whole number >= 3.
+        TooLargeError: there are more than `MOST_JAMMED_CONTACTS` contacts, or more than `MOST_DIRECTIONS`
+            directions of friction over all of them.
     """
-    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
-    force = check_array("force_W", force_W, (3,))
-    torque = check_array("torque_W", torque_W, (3,))
+    tolerance = check_within("velocity_tolerance", velocity_tolerance, 0.0, LARGEST_NUMBER)
+    force = check_magnitude("force_W", check_array("force_W", force_W, (3,)))
+    torque = check_magnitude("torque_W", check_array("torque_W", torque_W, (3,)))
+    check_striking(body, state, contacts.p_WC_W)
+    if plane_normal_W is not None:
+        plane_normal_W = check_unit("plane_normal_W", plane_normal_W, 3)
     if len(contacts) == 0:
         raise InvalidFieldError("contacts", "none", "at least one contact")
     if len(contacts) > MOST_JAMMED_CONTACTS:
         raise TooLargeError(
             "contacts", f"{len(contacts)} contacts", f"at most {MOST_JAMMED_CONTACTS} that jam"
         )
-    if friction_facets < 3:
-        raise InvalidFieldError("friction_facets", friction_facets, "a whole number >= 3")
+    facets = check_facets(friction_facets)
+    if len(contacts) * facets > MOST_DIRECTIONS:
+        raise TooLargeError(
+            "friction_facets",
+            f"{facets}, with {len(contacts)} contacts",
+            f"at most {MOST_DIRECTIONS} over all contacts",
+        )
     w, inertia = state.w_WB_W, body.inertia_in_world(state.R_WB)
     arms = contacts.p_WC_W - state.p_WB_W
     inverse = inverse_mass_matrix(body.mass, inertia)
@@ -116,9 +131,9 @@ def jamming_impact(
     before = point_jacobians(arms) @ twist
     rolling = velocity_accelerations(contacts, before, w)
     hurry = _fastest(point_jacobians(arms) @ free + np.cross(w, np.cross(w, arms)) + rolling, free[:3])
-    speed = max(_fastest(before, twist[:3]), tolerance)
+    speed = max(_fastest(before, twist[:3]), tolerance, VELOCITY_TOLERANCE)
     cleaned = spatial_contact_velocities(state, contacts, velocity_tolerance=tolerance)
-    directions = _directions(contacts, before, plane_normal_W, friction_facets)
+    directions = _directions(contacts, before, plane_normal_W, facets)
     total, after, resolved = np.zeros_like(before), twist, False
     for share in SHORT_TIMES:
         short = share * speed / hurry if hurry > 0.0 else 0.0

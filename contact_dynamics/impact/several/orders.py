@@ -38,7 +38,7 @@ from contact_dynamics.impact.several.sequential import (
     strike_in_turn,
 )
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_choice, check_positive
+from contact_dynamics.validation import check_choice, check_positive, check_whole
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -120,15 +120,17 @@ def outcomes_over_orders(
         contacts: All contacts that touch. There is at least one.
         restitution_law: What the coefficients of restitution mean.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
-        most_orders: How many priorities to try. The answer's ``complete`` says whether these were all.
+        most_orders: How many priorities to try, >= 1. The answer's ``complete`` says whether these were all.
 
     Raises:
         SeparatingContactError: every contact separates.
-        InvalidFieldError: there are no contacts, or the tolerance is not > 0.
+        InvalidFieldError: there are no contacts, the tolerance is not > 0, or ``most_orders`` is no whole
+            number >= 1.
         TooLargeError: the orders take more strikes together than `MOST_STRIKES_OVER_ORDERS`.
     """
     check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
+    most_orders = check_whole("most_orders", most_orders, 1)
     touching = Touching([body], contacts, [(0, None)] * len(contacts), restitution_law, tolerance)
     check_touching(touching, [state])
     found: dict[tuple[int, ...], FloatArray] = {}
@@ -173,16 +175,18 @@ def outcomes_at_once(
         contacts: All contacts that touch. There is at least one.
         restitution_law: Poisson's or Newton's law.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
-        most_orders: How many orders to try. The answer's ``complete`` says whether these were all.
+        most_orders: How many orders to try, >= 1. The answer's ``complete`` says whether these were all.
 
     Raises:
         SeparatingContactError: every contact separates.
-        InvalidFieldError: there are no contacts, the tolerance is not > 0, or the law is the energetic one.
+        InvalidFieldError: there are no contacts, the tolerance is not > 0, ``most_orders`` is no whole number
+            >= 1, or the law is the energetic one.
     """
     check_choice("restitution_law", restitution_law, RestitutionLaw)
     if restitution_law == RestitutionLaw.ENERGETIC:
         raise InvalidFieldError("restitution_law", "ENERGETIC", "POISSON or NEWTON for SIMULTANEOUS")
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
+    most_orders = check_whole("most_orders", most_orders, 1)
     touching = Touching([body], contacts, [(0, None)] * len(contacts), restitution_law, tolerance)
     check_touching(touching, [state])
     found: dict[tuple[int, ...], FloatArray] = {}

@@ -22,7 +22,7 @@ from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import BodiesImpact, SeveralContactsLaw, SeveralVerdict
 from contact_dynamics.impact.several.simultaneous import simultaneous_impulses
-from contact_dynamics.impact.spatial.one_contact import spatial_impact, spatial_pair_impact
+from contact_dynamics.impact.spatial.one_contact import check_striking, spatial_impact, spatial_pair_impact
 from contact_dynamics.numerics.vectors import point_jacobians
 from contact_dynamics.rigid_body.body import inverse_mass_matrix
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
@@ -119,6 +119,8 @@ def check_touching(touching: Touching, states: Sequence[BodyState]) -> FloatArra
     contacts, tolerance = touching.contacts, touching.tolerance
     if len(contacts) == 0:
         raise InvalidFieldError("contacts", "none", "at least one contact")
+    for index, (body, state) in enumerate(zip(touching.bodies, states, strict=True)):
+        check_striking(body, state, contacts.p_WC_W[[i for i, p in enumerate(touching.pairs) if index in p]])
     velocities = _relative_velocities(touching, states)
     slowest = float(np.einsum("ij,ij->i", velocities, contacts.normals_W).min())
     if slowest > tolerance:

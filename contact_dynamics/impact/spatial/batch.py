@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from contact_dynamics.errors import SeparatingContactError
+from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact.energy import ManyEnergies
 from contact_dynamics.impact.law import RestitutionLaw, check_law_rows
 from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
@@ -27,6 +27,8 @@ from contact_dynamics.impact.spatial.response import (
 from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import (
+    LARGEST_ARM,
+    LARGEST_NUMBER,
     SYMMETRY_TOLERANCE,
     TRIANGLE_TOLERANCE,
     VELOCITY_TOLERANCE,
@@ -37,6 +39,7 @@ from contact_dynamics.validation_batches import (
     check_positive_rows,
     check_rows,
     check_share_rows,
+    check_sizes,
     check_unit_rows,
     common_length,
 )
@@ -89,12 +92,12 @@ class StrikingBodies(Record):
     def __post_init__(self) -> None:
         """Check all fields and make arrays with a leading axis of them."""
         checked = {
-            "masses": check_positive_rows("masses", self.masses),
+            "masses": check_sizes("masses", check_positive_rows("masses", self.masses)),
             "inertias_B": check_rows(
                 "inertias_B",
-                self.inertias_B,
+                check_magnitude("inertias_B", check_rows("inertias_B", self.inertias_B, (3, 3))),
                 (3, 3),
-                "a symmetric positive definite matrix with I1 + I2 >= I3",
+                f"a symmetric positive definite matrix with I1 + I2 >= I3 >= {1.0 / LARGEST_NUMBER:g}",
                 _possible_inertias,
             ),
             "q_WB": check_unit_rows("q_WB", self.q_WB, 4),
@@ -102,6 +105,12 @@ class StrikingBodies(Record):
             "w_WB_W": check_magnitude("w_WB_W", check_rows("w_WB_W", self.w_WB_W, (3,))),
             "r_W": check_magnitude("r_W", check_rows("r_W", self.r_W, (3,))),
         }
+        common_length(checked)
+        arms = np.sqrt(np.einsum("ij,ij->i", checked["r_W"], checked["r_W"]))
+        largest = checked["inertias_B"].diagonal(axis1=1, axis2=2).max(axis=1)
+        for i in np.flatnonzero(arms > LARGEST_ARM * np.sqrt(largest / checked["masses"]))[:1]:
+            allowed = f"{LARGEST_ARM:g} radii of gyration at most"
+            raise InvalidFieldError(f"r_W[{i}]", f"an arm of {arms[i % len(arms)]:g} m", allowed)
         for field, rows in checked.items():
             object.__setattr__(self, field, rows)
 
@@ -273,5 +282,6 @@ def _possible_inertias(inertias: FloatArray) -> NDArray[np.bool_]:
     symmetric = abs(inertias - inertias.transpose(0, 2, 1)).max(axis=(1, 2)) <= SYMMETRY_TOLERANCE * scale
     moments = np.linalg.eigvalsh(inertias)
     triangle = moments[:, 0] + moments[:, 1] >= moments[:, 2] * (1.0 - TRIANGLE_TOLERANCE)
-    possible: NDArray[np.bool_] = symmetric & (moments[:, 0] > 0.0) & triangle
+    large_enough = moments[:, 2] >= 1.0 / LARGEST_NUMBER
+    possible: NDArray[np.bool_] = symmetric & (moments[:, 0] > 0.0) & triangle & large_enough
     return possible

@@ -33,7 +33,7 @@ from contact_dynamics.impact.spatial.response import (
 )
 from contact_dynamics.impact.spatial.result import SpatialImpact
 from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
-from contact_dynamics.tolerances import LARGEST_NUMBER, VELOCITY_TOLERANCE
+from contact_dynamics.tolerances import LARGEST_ARM, LARGEST_NUMBER, VELOCITY_TOLERANCE
 from contact_dynamics.validation import (
     check_choice,
     check_not_negative,
@@ -66,8 +66,8 @@ def spatial_impact(
 
     Raises:
         SeparatingContactError: the contact's normal velocity is above the tolerance.
-        InvalidFieldError: the tolerance is negative, or a velocity or the contact's distance from a centre of
-            mass is beyond `LARGEST_NUMBER`.
+        InvalidFieldError: the tolerance is negative, a velocity or the contact's distance from a centre of
+            mass is beyond `LARGEST_NUMBER`, or a mass or moment of inertia is, or is below its inverse.
     """
     return _impact(
         body, state, None, None, contact, law=restitution_law, velocity_tolerance=velocity_tolerance
@@ -97,8 +97,8 @@ def spatial_pair_impact(
 
     Raises:
         SeparatingContactError: the contact's relative normal velocity is above the tolerance.
-        InvalidFieldError: the tolerance is negative, or a velocity or the contact's distance from a centre of
-            mass is beyond `LARGEST_NUMBER`.
+        InvalidFieldError: the tolerance is negative, a velocity or the contact's distance from a centre of
+            mass is beyond `LARGEST_NUMBER`, or a mass or moment of inertia is, or is below its inverse.
     """
     return _impact(
         body, state, other, other_state, contact, law=restitution_law, velocity_tolerance=velocity_tolerance
@@ -180,9 +180,39 @@ def contact_inverse_inertia(body: MassProperties, state: BodyState, arm: FloatAr
     )
 
 
-def _responding(body: MassProperties, state: BodyState, point: FloatArray) -> Responding:
-    arm, v, w = (point - state.p_WB_W).tolist(), state.v_WB_W.tolist(), state.w_WB_W.tolist()
-    for field, numbers in (("contact position", arm), ("linear_velocity", v), ("angular_velocity", w)):
-        if max(numbers) > LARGEST_NUMBER or min(numbers) < -LARGEST_NUMBER:
+def check_striking(body: MassProperties, state: BodyState, points_W: FloatArray) -> None:
+    """Refuse a body, a motion or contacts whose numbers have products outside the range of doubles.
+
+    Args:
+        body: Mass and angular inertia.
+        state: Pose and velocities.
+        points_W: (n, 3) or (3,), m, contact points, world.
+
+    Raises:
+        InvalidFieldError: a velocity, or the distance of a contact from the centre of mass, is beyond
+            `LARGEST_NUMBER`; the mass or a moment of inertia is, or is below its inverse; or a contact is
+            farther than `LARGEST_ARM` radii of gyration from the centre of mass.
+    """
+    for field, numbers in (
+        ("contact position", (points_W - state.p_WB_W).ravel().tolist()),
+        ("linear_velocity", state.v_WB_W.tolist()),
+        ("angular_velocity", state.w_WB_W.tolist()),
+    ):
+        if numbers and (max(numbers) > LARGEST_NUMBER or min(numbers) < -LARGEST_NUMBER):
             raise InvalidFieldError(field, numbers, f"numbers of at most {LARGEST_NUMBER:g}, by size")
+    least = 1.0 / LARGEST_NUMBER
+    for field, numbers in (("mass", [body.mass]), ("inertia", body.I_B.diagonal().tolist())):
+        if max(numbers) > LARGEST_NUMBER or min(numbers) < least:
+            raise InvalidFieldError(field, numbers, f"numbers from {least:g} to {LARGEST_NUMBER:g}")
+    arms = points_W - state.p_WB_W
+    farthest = math.sqrt(float(np.einsum("...i,...i->...", arms, arms).max(initial=0.0)))
+    gyration = math.sqrt(float(body.I_B.diagonal().max()) / body.mass)
+    if farthest > LARGEST_ARM * gyration:
+        found = f"{farthest:g} m from the centre of mass"
+        raise InvalidFieldError("contact position", found, f"{LARGEST_ARM:g} radii of gyration at most")
+
+
+def _responding(body: MassProperties, state: BodyState, point: FloatArray) -> Responding:
+    check_striking(body, state, point)
+    arm, v, w = (point - state.p_WB_W).tolist(), state.v_WB_W.tolist(), state.w_WB_W.tolist()
     return responding(body.mass, body.I_B.tolist(), state.q_WB.tolist(), tuple(arm), tuple(v), tuple(w))
