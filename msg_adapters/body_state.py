@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.questions.subject import UncertainState
+from contact_dynamics.questions.uncertain_state import KnownState, UncertainState
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rigid_body.published_frame import origin_of_published_frame, turned
 from contact_dynamics.validation import check_unit
@@ -85,9 +85,7 @@ def center_of_mass(body_name: str, world: World) -> FloatArray:
     return next(known, np.zeros(3))
 
 
-def known_state_from_msg(
-    msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArray
-) -> BodyState | UncertainState:
+def known_state_from_msg(msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArray) -> KnownState:
     """Return the state, with its covariance if the message has one.
 
     Raises:
@@ -106,7 +104,7 @@ def known_state_from_msg(
 
 
 def known_state_to_msg(
-    known: BodyState | UncertainState,
+    known: KnownState,
     *,
     body_name: str,
     world_frame: str,

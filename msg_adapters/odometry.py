@@ -1,13 +1,12 @@
 """Converts `nav_msgs/Odometry` to a body's state and back.
 
 The pose is that of the child frame in `header.frame_id`. The twist is in the child frame's axes and at its
-origin (REP 105 and the message's own comment). Covariances are not read. Published states have none here, and
-a fit of several states finds its own.
+origin (REP 105 and the message's own comment).
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from nav_msgs.msg import Odometry
 
@@ -20,11 +19,18 @@ from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.validation import check_unit
 from msg_adapters.frames import check_frame
 from msg_adapters.geometry import pose_to_msg, quaternion_from_msg, vector_from_msg, vector_to_msg
+from msg_adapters.in_world import in_world
+from msg_adapters.published_covariance import covariance_from_msg, of_pose_and_twist, with_covariance
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
+from msg_adapters.state_adapter import StateAdapter
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.questions.uncertain_state import KnownState
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
+    from msg_adapters.state_adapter import Reader, SourceSettings
 
 
 def body_state_from_odometry(msg: Odometry, *, world_frame: str, p_FB_F: FloatArray) -> BodyState:
@@ -45,6 +51,23 @@ def body_state_from_odometry(msg: Odometry, *, world_frame: str, p_FB_F: FloatAr
         p_FB_F=p_FB_F,
         stamp_ns=stamp_ns_from_msg(msg.header.stamp),
     )
+
+
+def _read(msg: Odometry, settings: SourceSettings) -> KnownState:
+    frame = msg.header.frame_id
+    state = body_state_from_odometry(msg, world_frame=frame, p_FB_F=settings.p_FB_F)
+    covariance = of_pose_and_twist(
+        covariance_from_msg(msg.pose.covariance), covariance_from_msg(msg.twist.covariance)
+    )
+    known = with_covariance(state, covariance, settings.p_FB_F, twist_in_body_axes=True)
+    return in_world(known, frame, settings)
+
+
+def _readers(settings: SourceSettings) -> Sequence[Reader]:
+    return (lambda msg: _read(msg, settings),)
+
+
+ODOMETRY: Final = StateAdapter(type_names=("nav_msgs/msg/Odometry",), readers=_readers, is_whole=True)
 
 
 def odometry_from_body_state(

@@ -6,7 +6,7 @@ Its own header says whether it is in the axes of the world or of the body.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from geometry_msgs.msg import PoseStamped, TwistStamped
 
@@ -20,11 +20,21 @@ from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.validation import check_unit
 from msg_adapters.frames import check_frame
 from msg_adapters.geometry import pose_to_msg, quaternion_from_msg, vector_from_msg, vector_to_msg
+from msg_adapters.in_world import in_world
+from msg_adapters.pairs import Pairs
+from msg_adapters.published_covariance import covariance_from_msg, of_pose_and_twist, with_covariance
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
+from msg_adapters.state_adapter import StateAdapter
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from geometry_msgs.msg import PoseWithCovarianceStamped, TwistWithCovarianceStamped
+
+    from contact_dynamics.questions.uncertain_state import KnownState
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
+    from msg_adapters.state_adapter import Reader, SourceSettings
 
 
 def body_state_from_pose_twist(
@@ -60,6 +70,60 @@ def body_state_from_pose_twist(
         p_FB_F=p_FB_F,
         stamp_ns=stamp_ns,
     )
+
+
+def _joined(
+    pose: PoseStamped, twist: TwistStamped, settings: SourceSettings, covariance: FloatArray | None = None
+) -> KnownState:
+    frame = pose.header.frame_id
+    state = body_state_from_pose_twist(
+        pose, twist, world_frame=frame, body_frame=settings.body_frame, p_FB_F=settings.p_FB_F
+    )
+    in_body_axes = twist.header.frame_id == settings.body_frame
+    known = with_covariance(state, covariance, settings.p_FB_F, twist_in_body_axes=in_body_axes)
+    return in_world(known, frame, settings)
+
+
+def _joined_with_covariance(
+    pose: PoseWithCovarianceStamped, twist: TwistWithCovarianceStamped, settings: SourceSettings
+) -> KnownState:
+    covariance = of_pose_and_twist(
+        covariance_from_msg(pose.pose.covariance), covariance_from_msg(twist.twist.covariance)
+    )
+    return _joined(
+        PoseStamped(header=pose.header, pose=pose.pose.pose),
+        TwistStamped(header=twist.header, twist=twist.twist.twist),
+        settings,
+        covariance,
+    )
+
+
+def _readers(settings: SourceSettings) -> Sequence[Reader]:
+    def join(pose: PoseStamped, twist: TwistStamped) -> KnownState:
+        return _joined(pose, twist, settings)
+
+    pairs = Pairs(join)
+    return pairs.first, pairs.second
+
+
+def _readers_with_covariance(settings: SourceSettings) -> Sequence[Reader]:
+    def join(pose: PoseWithCovarianceStamped, twist: TwistWithCovarianceStamped) -> KnownState:
+        return _joined_with_covariance(pose, twist, settings)
+
+    pairs = Pairs(join)
+    return pairs.first, pairs.second
+
+
+POSE_TWIST: Final = StateAdapter(
+    type_names=("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/TwistStamped"), readers=_readers
+)
+POSE_TWIST_WITH_COVARIANCE: Final = StateAdapter(
+    type_names=(
+        "geometry_msgs/msg/PoseWithCovarianceStamped",
+        "geometry_msgs/msg/TwistWithCovarianceStamped",
+    ),
+    readers=_readers_with_covariance,
+)
 
 
 def pose_twist_from_body_state(

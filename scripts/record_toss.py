@@ -53,7 +53,7 @@ import numpy as np
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING
 from contact_dynamics.measured.recorded_toss import Toss
 from contact_dynamics.measured.toss_csv import COLUMNS, DECIMALS, write_toss_csv
-from contact_dynamics.measured.velocity_estimate import causal_velocities, frames_in_window
+from contact_dynamics.motion.velocity_estimate import causal_velocities, frames_in_window
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.rotations.many import turned
 from contact_dynamics.world import Body, Surface, box_vertices
@@ -225,7 +225,7 @@ not edit.
 Columns: t in s; px py pz in m, the centre of mass, which is the tracked frame's origin, in the world, z up;
 qx qy qz qw, unit quaternion from body to world coordinates; vx vy vz in m/s, the velocity of the centre of
 mass, and wx wy wz in rad/s, the angular velocity, both in world axes, both estimated from the poses up to
-their row and none after (contact_dynamics/measured/velocity_estimate.py).
+their row and none after (contact_dynamics/motion/velocity_estimate.py).
 
 Inertia: principal moments about the body's axes x, y, z through the centre of mass. Noise: standard deviation
 of each coordinate. Restitution: of a point mass against the floor.

@@ -17,7 +17,7 @@ from rclpy.node import Node
 
 from contact_dynamics.constants import ns_after, seconds_between, to_seconds
 from contact_dynamics.demo.toss_publisher import QOS, WORLD_FRAME, topic_of
-from contact_dynamics.measured.velocity_estimate import WINDOW
+from contact_dynamics.motion.velocity_estimate import WINDOW
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.odometry import body_state_from_odometry
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg

@@ -24,7 +24,7 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.measured.recorded_toss import Toss
-from contact_dynamics.measured.velocity_estimate import FEWEST_FRAMES, causal_velocities, frames_in_window
+from contact_dynamics.motion.velocity_estimate import FEWEST_FRAMES, causal_velocities, frames_in_window
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.rotations.many import matrices_of
 from contact_dynamics.validation import check_array

@@ -17,7 +17,7 @@ import numpy as np
 
 from contact_dynamics.constants import ns_after
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.measured.velocity_estimate import frames_in_window, slope_noise
+from contact_dynamics.motion.velocity_estimate import frames_in_window, slope_noise
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tolerances import UNIT_LENGTH_TOLERANCE

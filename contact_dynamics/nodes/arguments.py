@@ -25,6 +25,7 @@ SERVER_PARAMETERS: Final = {
     "surfaces": "names of the surfaces; each is described by surface.NAME.point, .normal, .friction, ...",
     "gravity": "acceleration of gravity: x, y, z, m/s^2",
     "world_frame": "frame of states and answers",
+    "tf_static_topic": "topic of the transforms between frames that stand still",
     "state_timeout": "age, s, from which on the newest state is too old",
     "state_history": "how long states are kept, s",
     "future_tolerance": "how far a state's stamp may be ahead of the clock, s",

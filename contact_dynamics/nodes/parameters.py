@@ -59,21 +59,48 @@ class ParameterSource(Protocol):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StateTopics:
-    """The topics of a body's states: one Odometry topic, or a pose and a twist topic.
+class ConfiguredTopic:
+    """A topic as it is configured.
 
     Attributes:
-        odometry: Topic of nav_msgs/Odometry, which may be empty.
-        pose: Topic of geometry_msgs/PoseStamped.
-        twist: Topic of geometry_msgs/TwistStamped.
-        frame: The body's frame.
+        name: Its name in the configuration.
+        full_name: Its name after ROS's remapping.
+        parameter: The parameter that names it.
+    """
+
+    name: str
+    full_name: str
+    parameter: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ConfiguredSource:
+    """A source of a body's states.
+
+    Attributes:
+        adapter: The name of the adapter that reads its messages.
+        topics: Its topics, in the adapter's order.
+    """
+
+    adapter: str
+    topics: tuple[ConfiguredTopic, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BodySources:
+    """The sources of a body's states.
+
+    Attributes:
+        body_name: The body.
+        frame: The body's frame, whose pose is published.
+        velocity_window: s, the time over which a velocity is found from poses.
+        sources: The sources, of which there may be several or none.
     """
 
     body_name: str
-    odometry: str
-    pose: str
-    twist: str
     frame: str
+    velocity_window: float
+    sources: tuple[ConfiguredSource, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,6 +108,8 @@ class ServerParameters:
     """The whole configuration of the server.
 
     Attributes:
+        sources: The sources of states, for each body.
+        static_topic: The topic of the transforms between frames that stand still, or None.
         state_timeout: s.
         state_history: s.
         future_tolerance: s.
@@ -89,7 +118,8 @@ class ServerParameters:
     """
 
     world: World
-    topics: tuple[StateTopics, ...]
+    sources: tuple[BodySources, ...]
+    static_topic: ConfiguredTopic | None
     world_frame: str
     state_timeout: float
     state_history: float
@@ -123,7 +153,12 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
                 gravity_W=gravity,
             ),
         ),
-        topics=tuple(topics for _, topics in bodies),
+        sources=tuple(sources for _, sources in bodies),
+        static_topic=reader.topic(
+            "tf_static_topic",
+            "Topic of tf2_msgs/TFMessage with the transforms between frames that stand still. Not used if "
+            "empty.",
+        ),
         world_frame=reader.read(
             "world_frame", "world", "Frame that states are published in and answers are given in."
         ),
@@ -217,7 +252,7 @@ def _read_defaults(reader: _Reader) -> Defaults:
     )
 
 
-def _read_body(reader: _Reader, name: str) -> tuple[Body, StateTopics]:
+def _read_body(reader: _Reader, name: str) -> tuple[Body, BodySources]:
     key = f"body.{name}"
     mass = reader.read(f"{key}.mass", float, "Mass, kg.")
     inertia = reader.read(
@@ -231,23 +266,50 @@ def _read_body(reader: _Reader, name: str) -> tuple[Body, StateTopics]:
     )
     shape = _read_shape(reader, key)
     body = reader.build(key, lambda: _body(name, mass, inertia, offset, shape))
-    topics = StateTopics(
+    return body, BodySources(
         body_name=name,
-        odometry=reader.topic(
-            f"{key}.odometry_topic", "Topic of the body's states as nav_msgs/Odometry. Not used if empty."
-        ),
-        pose=reader.topic(
-            f"{key}.pose_topic", "Topic of the body's geometry_msgs/PoseStamped. Not used if empty."
-        ),
-        twist=reader.topic(
-            f"{key}.twist_topic", "Topic of the body's geometry_msgs/TwistStamped. Not used if empty."
-        ),
         frame=reader.read(f"{key}.frame", name, "Frame of the body, which the pose is of."),
+        velocity_window=reader.read(
+            f"{key}.velocity_window",
+            0.05,
+            "Time over which a velocity is found where poses alone are published, s.",
+            (1e-3, 10.0),
+        ),
+        sources=_read_sources(reader, key),
     )
-    if bool(topics.pose) != bool(topics.twist):
-        message = f"{key}.pose_topic and {key}.twist_topic: found one of them, allowed are both or none"
+
+
+def _read_sources(reader: _Reader, key: str) -> tuple[ConfiguredSource, ...]:
+    """Return the sources of a body's states: the usual ones, each by its topics, and one by its name."""
+    odometry = reader.topic(
+        f"{key}.odometry_topic", "Topic of the body's states as nav_msgs/Odometry. Not used if empty."
+    )
+    pose = reader.topic(
+        f"{key}.pose_topic", "Topic of the body's geometry_msgs/PoseStamped. Not used if empty."
+    )
+    twist = reader.topic(
+        f"{key}.twist_topic",
+        "Topic of the body's geometry_msgs/TwistStamped. If empty, velocities come from the poses.",
+    )
+    if twist is not None and pose is None:
+        message = f"{key}.twist_topic: found {twist.name!r}, allowed is none without a pose_topic"
         raise ConfigurationError(message)
-    return body, topics
+    name = reader.read(f"{key}.source", "", "Name of another source of states. Not used if empty.")
+    topics = reader.topics(f"{key}.source_topics", "Topics of that source.")
+    if bool(name) != bool(topics):
+        found = f"{name!r} and {[topic.name for topic in topics]}"
+        message = f"{key}.source and {key}.source_topics: found {found}, allowed are both or none"
+        raise ConfigurationError(message)
+    sources = []
+    if odometry is not None:
+        sources.append(ConfiguredSource(adapter="odometry", topics=(odometry,)))
+    if pose is not None and twist is None:
+        sources.append(ConfiguredSource(adapter="pose", topics=(pose,)))
+    if pose is not None and twist is not None:
+        sources.append(ConfiguredSource(adapter="pose_twist", topics=(pose, twist)))
+    if name:
+        sources.append(ConfiguredSource(adapter=name, topics=topics))
+    return tuple(sources)
 
 
 def _body(name: str, mass: float, inertia: list[float], offset: list[float], shape: ShapeParameters) -> Body:
@@ -349,19 +411,30 @@ class _Reader:
             raise ConfigurationError(message)
         return found
 
-    def topic(self, name: str, description: str) -> str:
-        """Return a topic's name, which is empty for none. Refuse a name that another parameter has."""
+    def topic(self, name: str, description: str) -> ConfiguredTopic | None:
+        """Return a topic that no other parameter names, or None if there is none."""
         topic: str = self.read(name, "", description)
         if not topic:
-            return topic
-        resolved = self._source.resolved_topic(name, topic)
-        if resolved in self._topics:
+            return None
+        found = self._configured(name, topic)
+        if found.full_name in self._topics:
             message = (
-                f"{name}: found {topic!r}, allowed is another topic than that of {self._topics[resolved]}"
+                f"{name}: found {topic!r}, allowed is another topic than that of "
+                f"{self._topics[found.full_name]}"
             )
             raise ConfigurationError(message)
-        self._topics[resolved] = name
-        return topic
+        self._topics[found.full_name] = name
+        return found
+
+    def topics(self, name: str, description: str) -> tuple[ConfiguredTopic, ...]:
+        """Return the topics of a list, which several bodies may share."""
+        return tuple(
+            self._configured(f"{name}[{i}]", topic) for i, topic in enumerate(self.names(name, description))
+        )
+
+    def _configured(self, parameter: str, topic: str) -> ConfiguredTopic:
+        full_name = self._source.resolved_topic(parameter, topic)
+        return ConfiguredTopic(name=topic, full_name=full_name, parameter=parameter)
 
     @staticmethod
     def build(prefix: str, make: Callable[[], T]) -> T:

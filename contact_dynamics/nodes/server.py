@@ -86,6 +86,8 @@ class Server(InboxNode):
             now_ns=lambda: self._asked_ns or None,  # zero before a simulation tells the time
         )
         self._world_frame = parameters.world_frame
+        # The log begins after this, so that a configuration with an unknown source leaves no log.
+        types = subscribe_to_states(self, parameters, states=states, record=self._record)
         self._log = Log(
             parameters.log_directory if parameters.log else None,
             run=self._run_description(source.topics),
@@ -93,17 +95,8 @@ class Server(InboxNode):
             on_problem=self.get_logger().error,
             on_deleted=self.get_logger().warning,
         )
-        for topics in parameters.topics:
-            types = subscribe_to_states(
-                self,
-                topics,
-                world_frame=parameters.world_frame,
-                p_FB_F=parameters.world.body(topics.body_name).p_FB_F,
-                states=states,
-                record=self._record,
-            )
-            for topic, type_name in types.items():
-                self._log.add_topic(topic, type_name, STATE_QOS)
+        for topic, type_name in types.items():
+            self._log.add_topic(topic, type_name, STATE_QOS)
         self._log_clock()
         self._path = self.create_publisher(Path, "~/predicted_path", PATH_QOS)
         self._events: list[Subscription] = []

@@ -1,104 +1,181 @@
-"""Makes states from the messages that are published about a body, live or logged.
+"""The sources of published states: which there are, and what makes states of their messages, live or logged.
 
-It needs the classes of messages and no other part of ROS.
+Each source has an adapter in `msg_adapters`. Installed packages can bring further ones by entry points of the
+group `ENTRY_POINTS`. This file needs the classes of messages and no other part of ROS.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, replace
+from importlib.metadata import entry_points
+from typing import TYPE_CHECKING, Final, NamedTuple
 
-from msg_adapters.odometry import body_state_from_odometry
-from msg_adapters.pose_twist import body_state_from_pose_twist
-from msg_adapters.stamps import stamp_ns_from_msg
+from contact_dynamics.nodes.parameters import ConfigurationError
+from msg_adapters.odometry import ODOMETRY
+from msg_adapters.pose import POSE, POSE_WITH_COVARIANCE
+from msg_adapters.pose_twist import POSE_TWIST, POSE_TWIST_WITH_COVARIANCE
+from msg_adapters.rigid_bodies import RIGID_BODIES
+from msg_adapters.state_adapter import SourceSettings, StateAdapter
+from msg_adapters.tf import TF
+from msg_adapters.transforms import TransformTree
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Mapping
 
-    from geometry_msgs.msg import PoseStamped, TwistStamped
+    from contact_dynamics.nodes.parameters import ConfiguredSource, ConfiguredTopic, ServerParameters
+    from msg_adapters.state_adapter import Reader
+    from msg_adapters.transforms import TFMessage
 
-    from contact_dynamics.nodes.parameters import StateTopics
-    from contact_dynamics.rigid_body.body import BodyState
-    from contact_dynamics.validation import FloatArray
+ENTRY_POINTS: Final = "contact_dynamics.state_sources"
+"""Group of the entry points of packages that bring an adapter of their own."""
 
-_MOST_UNPAIRED = 100
+ADAPTERS: Final[Mapping[str, StateAdapter]] = {
+    "odometry": ODOMETRY,
+    "pose_twist": POSE_TWIST,
+    "pose_twist_with_covariance": POSE_TWIST_WITH_COVARIANCE,
+    "pose": POSE,
+    "pose_with_covariance": POSE_WITH_COVARIANCE,
+    "tf": TF,
+    "rigid_bodies": RIGID_BODIES,
+}
+"""The adapters of this package by the name that a configuration gives."""
+
+STATIC_TYPE: Final = "tf2_msgs/msg/TFMessage"
+
+
+class BodyReader(NamedTuple):
+    """What reads the messages about one body.
+
+    Attributes:
+        body_name: The body.
+        state_from: Function from a message to a state, or to None if another message must complete it, or if
+            it says nothing of this body.
+    """
+
+    body_name: str
+    state_from: Reader
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StateSource:
-    """One topic with messages about a body.
+    """One topic with messages about bodies, or about the frames that their states are in.
 
     Attributes:
         topic: Its name, as it is configured.
-        parameter: The parameter that names it.
+        full_name: Its name after ROS's remapping.
         type_name: "package/msg/Name".
-        state_from: Function from a message to a state, or to None if another message must complete it.
-        is_whole: Whether each message is a state by itself. It can then be read later, or never.
+        readers: One for each body. Each reads every message.
+        is_latched: Whether the last messages come to who subscribes later.
+        is_whole: Whether each message is a state by itself, stamped by its leading header. It can then be
+            read later, or never.
     """
 
     topic: str
-    parameter: str
+    full_name: str
     type_name: str
-    state_from: Callable[[Any], BodyState | None]
+    readers: tuple[BodyReader, ...]
+    is_latched: bool = False
     is_whole: bool = False
 
 
-def state_sources(topics: StateTopics, *, world_frame: str, p_FB_F: FloatArray) -> tuple[StateSource, ...]:
-    """Return the topics with messages about a body, whose centre of mass is at ``p_FB_F``, m, (3,)."""
-    sources = []
-    if topics.odometry:
-        sources.append(
-            StateSource(
-                topic=topics.odometry,
-                parameter=f"body.{topics.body_name}.odometry_topic",
-                type_name="nav_msgs/msg/Odometry",
-                state_from=lambda msg: body_state_from_odometry(msg, world_frame=world_frame, p_FB_F=p_FB_F),
-                is_whole=True,
-            )
+def adapter_of(name: str, *, parameter: str) -> StateAdapter:
+    """Return the adapter of a name, of this package or of an installed one.
+
+    Raises:
+        ConfigurationError: there is none of that name, or what the entry point names is no adapter.
+            ``parameter`` is the parameter that names it.
+    """
+    if name in ADAPTERS:
+        return ADAPTERS[name]
+    brought = {point.name: point for point in entry_points(group=ENTRY_POINTS)}
+    if name not in brought:
+        known = ", ".join([*ADAPTERS, *sorted(brought)])
+        message = f"{parameter}: found {name!r}, allowed are {known}"
+        raise ConfigurationError(message)
+    try:
+        adapter = brought[name].load()
+    except Exception as error:  # noqa: BLE001  whatever a foreign module raises when it is imported
+        message = f"{parameter}: found {name!r}, which cannot be imported: {type(error).__name__}: {error}"
+        raise ConfigurationError(message) from None
+    if not isinstance(adapter, StateAdapter):
+        message = (
+            f"{parameter}: found {name!r}, which is a {type(adapter).__name__}, needed is a StateAdapter"
         )
-    if topics.pose:
-        pair = _Pairing(
-            lambda pose, twist: body_state_from_pose_twist(
-                pose, twist, world_frame=world_frame, body_frame=topics.frame, p_FB_F=p_FB_F
-            )
+        raise ConfigurationError(message)
+    return adapter
+
+
+def state_sources(parameters: ServerParameters) -> tuple[StateSource, ...]:
+    """Return the topics that states come by, each once.
+
+    Raises:
+        ConfigurationError: no adapter has the name, or it takes another number of topics, or two sources say
+            different types of one topic.
+    """
+    static = TransformTree()
+    found: dict[str, StateSource] = {}
+    if parameters.static_topic is not None:
+        _add(found, _static_source(parameters.static_topic, static), parameters.static_topic.parameter)
+    for body in parameters.sources:
+        settings = SourceSettings(
+            body_name=body.body_name,
+            body_frame=body.frame,
+            world_frame=parameters.world_frame,
+            p_FB_F=parameters.world.body(body.body_name).p_FB_F,
+            velocity_window=body.velocity_window,
+            static=static,
         )
-        for topic, kind, name, state_from in (
-            (topics.pose, "pose", "PoseStamped", pair.pose),
-            (topics.twist, "twist", "TwistStamped", pair.twist),
-        ):
-            sources.append(
-                StateSource(
-                    topic=topic,
-                    parameter=f"body.{topics.body_name}.{kind}_topic",
-                    type_name=f"geometry_msgs/msg/{name}",
-                    state_from=state_from,
-                )
-            )
-    return tuple(sources)
+        for configured in body.sources:
+            for source, topic in zip(_of_body(configured, settings), configured.topics, strict=True):
+                _add(found, source, topic.parameter)
+    return tuple(found.values())
 
 
-class _Pairing:
-    """Joins the pose and the twist of one stamp, whichever comes first."""
+def _of_body(configured: ConfiguredSource, settings: SourceSettings) -> tuple[StateSource, ...]:
+    parameter = f"body.{settings.body_name}.source"
+    adapter = adapter_of(configured.adapter, parameter=parameter)
+    if len(configured.topics) != len(adapter.type_names):
+        found = [topic.name for topic in configured.topics]
+        allowed = f"{len(adapter.type_names)}, of {' and '.join(adapter.type_names)}"
+        message = f"{parameter}_topics: found {found}, allowed are {allowed}"
+        raise ConfigurationError(message)
+    return tuple(
+        StateSource(
+            topic=topic.name,
+            full_name=topic.full_name,
+            type_name=type_name,
+            readers=(BodyReader(settings.body_name, reader),),
+            is_whole=adapter.is_whole,
+        )
+        for topic, type_name, reader in zip(
+            configured.topics, adapter.type_names, adapter.readers(settings), strict=True
+        )
+    )
 
-    def __init__(self, join: Callable[[PoseStamped, TwistStamped], BodyState]) -> None:
-        self._join = join
-        self._poses: dict[int, PoseStamped] = {}
-        self._twists: dict[int, TwistStamped] = {}
 
-    def pose(self, msg: PoseStamped) -> BodyState | None:
-        twist = self._partner(msg, self._poses, self._twists)
-        return None if twist is None else self._join(msg, twist)
+def _static_source(topic: ConfiguredTopic, static: TransformTree) -> StateSource:
+    def read(msg: TFMessage) -> None:
+        static.add(msg, is_static=True)
 
-    def twist(self, msg: TwistStamped) -> BodyState | None:
-        pose = self._partner(msg, self._twists, self._poses)
-        return None if pose is None else self._join(pose, msg)
+    return StateSource(
+        topic=topic.name,
+        full_name=topic.full_name,
+        type_name=STATIC_TYPE,
+        readers=(BodyReader("", read),),
+        is_latched=True,
+    )
 
-    @staticmethod
-    def _partner(msg: Any, mine: dict[int, Any], others: dict[int, Any]) -> Any:
-        stamp_ns = stamp_ns_from_msg(msg.header.stamp)
-        partner = others.pop(stamp_ns, None)
-        if partner is None:
-            mine[stamp_ns] = msg
-            if len(mine) > _MOST_UNPAIRED:  # one topic is silent
-                del mine[next(iter(mine))]
-        return partner
+
+def _add(found: dict[str, StateSource], source: StateSource, parameter: str) -> None:
+    """Add a source, to the one of the same topic if there is one already."""
+    known = found.get(source.full_name)
+    if known is None:
+        found[source.full_name] = source
+        return
+    if (known.type_name, known.is_latched) != (source.type_name, source.is_latched):
+        message = (
+            f"{parameter}: found {source.topic!r} for {source.type_name}, allowed is another topic than "
+            f"that of {known.type_name}"
+        )
+        raise ConfigurationError(message)
+    found[source.full_name] = replace(known, readers=(*known.readers, *source.readers))

@@ -11,7 +11,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from rclpy.qos import QoSProfile
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import deserialize_message
 
 from contact_dynamics.constants import NS_PER_S
@@ -27,15 +27,17 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
     from contact_dynamics.nodes.inbox import InboxNode, Taken
-    from contact_dynamics.nodes.parameters import StateTopics
-    from contact_dynamics.nodes.state_sources import StateSource
+    from contact_dynamics.nodes.parameters import ServerParameters
+    from contact_dynamics.nodes.state_sources import BodyReader, StateSource
     from contact_dynamics.questions.state_store import StateStore
-    from contact_dynamics.rigid_body.body import BodyState
-    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.questions.uncertain_state import KnownState
 
 STATE_QOS = QoSProfile(depth=1000)
 """The queue is reliable and deep. A second of states at 1 kHz may wait for a stalled process, and the log
 loses none."""
+
+LATCHED_QOS = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+"""The queue of transforms that stand still, which also takes those that were told before."""
 
 _EXAMINE_EVERY_NS: Final = NS_PER_S // 2
 _FRAME_AT: Final = 12  # bytes before a header's frame: encapsulation and stamp
@@ -43,22 +45,27 @@ _FRAME_AT: Final = 12  # bytes before a header's frame: encapsulation and stamp
 
 def subscribe_to_states(
     node: InboxNode,
-    topics: StateTopics,
+    parameters: ServerParameters,
     *,
-    world_frame: str,
-    p_FB_F: FloatArray,
     states: StateStore,
     record: Callable[[str, Taken], object],
 ) -> dict[str, str]:
-    """Subscribe to a body's states, record every message, keep every state. Return topics and their types.
+    """Subscribe to the states of all bodies, record every message, keep every state.
 
     A message that is no state, or whose stamp is in the future, is recorded, and counted in a warning, and
     not kept.
+
+    Returns:
+        The type of each topic's messages, by the topic's full name.
+
+    Raises:
+        ConfigurationError: a source is configured that there is not.
+        InvalidFieldError: the package of a source's messages is not installed.
     """
     refused = RefusedMessages(node.get_logger().warning)
     types: dict[str, str] = {}
-    for source in state_sources(topics, world_frame=world_frame, p_FB_F=p_FB_F):
-        received = _StateTopic(node, source, topics.body_name, states=states, record=record, refused=refused)
+    for source in state_sources(parameters):
+        received = _StateTopic(node, source, states=states, record=record, refused=refused)
         types[received.topic] = source.type_name
     return types
 
@@ -71,13 +78,12 @@ def present_ns(node: Node) -> int | None:
 
 
 class _StateTopic:
-    """One topic with messages about a body."""
+    """One topic with messages about bodies."""
 
     def __init__(
         self,
         node: InboxNode,
         source: StateSource,
-        body_name: str,
         *,
         states: StateStore,
         record: Callable[[str, Taken], object],
@@ -85,7 +91,6 @@ class _StateTopic:
     ) -> None:
         self._node = node
         self._source = source
-        self._body_name = body_name
         self._states = states
         self._record = record
         self._refused = refused
@@ -93,9 +98,8 @@ class _StateTopic:
         self._length = 0  # the last messages that were examined have it
         self._frame = b""  # and they have this frame
         self._examined_ns = 0
-        subscription = node.subscribe(
-            self._msg_type, source.topic, self._receive, STATE_QOS, may_override=True
-        )
+        qos = LATCHED_QOS if source.is_latched else STATE_QOS
+        subscription = node.subscribe(self._msg_type, source.topic, self._receive, qos, may_override=True)
         self.topic: str = subscription.topic_name
 
     def _receive(self, taken: Taken) -> None:
@@ -103,15 +107,27 @@ class _StateTopic:
         data, clock = taken.data, self._node.get_clock()
         now_ns = present_ns(self._node) if clock.ros_time_is_active else taken.received_ns
         try:
-            stamp_ns = leading_stamp_ns(data)
             if self._source.is_whole and self._is_as_before(taken):
-                self._states.add_unread(self._body_name, stamp_ns, partial(self._read, data), now_ns=now_ns)
+                stamp_ns = leading_stamp_ns(data)
+                for reader in self._source.readers:
+                    read = partial(self._read, reader, data)
+                    self._states.add_unread(reader.body_name, stamp_ns, read, now_ns=now_ns)
                 return
-            state = self._read(data)
+            msg = deserialize_message(data, self._msg_type)
+        except (ContactDynamicsError, RuntimeError) as error:  # bytes that are no message raise the latter
+            self._refused.add(self.topic, error)
+            return
+        for reader in self._source.readers:
+            self._keep(reader, msg, now_ns=now_ns, taken=taken)
+
+    def _keep(self, reader: BodyReader, msg: object, *, now_ns: int | None, taken: Taken) -> None:
+        """Keep the state of one body, if a message has or completes one."""
+        try:
+            state = reader.state_from(msg)
             if state is not None:
-                self._states.add(self._body_name, state, now_ns=now_ns)
-                self._examined_ns, self._length = taken.received_ns, len(data)
-                self._frame = _leading_frame(data)
+                self._states.add(reader.body_name, state, now_ns=now_ns)
+                self._examined_ns, self._length = taken.received_ns, len(taken.data)
+                self._frame = _leading_frame(taken.data)
         except ContactDynamicsError as error:
             self._refused.add(self.topic, error)
 
@@ -124,10 +140,10 @@ class _StateTopic:
             and 0 <= taken.received_ns - self._examined_ns < _EXAMINE_EVERY_NS
         )
 
-    def _read(self, data: bytes) -> BodyState | None:
-        """Return the state that a message is, or None if it is none or completes none."""
+    def _read(self, reader: BodyReader, data: bytes) -> KnownState | None:
+        """Return the state of one body that a message is, or None if it cannot be read."""
         try:
-            return self._source.state_from(deserialize_message(data, self._msg_type))
+            return reader.state_from(deserialize_message(data, self._msg_type))
         except (ContactDynamicsError, RuntimeError) as error:  # bytes that are no message raise the latter
             self._refused.add(self.topic, error)
             return None

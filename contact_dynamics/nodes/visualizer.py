@@ -31,6 +31,7 @@ from contact_dynamics.nodes.parameters import ConfigurationError, read_server_pa
 from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
 from contact_dynamics.questions.state_store import StateStore
+from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording import BagReader, DamagedLogWarning
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import DEFAULT_PORT, OpenRecording, Sinks, ViewerMode, raise_errors
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
     from rclpy.subscription import Subscription
 
+    from contact_dynamics.questions.uncertain_state import KnownState
     from contact_dynamics.rigid_body.body import BodyState
 
 NODE_NAME: Final = "contact_dynamics_visualizer"
@@ -120,16 +122,8 @@ class Visualizer(InboxNode):
         events = [self._listen(shown, f"{server}/{shown.name}") for shown in _SHOWN]
         if not self.log_path:
             self._wait_for_server(server, events, server_wait)
-        for topics in parameters.topics:
-            types = subscribe_to_states(
-                self,
-                topics,
-                world_frame=parameters.world_frame,
-                p_FB_F=parameters.world.body(topics.body_name).p_FB_F,
-                states=self._states,
-                record=lambda _topic, _taken: None,
-            )
-            self._receivers |= {topic: partial(self.deliver, topic) for topic in types}
+        types = subscribe_to_states(self, parameters, states=self._states, record=lambda _topic, _taken: None)
+        self._receivers |= {topic: partial(self.deliver, topic) for topic in types}
         self.create_timer(DRAW_PERIOD_S, self.draw_states, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.get_logger().info(f"ready: draws {server} to {self._recording.description}")
 
@@ -220,15 +214,15 @@ class _WaitingStates(StateStore):
         super().__init__(history=0.0, timeout=0.0)
         self._waiting: dict[str, list[BodyState]] = {}
 
-    def add(self, body_name: str, state: BodyState, *, now_ns: int | None = None) -> None:  # noqa: ARG002
+    def add(self, body_name: str, state: KnownState, *, now_ns: int | None = None) -> None:  # noqa: ARG002
         """Keep a state whatever its stamp: those of a log are not of this clock."""
-        self._waiting.setdefault(body_name, []).append(state)
+        self._waiting.setdefault(body_name, []).append(state_of(state))
 
     def add_unread(
         self,
         body_name: str,
         stamp_ns: int,  # noqa: ARG002  the state has it too
-        read: Callable[[], BodyState | None],
+        read: Callable[[], KnownState | None],
         *,
         now_ns: int | None = None,  # noqa: ARG002  as above
     ) -> None:

@@ -10,9 +10,10 @@ body will be (lectures 24, 25). `impact` says which velocities follow (lecture 2
 separate, slide or stay (lecture 26).
 
 The kinds share these files: `knowledge` (the world, defaults, and in a `state_store` what was published),
-`subject` (which body, in which state), `sample_times` (when), `touching` (which contacts), `extent` (how
-large numbers may be) and `problem` (in a plane or in space). Answers describe every impact in the same way
-(`resolved_impact`). They give modes of a plane in world axes (`lifted_modes`), and `planar_view` leads back.
+`subject` (which body, in which state, which may be an `uncertain_state`), `sample_times` (when), `touching`
+(which contacts), `extent` (how large numbers may be) and `problem` (in a plane or in space).
+Answers describe every impact in the same way (`resolved_impact`). They give modes of a plane in world axes
+(`lifted_modes`), and `planar_view` leads back.
 `settled_impact` has the impact that follows an inconsistency.
 """
 
@@ -34,8 +35,9 @@ from contact_dynamics.questions.sample_times import (
 )
 from contact_dynamics.questions.settled_impact import SettledImpact
 from contact_dynamics.questions.state_store import StateStore
-from contact_dynamics.questions.subject import FitQuality, PublishedState, UncertainState
+from contact_dynamics.questions.subject import FitQuality, PublishedState
 from contact_dynamics.questions.tumbling import TumblingAnswer, TumblingQuestion
+from contact_dynamics.questions.uncertain_state import UncertainState
 
 __all__ = [
     "AtRate",

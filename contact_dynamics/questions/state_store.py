@@ -11,12 +11,15 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from contact_dynamics.constants import to_ns, to_seconds
 from contact_dynamics.errors import InvalidFieldError, NoStateError, StaleStateError
+from contact_dynamics.questions.uncertain_state import UncertainState
 from contact_dynamics.rigid_body.body import BodyState
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    ReadState: TypeAlias = Callable[[], BodyState | None]
+    from contact_dynamics.questions.uncertain_state import KnownState
+
+    ReadState: TypeAlias = Callable[[], KnownState | None]
     """Reads a state, or returns None if it cannot be read, which the function itself then tells."""
 
 FUTURE_TOLERANCE: Final = 0.5
@@ -53,7 +56,7 @@ class StateStore:
         self._most_states = most_states
         self._tracks: dict[str, _Track] = {}
 
-    def add(self, body_name: str, state: BodyState, *, now_ns: int | None = None) -> None:
+    def add(self, body_name: str, state: KnownState, *, now_ns: int | None = None) -> None:
         """Keep a state. ``now_ns`` is the present time, ns. Without it, any stamp is accepted.
 
         Raises:
@@ -76,7 +79,7 @@ class StateStore:
         """Forget all states, as when the clock is set back and their stamps become times to come."""
         self._tracks.clear()
 
-    def newest(self, body_name: str, *, now_ns: int | None = None) -> BodyState:
+    def newest(self, body_name: str, *, now_ns: int | None = None) -> KnownState:
         """Return the newest state. Without the present time, ns, it may be of any age.
 
         Raises:
@@ -92,7 +95,7 @@ class StateStore:
             raise NoStateError(message)
         return state if now_ns is None else self._fresh(body_name, state, now_ns)
 
-    def window(self, body_name: str, newest: BodyState, seconds: float) -> list[BodyState]:
+    def window(self, body_name: str, newest: KnownState, seconds: float) -> list[KnownState]:
         """Return the states of the last ``seconds`` up to ``newest``, by time, and one for each stamp."""
         track = self._tracks.get(body_name, _Track())
         # No more than the history is kept, so a longer window is as long as the history.
@@ -101,7 +104,7 @@ class StateStore:
 
     def around(
         self, body_name: str, stamp_ns: int, *, now_ns: int | None = None
-    ) -> tuple[BodyState, BodyState | None]:
+    ) -> tuple[KnownState, KnownState | None]:
         """Return the newest state with at most that stamp, and the one after it.
 
         The one after it is None if the state has that stamp itself, or is the newest.
@@ -134,7 +137,7 @@ class StateStore:
             raise StaleStateError(message)
         return earlier, later
 
-    def _keep(self, body_name: str, stamp_ns: int, state: BodyState | ReadState, now_ns: int | None) -> None:
+    def _keep(self, body_name: str, stamp_ns: int, state: KnownState | ReadState, now_ns: int | None) -> None:
         if now_ns is not None:
             ahead_ns = stamp_ns - now_ns
             if ahead_ns > self._future_tolerance_ns:
@@ -157,7 +160,7 @@ class StateStore:
         if track and track.stamps and track.stamps[-1] > latest:
             track.forget_after(latest)
 
-    def _fresh(self, body_name: str, state: BodyState, asked_ns: int) -> BodyState:
+    def _fresh(self, body_name: str, state: KnownState, asked_ns: int) -> KnownState:
         age_ns = asked_ns - state.stamp_ns
         if age_ns > self._timeout_ns:
             message = (
@@ -175,9 +178,9 @@ class _Track:
 
     def __init__(self) -> None:
         self.stamps: list[int] = []
-        self._states: list[BodyState | ReadState] = []
+        self._states: list[KnownState | ReadState] = []
 
-    def add(self, stamp_ns: int, state: BodyState | ReadState) -> None:
+    def add(self, stamp_ns: int, state: KnownState | ReadState) -> None:
         if not self.stamps or stamp_ns >= self.stamps[-1]:  # nearly always
             self.stamps.append(stamp_ns)
             self._states.append(state)
@@ -186,7 +189,7 @@ class _Track:
         self.stamps.insert(index, stamp_ns)
         self._states.insert(index, state)
 
-    def last(self, end: int) -> BodyState | None:
+    def last(self, end: int) -> KnownState | None:
         """Return the last state before an index that can be read; forget those that cannot."""
         while end > 0:
             end -= 1
@@ -196,7 +199,7 @@ class _Track:
             del self.stamps[end], self._states[end]
         return None
 
-    def first(self, begin: int) -> BodyState | None:
+    def first(self, begin: int) -> KnownState | None:
         """Return the first state from an index on that can be read; forget those that cannot."""
         while begin < len(self.stamps):
             state = self._read(begin)
@@ -205,7 +208,7 @@ class _Track:
             del self.stamps[begin], self._states[begin]
         return None
 
-    def between(self, first_ns: int, last_ns: int) -> list[BodyState]:
+    def between(self, first_ns: int, last_ns: int) -> list[KnownState]:
         """Return the states from one stamp to another, both included; forget those that cannot be read."""
         begin, end = bisect_left(self.stamps, first_ns), bisect_right(self.stamps, last_ns)
         found = [self._read(index) for index in range(begin, end)]
@@ -224,9 +227,9 @@ class _Track:
         kept = bisect_right(self.stamps, latest_ns)
         del self.stamps[kept:], self._states[kept:]
 
-    def _read(self, index: int) -> BodyState | None:
+    def _read(self, index: int) -> KnownState | None:
         state = self._states[index]
-        if isinstance(state, BodyState):
+        if isinstance(state, (BodyState, UncertainState)):
             return state
         read = state()
         if read is not None:

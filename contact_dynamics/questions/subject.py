@@ -7,57 +7,29 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from contact_dynamics.constants import seconds_between
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.motion.between_states import state_between
+from contact_dynamics.motion.between_states import share_between, state_between
 from contact_dynamics.motion.covariance import covariance_along
 from contact_dynamics.motion.free_fit import FitResult, fit_free_motion
+from contact_dynamics.questions.uncertain_state import KnownState, UncertainState, state_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rigid_body.published_frame import (
+    covariance_of_other_point,
     origin_of_published_frame,
     state_of_center_of_mass,
     velocity_of_published_frame,
 )
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.validation import FloatArray, check_not_negative
-from contact_dynamics.validation_batches import check_covariance
 from contact_dynamics.world import Body
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import ArrayLike
-
     from contact_dynamics.questions.knowledge import Knowledge
     from contact_dynamics.rigid_body.body import MassProperties
 
     Fitting: TypeAlias = Callable[[MassProperties, Sequence[BodyState]], FitResult]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class UncertainState(Record):
-    """A state and how uncertain it is.
-
-    Attributes:
-        state: The state.
-        covariance: (12, 12), in the order position of the centre of mass (m), rotation vector (rad, world
-            axes, a small rotation applied after the orientation), linear velocity (m/s), angular velocity
-            (rad/s).
-
-    Raises:
-        InvalidFieldError: the matrix is not a covariance (`check_covariance`).
-    """
-
-    state: BodyState
-    covariance: FloatArray
-
-    if TYPE_CHECKING:
-
-        def __init__(self, *, state: BodyState, covariance: ArrayLike) -> None:
-            """Take whatever NumPy makes arrays of."""
-
-    def __post_init__(self) -> None:
-        """Check the covariance."""
-        object.__setattr__(self, "covariance", check_covariance("state.covariance", self.covariance))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -149,9 +121,11 @@ def subject_of(
         return Subject(body=body, state=source)
     if isinstance(source, UncertainState):
         return Subject(body=body, state=source.state, covariance=source.covariance)
-    states, later = _published(body, source, knowledge)
+    known, later = _published(body, source, knowledge)
     if source.fit_window == 0.0:
-        return _moved(Subject(body=body, state=states[-1]), later, source.stamp_ns, knowledge)
+        newest = Subject(body=body, state=state_of(known[-1]), covariance=_covariance(known[-1]))
+        return _moved(newest, later, source.stamp_ns, knowledge)
+    states = [state_of(each) for each in known]
     if fit is None:
         best = fit_free_motion(body.mass_properties, states, gravity_W=knowledge.world.gravity_W)
     else:
@@ -194,7 +168,7 @@ def changed_body(known: Body, mass_properties: MassProperties, p_FB_F: FloatArra
 
 def _published(
     body: Body, source: PublishedState, knowledge: Knowledge
-) -> tuple[Sequence[BodyState], BodyState | None]:
+) -> tuple[Sequence[KnownState], KnownState | None]:
     """Return the published states that are asked for, by time, as states of the body's centre of mass.
 
     The second value is the state after the stamp asked for, if that is between two states.
@@ -203,7 +177,7 @@ def _published(
     if not name:
         raise InvalidFieldError("body_name", name, "the name of a known body, or a state of its own")
     now_ns = None if knowledge.now_ns is None else knowledge.now_ns()
-    later: BodyState | None = None
+    later: KnownState | None = None
     if source.stamp_ns is None:
         newest = knowledge.states.newest(name, now_ns=now_ns)
     else:
@@ -218,13 +192,20 @@ def _published(
     return states, later
 
 
-def _moved(subject: Subject, later: BodyState | None, stamp_ns: int | None, knowledge: Knowledge) -> Subject:
+def _moved(subject: Subject, later: KnownState | None, stamp_ns: int | None, knowledge: Knowledge) -> Subject:
     """Return a subject at the stamp asked for: between its state and the later one, or in free motion."""
     state = subject.state
     if stamp_ns is None or stamp_ns == state.stamp_ns:
         return subject
     if later is not None:
-        return replace(subject, state=state_between(state, later, stamp_ns))
+        between = state_between(state, state_of(later), stamp_ns)
+        covariance = _covariance(later)
+        if subject.covariance is None or covariance is None:
+            return replace(subject, state=between, covariance=None)
+        share = share_between(state, state_of(later), stamp_ns)
+        return replace(
+            subject, state=between, covariance=(1.0 - share) * subject.covariance + share * covariance
+        )
     ahead, horizon = seconds_between(state.stamp_ns, stamp_ns), knowledge.defaults.horizon
     if ahead > horizon:
         found = f"{ahead:.9g} s after the newest state"
@@ -236,9 +217,14 @@ def _moved(subject: Subject, later: BodyState | None, stamp_ns: int | None, know
     return replace(subject, state=replace(motion.state_at(ahead), stamp_ns=stamp_ns), covariance=covariance)
 
 
-def _carried_over(state: BodyState, known: Body, body: Body) -> BodyState:
+def _covariance(known: KnownState) -> FloatArray | None:
+    return None if isinstance(known, BodyState) else known.covariance
+
+
+def _carried_over(published: KnownState, known: Body, body: Body) -> KnownState:
     """Return the state of a body's centre of mass, from that of the known body with another centre."""
-    return state_of_center_of_mass(
+    state = state_of(published)
+    moved = state_of_center_of_mass(
         p_WF_W=origin_of_published_frame(state, known.p_FB_F),
         q_WF=state.q_WB,
         v_WF_W=velocity_of_published_frame(state, known.p_FB_F),
@@ -246,3 +232,7 @@ def _carried_over(state: BodyState, known: Body, body: Body) -> BodyState:
         p_FB_F=body.p_FB_F,
         stamp_ns=state.stamp_ns,
     )
+    if isinstance(published, BodyState):
+        return moved
+    covariance = covariance_of_other_point(published.covariance, state, body.p_FB_F - known.p_FB_F)
+    return UncertainState(state=moved, covariance=covariance)

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from contact_dynamics.recording.bag_reader import LoggedMessage
-    from contact_dynamics.rigid_body.body import BodyState
 
 CLOCK: Final = "/clock"
 
@@ -39,7 +38,6 @@ class ServerAgain:
             ConfigurationError: the record lacks a parameter, or has one that is not allowed.
         """
         parameters = read_server_parameters(LoggedParameters(run))
-        logged = LoggedParameters(run)
         self._asked_ns = 0
         self._clock_ns = 0
         self._is_simulated = run.get("use_sim_time") == str(True)
@@ -55,12 +53,7 @@ class ServerAgain:
             defaults=parameters.defaults,
             now_ns=lambda: self._asked_ns or None,  # it is zero before a simulation tells the time
         )
-        self._sources: dict[str, tuple[str, Callable[[Any], BodyState | None]]] = {}
-        for topics in parameters.topics:
-            p_FB_F = parameters.world.body(topics.body_name).p_FB_F
-            for source in state_sources(topics, world_frame=parameters.world_frame, p_FB_F=p_FB_F):
-                topic = logged.resolved_topic(source.parameter, source.topic)
-                self._sources[topic] = (topics.body_name, source.state_from)
+        self._sources = {source.full_name: source.readers for source in state_sources(parameters)}
 
     @property
     def topics(self) -> frozenset[str]:
@@ -72,12 +65,13 @@ class ServerAgain:
         if message.topic == CLOCK:
             self._tick(leading_stamp_ns(message.data))
             return
-        body_name, state_from = self._sources[message.topic]
         now_ns = self._clock_ns or None if self._is_simulated else message.log_time_ns
-        with suppress(ContactDynamicsError):
-            state = state_from(decode_without_ros(message))
-            if state is not None:
-                self._states.add(body_name, state, now_ns=now_ns)
+        decoded = decode_without_ros(message)
+        for body_name, state_from in self._sources[message.topic]:
+            with suppress(ContactDynamicsError):
+                state = state_from(decoded)
+                if state is not None:
+                    self._states.add(body_name, state, now_ns=now_ns)
 
     def answer(
         self, service_type: str, request: object, make_response: Callable[[], Any], *, asked_ns: int

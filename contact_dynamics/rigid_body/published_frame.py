@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.many import rotated
 from contact_dynamics.rotations.one import cross_matrix, rotation_matrix
@@ -75,3 +77,22 @@ def centers_of_mass(p_WF_W: FloatArray, q_WB: FloatArray, p_FB_F: FloatArray) ->
 def velocity_of_published_frame(state: BodyState, p_FB_F: FloatArray) -> FloatArray:
     """Return the velocity of F's origin, (3,), m/s, world axes."""
     return state.velocity_of_point(origin_of_published_frame(state, p_FB_F))
+
+
+def covariance_of_other_point(covariance: FloatArray, state: BodyState, lever_B: FloatArray) -> FloatArray:
+    """Return the covariance of a body's state with another of its points for the position and its velocity.
+
+    Covariances are (12, 12), in the order position (m), rotation vector (rad, world axes, a small rotation
+    applied after the orientation), linear velocity (m/s), angular velocity (rad/s).
+
+    Args:
+        covariance: That of the state with the first point.
+        state: The state. Its orientation and its angular velocity are those of all points.
+        lever_B: (3,), m, from the first point to the other one, in the axes of the body.
+    """
+    lever = cross_matrix(turned(state.q_WB, lever_B))
+    J = np.eye(12)
+    J[:3, 3:6] = J[6:9, 9:] = -lever
+    J[6:9, 3:6] = -cross_matrix(state.w_WB_W) @ lever
+    moved: FloatArray = J @ covariance @ J.T
+    return moved

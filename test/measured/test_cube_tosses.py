@@ -10,7 +10,7 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.measured.cube_tosses import HALF_SIDE, RATE
 from contact_dynamics.measured.events import measure_events
 from contact_dynamics.measured.read_toss import read_toss
-from contact_dynamics.measured.velocity_estimate import FEWEST_FRAMES
+from contact_dynamics.motion.velocity_estimate import FEWEST_FRAMES
 from oracles.rigid_flight import about, fly, matrix
 
 CORNERS = HALF_SIDE * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])

@@ -52,12 +52,26 @@ def causal_velocities(
     w_W = np.full((len(times), 3), np.nan)
     for newest in range(FEWEST_FRAMES - 1, len(times)):
         window = slice(max(0, newest + 1 - frames), newest + 1)
-        ago = times[window] - times[newest]
-        powers = np.column_stack([np.ones_like(ago), ago, ago * ago])
-        coordinates = np.column_stack([p_W[window] - p_W[newest], rotation_vectors(q[window], q[newest])])
-        slopes = np.linalg.lstsq(powers, coordinates, rcond=None)[0][1]
-        v_W[newest], w_W[newest] = slopes[:3], slopes[3:]
+        v_W[newest], w_W[newest] = newest_velocity(times[window], p_W[window], q[window])
     return v_W, w_W
+
+
+def newest_velocity(times: FloatArray, p_W: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return linear and angular velocity, (3,) each, at the last of the frames, as `causal_velocities`."""
+    coordinates = np.column_stack([p_W - p_W[-1], rotation_vectors(q, q[-1])])
+    slopes = np.linalg.lstsq(_powers(times), coordinates, rcond=None)[0][1]
+    return slopes[:3], slopes[3:]
+
+
+def slope_weights(times: FloatArray) -> FloatArray:
+    """Return the weights, (n,), 1/s, with which the frames enter the velocity at the last of them."""
+    weights: FloatArray = np.linalg.pinv(_powers(times))[1]
+    return weights
+
+
+def _powers(times: FloatArray) -> FloatArray:
+    ago = times - times[-1]
+    return np.column_stack([np.ones_like(ago), ago, ago * ago])
 
 
 def slope_noise(*, frames: int, rate: float, noise: float) -> float:

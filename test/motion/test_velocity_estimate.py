@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from contact_dynamics.measured.velocity_estimate import (
+from contact_dynamics.motion.velocity_estimate import (
     FEWEST_FRAMES,
     causal_velocities,
     frames_in_window,

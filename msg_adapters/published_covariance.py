@@ -1,0 +1,67 @@
+"""Covariances of poses and twists, (6, 6) each as ROS publishes them, to that of a body's state.
+
+ROS's order is x y z, then the rotations about the fixed axes x y z of the header's frame. A twist's is that
+of its linear and angular velocity, in the axes that the twist is in. A covariance of zeros, or one whose
+first number is negative, means by custom that it is not known.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.questions.uncertain_state import KnownState, UncertainState
+from contact_dynamics.rigid_body.published_frame import covariance_of_other_point, velocity_of_published_frame
+from contact_dynamics.rotations.one import cross_matrix, rotation_matrix
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.validation import FloatArray
+
+
+def covariance_from_msg(numbers: Sequence[float]) -> FloatArray | None:
+    """Return a covariance, (6, 6), or None if the message does not tell one."""
+    covariance = np.array(numbers, dtype=np.float64).reshape(6, 6)
+    return covariance if covariance[0, 0] >= 0.0 and covariance.any() else None
+
+
+def of_pose_and_twist(pose: FloatArray | None, twist: FloatArray | None) -> FloatArray | None:
+    """Return the covariance of both, (12, 12), as if they were independent; None if one is not known."""
+    if pose is None or twist is None:
+        return None
+    both = np.zeros((12, 12))
+    both[:6, :6], both[6:, 6:] = pose, twist
+    return both
+
+
+def with_covariance(
+    state: BodyState, covariance_F: FloatArray | None, p_FB_F: FloatArray, *, twist_in_body_axes: bool
+) -> KnownState:
+    """Return a state with its covariance, or without it if that is not known or is no covariance.
+
+    Many sensors publish numbers that are no covariance. Their states count all the same.
+
+    Args:
+        state: The state of the centre of mass.
+        covariance_F: (12, 12), of the published pose, then of the published twist.
+        p_FB_F: (3,), m, the centre of mass in the published frame F.
+        twist_in_body_axes: Whether the published twist is in the axes of the body. An error of the
+            orientation then turns the velocities too. Otherwise it is in the world's axes.
+    """
+    if covariance_F is None:
+        return state
+    if twist_in_body_axes:
+        J = np.eye(12)
+        J[6:9, 6:9] = J[9:, 9:] = rotation_matrix(state.q_WB)
+        J[6:9, 3:6] = -cross_matrix(velocity_of_published_frame(state, p_FB_F))
+        J[9:, 3:6] = -cross_matrix(state.w_WB_W)
+        covariance_F = J @ covariance_F @ J.T
+    try:
+        covariance = covariance_of_other_point(covariance_F, state, p_FB_F)
+        return UncertainState(state=state, covariance=covariance)
+    except InvalidFieldError:
+        return state

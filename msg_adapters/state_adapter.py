@@ -1,0 +1,57 @@
+"""What a source of published states is: which messages it takes, and how states come of them.
+
+Each source has a file here with its adapter. An adapter of one's own is an object of this kind that an entry
+point of the group `contact_dynamics.state_sources` names.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from contact_dynamics.questions.uncertain_state import KnownState
+from msg_adapters.transforms import TransformTree
+
+if TYPE_CHECKING:
+    from contact_dynamics.validation import FloatArray
+
+Reader: TypeAlias = "Callable[[Any], KnownState | None]"
+"""Makes a state of a message, or None if another message must complete it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SourceSettings:
+    """What an adapter needs to know of a body and of the world.
+
+    Attributes:
+        body_name: The body's name.
+        body_frame: The frame of the body, whose pose is published.
+        world_frame: The frame that states are in.
+        p_FB_F: (3,), m, the body's centre of mass in its frame.
+        velocity_window: s, the time over which a velocity is found from poses.
+        static: The transforms between frames that stand still, as far as they are known.
+    """
+
+    body_name: str
+    body_frame: str
+    world_frame: str
+    p_FB_F: FloatArray
+    velocity_window: float
+    static: TransformTree
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StateAdapter:
+    """One kind of source.
+
+    Attributes:
+        type_names: The type of each topic that it takes, "package/msg/Name".
+        readers: Returns a reader for each topic, in the same order. It is called once for each body.
+        is_whole: Whether each message is a state by itself, whatever came before. It can then be read later,
+            or never. Its first field is a header with the body's stamp.
+    """
+
+    type_names: tuple[str, ...]
+    readers: Callable[[SourceSettings], Sequence[Reader]]
+    is_whole: bool = False

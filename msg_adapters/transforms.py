@@ -1,0 +1,157 @@
+"""`tf2_msgs/TFMessage`: the tree of frames that such messages describe, and a frame's pose in another one.
+
+Each transform says where a child frame is in its parent. A frame's pose in another frame is found by going up
+from both to the frame that they share. Nothing is interpolated: a link that moves counts only at its own
+stamp. `tf2` itself interpolates. It has no wheel for Python, and its buffer of all frames over time is more
+than is needed here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from contact_dynamics.errors import FrameMismatchError, InvalidFieldError
+from contact_dynamics.rotations.one import conjugate, product, rotated, rotation_matrix
+from contact_dynamics.validation import check_array, check_unit
+from msg_adapters.geometry import quaternion_from_msg, vector_from_msg
+from msg_adapters.stamps import stamp_ns_from_msg
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from geometry_msgs.msg import TransformStamped
+
+    from contact_dynamics.rotations.one import Quaternion
+    from contact_dynamics.validation import FloatArray
+
+
+class TFMessage(Protocol):
+    """What `tf2_msgs/TFMessage` has. The package is needed only where such a source is used."""
+
+    transforms: Sequence[TransformStamped]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FramePose:
+    """Where a frame is in another one.
+
+    Attributes:
+        p: (3,), m, its origin.
+        q: (4,), its orientation, unit, x y z w.
+    """
+
+    p: FloatArray
+    q: FloatArray
+
+    @property
+    def R(self) -> FloatArray:
+        """The rotation matrix, (3, 3)."""
+        return rotation_matrix(self.q)
+
+    def of(self, inner: FramePose) -> FramePose:
+        """Return where a frame is in the outer frame, if it is at ``inner`` in this one."""
+        q = _quaternion(self.q)
+        turned = np.array(rotated(q, inner.p.tolist()))
+        return FramePose(p=self.p + turned, q=np.array(product(q, _quaternion(inner.q))))
+
+    def inverse(self) -> FramePose:
+        """Return where the other frame is in this one."""
+        back = conjugate(_quaternion(self.q))
+        return FramePose(p=-np.array(rotated(back, self.p.tolist())), q=np.array(back))
+
+
+_SAME = FramePose(p=np.zeros(3), q=np.array([0.0, 0.0, 0.0, 1.0]))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Link:
+    parent: str
+    pose: FramePose
+    stamp_ns: int | None  # None stands still
+
+
+class TransformTree:
+    """The newest transform of each frame."""
+
+    def __init__(self, static: TransformTree | None = None) -> None:
+        """Begin without links of its own; those of ``static`` count too, also later ones."""
+        self._links: dict[str, _Link] = {}
+        self._static = static
+
+    def add(self, msg: TFMessage, *, is_static: bool) -> None:
+        """Take all transforms of a message.
+
+        Raises:
+            InvalidFieldError: a frame has no name, a number is not finite, or a quaternion is not unit. What
+                came before it in the message is taken.
+        """
+        for i, transform in enumerate(msg.transforms):
+            link = _link_from_msg(transform, f"transforms[{i}]", is_static=is_static)
+            self._links[transform.child_frame_id] = link
+
+    def stamp_ns(self, frame: str) -> int | None:
+        """Return the time of the newest transform of a frame that moves, or None if there is none."""
+        link = self._links.get(frame)
+        return None if link is None else link.stamp_ns
+
+    def pose(self, frame: str, *, in_frame: str, stamp_ns: int, field: str) -> FramePose:
+        """Return where a frame is in another one at a time, ns.
+
+        Raises:
+            FrameMismatchError: no transforms lead from one to the other, or one of them moves and is of
+                another time. ``field`` is the message's field with the frame's name, for the error.
+        """
+        to_frame, to_other = dict(self._up(frame)), dict(self._up(in_frame))
+        for shared, inner in to_frame.items():
+            if shared not in to_other:
+                continue
+            for other in (*_before(to_frame, shared), *_before(to_other, shared)):
+                link = self._link(other)
+                if link is not None and link.stamp_ns not in {None, stamp_ns}:
+                    message = (
+                        f"{field}: found {frame!r}, whose frame {other!r} was last told at "
+                        f"{link.stamp_ns} ns, allowed is one told at {stamp_ns} ns or a static one"
+                    )
+                    raise FrameMismatchError(message)
+            return to_other[shared].inverse().of(inner)
+        message = (
+            f"{field}: found {frame!r}, allowed is {in_frame!r}, or a frame with a known transform to it"
+        )
+        raise FrameMismatchError(message)
+
+    def _up(self, frame: str) -> Iterator[tuple[str, FramePose]]:
+        """Yield each frame from this one up to the root, with this one's pose in it."""
+        pose, seen = _SAME, {frame}
+        yield frame, pose
+        while (link := self._link(frame)) is not None and link.parent not in seen:
+            pose, frame = link.pose.of(pose), link.parent
+            seen.add(frame)
+            yield frame, pose
+
+    def _link(self, frame: str) -> _Link | None:
+        link = self._links.get(frame)
+        return self._static._link(frame) if link is None and self._static is not None else link  # noqa: SLF001  another tree
+
+
+def _before(frames: dict[str, FramePose], last: str) -> list[str]:
+    """Return the frames whose links lead up to ``last``."""
+    names = list(frames)
+    return names[: names.index(last)]
+
+
+def _link_from_msg(msg: TransformStamped, field: str, *, is_static: bool) -> _Link:
+    for name, frame in (("header.frame_id", msg.header.frame_id), ("child_frame_id", msg.child_frame_id)):
+        if not frame:
+            raise InvalidFieldError(f"{field}.{name}", "nothing", "the name of a frame")
+    rotation = check_unit(f"{field}.transform.rotation", quaternion_from_msg(msg.transform.rotation), 4)
+    p = check_array(f"{field}.transform.translation", vector_from_msg(msg.transform.translation), (3,))
+    stamp_ns = None if is_static else stamp_ns_from_msg(msg.header.stamp)
+    return _Link(parent=msg.header.frame_id, pose=FramePose(p=p, q=rotation), stamp_ns=stamp_ns)
+
+
+def _quaternion(q: FloatArray) -> Quaternion:
+    x, y, z, w = q.tolist()
+    return x, y, z, w
