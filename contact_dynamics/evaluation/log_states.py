@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -15,15 +16,15 @@ from contact_dynamics.evaluation.recording import Recording
 from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.nodes.parameters import ServerParameters, read_server_parameters
 from contact_dynamics.nodes.run_record import PARAMETERS, LoggedParameters
+from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.cdr import decode_without_ros
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
 from contact_dynamics.replay.stand_ins import stand_in
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
-    from typing import Any
 
     from contact_dynamics.nodes.parameters import ParameterSource
     from contact_dynamics.rigid_body.body import BodyState
@@ -75,7 +76,7 @@ def recording_of_log(path: Path, *, config: Path | None = None) -> Recording:
                 )
             source = LoggedParameters(run)
         parameters, informed = parameters_of(source)
-        found = _states(log, parameters, source)
+        found = _states(log, parameters)
     motions = [
         motion
         for body in parameters.world.bodies
@@ -94,28 +95,19 @@ def recording_of_log(path: Path, *, config: Path | None = None) -> Recording:
     return Recording(motions=tuple(motions), informed=informed, damage=log.damage or "")
 
 
-def _states(
-    log: BagReader, parameters: ServerParameters, source: ParameterSource
-) -> dict[str, list[tuple[BodyState, int]]]:
+def _states(log: BagReader, parameters: ServerParameters) -> dict[str, list[tuple[BodyState, int]]]:
     """Return the states by body, in the order in which they came, with the log_time of each, ns."""
     stand_in((name, text) for name, text in log.definitions().items() if not name.startswith(_OURS))
     from contact_dynamics.nodes.state_sources import state_sources  # imports what now stands in for ROS
 
     found: dict[str, list[tuple[BodyState, int]]] = {body.name: [] for body in parameters.world.bodies}
-    readers: dict[str, tuple[str, Callable[[Any], BodyState | None]]] = {}
-    for topics in parameters.topics:
-        p_FB_F = parameters.world.body(topics.body_name).p_FB_F
-        for each in state_sources(topics, world_frame=parameters.world_frame, p_FB_F=p_FB_F):
-            topic = source.resolved_topic(each.parameter, each.topic)
-            readers[topic] = (topics.body_name, each.state_from)
-    for message in log.messages(readers.keys()):
-        body_name, state_from = readers[message.topic]
-        try:
-            state = state_from(decode_without_ros(message))
-        except ContactDynamicsError:  # the server refused it too
-            continue
-        if state is not None:
-            found[body_name].append((state, message.log_time_ns))
+    sources = {each.full_name: each for each in state_sources(parameters)}
+    for message in log.messages(sources.keys()):
+        for body_name, state_from in sources[message.topic].readers:
+            with suppress(ContactDynamicsError):  # the server refused it too
+                known = state_from(decode_without_ros(message))
+                if known is not None:
+                    found[body_name].append((state_of(known), message.log_time_ns))
     return found
 
 

@@ -66,10 +66,9 @@ class ServerAgain:
             self._tick(leading_stamp_ns(message.data))
             return
         now_ns = self._clock_ns or None if self._is_simulated else message.log_time_ns
-        decoded = decode_without_ros(message)
         for body_name, state_from in self._sources[message.topic]:
             with suppress(ContactDynamicsError):
-                state = state_from(decoded)
+                state = state_from(decode_without_ros(message))
                 if state is not None:
                     self._states.add(body_name, state, now_ns=now_ns)
 

@@ -148,7 +148,7 @@ def test_every_topic_that_is_configured_is_subscribed() -> None:
     rclpy.init(args=["--ros-args", "--params-file", str(SERVER_FILE), "-p", "log:=false", *arguments])
     try:
         node = server.Server()
-        assert set(topics.values()) <= {each.topic_name for each in node.subscriptions}
+        assert set(topics.values()) <= {each.topic_name for each in node.inbox}
         node.destroy_node()
     finally:
         rclpy.shutdown()
