@@ -30,8 +30,8 @@ def evaluate_parser() -> argparse.ArgumentParser:
         "recordings",
         nargs="*",
         metavar="RECORDING",
-        help="log (its folder or .mcap file), toss (.csv), tosses (.npz, or one of them: tosses.npz#17), or "
-        "a folder in which all of these are looked for",
+        help="log (its folder or .mcap or .db3 file), toss (.csv), tosses (.npz, or one of them: "
+        "tosses.npz#17), or a folder in which all of these are looked for",
     )
     _add_what_is_asked(parser)
     _add_who_does_it(parser)

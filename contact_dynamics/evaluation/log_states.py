@@ -53,7 +53,7 @@ def recording_of_log(path: Path, *, config: Path | None = None) -> Recording:
     """Return the states of a log's bodies, and what its server was configured with.
 
     Args:
-        path: A bag folder, or an ``.mcap`` file.
+        path: A bag folder, or one file of a bag.
         config: File of the server's parameters, instead of the log's own record.
 
     Raises:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -13,6 +14,7 @@ from contact_dynamics.evaluation.log_states import recording_of_log
 from contact_dynamics.evaluation.recording import recording_of_toss
 from contact_dynamics.measured.cube_tosses import count_cube_tosses
 from contact_dynamics.measured.read_toss import read_toss
+from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.records import Record
 
 if TYPE_CHECKING:
@@ -20,9 +22,13 @@ if TYPE_CHECKING:
 
     from contact_dynamics.evaluation.recording import Recording
 
-LOG: Final = ".mcap"
 TOSS: Final = ".csv"
 TOSSES: Final = ".npz"
+
+LOG: Final = re.compile(r"\.(mcap|db3)(\.(zstd|zst|lz4))?$")
+"""How the names of a log's files end."""
+
+_WHAT: Final = f"a log (.mcap, .db3), a toss ({TOSS}), tosses ({TOSSES}), or a folder with any"
 
 _BLOCK: Final = 1 << 20  # bytes that are read at once
 
@@ -32,7 +38,7 @@ class Source(Record):
     """One recording to evaluate, before it is read.
 
     Attributes:
-        path: A log's folder or its ``.mcap`` file, or a file of tosses.
+        path: A log's folder or a file of one, or a file of tosses.
         index: Number of the toss in an ``.npz``, or None where the file is one recording.
     """
 
@@ -48,11 +54,12 @@ class Source(Record):
         """Return a hash of the content, 64 hexadecimal digits; where it lies plays no part.
 
         Raises:
+            NotALogError: it has no file of a log.
             OSError: it cannot be read.
         """
-        path = self.path.resolve()
-        files = sorted(path.glob(f"*{LOG}")) if path.is_dir() else [path]
-        hashes = [_hash_of(file, file.stat().st_mtime_ns) for file in files]
+        is_toss = self.path.suffix in {TOSS, TOSSES}
+        files = [self.path] if is_toss else BagReader(self.path).paths
+        hashes = [_hash_of(file.resolve(), file.stat().st_mtime_ns) for file in files]
         return hashlib.sha256(" ".join([*hashes, str(self.index)]).encode()).hexdigest()
 
     def read(self, *, config: Path | None = None) -> Recording:
@@ -74,8 +81,8 @@ class Source(Record):
 def find_sources(paths: Iterable[str]) -> tuple[list[Source], list[tuple[str, str]]]:
     """Return what the paths of a command line name, in their order.
 
-    A path is a log's folder, an ``.mcap`` file, a toss in CSV, an ``.npz`` of tosses, one toss of it
-    (``tosses.npz#17``), or a folder in which all of these are looked for, at any depth.
+    A path is a log's folder, one file of a log (MCAP or SQLite), a toss in CSV, an ``.npz`` of tosses, one
+    toss of it (``tosses.npz#17``), or a folder in which all of these are looked for, at any depth.
 
     Returns:
         The sources, and the paths that name none, each with the reason.
@@ -86,9 +93,7 @@ def find_sources(paths: Iterable[str]) -> tuple[list[Source], list[tuple[str, st
         try:
             found = list(_sources_at(text))
             if not found:
-                raise InvalidFieldError(
-                    text, "no recording in it", f"a folder with {LOG}, {TOSS} or {TOSSES}"
-                )
+                raise InvalidFieldError(text, "no recording in it", _WHAT)
             sources += found
         except (ContactDynamicsError, OSError) as error:  # noqa: PERF203  the others still count
             refused.append((text, str(error)))
@@ -105,15 +110,19 @@ def _sources_at(text: str) -> Iterator[Source]:
         yield from _sources_of_file(at)
         return
     if not at.is_dir():
-        raise InvalidFieldError(text, "no such file or folder", f"a log, a {TOSS}, a {TOSSES}, or a folder")
-    files = sorted(file for file in at.rglob("*") if file.suffix in {LOG, TOSS, TOSSES} and file.is_file())
+        raise InvalidFieldError(text, "no such file or folder", _WHAT)
+    files = sorted(file for file in at.rglob("*") if _is_known(file) and file.is_file())
     yield from dict.fromkeys(source for file in files for source in _sources_of_file(file))
+
+
+def _is_known(file: Path) -> bool:
+    return file.suffix in {TOSS, TOSSES} or LOG.search(file.name) is not None
 
 
 def _sources_of_file(file: Path) -> Iterator[Source]:
     if file.suffix == TOSSES:
         yield from (Source(path=file, index=index) for index in range(count_cube_tosses(file)))
-    elif file.suffix == LOG and (file.parent / "metadata.yaml").is_file():
+    elif LOG.search(file.name) and (file.parent / "metadata.yaml").is_file():
         yield Source(path=file.parent)  # a bag's folder, whose files are one log
     else:
         yield Source(path=file)

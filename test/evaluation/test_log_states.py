@@ -6,12 +6,16 @@ import json
 from pathlib import Path
 
 import pytest
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+from rosbags.typesys import Stores, get_typestore
 
 from contact_dynamics.evaluation.events import find_events
 from contact_dynamics.evaluation.log_states import recording_of_log
 from contact_dynamics.evaluation.recording import Recording, recording_of_toss
+from contact_dynamics.evaluation.sources import find_sources
 from contact_dynamics.measured.read_toss import read_toss
 from contact_dynamics.nodes.parameters import ConfigurationError
+from contact_dynamics.recording import BagReader
 from contact_dynamics.recording.errors import NotALogError
 from evaluation.made_logs import EPOCH_NS, parameters_of_toss, write_log
 from evaluation.made_motion import only_motion
@@ -67,6 +71,29 @@ def test_a_configuration_beside_the_log_is_used_instead_of_its_own(tmp_path: Pat
     found = recording_of_log(log, config=config)
     assert found.informed.world.surfaces[0].friction == 0.77
     assert_same_events(found, recording_of_toss(read_toss()))
+
+
+@pytest.mark.parametrize("mode", [CompressionMode.NONE, CompressionMode.FILE])
+@pytest.mark.parametrize("storage", StoragePlugin)
+def test_a_bag_of_another_tool_has_the_events_too(
+    tmp_path: Path, storage: StoragePlugin, mode: CompressionMode
+) -> None:
+    messages = list(BagReader(write_log(tmp_path / "log")).messages())
+    writer = Writer(tmp_path / "foreign", version=9, storage_plugin=storage)
+    if mode is not CompressionMode.NONE:
+        writer.set_compression(mode, CompressionFormat.ZSTD)
+    with writer:
+        connection = writer.add_connection(
+            messages[0].topic, messages[0].type_name, typestore=get_typestore(Stores.ROS2_JAZZY)
+        )
+        for message in messages:
+            writer.write(connection, message.log_time_ns, message.data)
+    (source,), refused = find_sources([str(tmp_path / "foreign")])
+    assert refused == []
+    parameters_of_toss(tmp_path / "beside", read_toss())
+    found = source.read(config=tmp_path / "beside" / "server.yaml")
+    assert_same_events(found, recording_of_toss(read_toss()))
+    assert len(source.digest()) == 64
 
 
 def test_a_log_without_states_of_a_configured_body_is_refused(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
+import pty
 import signal
 import subprocess
 import sys
@@ -200,6 +201,19 @@ def test_killed_in_the_middle_it_goes_on_with_the_rest(tmp_path: Path) -> None:
         json.loads((tmp_path / f"{name}.json").read_text()) for name in ("resumed", "at_once")
     )
     assert resumed == at_once
+
+
+def test_a_bar_tells_who_watches_how_far_it_is_and_leaves_no_trace(tmp_path: Path) -> None:
+    for seed in range(2):
+        write_log(tmp_path / f"log{seed}", seed=seed)
+    ours, theirs = pty.openpty()
+    command = [sys.executable, "-m", "contact_dynamics", "evaluate", str(tmp_path), *QUICK]
+    subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=theirs, check=True)
+    os.close(theirs)
+    shown = os.read(ours, 10_000).decode()
+    os.close(ours)
+    assert "1 of 2, " in shown
+    assert shown.endswith("\r\x1b[K")
 
 
 def test_a_damaged_result_is_made_again(tmp_path: Path) -> None:
