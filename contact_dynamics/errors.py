@@ -22,6 +22,10 @@ class InvalidFieldError(ContactDynamicsError, ValueError):
         self.found = found
         self.allowed = allowed
 
+    def __reduce__(self) -> tuple[type[InvalidFieldError], tuple[str, str, str]]:
+        """Return how to make it again, in another process, with what was found as text."""
+        return type(self), (self.field, _short(self.found), self.allowed)
+
 
 class TooLargeError(InvalidFieldError):
     """A list is longer than the stated limit."""
@@ -61,6 +65,14 @@ class NotSupportedError(ContactDynamicsError):
 
 class UndecidedError(NotSupportedError):
     """The answer depends on rounding, because the case is degenerate to the last digits."""
+
+
+class BusyError(ContactDynamicsError):
+    """So many questions wait already that another one would wait too long."""
+
+
+class TookTooLongError(ContactDynamicsError):
+    """The answer did not come within the time that it was given."""
 
 
 _LONGEST_SHOWN: Final = 120

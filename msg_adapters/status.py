@@ -18,6 +18,8 @@ _CODE_NAMES: Final[tuple[tuple[type[errors.ContactDynamicsError], str], ...]] = 
     (errors.StaleStateError, "STALE_STATE"),
     (errors.FrameMismatchError, "FRAME_MISMATCH"),
     (errors.NotSupportedError, "NOT_SUPPORTED"),
+    (errors.BusyError, "BUSY"),
+    (errors.TookTooLongError, "TIMEOUT"),
 )
 
 

@@ -35,10 +35,20 @@ class EventTimes(NamedTuple):
 
 
 @dataclass(slots=True, kw_only=True)
-class _Call:
-    node_clock_ns: int  # when it came, on the clock that stamps the events
-    received_ns: int  # the same on this machine's clock, ns since the epoch
-    sent_ns: int = 0  # when its answer left
+class Call:
+    """A call of a service.
+
+    Attributes:
+        node_clock_ns: When it came, on the clock that stamps the events, ns.
+        received_ns: When it came, on this machine's clock, ns since the epoch.
+        sent_ns: When its answer left, on the same clock.
+        client: The identity of who called, or nothing while no event told of the request.
+    """
+
+    node_clock_ns: int
+    received_ns: int
+    sent_ns: int = 0
+    client: bytes = b""
 
 
 class CallTimes:
@@ -47,18 +57,19 @@ class CallTimes:
     def __init__(self, node_clock_ns: Callable[[], int]) -> None:
         """Take the clock that stamps the events, whose times are noted beside this machine's."""
         self._node_clock_ns = node_clock_ns
-        self._unclaimed: deque[_Call] = deque(maxlen=_MOST_OPEN)  # no event told of the request yet
-        self._answered: dict[tuple[bytes, int], _Call] = {}  # no event told of the answer yet
+        self._unclaimed: deque[Call] = deque(maxlen=_MOST_OPEN)  # no event told of the request yet
+        self._answered: dict[tuple[bytes, int], Call] = {}  # no event told of the answer yet
 
-    def begin(self) -> int:
-        """Note that a request has come, and return the time of the node's clock, ns."""
-        call = _Call(node_clock_ns=self._node_clock_ns(), received_ns=time.time_ns())
+    def begin(self) -> Call:
+        """Note that a request has come."""
+        call = Call(node_clock_ns=self._node_clock_ns(), received_ns=time.time_ns())
         self._unclaimed.append(call)
-        return call.node_clock_ns
+        return call
 
-    def end(self) -> None:
-        """Note that the answer to the newest request leaves."""
-        self._unclaimed[-1].sent_ns = time.time_ns()
+    @staticmethod
+    def end(call: Call) -> None:
+        """Note that the answer to a call leaves."""
+        call.sent_ns = time.time_ns()
 
     def of_event(self, event: bytes) -> EventTimes:
         """Return the time of what an event reports.
@@ -74,6 +85,7 @@ class CallTimes:
             while self._unclaimed:
                 call = self._unclaimed.popleft()
                 if call.node_clock_ns >= info.stamp_ns:  # otherwise the event of this call got lost
+                    call.client = info.client_gid
                     self._answered[key] = call
                     while len(self._answered) > _MOST_OPEN:
                         del self._answered[next(iter(self._answered))]

@@ -6,7 +6,7 @@ import difflib
 import re
 from typing import TYPE_CHECKING, Any, Final
 
-from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.parameter import Parameter
 
 from contact_dynamics.nodes.parameters import ConfigurationError
@@ -32,8 +32,11 @@ class NodeParameters:
         self, name: str, default: Any, description: str, bounds: tuple[float, float] | None = None
     ) -> Any:
         """Return a read-only parameter's value (see `ParameterSource`)."""
-        ranges = [FloatingPointRange(from_value=bounds[0], to_value=bounds[1])] if bounds else []
-        descriptor = ParameterDescriptor(description=description, read_only=True, floating_point_range=ranges)
+        descriptor = ParameterDescriptor(description=description, read_only=True)
+        if bounds and isinstance(default, int):
+            descriptor.integer_range = [IntegerRange(from_value=int(bounds[0]), to_value=int(bounds[1]))]
+        elif bounds:
+            descriptor.floating_point_range = [FloatingPointRange(from_value=bounds[0], to_value=bounds[1])]
         declared = _MANDATORY[default] if isinstance(default, type) else default
         try:
             value = self._node.declare_parameter(name, declared, descriptor).value

@@ -16,6 +16,7 @@ from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.nodes.body_shapes import DESCRIPTIONS, ShapeParameters
 from contact_dynamics.questions.knowledge import Defaults
 from contact_dynamics.questions.state_store import FUTURE_TOLERANCE
+from contact_dynamics.questions.workers import WorkerLimits
 from contact_dynamics.recording.limits import Compression, LogLimits
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.shapes.obstacle import Obstacle
@@ -114,6 +115,7 @@ class ServerParameters:
         state_history: s.
         future_tolerance: s.
         defaults: What holds where a question says nothing.
+        worker_limits: What the processes may take that answer what takes long.
         log_limits: How the log is cut into files, and which of them are kept.
     """
 
@@ -125,6 +127,7 @@ class ServerParameters:
     state_history: float
     future_tolerance: float
     defaults: Defaults
+    worker_limits: WorkerLimits
     log: bool
     log_directory: str
     log_limits: LogLimits
@@ -178,6 +181,7 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
             (0.0, 1e6),
         ),
         defaults=_read_defaults(reader),
+        worker_limits=_read_worker_limits(reader),
         log=reader.read("log", default=True, description="Log every state, request and response to MCAP."),
         log_directory=reader.read(
             "log_directory", "", "Folder for the log's folder. If empty, this is where the server starts."
@@ -222,6 +226,33 @@ def _read_log_limits(reader: _Reader) -> LogLimits:
 
 def _bytes(megabytes: float) -> int | None:
     return round(1e6 * megabytes) or None
+
+
+def _read_worker_limits(reader: _Reader) -> WorkerLimits:
+    default = WorkerLimits()
+    return WorkerLimits(
+        count=reader.read(
+            "workers",
+            default.count,
+            "Processes that answer questions that take long. With 0, the server answers them itself.",
+            (0, 64),
+        ),
+        deadline=reader.read(
+            "answer_deadline", default.deadline, "How long an answer of a worker may take, s.", (0.01, 3600.0)
+        ),
+        memory=reader.read(
+            "worker_memory",
+            default.memory,
+            "Memory that a worker may take for an answer, MB.",
+            (100, 1_000_000),
+        ),
+        most_waiting=reader.read(
+            "most_waiting",
+            default.most_waiting,
+            "Questions that may wait while all workers are busy.",
+            (0, 1000),
+        ),
+    )
 
 
 def _read_defaults(reader: _Reader) -> Defaults:

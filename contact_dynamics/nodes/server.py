@@ -7,39 +7,33 @@ publishes.
 
 from __future__ import annotations
 
-import time
-import traceback
 from typing import TYPE_CHECKING, Any
 
 from nav_msgs.msg import Path
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
 from rclpy.qos import QoSProfile, ReliabilityPolicy
-from rclpy.service_introspection import ServiceIntrospectionState
 from rosgraph_msgs.msg import Clock
 
-from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes.arguments import VISUALIZER_PARAMETERS, server_parser
-from contact_dynamics.nodes.call_times import CallTimes
 from contact_dynamics.nodes.inbox import InboxNode
 from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_unknown_parameters
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.nodes.run_record import NODE_NAME, run_record
 from contact_dynamics.nodes.running import run_node
+from contact_dynamics.nodes.service_front import ServiceFront
 from contact_dynamics.nodes.services import SERVICES
 from contact_dynamics.nodes.state_subscriptions import STATE_QOS, subscribe_to_states
 from contact_dynamics.questions.knowledge import Knowledge
 from contact_dynamics.questions.state_store import StateStore
+from contact_dynamics.questions.workers import Workers
 from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters.path import path_from_trajectory
-from msg_adapters.status import report_error
 
 if TYPE_CHECKING:
-    from rclpy.subscription import Subscription
-
     from contact_dynamics.nodes.inbox import Taken
-    from contact_dynamics.nodes.services import Request, Service
+    from contact_dynamics.nodes.services import Service
     from msg_adapters.status import Response
 
 SERVICE_QOS = QoSProfile(depth=1000)
@@ -99,9 +93,9 @@ class Server(InboxNode):
             self._log.add_topic(topic, type_name, STATE_QOS)
         self._log_clock()
         self._path = self.create_publisher(Path, "~/predicted_path", PATH_QOS)
-        self._events: list[Subscription] = []
-        for service in SERVICES:
-            self._serve(service)
+        limits = parameters.worker_limits
+        self._workers = Workers(limits) if limits.count > 0 else None
+        self._fronts = [self._serve(service) for service in SERVICES]
         self._log.start()
         bodies = ", ".join(body.name for body in parameters.world.bodies) or "none"
         self.get_logger().info(f"ready: bodies {bodies}; log {self._log.folder or 'off'}")
@@ -109,50 +103,48 @@ class Server(InboxNode):
     def attend(self) -> None:
         """Take messages, and the events of the answer that has just left."""
         super().attend()
-        for events in self._events:
-            self.empty(events)
+        for front in self._fronts:
+            front.take_events()
 
     def close(self) -> bool:
         """Finish the log and say where it is; return True, since a log that fails has been told."""
+        self._close_workers()
         self.take_messages()
         self.get_logger().info(self._log.close())
         return True
 
-    def _serve(self, served: Service) -> None:
-        service_type = served.service_type
-        times = CallTimes(lambda: self.get_clock().now().nanoseconds)
+    def destroy_node(self) -> None:
+        """End the workers and the node."""
+        self._close_workers()
+        super().destroy_node()
 
-        def handle(request: Request, response: Response) -> Response:
-            self.take_messages()
-            self._asked_ns = times.begin()
-            self.note_question(time.time_ns())
-            start = time.perf_counter()
-            try:
-                served.serve(request, response, self._knowledge, world_frame=self._world_frame)
-            except ContactDynamicsError as error:
-                response = service_type.Response()
-                report_error(response, error)
-            except Exception as error:  # noqa: BLE001  a fault in one answer must not end the service
-                self.get_logger().error(f"{served.name} failed:\n{traceback.format_exc()}")
-                response = service_type.Response()
-                report_error(response, error)
-            response.computation_time = time.perf_counter() - start
-            if service_type is PredictTumbling and response.status == response.OK:
-                self._publish_path(response)
-            times.end()
-            return response
+    def _close_workers(self) -> None:
+        if self._workers is not None:
+            self._workers.close()
 
-        def record(event: Taken) -> None:
-            happened = times.of_event(event.data)
-            self._log.record(
-                events, event.data, log_time_ns=happened.log_time_ns, publish_time_ns=happened.publish_time_ns
-            )
+    def _serve(self, served: Service) -> ServiceFront:
+        front = ServiceFront(
+            self,
+            served,
+            knowledge=self._knowledge,
+            world_frame=self._world_frame,
+            workers=self._workers,
+            begin=self._begin,
+            answered=self._publish_path,
+            qos=SERVICE_QOS,
+            event_qos=EVENT_QOS,
+            record=self._record_event,
+        )
+        self._log.add_topic(
+            front.topic, f"contact_dynamics_interfaces/srv/{served.type_name}_Event", EVENT_QOS
+        )
+        return front
 
-        service = self.create_service(service_type, f"~/{served.name}", handle, qos_profile=SERVICE_QOS)
-        service.configure_introspection(self.get_clock(), EVENT_QOS, ServiceIntrospectionState.CONTENTS)
-        events = f"{service.service_name}/_service_event"
-        self._log.add_topic(events, f"contact_dynamics_interfaces/srv/{served.type_name}_Event", EVENT_QOS)
-        self._events.append(self.subscribe(service_type.Event, events, record, EVENT_QOS, in_rounds=False))
+    def _begin(self, asked_ns: int) -> None:
+        self._asked_ns = asked_ns
+
+    def _record_event(self, topic: str, data: bytes, log_time_ns: int, publish_time_ns: int | None) -> None:
+        self._log.record(topic, data, log_time_ns=log_time_ns, publish_time_ns=publish_time_ns)
 
     def _log_clock(self) -> None:
         """Log the simulated time, which the stamps of states and events are of, where there is one."""
@@ -168,10 +160,11 @@ class Server(InboxNode):
     def _record(self, topic: str, taken: Taken) -> None:
         self._log.record(topic, taken.data, log_time_ns=taken.received_ns)
 
-    def _publish_path(self, response: PredictTumbling.Response) -> None:
+    def _publish_path(self, response: Response) -> None:
         """Publish the newest trajectory for RViz, if somebody listens."""
-        if self._path.get_subscription_count() > 0:
-            self._path.publish(path_from_trajectory(response.trajectory))
+        is_path = isinstance(response, PredictTumbling.Response) and response.status == response.OK
+        if is_path and self._path.get_subscription_count() > 0:
+            self._path.publish(path_from_trajectory(response.trajectory))  # type: ignore[attr-defined]
 
     def _run_description(self, topics: dict[str, str]) -> dict[str, str]:
         """Return all that an answer depends on besides the states; ``topics`` has their full names."""

@@ -53,13 +53,36 @@ class ToMsg(Protocol[Answer_contra]):
         """Return the response, which is the one to fill."""
 
 
+class Elsewhere(Protocol):
+    """Has questions answered that take long."""
+
+    def __call__(
+        self,
+        answer: Callable[[Question, Knowledge], Answer],
+        question: Question,
+        knowledge: Knowledge,
+        fill: Callable[[Answer], object],
+    ) -> bool:
+        """Have a question answered, and call ``fill`` with its answer later; return False if it is quick."""
+
+
 class Serve(Protocol):
     """Answers a request."""
 
     def __call__(
-        self, request: Request, response: Response, knowledge: Knowledge, *, world_frame: str
-    ) -> None:
-        """Fill the response, or raise a `ContactDynamicsError` that says what is wrong with the request."""
+        self,
+        request: Request,
+        response: Response,
+        knowledge: Knowledge,
+        *,
+        world_frame: str,
+        elsewhere: Elsewhere | None = None,
+    ) -> bool:
+        """Fill the response, or raise a `ContactDynamicsError` that says what is wrong with the request.
+
+        Returns:
+            Whether the response is filled. Otherwise it will be, when the answer comes from elsewhere.
+        """
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,9 +107,23 @@ def _serving(
 ) -> Serve:
     """Return what takes a request the whole way: to a question, to its answer, to the response."""
 
-    def serve(request: Request, response: Response, knowledge: Knowledge, *, world_frame: str) -> None:
+    def serve(
+        request: Request,
+        response: Response,
+        knowledge: Knowledge,
+        *,
+        world_frame: str,
+        elsewhere: Elsewhere | None = None,
+    ) -> bool:
         question = from_msg(request, world=knowledge.world, world_frame=world_frame)
-        to_msg(answer(question, knowledge), world_frame=world_frame, into=response)
+
+        def fill(answered: Answer) -> None:
+            to_msg(answered, world_frame=world_frame, into=response)
+
+        if elsewhere is not None and elsewhere(answer, question, knowledge, fill):
+            return False
+        fill(answer(question, knowledge))
+        return True
 
     return serve
 

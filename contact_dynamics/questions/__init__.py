@@ -15,6 +15,8 @@ The kinds share these files: `knowledge` (the world, defaults, and in a `state_s
 Answers describe every impact in the same way (`resolved_impact`). They give modes of a plane in world axes
 (`lifted_modes`), and `planar_view` leads back.
 `settled_impact` has the impact that follows an inconsistency.
+
+`effort` tells whether a question is quick, and `workers` are processes that answer those that are not.
 """
 
 from contact_dynamics.questions.asking import ask

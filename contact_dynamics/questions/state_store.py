@@ -15,7 +15,7 @@ from contact_dynamics.questions.uncertain_state import UncertainState
 from contact_dynamics.rigid_body.body import BodyState
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from contact_dynamics.questions.uncertain_state import KnownState
 
@@ -137,6 +137,30 @@ class StateStore:
             raise StaleStateError(message)
         return earlier, later
 
+    def excerpt(self, wanted: Iterable[tuple[str, int | None, float]]) -> StateStore:
+        """Return a store that answers as this one does about bodies at a stamp and some time before it.
+
+        All of its states are read, so that another process can take it.
+
+        Args:
+            wanted: for each body its name, the stamp, ns, or None for that of the newest state, and how long
+                before that, s.
+        """
+        part = StateStore(
+            history=self._history,
+            timeout=to_seconds(self._timeout_ns),
+            future_tolerance=to_seconds(self._future_tolerance_ns),
+            most_states=self._most_states,
+        )
+        for body_name, stamp_ns, seconds in wanted:
+            track = self._tracks.get(body_name, _Track())
+            newest = track.last(len(track.stamps))
+            if newest is not None:
+                last_ns = newest.stamp_ns if stamp_ns is None else stamp_ns
+                for state in track.around(last_ns - to_ns(min(seconds, self._history)), last_ns):
+                    part.add(body_name, state)
+        return part
+
     def _keep(self, body_name: str, stamp_ns: int, state: KnownState | ReadState, now_ns: int | None) -> None:
         if now_ns is not None:
             ahead_ns = stamp_ns - now_ns
@@ -217,6 +241,15 @@ class _Track:
             self._states[begin:end] = readable
             self.stamps[begin:end] = [state.stamp_ns for state in readable]
         return readable
+
+    def around(self, first_ns: int, last_ns: int) -> list[KnownState]:
+        """Return the states from one stamp to another, and the next one on both sides."""
+        before, after = (
+            self.last(bisect_left(self.stamps, first_ns)),
+            self.first(bisect_right(self.stamps, last_ns)),
+        )
+        found = [before, *self.between(first_ns, last_ns), after]
+        return [state for state in found if state is not None]
 
     def forget_before(self, oldest_ns: int, *, most: int) -> None:
         surplus = max(bisect_left(self.stamps, oldest_ns), len(self.stamps) - most)

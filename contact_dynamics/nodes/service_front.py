@@ -1,0 +1,203 @@
+"""One service of the server: it takes requests, answers them or has them answered, and sends the responses.
+
+A quick question is answered at once. Another goes to a worker, and the server goes on until its answer comes.
+A client that left is not answered: to send to it takes 0.1 s, in which nobody else is served.
+"""
+
+from __future__ import annotations
+
+import time
+import traceback
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+from rclpy.service_introspection import ServiceIntrospectionState
+
+from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.nodes.call_times import CallTimes
+from contact_dynamics.questions.effort import excerpt, is_quick
+from msg_adapters.status import report_error
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rclpy.qos import QoSProfile
+
+    from contact_dynamics.nodes.call_times import Call
+    from contact_dynamics.nodes.inbox import InboxNode, Taken
+    from contact_dynamics.nodes.services import Answer, Question, Request, Service
+    from contact_dynamics.questions.knowledge import Knowledge
+    from contact_dynamics.questions.workers import Workers
+    from msg_adapters.status import Response
+
+GONE_AFTER_S: Final = 0.05
+"""s that it takes to send a response, from which on its client counts as gone. To one that is there it takes
+less than a millisecond; DDS waits 0.1 s for one that is not."""
+
+GONE_FOR_S: Final = 5.0
+"""s for which a client that seemed gone gets no answers: one that is still being found may be met later."""
+
+
+@dataclass(slots=True, kw_only=True)
+class _Answering:
+    """A call that is being answered.
+
+    Attributes:
+        call: When it came, and from whom.
+        response: What is sent. It counts once the call is done.
+        begun: s, by a clock that measures durations.
+        is_done: Whether the response can be sent.
+        header: What DDS needs to send it, once it is known.
+    """
+
+    call: Call
+    response: Response
+    begun: float
+    is_done: bool = False
+    header: Any = None
+
+
+class ServiceFront:
+    """Serves one of the services."""
+
+    def __init__(
+        self,
+        node: InboxNode,
+        served: Service,
+        *,
+        knowledge: Knowledge,
+        world_frame: str,
+        workers: Workers | None,
+        begin: Callable[[int], object],
+        answered: Callable[[Response], object],
+        qos: QoSProfile,
+        event_qos: QoSProfile,
+        record: Callable[[str, bytes, int, int | None], object],
+    ) -> None:
+        """Begin to serve.
+
+        Args:
+            node: the node.
+            served: the service.
+            knowledge: what is known.
+            world_frame: the frame of states and answers.
+            workers: they answer what takes long. Without them, this process does.
+            begin: is told when a question came, ns by the node's clock, before it is answered.
+            answered: sees each response before it is sent.
+            qos: the queue of requests.
+            event_qos: the queue of the service events.
+            record: takes a service event as topic, bytes, time of the log, and time of the node's clock, if
+                that is another one than the event's.
+        """
+        self._node = node
+        self._served = served
+        self._knowledge = knowledge
+        self._world_frame = world_frame
+        self._workers = workers
+        self._begin = begin
+        self._answered = answered
+        self._record = record
+        self._times = CallTimes(lambda: node.get_clock().now().nanoseconds)
+        self._gone: dict[bytes, float] = {}  # clients, and until when they count as gone
+        service = node.create_service(served.service_type, f"~/{served.name}", self._take, qos_profile=qos)
+        service.configure_introspection(node.get_clock(), event_qos, ServiceIntrospectionState.CONTENTS)
+        self._send_response = service.send_response
+        # An executor of rclpy sends what the callback returns at once. This is its way to send.
+        service.send_response = self._send_or_wait
+        self.topic = f"{service.service_name}/_service_event"
+        self._events = node.subscribe(
+            served.service_type.Event, self.topic, self._record_event, event_qos, in_rounds=False
+        )
+
+    def take_events(self) -> None:
+        """Take the events of requests and responses that wait, for the log."""
+        self._node.empty(self._events)
+
+    def _take(self, request: Request, response: Response) -> _Answering:
+        self._node.take_messages()  # the question sees all states that came before it
+        call = self._times.begin()
+        self._begin(call.node_clock_ns)
+        self._node.note_question(call.received_ns)
+        self.take_events()  # one of them tells whose request it is
+        answering = _Answering(call=call, response=response, begun=time.perf_counter())
+        if not self._is_gone(call.client):
+            self._serve(request, answering)
+        return answering
+
+    def _serve(self, request: Request, answering: _Answering) -> None:
+        def elsewhere(
+            answer: Callable[[Question, Knowledge], Answer],
+            question: Question,
+            knowledge: Knowledge,
+            fill: Callable[[Answer], object],
+        ) -> bool:
+            if self._workers is None or is_quick(question, knowledge):
+                return False
+
+            def done(outcome: Answer | Exception) -> None:
+                self._node.executor.create_task(finish, partial(_fill, fill, outcome))
+
+            self._workers.ask(answer, question, excerpt(question, knowledge), done)
+            return True
+
+        def finish(fill: Callable[[], None]) -> None:
+            self._finish(answering, fill)
+            self._send(answering)
+
+        def serve() -> None:
+            answering.is_done = self._served.serve(
+                request,
+                answering.response,
+                self._knowledge,
+                world_frame=self._world_frame,
+                elsewhere=elsewhere,
+            )
+
+        self._finish(answering, serve)
+
+    def _finish(self, answering: _Answering, fill: Callable[[], object]) -> None:
+        """Fill the response, or report why it cannot be; a fault in one answer must not end the service."""
+        answering.is_done = True
+        try:
+            fill()
+        except ContactDynamicsError as error:
+            answering.response = self._served.service_type.Response()
+            report_error(answering.response, error)
+        except Exception as error:  # noqa: BLE001
+            self._node.get_logger().error(f"{self._served.name} failed:\n{traceback.format_exc()}")
+            answering.response = self._served.service_type.Response()
+            report_error(answering.response, error)
+        if answering.is_done:
+            answering.response.computation_time = time.perf_counter() - answering.begun
+            self._answered(answering.response)
+
+    def _send_or_wait(self, answering: _Answering, header: Any) -> None:
+        answering.header = header
+        if answering.is_done:
+            self._send(answering)
+
+    def _send(self, answering: _Answering) -> None:
+        client = answering.call.client
+        if self._is_gone(client):
+            return
+        self._times.end(answering.call)
+        begun = time.monotonic()
+        self._send_response(answering.response, answering.header)
+        ended = time.monotonic()
+        if client and ended - begun > GONE_AFTER_S:
+            self._gone = {each: until for each, until in self._gone.items() if until > ended}
+            self._gone[client] = ended + GONE_FOR_S
+
+    def _is_gone(self, client: bytes) -> bool:
+        return bool(self._gone) and self._gone.get(client, 0.0) > time.monotonic()
+
+    def _record_event(self, event: Taken) -> None:
+        happened = self._times.of_event(event.data)
+        self._record(self.topic, event.data, happened.log_time_ns, happened.publish_time_ns)
+
+
+def _fill(fill: Callable[[Answer], object], outcome: Answer | Exception) -> None:
+    if isinstance(outcome, Exception):
+        raise outcome
+    fill(outcome)

@@ -1,0 +1,129 @@
+"""How much work a question is: whether its answer is sure to come within some 30 ms.
+
+A server answers such a question at once, and others go to workers (`questions.workers`). What counts here are
+lists and options, since one would have to do the work to know it exactly. A question of an unknown kind goes
+to a worker, too.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Final
+
+from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.impact.several.result import SeveralContactsLaw
+from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH
+from contact_dynamics.questions.contact_modes import ContactModeQuestion
+from contact_dynamics.questions.impact_question import ImpactQuestion
+from contact_dynamics.questions.problem import Problem
+from contact_dynamics.questions.sample_times import UntilContact, UntilPlane
+from contact_dynamics.questions.subject import PublishedState, subject_of
+from contact_dynamics.questions.tumbling import TumblingQuestion
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.questions.knowledge import Knowledge
+    from contact_dynamics.questions.subject import StateSource
+    from contact_dynamics.world import Body
+
+MOST_QUICK_CONTACTS: Final = 4
+"""Contacts of a quick question. Modes and orders grow exponentially with them; a box stands on four."""
+
+MOST_QUICK_CORNERS: Final = 64
+"""Corners and rims of a shape, times the surfaces of the world, in a quick search for contacts."""
+
+MOST_QUICK_TURNS: Final = 20.0
+"""Turns of the body in a quick search for a contact, which takes a millisecond a turn close to a surface."""
+
+_CORNERS_OF_A_RIM: Final = 8  # in which the base of a cylinder touches
+
+
+def is_quick(question: object, knowledge: Knowledge) -> bool:
+    """Tell whether the answer is sure to come soon; what will be refused counts as quick."""
+    try:
+        if isinstance(question, TumblingQuestion):
+            return _is_quick_flight(question, knowledge)
+        if isinstance(question, ImpactQuestion):
+            return _is_quick_impact(question, knowledge)
+        if isinstance(question, ContactModeQuestion):
+            return _are_quick_modes(question, knowledge)
+    except ContactDynamicsError:
+        return True
+    return False
+
+
+def excerpt(question: object, knowledge: Knowledge) -> Knowledge:
+    """Return what another process must know to answer a question as this one would now."""
+    wanted = []
+    for about, source_name in (("body", "state"), ("other", "other_state")):
+        body, source = getattr(question, about, None), getattr(question, source_name, None)
+        name = body if isinstance(body, str) else getattr(body, "name", "")
+        if name and isinstance(source, PublishedState):
+            wanted.append((name, source.stamp_ns, source.fit_window))
+    now_ns = None if knowledge.now_ns is None else knowledge.now_ns()
+    states = knowledge.states.excerpt(wanted)
+    return replace(knowledge, states=states, now_ns=partial(_same, now_ns))
+
+
+def _same(now_ns: int | None) -> int | None:
+    return now_ns
+
+
+def _is_quick_flight(question: TumblingQuestion, knowledge: Knowledge) -> bool:
+    sampling = question.sampling
+    if question.wrench is not NO_WRENCH or question.drag is not NO_DRAG or _is_fit(question.state):
+        return False
+    if question.want_covariance:
+        return False
+    if not isinstance(sampling, UntilContact | UntilPlane):
+        return True
+    horizon = knowledge.defaults.horizon if sampling.duration is None else sampling.duration
+    return _is_quick_search(question.body, question.state, horizon, knowledge)
+
+
+def _is_quick_impact(question: ImpactQuestion, knowledge: Knowledge) -> bool:
+    if (
+        question.want_orders
+        or question.want_covariance
+        or _is_fit(question.state)
+        or _is_fit(question.other_state)
+    ):
+        return False
+    if not isinstance(question.several_contacts_law, SeveralContactsLaw):
+        return False
+    if question.contacts is not None:
+        return len(question.contacts) <= MOST_QUICK_CONTACTS
+    horizon = knowledge.defaults.horizon if question.horizon is None else question.horizon
+    return _is_quick_search(question.body, question.state, horizon, knowledge)
+
+
+def _are_quick_modes(question: ContactModeQuestion, knowledge: Knowledge) -> bool:
+    few = _are_few(question.contacts, question.body, knowledge)
+    extra = question.want_margins or question.want_wrenches or question.want_statics or question.want_impact
+    return few and not (extra and question.problem is not Problem.PLANAR) and not _is_fit(question.state)
+
+
+def _are_few(contacts: ContactSet | None, body: Body | str, knowledge: Knowledge) -> bool:
+    if contacts is not None:
+        return len(contacts) <= MOST_QUICK_CONTACTS
+    return _corners(body, knowledge) <= 2 * MOST_QUICK_CONTACTS  # half of a box's corners touch at once
+
+
+def _is_quick_search(body: Body | str, source: StateSource, horizon: float, knowledge: Knowledge) -> bool:
+    if _corners(body, knowledge) > MOST_QUICK_CORNERS:
+        return False
+    spin = math.hypot(*subject_of(body, source, knowledge).state.w_WB_W.tolist())
+    return spin * horizon <= 2.0 * math.pi * MOST_QUICK_TURNS
+
+
+def _corners(body: Body | str, knowledge: Knowledge) -> int:
+    """Return how many pairs of a corner, or a rim, of the body and a surface there are."""
+    known = knowledge.world.body(body) if isinstance(body, str) else body
+    shape = known.shape
+    return (len(shape.vertices) + _CORNERS_OF_A_RIM * len(shape.rims)) * len(knowledge.world.surfaces)
+
+
+def _is_fit(source: StateSource) -> bool:
+    return isinstance(source, PublishedState) and source.fit_window > 0.0

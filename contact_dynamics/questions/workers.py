@@ -1,0 +1,232 @@
+"""Processes that answer questions, each within a time and a memory that are stated.
+
+A question goes to a worker together with all that is known about it. A worker that is not ready when the time
+is over is killed and replaced. It runs at a lower priority than the process that serves, ends when that one
+ends, and ends by itself if nobody is left to kill it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import queue
+import resource
+import signal
+import threading
+import time
+import traceback
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, TypeVar
+
+from contact_dynamics.errors import BusyError, ContactDynamicsError, TookTooLongError, TooLargeError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from multiprocessing.connection import Connection
+    from multiprocessing.process import BaseProcess
+
+    from contact_dynamics.questions.knowledge import Knowledge
+
+Question = TypeVar("Question")
+Answer = TypeVar("Answer")
+
+_NEEDED: Final = ("contact_dynamics.questions.asking", "scipy.linalg", "scipy.optimize", "scipy.spatial")
+"""What a worker has imported before it is asked: an import of SciPy takes longer than most answers."""
+
+_NICER: Final = 5
+_SPARE_S: Final = 1.0  # that a worker has to send its answer before it ends by itself
+_MEGABYTE: Final = 1_000_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WorkerLimits:
+    """What workers may take.
+
+    Attributes:
+        count: How many there are. Zero answers every question in the process that asks.
+        deadline: s, from when a question is handed over until it is answered or refused.
+        memory: MB that one may take for an answer.
+        most_waiting: How many questions may wait while all workers are busy.
+    """
+
+    count: int = 2
+    deadline: float = 5.0
+    memory: int = 1000
+    most_waiting: int = 8
+
+
+class WorkerFault(Exception):  # noqa: N818  it is no error of a question
+    """A fault of the code that a worker met; its text is the traceback."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Job:
+    work: tuple[Callable[..., object], object, Knowledge]
+    until: float  # s, monotonic
+    done: Callable[..., object]
+
+
+class Workers:
+    """A few processes that answer questions, and threads that wait for them."""
+
+    def __init__(self, limits: WorkerLimits) -> None:
+        """Start the processes. They need a second to be ready, and questions wait for that."""
+        self._limits = limits
+        self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
+        self._lock = threading.Lock()
+        self._open = 0  # jobs that are not done yet
+        self._closing = False
+        self._workers = [_Worker(limits) for _ in range(limits.count)]
+        self._threads = [
+            threading.Thread(target=self._run, args=(worker,), name="contact_dynamics worker", daemon=True)
+            for worker in self._workers
+        ]
+        for thread in self._threads:
+            thread.start()
+
+    @property
+    def waiting(self) -> int:
+        """How many questions are neither answered nor refused yet."""
+        return self._open
+
+    def ask(
+        self,
+        answer: Callable[[Question, Knowledge], Answer],
+        question: Question,
+        knowledge: Knowledge,
+        done: Callable[[Answer | Exception], object],
+    ) -> None:
+        """Have a question answered.
+
+        Args:
+            answer: answers it; a function of a module, which a worker imports.
+            question: the question.
+            knowledge: what is known. It must not change, so ask with an `excerpt`.
+            done: takes the answer, or an exception, in another thread: a `ContactDynamicsError` that the
+                question met, or a `WorkerFault`.
+
+        Raises:
+            BusyError: as many questions as may wait are waiting.
+        """
+        most = self._limits.count + self._limits.most_waiting
+        with self._lock:
+            if self._open >= most:
+                message = f"{most} questions that take long are being answered or wait, which is the most"
+                raise BusyError(message)
+            self._open += 1
+        until = time.monotonic() + self._limits.deadline
+        self._jobs.put(_Job(work=(answer, question, knowledge), until=until, done=done))
+
+    def close(self) -> None:
+        """Kill all workers, whatever they do. Questions that wait get no answer."""
+        self._closing = True
+        for _ in self._threads:
+            self._jobs.put(None)
+        for worker in self._workers:
+            worker.close()
+        for thread in self._threads:
+            thread.join(_SPARE_S)
+
+    def _run(self, worker: _Worker) -> None:
+        worker.start()
+        while not self._closing and (job := self._jobs.get()) is not None:
+            outcome = worker.outcome(job)
+            with self._lock:
+                self._open -= 1
+            if self._closing:
+                break
+            job.done(outcome)
+            worker.restart_if_killed()
+        worker.close()
+
+
+class _Worker:
+    """A process, and the pipe to it."""
+
+    def __init__(self, limits: WorkerLimits) -> None:
+        self._limits = limits
+        self._context = multiprocessing.get_context("forkserver")
+        self._context.set_forkserver_preload(list(_NEEDED))
+        self._process: BaseProcess | None = None
+        self._is_killed = False
+        self._is_closed = False
+        self._pipe, self._its_end = self._context.Pipe()
+
+    def start(self) -> None:
+        arguments = (self._its_end, self._limits.memory * _MEGABYTE, self._limits.deadline + _SPARE_S)
+        process = self._context.Process(target=_answer_questions, args=arguments, daemon=True)
+        process.start()
+        self._its_end.close()
+        self._process = process
+        if self._is_closed:
+            process.kill()
+
+    def close(self) -> None:
+        """Kill the process, also one that is being started in another thread."""
+        self._is_closed = True
+        self._kill()
+
+    def _kill(self) -> None:
+        if self._process is not None:
+            self._process.kill()
+
+    def outcome(self, job: _Job) -> object:
+        """Return the answer to a job, or the exception that it ends with. The process may be killed then."""
+        try:
+            self._pipe.send(job.work)
+            if self._pipe.poll(max(0.0, job.until - time.monotonic())):
+                return self._pipe.recv()
+            message = (
+                f"no answer within {self._limits.deadline:g} s, which is the time that an answer may take"
+            )
+            outcome: Exception = TookTooLongError(message)
+        except (EOFError, OSError):
+            outcome = WorkerFault("the process that computed the answer ended")
+        except Exception:  # noqa: BLE001  a question that cannot be sent, an answer that cannot be received
+            outcome = WorkerFault(traceback.format_exc())
+        self._kill()
+        self._is_killed = True
+        return outcome
+
+    def restart_if_killed(self) -> None:
+        if self._is_killed:
+            self._is_killed = False
+            self._pipe.close()
+            self._pipe, self._its_end = self._context.Pipe()
+            self.start()
+
+
+def _answer_questions(pipe: Connection, memory: int, seconds: float) -> None:
+    """Answer one question after another: what a worker does."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all processes of a terminal
+    signal.signal(signal.SIGALRM, signal.SIG_DFL)
+    os.nice(_NICER)
+    limit = _address_space() + memory
+    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+    while True:
+        try:
+            answer, question, knowledge = pipe.recv()
+        except (EOFError, OSError):  # who asks is gone
+            return
+        signal.setitimer(signal.ITIMER_REAL, seconds)
+        outcome: object
+        try:
+            outcome = answer(question, knowledge)
+        except ContactDynamicsError as error:
+            outcome = error
+        except MemoryError:
+            found = f"one that needs more than {memory // _MEGABYTE} MB"
+            outcome = TooLargeError("question", found, "one that needs less")
+        except Exception:  # noqa: BLE001  told by who asked
+            outcome = WorkerFault(traceback.format_exc())
+        with contextlib.suppress(OSError):
+            pipe.send(outcome)
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+
+
+def _address_space() -> int:
+    """Return how much address space this process has, bytes."""
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
+    return pages * resource.getpagesize()

@@ -1,0 +1,100 @@
+"""Questions that take long, over real DDS: they cost who asks them alone, and end when the server says."""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
+from running_server import PATIENCE_S, ROOT, Client, process
+
+DEADLINE_S = 0.4
+QUICKLY_S = 0.5  # far below what the hard questions would take, and far above what a busy machine takes
+LEAVING = 200  # requests that a client leaves with
+ARGUMENTS = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", "-p", "log:=false")
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[Client]:
+    limits = ("-p", f"answer_deadline:={DEADLINE_S}", "-p", "workers:=1", "-p", "most_waiting:=1")
+    with process("server", *ARGUMENTS, *limits, ready="ready"):
+        client = Client()
+        try:
+            slowed = quick()
+            slowed.linear_drag = 0.1
+            client.spin_until(lambda: client.ask(slowed).status == 0)  # a worker, which is ready from here on
+            yield client
+        finally:
+            client.close()
+
+
+def hard() -> Any:
+    """A landing of a body that spins so fast that the search for it takes seconds."""
+    request = PredictImpact.Request(body_name="brick", state_source=PredictImpact.Request.STATE_EXPLICIT)
+    request.state.pose.position.z = 1.0
+    spin = request.state.angular_velocity
+    spin.x, spin.y, spin.z = 1e9, 1e8, 1e8
+    return request
+
+
+def quick() -> Any:
+    return PredictTumbling.Request(
+        body_name="brick", state_source=PredictTumbling.Request.STATE_EXPLICIT, times=[0.1]
+    )
+
+
+def test_hard_questions_are_refused_in_time_and_quick_ones_are_answered_meanwhile(client: Client) -> None:
+    begun = time.monotonic()
+    futures = [client.begin_to_ask(hard()) for _ in range(6)]
+    trips = []
+    while not all(future.done() for future in futures):
+        asked = time.monotonic()
+        answer = client.ask(quick())
+        assert answer.status == answer.OK, answer.message
+        trips.append(time.monotonic() - asked)
+        assert asked - begun < PATIENCE_S
+    statuses = sorted(future.result().status for future in futures)
+    codes = PredictImpact.Response
+    assert codes.BUSY in statuses
+    assert codes.TIMEOUT in statuses
+    assert set(statuses) <= {codes.OK, codes.TOO_LARGE, codes.BUSY, codes.TIMEOUT}
+    assert sorted(trips)[len(trips) // 2] < QUICKLY_S
+    late = next(each.result() for each in futures if each.result().status == codes.TIMEOUT)
+    assert "no answer within 0.4 s" in late.message
+    assert late.computation_time < DEADLINE_S + QUICKLY_S
+
+
+def test_a_client_that_leaves_with_requests_pending_freezes_nobody(client: Client) -> None:
+    """To send to a client that left takes 0.1 s in DDS. All of its answers would take 20 s."""
+    leaving = Client()
+    request = quick()
+    request.times = [0.001 * i for i in range(5000)]
+    for _ in range(LEAVING):
+        leaving.begin_to_ask(request)
+    leaving.close()
+    begun = time.monotonic()
+    answer = client.ask(quick())
+    assert answer.status == answer.OK, answer.message
+    assert time.monotonic() - begun < 5.0  # of the 20 s that it took to send to who is gone
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_the_server_ends_soon_whatever_is_being_computed(number: signal.Signals) -> None:
+    arguments = ("-p", "answer_deadline:=3600.0", "-p", "workers:=1")
+    with process("server", *ARGUMENTS, *arguments, ready="ready") as server:
+        client = Client()
+        try:
+            for _ in range(8):
+                client.begin_to_ask(hard())
+            answer = client.ask(quick())  # the others came before it
+            assert answer.status == answer.OK, answer.message
+            begun = time.monotonic()
+            server.send_signal(number)
+            assert server.wait(PATIENCE_S) == 0
+            assert time.monotonic() - begun < 3.0  # a second on a quiet machine
+        finally:
+            client.close()

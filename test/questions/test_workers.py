@@ -1,0 +1,139 @@
+"""Workers as real processes: answers, a deadline, a limit of memory, a fault, and a queue that is full."""
+
+from __future__ import annotations
+
+import operator
+import pickle
+import queue
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact_dynamics.constants import STANDARD_GRAVITY_W
+from contact_dynamics.errors import BusyError, InvalidFieldError, TookTooLongError, TooLargeError
+from contact_dynamics.questions import (
+    AtTimes,
+    Knowledge,
+    PublishedState,
+    StateStore,
+    TumblingQuestion,
+    UntilContact,
+    ask,
+    tumbling,
+)
+from contact_dynamics.questions.effort import excerpt, is_quick
+from contact_dynamics.questions.workers import WorkerFault, WorkerLimits, Workers
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.shapes.convex import box
+from contact_dynamics.world import Body, Surface, World
+
+PATIENCE_S = 60.0  # for a busy machine, on which a worker takes long to start
+FOR_EVER = 10**10  # powers of three that no worker computes in this time
+
+
+@pytest.fixture(scope="module")
+def workers() -> Iterator[Workers]:
+    workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, most_waiting=0))
+    yield workers
+    workers.close()
+
+
+def outcome(workers: Workers, answer: Callable[..., Any], question: Any, known: Any) -> Any:
+    outcomes: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    workers.ask(answer, question, known, outcomes.put)
+    return outcomes.get(timeout=2.0 * PATIENCE_S)
+
+
+def brick_world() -> Knowledge:
+    brick = Body(
+        name="brick",
+        mass_properties=MassProperties(mass=1.0, I_B=0.1 * np.eye(3)),
+        shape=box(size=(0.2, 0.1, 0.1)),
+    )
+    floor = Surface(name="floor", p_WS_W=np.zeros(3), normal_W=(0.0, 0.0, 1.0), friction=0.3, restitution=0.5)
+    states = StateStore(history=10.0, timeout=1.0)
+    world = World(bodies=(brick,), surfaces=(floor,), gravity_W=STANDARD_GRAVITY_W)
+    for i in range(200):
+        state = BodyState(
+            p_WB_W=(0.001 * i, 0.0, 5.0),
+            q_WB=(0.0, 0.0, 0.0, 1.0),
+            v_WB_W=(1.0, 0.0, 0.0),
+            w_WB_W=np.zeros(3),
+            stamp_ns=1_000_000 * i,
+        )
+        states.add_unread("brick", state.stamp_ns, lambda state=state: state)  # type: ignore[misc]
+    return Knowledge(world=world, states=states, now_ns=lambda: 200_000_000)
+
+
+@pytest.mark.parametrize(
+    "source", [PublishedState(), PublishedState(stamp_ns=55_500_000), PublishedState(fit_window=0.02)]
+)
+def test_a_worker_answers_as_this_process_does(workers: Workers, source: PublishedState) -> None:
+    question = TumblingQuestion(body="brick", state=source, sampling=AtTimes(times=[0.0, 0.1]))
+    known = brick_world()
+    answer = outcome(workers, tumbling.answer, question, excerpt(question, known))
+    np.testing.assert_array_equal(answer.trajectory.p_WB_W, ask(question, known).trajectory.p_WB_W)
+    assert len(pickle.dumps(excerpt(question, known))) < 20_000  # of 200 states only those that it needs
+
+
+def test_an_error_arrives_as_it_was(workers: Workers) -> None:
+    question = TumblingQuestion(body="brick", state=PublishedState(fit_window=1e-9))
+    known = brick_world()
+    with pytest.raises(InvalidFieldError) as here:
+        ask(question, known)
+    there = outcome(workers, tumbling.answer, question, excerpt(question, known))
+    assert type(there) is type(here.value)
+    assert str(there) == str(here.value)
+
+
+def test_a_question_that_needs_much_memory_is_refused(workers: Workers) -> None:
+    refused = outcome(workers, operator.mul, b"x", 2_000_000_000)
+    assert isinstance(refused, TooLargeError)
+    assert "300 MB" in str(refused)
+
+
+def test_a_fault_comes_back_with_its_place(workers: Workers) -> None:
+    fault = outcome(workers, operator.getitem, (), 1)
+    assert isinstance(fault, WorkerFault)
+    assert "IndexError" in str(fault)
+
+
+def test_past_its_deadline_a_worker_is_killed_and_the_next_question_is_answered() -> None:
+    workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, most_waiting=1))
+    assert outcome(workers, pow, 2, 5) == 32  # it is warm
+    workers.close()
+    workers = Workers(WorkerLimits(count=1, deadline=2.0, memory=300, most_waiting=1))
+    try:
+        assert isinstance(outcome(workers, pow, 3, FOR_EVER), TookTooLongError)
+        deadline = time.monotonic() + PATIENCE_S
+        while outcome(workers, pow, 2, 5) != 32:  # a busy machine may need more than the 2 s to start one
+            assert time.monotonic() < deadline
+    finally:
+        workers.close()
+
+
+def test_when_all_work_and_the_queue_is_full_a_question_is_refused_at_once() -> None:
+    workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, most_waiting=1))
+    workers.ask(pow, 3, FOR_EVER, lambda _: None)  # type: ignore[arg-type]
+    workers.ask(pow, 3, FOR_EVER, lambda _: None)  # type: ignore[arg-type]
+    with pytest.raises(BusyError, match="2 questions"):
+        workers.ask(pow, 3, FOR_EVER, lambda _: None)  # type: ignore[arg-type]
+    begun = time.monotonic()
+    workers.close()
+    assert time.monotonic() - begun < 10.0  # it takes milliseconds, and the powers would take years
+
+
+def test_what_counts_as_quick() -> None:
+    known = brick_world()
+    falling = TumblingQuestion(body="brick", sampling=UntilContact())
+    assert is_quick(falling, known)
+    assert is_quick(TumblingQuestion(body="nobody"), known)  # it is refused at once
+    spinning = BodyState(
+        p_WB_W=(0.0, 0.0, 1.0), q_WB=(0.0, 0.0, 0.0, 1.0), v_WB_W=np.zeros(3), w_WB_W=(1e9, 1e8, 1e8)
+    )
+    assert not is_quick(TumblingQuestion(body="brick", state=spinning, sampling=UntilContact()), known)
+    assert not is_quick(TumblingQuestion(body="brick", state=PublishedState(fit_window=0.1)), known)
+    assert not is_quick("a question of another kind", known)
