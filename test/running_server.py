@@ -145,6 +145,10 @@ def server_and_client(
 ) -> Iterator[Client]:
     """Run a server with the commented configuration, logging to ``log_directory``, and a client beside it."""
     arguments = ("--params-file", str(params_file), "--ros-args", "-p", f"log_directory:={log_directory}")
+    arguments += (
+        "-p",
+        "answer_deadline:=60.0",
+    )  # a busy machine may take long for what others answer in time
     with process("server", *arguments, ready="ready"):
         client = Client()
         try:

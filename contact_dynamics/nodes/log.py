@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rclpy.qos import QoSProfile
 
     from contact_dynamics.recording.limits import LogLimits
+    from contact_dynamics.recording.recorder import RecorderStatus
 
 
 class Log:
@@ -70,6 +71,11 @@ class Log:
         if self._recorder is not None:
             when_ns = time.time_ns() if log_time_ns is None else log_time_ns
             self._recorder.record(topic, data, log_time_ns=when_ns, publish_time_ns=publish_time_ns)
+
+    @property
+    def status(self) -> RecorderStatus | None:
+        """The state of the log now, or None if none is written."""
+        return None if self._recorder is None else self._recorder.status
 
     def close(self) -> str:
         """Finish the file, and return in words where it is and whether messages are missing."""

@@ -7,7 +7,8 @@ publishes.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import time
+from typing import TYPE_CHECKING, Any, Final
 
 from nav_msgs.msg import Path
 from rclpy.clock import JumpThreshold
@@ -16,6 +17,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.nodes.arguments import VISUALIZER_PARAMETERS, server_parser
+from contact_dynamics.nodes.diagnostics import AnswerTimes, Diagnostics
 from contact_dynamics.nodes.inbox import InboxNode
 from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_unknown_parameters
@@ -25,6 +27,7 @@ from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.service_front import ServiceFront
 from contact_dynamics.nodes.services import SERVICES
 from contact_dynamics.nodes.state_subscriptions import STATE_QOS, subscribe_to_states
+from contact_dynamics.nodes.topic_faults import TopicFaults
 from contact_dynamics.questions.knowledge import Knowledge
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.workers import Workers
@@ -48,6 +51,10 @@ CLOCK_QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 PATH_QOS = QoSProfile(depth=1)
 """Queue of the predicted trajectory as a path. It is a picture, and only the newest one matters."""
+
+
+LOOK_EVERY_S: Final = 1.0
+"""s. Time between two looks at topics and other nodes, which /diagnostics then tells of."""
 
 
 class Server(InboxNode):
@@ -81,7 +88,10 @@ class Server(InboxNode):
         )
         self._world_frame = parameters.world_frame
         # The log begins after this, so that a configuration with an unknown source leaves no log.
-        types = subscribe_to_states(self, parameters, states=states, record=self._record)
+        self._faults = TopicFaults(self.get_logger().warning)
+        self._topics = subscribe_to_states(
+            self, parameters, states=states, record=self._record, faults=self._faults
+        )
         self._log = Log(
             parameters.log_directory if parameters.log else None,
             run=self._run_description(source.topics),
@@ -89,12 +99,15 @@ class Server(InboxNode):
             on_problem=self.get_logger().error,
             on_deleted=self.get_logger().warning,
         )
-        for topic, type_name in types.items():
-            self._log.add_topic(topic, type_name, STATE_QOS)
+        for topic in self._topics:
+            self._log.add_topic(topic.name, topic.type_name, STATE_QOS)
         self._log_clock()
         self._path = self.create_publisher(Path, "~/predicted_path", PATH_QOS)
         limits = parameters.worker_limits
         self._workers = Workers(limits) if limits.count > 0 else None
+        self._answer_times = AnswerTimes()
+        self._diagnostics = Diagnostics(self)
+        self._looked = time.monotonic()
         self._fronts = [self._serve(service) for service in SERVICES]
         self._log.start()
         bodies = ", ".join(body.name for body in parameters.world.bodies) or "none"
@@ -105,6 +118,25 @@ class Server(InboxNode):
         super().attend()
         for front in self._fronts:
             front.take_events()
+        if time.monotonic() - self._looked >= LOOK_EVERY_S:
+            self._looked = time.monotonic()
+            self._look()
+
+    def _look(self) -> None:
+        """Look at topics and other nodes, and tell how everything is."""
+        for topic in self._topics:
+            topic.look()
+        full_names = [(namespace, name) for name, namespace in self.get_node_names_and_namespaces()]
+        if full_names.count((self.get_namespace(), self.get_name())) > 1:
+            text = "another node has this name: both answer the same questions"
+            self._faults.add(self.get_fully_qualified_name(), "same name", 1, text)
+        self._diagnostics.publish(
+            self._diagnostics.of_topics([topic.traffic for topic in self._topics], self._faults.counts),
+            self._diagnostics.of_answers(
+                self._answer_times, 0 if self._workers is None else self._workers.waiting
+            ),
+            self._diagnostics.of_log(self._log.status),
+        )
 
     def close(self) -> bool:
         """Finish the log and say where it is; return True, since a log that fails has been told."""
@@ -130,7 +162,7 @@ class Server(InboxNode):
             world_frame=self._world_frame,
             workers=self._workers,
             begin=self._begin,
-            answered=self._publish_path,
+            answered=self._note_answer,
             qos=SERVICE_QOS,
             event_qos=EVENT_QOS,
             record=self._record_event,
@@ -159,6 +191,10 @@ class Server(InboxNode):
 
     def _record(self, topic: str, taken: Taken) -> None:
         self._log.record(topic, taken.data, log_time_ns=taken.received_ns)
+
+    def _note_answer(self, response: Response) -> None:
+        self._answer_times.note(response)
+        self._publish_path(response)
 
     def _publish_path(self, response: Response) -> None:
         """Publish the newest trajectory for RViz, if somebody listens."""

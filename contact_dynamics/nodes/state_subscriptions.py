@@ -8,6 +8,7 @@ differs in its length or its frame, so that what is wrong with a topic is told a
 
 from __future__ import annotations
 
+import time
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -16,8 +17,10 @@ from rclpy.serialization import deserialize_message
 
 from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.errors import ContactDynamicsError
-from contact_dynamics.nodes.refused_messages import RefusedMessages
 from contact_dynamics.nodes.state_sources import state_sources
+from contact_dynamics.nodes.topic_faults import TopicFaults, TopicTraffic
+from contact_dynamics.questions.extent import check_believable
+from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
 from contact_dynamics.recording.decoding import message_class
 
@@ -49,25 +52,21 @@ def subscribe_to_states(
     *,
     states: StateStore,
     record: Callable[[str, Taken], object],
-) -> dict[str, str]:
+    faults: TopicFaults,
+) -> list[StateTopic]:
     """Subscribe to the states of all bodies, record every message, keep every state.
 
-    A message that is no state, or whose stamp is in the future, is recorded, and counted in a warning, and
-    not kept.
-
-    Returns:
-        The type of each topic's messages, by the topic's full name.
+    A message that is no state or no believable one, or whose stamp is in the future, is recorded, and counted
+    in a warning, and not kept.
 
     Raises:
         ConfigurationError: a source is configured that there is not.
         InvalidFieldError: the package of a source's messages is not installed.
     """
-    refused = RefusedMessages(node.get_logger().warning)
-    types: dict[str, str] = {}
-    for source in state_sources(parameters):
-        received = _StateTopic(node, source, states=states, record=record, refused=refused)
-        types[received.topic] = source.type_name
-    return types
+    return [
+        StateTopic(node, source, states=states, record=record, faults=faults)
+        for source in state_sources(parameters)
+    ]
 
 
 def present_ns(node: Node) -> int | None:
@@ -77,8 +76,14 @@ def present_ns(node: Node) -> int | None:
     return None if now_ns == 0 and clock.ros_time_is_active else now_ns
 
 
-class _StateTopic:
-    """One topic with messages about bodies."""
+class StateTopic:
+    """One topic with messages about bodies.
+
+    Attributes:
+        name: Its full name.
+        type_name: The type of its messages.
+        traffic: What came on it.
+    """
 
     def __init__(
         self,
@@ -87,23 +92,33 @@ class _StateTopic:
         *,
         states: StateStore,
         record: Callable[[str, Taken], object],
-        refused: RefusedMessages,
+        faults: TopicFaults,
     ) -> None:
+        """Subscribe; see `subscribe_to_states`."""
         self._node = node
         self._source = source
         self._states = states
         self._record = record
-        self._refused = refused
+        self._faults = faults
         self._msg_type: type[Any] = message_class(source.type_name)
         self._length = 0  # the last messages that were examined have it
         self._frame = b""  # and they have this frame
         self._examined_ns = 0
         qos = LATCHED_QOS if source.is_latched else STATE_QOS
-        subscription = node.subscribe(self._msg_type, source.topic, self._receive, qos, may_override=True)
-        self.topic: str = subscription.topic_name
+        self._subscription = node.subscribe(
+            self._msg_type, source.topic, self._receive, qos, may_override=True
+        )
+        self.name: str = self._subscription.topic_name
+        self.type_name = source.type_name
+        self.traffic = TopicTraffic(topic=self.name, faults=faults, one_publisher=source.is_whole)
+
+    def look(self) -> None:
+        """Look, once a second, at who publishes and for how long nothing came."""
+        self.traffic.look(time.time_ns(), self._subscription.get_publisher_count())
 
     def _receive(self, taken: Taken) -> None:
-        self._record(self.topic, taken)
+        self._record(self.name, taken)
+        self.traffic.note(taken)
         data, clock = taken.data, self._node.get_clock()
         now_ns = present_ns(self._node) if clock.ros_time_is_active else taken.received_ns
         try:
@@ -115,7 +130,7 @@ class _StateTopic:
                 return
             msg = deserialize_message(data, self._msg_type)
         except (ContactDynamicsError, RuntimeError) as error:  # bytes that are no message raise the latter
-            self._refused.add(self.topic, error)
+            self._faults.refuse(self.name, error)
             return
         for reader in self._source.readers:
             self._keep(reader, msg, now_ns=now_ns, taken=taken)
@@ -125,11 +140,12 @@ class _StateTopic:
         try:
             state = reader.state_from(msg)
             if state is not None:
+                check_believable(state_of(state))
                 self._states.add(reader.body_name, state, now_ns=now_ns)
                 self._examined_ns, self._length = taken.received_ns, len(taken.data)
                 self._frame = _leading_frame(taken.data)
         except ContactDynamicsError as error:
-            self._refused.add(self.topic, error)
+            self._faults.refuse(self.name, error)
 
     def _is_as_before(self, taken: Taken) -> bool:
         """Tell whether a message looks like the one that was examined a moment ago."""
@@ -143,10 +159,13 @@ class _StateTopic:
     def _read(self, reader: BodyReader, data: bytes) -> KnownState | None:
         """Return the state of one body that a message is, or None if it cannot be read."""
         try:
-            return reader.state_from(deserialize_message(data, self._msg_type))
+            state = reader.state_from(deserialize_message(data, self._msg_type))
+            if state is not None:
+                check_believable(state_of(state))
         except (ContactDynamicsError, RuntimeError) as error:  # bytes that are no message raise the latter
-            self._refused.add(self.topic, error)
+            self._faults.refuse(self.name, error)
             return None
+        return state
 
 
 def _leading_frame(data: bytes) -> bytes:

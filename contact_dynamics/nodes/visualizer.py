@@ -30,6 +30,7 @@ from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_unknow
 from contact_dynamics.nodes.parameters import ConfigurationError, read_server_parameters
 from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
+from contact_dynamics.nodes.topic_faults import TopicFaults
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording import BagReader, DamagedLogWarning
@@ -122,8 +123,14 @@ class Visualizer(InboxNode):
         events = [self._listen(shown, f"{server}/{shown.name}") for shown in _SHOWN]
         if not self.log_path:
             self._wait_for_server(server, events, server_wait)
-        types = subscribe_to_states(self, parameters, states=self._states, record=lambda _topic, _taken: None)
-        self._receivers |= {topic: partial(self.deliver, topic) for topic in types}
+        topics = subscribe_to_states(
+            self,
+            parameters,
+            states=self._states,
+            record=lambda _topic, _taken: None,
+            faults=TopicFaults(self.get_logger().warning),
+        )
+        self._receivers |= {topic.name: partial(self.deliver, topic.name) for topic in topics}
         self.create_timer(DRAW_PERIOD_S, self.draw_states, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.get_logger().info(f"ready: draws {server} to {self._recording.description}")
 

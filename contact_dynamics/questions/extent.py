@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -19,6 +20,29 @@ rounding."""
 
 MOST_INERTIA: Final = 1e30
 """The largest mass and moment of inertia allowed, in kg and kg m^2. The smallest is its inverse."""
+
+
+MOST_PUBLISHED_SPEED: Final = 1e5
+"""m/s, ten times what leaves the Earth."""
+
+MOST_PUBLISHED_SPIN: Final = 1e6
+"""rad/s, ten times the fastest turbines."""
+
+
+def check_believable(state: BodyState) -> None:
+    """Refuse a published state that is so fast that it must be a fault, by name.
+
+    Raises:
+        InvalidFieldError: it is faster than `MOST_PUBLISHED_SPEED`, or spins faster than
+            `MOST_PUBLISHED_SPIN`.
+    """
+    for name, vector, most, unit in (
+        ("linear_velocity", state.v_WB_W, MOST_PUBLISHED_SPEED, "m/s"),
+        ("angular_velocity", state.w_WB_W, MOST_PUBLISHED_SPIN, "rad/s"),
+    ):
+        size = math.hypot(*vector.tolist())
+        if size > most:
+            raise InvalidFieldError(name, f"{size:g} {unit}", f"at most {most:g} {unit} in a published state")
 
 
 def check_extent(body: MassProperties, state: BodyState) -> None:

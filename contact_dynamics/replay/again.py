@@ -14,8 +14,10 @@ from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.nodes.run_record import LoggedParameters
 from contact_dynamics.nodes.services import SERVICES
 from contact_dynamics.nodes.state_sources import state_sources
+from contact_dynamics.questions.extent import check_believable
 from contact_dynamics.questions.knowledge import Knowledge
 from contact_dynamics.questions.state_store import StateStore
+from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr import decode_without_ros
 from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
 from msg_adapters.status import report_error
@@ -70,6 +72,7 @@ class ServerAgain:
             with suppress(ContactDynamicsError):
                 state = state_from(decode_without_ros(message))
                 if state is not None:
+                    check_believable(state_of(state))
                     self._states.add(body_name, state, now_ns=now_ns)
 
     def answer(

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import signal
 import time
 from pathlib import Path
 from typing import Any
 
 import yaml
+from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
+from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
 
-from contact_dynamics.nodes.refused_messages import TELL_EVERY_S, RefusedMessages
+from contact_dynamics.nodes.topic_faults import TELL_EVERY_S, TopicFaults
 from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 from running_server import ROOT, Client, process, wait_for
 
+SHALLOW = QoSProfile(depth=10)
+PUBLISHED = 3000  # three times what the server's queue holds
 HOUR_NS = 3_600_000_000_000
 
 
@@ -85,16 +90,48 @@ def test_before_the_first_clock_nothing_is_from_the_future_and_after_it_is(tmp_p
 def test_each_topic_and_kind_of_fault_has_a_throttle_of_its_own() -> None:
     told: list[str] = []
     now = [0.0]
-    refused = RefusedMessages(told.append, clock=lambda: now[0])
+    refused = TopicFaults(told.append, clock=lambda: now[0])
     for _ in range(3):
-        refused.add("/a", ValueError("bad"))
-    refused.add("/b", ValueError("bad"))
-    refused.add("/a", RuntimeError("worse"))
+        refused.refuse("/a", ValueError("bad"))
+    refused.refuse("/b", ValueError("bad"))
+    refused.refuse("/a", RuntimeError("worse"))
     now[0] = TELL_EVERY_S
-    refused.add("/a", ValueError("bad"))
+    refused.refuse("/a", ValueError("bad"))
     assert told == [
         "/a: message ignored: bad (1 such so far)",
         "/b: message ignored: bad (1 such so far)",
         "/a: message ignored: worse (1 such so far)",
         "/a: message ignored: bad (4 such so far)",
     ]
+
+
+def test_what_got_lost_fell_silent_and_has_two_publishers_is_told(tmp_path: Path) -> None:
+    """The server stands still while more comes than its queue holds; /diagnostics has the counts."""
+    reports: list[DiagnosticArray] = []
+    with process("server", "--params-file", str(two_bodies(tmp_path)), ready="ready") as server:
+        client = Client()
+        try:
+            client.node.create_subscription(DiagnosticArray, "/diagnostics", reports.append, 10)
+            states = client.publisher(Odometry, "/brick/odometry", SHALLOW)
+            states.publish(odometry("brick", time.time_ns()))
+            client.spin_until(lambda: newest_ns(client, "brick") > 0)
+            server.send_signal(signal.SIGSTOP)
+            for _ in range(PUBLISHED):
+                states.publish(odometry("brick", time.time_ns()))
+            server.send_signal(signal.SIGCONT)
+            wait_for(server, "/brick/odometry: messages were lost before they could be taken")
+            client.spin_until(lambda: bool(reports) and counted(reports[-1], "lost") > 0)
+            received = counted(reports[-1], "messages")
+            assert received + counted(reports[-1], "lost") <= PUBLISHED + 1
+            wait_for(server, "/brick/odometry: nothing came for 2.")
+            client.publisher(Odometry, "/brick/odometry", SHALLOW)
+            wait_for(server, "/brick/odometry: 2 publishers tell the states of one body")
+            client.spin_until(lambda: "/brick/odometry is silent" in reports[-1].status[0].message)
+        finally:
+            client.close()
+
+
+def counted(report: DiagnosticArray, what: str) -> int:
+    """A count of the brick's topic in a report."""
+    values = {pair.key: pair.value for status in report.status for pair in status.values}
+    return int(values.get(f"/brick/odometry: {what}", "0"))

@@ -1,0 +1,123 @@
+"""What is wrong with the topics of states: counted by topic and kind, and told from time to time.
+
+It is a message that is refused, messages that got lost on the way, a topic that fell silent, and a body whose
+states come from two publishers.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from contact_dynamics.constants import seconds_between
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from contact_dynamics.nodes.inbox import Taken
+
+TELL_EVERY_S: Final = 5.0
+"""s. Time between two warnings of one kind about one topic. Another topic or another fault has a warning at
+once."""
+
+SILENT_AFTER_S: Final = 2.0
+"""s without a message, from which on a topic that was heard of counts as silent."""
+
+
+class TopicFaults:
+    """Counts faults by topic and kind, and warns of them.
+
+    The throttle of ROS has one clock for each line of code, so one topic's fault would hide all others.
+    """
+
+    def __init__(self, tell: Callable[[str], object], *, clock: Callable[[], float] = time.monotonic) -> None:
+        """Count from zero. ``tell`` takes a warning, ``clock`` returns seconds."""
+        self._tell = tell
+        self._clock = clock
+        self._counts: Counter[tuple[str, str]] = Counter()
+        self._told: dict[tuple[str, str], float] = {}
+
+    @property
+    def counts(self) -> Mapping[tuple[str, str], int]:
+        """How many faults there were, by topic and kind."""
+        return self._counts
+
+    def refuse(self, topic: str, error: Exception) -> None:
+        """Count a message that was refused, and warn with the reason, unless it has just warned of it."""
+        kind = f"{type(error).__name__} {getattr(error, 'field', '')}".rstrip()
+        self.add(topic, kind, 1, f"message ignored: {error}")
+
+    def add(self, topic: str, kind: str, count: int, text: str) -> None:
+        """Count faults of a kind, and warn of them, unless it has just warned of it."""
+        key = (topic, kind)
+        self._counts[key] += count
+        now = self._clock()
+        told = self._told.get(key)
+        if told is not None and now - told < TELL_EVERY_S:
+            return
+        self._told[key] = now
+        self._tell(f"{topic}: {text} ({self._counts[key]} such so far)")
+
+
+@dataclass(slots=True, kw_only=True)
+class TopicTraffic:
+    """What came on a topic, and what did not.
+
+    Attributes:
+        topic: The topic.
+        one_publisher: Whether its messages should come from a single publisher.
+        received: How many messages came.
+        lost: How many did not, as the numbers of those that came tell.
+        age: s, since the newest message, at the last look. None while none came.
+        rate: Hz, of the messages between the last two looks.
+        is_silent: Whether nothing came for a while at the last look, where something had come before.
+    """
+
+    topic: str
+    faults: TopicFaults
+    one_publisher: bool
+    received: int = 0
+    lost: int = 0
+    age: float | None = None
+    rate: float = 0.0
+    is_silent: bool = False
+    _newest_ns: int = 0
+    _number: int | None = None
+    _is_steady: bool = True
+    _looked_ns: int = 0
+    _received_before: int = 0
+
+    def note(self, taken: Taken) -> None:
+        """Note a message, and tell of those that are missing before it."""
+        self.received += 1
+        self._newest_ns = taken.received_ns
+        number, before = taken.number, self._number
+        self._number = number
+        if number is None or before is None or number == before + 1:
+            return
+        if number <= before:  # a publisher that was started again, or a second one
+            self._is_steady = False
+        elif self._is_steady and self.one_publisher:
+            missing = number - before - 1
+            self.lost += missing
+            self.faults.add(self.topic, "lost", missing, "messages were lost before they could be taken")
+
+    def look(self, now_ns: int, publishers: int) -> None:
+        """Look, once a second, at who publishes and for how long nothing came."""
+        self._is_steady = publishers <= 1
+        if self.one_publisher and publishers > 1:
+            self.faults.add(
+                self.topic, "publishers", 1, f"{publishers} publishers tell the states of one body"
+            )
+        if not self.received:
+            return
+        self.rate = (self.received - self._received_before) / max(
+            seconds_between(self._looked_ns, now_ns), 1e-9
+        )
+        self._looked_ns, self._received_before = now_ns, self.received
+        self.age = seconds_between(self._newest_ns, now_ns)
+        was_silent, self.is_silent = self.is_silent, self.age > SILENT_AFTER_S
+        if self.is_silent and not was_silent:
+            self.faults.add(self.topic, "silent", 1, f"nothing came for {self.age:.1f} s")
