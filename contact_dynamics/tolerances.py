@@ -396,6 +396,10 @@ TRUNCATION: Final = 1e-14
 EVENT_LOCATED: Final = 1e-15
 """Relative. Newton's method has located an event of an impact when its next step is smaller."""
 
+NOTHING_DUE: Final = 1e-9
+"""Relative to the work that the fastest approach could do. What restitution still owes below it is left, in
+interleaved impacts, whose increments are far coarser."""
+
 SWEEPS_CONVERGED: Final = 1e-13
 """Relative to the largest approach velocity. The sweeps over simultaneous impulses are done when one changes
 the contacts' velocities by less."""

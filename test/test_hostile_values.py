@@ -135,6 +135,11 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], set[str]]] = {
         {**SEVERAL, "most_orders": 2},
         {"velocity_tolerance", "most_orders"},
     ),
+    "outcomes_over_interleavings": (
+        impact.outcomes_over_interleavings,
+        {**SEVERAL, "samples": 1, "seed": 0},
+        {"velocity_tolerance", "samples", "seed"},
+    ),
     "jamming_impact": (
         impact.jamming_impact,
         {
@@ -406,7 +411,11 @@ def test_hostile_values_are_answered_or_refused_by_name(name: str) -> None:
     assert wrong == []
 
 
-@pytest.mark.parametrize("name", CALLS)
+@pytest.mark.parametrize(
+    "name",
+    # Interleavings take half a second for each of some fifty values.
+    [pytest.param(one, marks=pytest.mark.slow if "interleavings" in one else ()) for one in CALLS],
+)
 def test_extreme_objects_are_answered_or_refused(name: str) -> None:
     call, arguments, _ = CALLS[name]
     wrong = []

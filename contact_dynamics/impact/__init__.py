@@ -10,7 +10,8 @@ other, with flight between them. `distribution` is for uncertain states.
   `path` bends. The path is a `taylor` series up to where sliding comes to a `stop`, and `restitution` says
   where it ends. Batches do the same for many at once (`batch_paths`, `batch_restitution`).
 - Several contacts strike in turn (`sequential`, in all `orders`) or at once (`simultaneous`), also in the
-  plane (`planar`). Contacts that do not approach can jam (`jamming`) until that is over (`settling`).
+  plane (`planar`). Their impulses may also interleave in any way (`interleavings`). Contacts that do not
+  approach can jam (`jamming`) until that is over (`settling`).
 - In time, `meetings` finds which contact strikes next, and `sequence` goes on from strike to strike.
 """
 
@@ -27,11 +28,13 @@ from contact_dynamics.impact.planar.one_contact import planar_impact
 from contact_dynamics.impact.planar.result import PlanarImpact
 from contact_dynamics.impact.planar.routh import ImpulsePath, InverseInertia
 from contact_dynamics.impact.planar.two_bodies import planar_pair_impact
+from contact_dynamics.impact.several.interleavings import outcomes_over_interleavings
 from contact_dynamics.impact.several.jamming import jamming_impact
 from contact_dynamics.impact.several.orders import outcomes_at_once, outcomes_over_orders, several_impact
 from contact_dynamics.impact.several.planar import planar_several_impact
 from contact_dynamics.impact.several.result import (
     BodiesImpact,
+    InterleavedOutcomes,
     OrderedOutcomes,
     SeveralContactsLaw,
     SeveralImpact,
@@ -49,6 +52,7 @@ __all__ = [
     "ImpactOutcome",
     "ImpactSequence",
     "ImpulsePath",
+    "InterleavedOutcomes",
     "InverseInertia",
     "OrderedOutcomes",
     "PathEvent",
@@ -68,6 +72,7 @@ __all__ = [
     "impact_sequence_of",
     "jamming_impact",
     "outcomes_at_once",
+    "outcomes_over_interleavings",
     "outcomes_over_orders",
     "planar_impact",
     "planar_impact_distribution",

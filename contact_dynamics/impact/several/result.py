@@ -110,3 +110,33 @@ class OrderedOutcomes(Record):
         """Return the largest difference between outcomes, (6,), m/s and rad/s, axis by axis."""
         spread: FloatArray = np.ptp(self.velocities_W, axis=0)
         return spread
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class InterleavedOutcomes(Record):
+    """Outcomes of impacts that interleave, some of them and bounds on all. World axes.
+
+    Attributes:
+        velocities_W: (m, 6), m/s and rad/s, linear then angular velocity after each interleaving that was
+            tried. The first are those of orders of the contacts. The others were drawn.
+        lowest_W: (6,), m/s and rad/s. No interleaving leads below it on any axis.
+        highest_W: (6,), m/s and rad/s. No interleaving leads above it on any axis.
+        not_converged: How many interleavings were left out because they reached the bound on increments.
+    """
+
+    velocities_W: FloatArray
+    lowest_W: FloatArray
+    highest_W: FloatArray
+    not_converged: int
+
+    @property
+    def spread(self) -> FloatArray:
+        """Return the largest difference between outcomes that were found, (6,), m/s and rad/s, by axis."""
+        spread: FloatArray = np.ptp(self.velocities_W, axis=0)
+        return spread
+
+    @property
+    def gap(self) -> FloatArray:
+        """Return by how much the bounds are wider than the spread, (6,), m/s and rad/s, axis by axis."""
+        gap: FloatArray = self.highest_W - self.lowest_W - self.spread
+        return gap
