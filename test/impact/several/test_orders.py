@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -26,6 +29,7 @@ from contact_dynamics.rigid_body.body import (
     kinetic_energy,
     momentum,
 )
+from oracles import impact_in_turn
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 CUBE = MassProperties(mass=0.5, I_B=0.5 * 0.1**2 / 6.0 * np.eye(3))
@@ -240,13 +244,43 @@ def test_orders_matter_where_contacts_couple() -> None:
     assert len(outcomes.orders) > 1
     assert outcomes.velocities_W.shape == (len(outcomes.orders), 6)
     assert outcomes.spread.max() > 0.1
-    few = outcomes_over_orders(CUBE, falling(0.05, [0.5, 0.0, -1.0]), contacts, most_orders=2)
-    assert not few.complete
-    fastest = several_impact(CUBE, falling(0.05, [0.5, 0.0, -1.0]), contacts)
-    assert few.orders == (
-        *outcomes.orders[:2],
-        fastest.order,
-    )  # of two priorities, and the law's
+
+
+CORNERS = [
+    (Fraction(1, 20), Fraction(1, 25)),
+    (Fraction(-1, 16), Fraction(1, 20)),
+    (Fraction(1, 50), Fraction(-1, 18)),
+]
+
+
+def in_turn(priority: tuple[int, ...] | None) -> tuple[tuple[int, ...], list[float]]:
+    """Return the exact order and velocities, v_z, w_x, w_y, of a frictionless landing on three corners."""
+    order, after = impact_in_turn.strikes(
+        mass=Fraction(1, 2),
+        moments=(Fraction(1, 1000), Fraction(1, 800), Fraction(1, 700)),
+        v_z=Fraction(-1),
+        corners=CORNERS,
+        e=Fraction(1, 2),
+        priority=priority,
+        tolerance=Fraction(1e-9),
+    )
+    return order, [float(x) for x in after]
+
+
+@pytest.mark.parametrize("most", [1, 2, 4, 6])
+def test_orders_and_their_outcomes_are_those_of_exact_strikes(most: int) -> None:
+    """Priorities are tried as `permutations` lists them, then the fastest approach. Orders count once."""
+    body = MassProperties(mass=0.5, I_B=np.diag([1 / 1000, 1 / 800, 1 / 700]))
+    contacts = floor_contacts([[float(x), float(y), 0.0] for x, y in CORNERS], friction=0.0, restitution=0.5)
+    outcomes = outcomes_over_orders(body, falling(0.1, [0.0, 0.0, -1.0]), contacts, most_orders=most)
+    priorities = [*itertools.islice(itertools.permutations(range(3)), most), None]
+    expected = dict(in_turn(priority) for priority in priorities)
+    assert outcomes.orders == tuple(expected)
+    assert outcomes.complete == (most == 6)
+    # Each strike rounds; there are at most 60.
+    assert outcomes.velocities_W[:, 2:5] == pytest.approx(
+        np.array(list(expected.values())), rel=1e-12, abs=1e-12
+    )
 
 
 def test_refusals() -> None:
@@ -355,6 +389,8 @@ def test_solutions_at_once_are_told_with_their_spread() -> None:
         solutions.velocities_W[0], np.concatenate([answer.state.v_WB_W, answer.state.w_WB_W])
     )
     assert solutions.complete
+    # Sweeps end at 1e-13 of the speed, so that two ways to one solution differ by some 1e-8 at most. A spread
+    # a million times as large means that the law has several solutions here.
     assert solutions.spread.max() > 0.01
 
 
