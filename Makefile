@@ -30,8 +30,10 @@ help: ## print this
 demo: $(MADE)/package $(MADE)/interfaces ## play a toss and compare predictions with it; VIEW=1 opens the viewer, TOSS=path plays another
 	@$(BIN)/contact-dynamics demo $(if $(VIEW),--view) $(if $(TOSS),--toss "$(TOSS)")
 
-test: lint types $(MADE)/test ## lint, types and the tests
-	@$(BIN)/python -m pytest
+# More than four processes gain little: the longest files of the nodes' tests each wait for processes and DDS.
+JOBS ?= $(shell n=$$(nproc 2>/dev/null || echo 1); [ "$$n" -gt 4 ] && n=4; echo $$n)
+test: lint types $(MADE)/test ## lint, types and the tests; JOBS=1 runs them in one process
+	@$(BIN)/python -m pytest $(if $(filter-out 1,$(JOBS)),-n $(JOBS) --dist loadfile)
 
 test-matrix: ## the physics with the oldest and newest NumPy and SciPy, on every Python and several kinds of processors
 	@setup/matrix.sh $(VENV)-matrix
