@@ -9,11 +9,14 @@ set -u
 folder=$1
 here=$(dirname "$0")
 tests=${TESTS:-test}
-# What needs ROS, rerun or the built environment is not physics.
-beside="nodes demo recording viewing msg_adapters test_setup architecture test_examples.py"
+# What needs ROS, rerun or the built environment is not physics. test/test_setup/test_matrix.py holds that nothing else does.
+beside="nodes demo recording replay viewing msg_adapters evaluation test_setup architecture"
+beside="$beside test_examples.py test_document_types.py test_quoted_numbers.py test_site.py"
+# pytest-xdist is one of them.
 tools=$(grep -E '^(pytest|hypothesis|mpmath)\b' requirements/test.txt)
 
 mkdir -p "$folder"
+jobs=$(nproc 2>/dev/null || echo 1)
 table=$folder/table.txt
 missing=$folder/missing.txt
 : >"$table"
@@ -39,7 +42,7 @@ run_suite() { # environment, Python, which wheels, processor
     [ "$4" = own ] && unset OPENBLAS_CORETYPE || export OPENBLAS_CORETYPE="$4"
     # The lists are split into words on purpose.
     # shellcheck disable=SC2086
-    if "$1/bin/python" -m pytest -q -p no:cacheprovider $ignored $tests >"$log" 2>&1; then
+    if "$1/bin/python" -m pytest -q -n "$jobs" --dist loadfile -p no:cacheprovider $ignored $tests >"$log" 2>&1; then
         row "$2" "$3" "$(wheels_of "$1")" "$4" "$(tail -n 1 "$log")"
     else
         failed=1
