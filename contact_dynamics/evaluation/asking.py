@@ -27,6 +27,7 @@ from contact_dynamics.questions.sample_times import AtStamps, UntilContact
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.subject import PublishedState
 from contact_dynamics.questions.tumbling import TumblingQuestion
+from contact_dynamics.questions.uncertain_state import UncertainState
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import free_motion
@@ -98,6 +99,13 @@ def _source(method: Method, settings: Settings) -> PublishedState:
     return PublishedState(fit_window=0.0 if method is Method.NEWEST else settings.fit_window)
 
 
+def _has_covariance(row: Comparison, known: Knowledge) -> bool:
+    """Return whether the state that a prediction is made from has a covariance, as each fit has."""
+    if row.method is Method.NEWEST:
+        return isinstance(known.states.newest(row.body), UncertainState)
+    return row.method is Method.FIT
+
+
 def _flight(row: Comparison, event: FoundEvent, known: Knowledge, settings: Settings) -> Iterator[Comparison]:
     for method in (Method.FIT, Method.NEWEST):
         yield _or_refusal(
@@ -107,13 +115,12 @@ def _flight(row: Comparison, event: FoundEvent, known: Knowledge, settings: Sett
 
 
 def _pose_at_end(row: Comparison, event: FoundEvent, known: Knowledge, source: PublishedState) -> Comparison:
-    is_fit = row.method is Method.FIT
     answer = ask(
         TumblingQuestion(
             body=event.body,
             state=source,
             sampling=AtStamps(stamps_ns=[event.time_ns]),
-            want_covariance=is_fit,
+            want_covariance=_has_covariance(row, known),
         ),
         known,
     )
@@ -143,7 +150,7 @@ def _first_contact(
             body=event.body,
             state=source,
             sampling=UntilContact(rate=_SPARSE),
-            want_covariance=row.method is Method.FIT,
+            want_covariance=_has_covariance(row, known),
         ),
         known,
     )
@@ -179,7 +186,7 @@ def _asked_impact(row: Comparison, event: FoundEvent, known: Knowledge, settings
         state=_source(row.method, settings),
         restitution_law=law.restitution_law,
         several_contacts_law=law.several_contacts_law,
-        want_covariance=row.method is Method.FIT and law is settings.laws[0],
+        want_covariance=row.law is settings.laws[0] and _has_covariance(row, known),
     )
     try:
         return ask(question, known)

@@ -46,7 +46,7 @@ def _flight(motion: MeasuredMotion, flight: slice) -> FoundEvent:
         q_WB=motion.q_WB[last],
         v_WB_W=velocities.state.v_WB_W,
         w_WB_W=velocities.state.w_WB_W,
-        stamp_ns=motion.states[last].stamp_ns,
+        stamp_ns=motion.stamp_ns(last),
     )
     return FoundEvent(
         kind=EventKind.FLIGHT,

@@ -16,7 +16,6 @@ from contact_dynamics.evaluation.recording import Recording
 from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.nodes.parameters import ServerParameters, read_server_parameters
 from contact_dynamics.nodes.run_record import PARAMETERS, LoggedParameters
-from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.cdr import decode_without_ros
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from contact_dynamics.nodes.parameters import ParameterSource
-    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.questions.uncertain_state import KnownState
 
 _OURS: Final = "contact_dynamics_interfaces/"
 
@@ -95,23 +94,23 @@ def recording_of_log(path: Path, *, config: Path | None = None) -> Recording:
     return Recording(motions=tuple(motions), informed=informed, damage=log.damage or "")
 
 
-def _states(log: BagReader, parameters: ServerParameters) -> dict[str, list[tuple[BodyState, int]]]:
+def _states(log: BagReader, parameters: ServerParameters) -> dict[str, list[tuple[KnownState, int]]]:
     """Return the states by body, in the order in which they came, with the log_time of each, ns."""
     stand_in((name, text) for name, text in log.definitions().items() if not name.startswith(_OURS))
     from contact_dynamics.nodes.state_sources import state_sources  # imports what now stands in for ROS
 
-    found: dict[str, list[tuple[BodyState, int]]] = {body.name: [] for body in parameters.world.bodies}
+    found: dict[str, list[tuple[KnownState, int]]] = {body.name: [] for body in parameters.world.bodies}
     sources = {each.full_name: each for each in state_sources(parameters)}
     for message in log.messages(sources.keys()):
         for body_name, state_from in sources[message.topic].readers:
             with suppress(ContactDynamicsError):  # the server refused it too
                 known = state_from(decode_without_ros(message))
                 if known is not None:
-                    found[body_name].append((state_of(known), message.log_time_ns))
+                    found[body_name].append((known, message.log_time_ns))
     return found
 
 
-def _on_stamps_clock(found: Sequence[tuple[BodyState, int]]) -> list[int]:
+def _on_stamps_clock(found: Sequence[tuple[KnownState, int]]) -> list[int]:
     """Return when the states were known, ns on the clock of their stamps.
 
     Where the log was written by another clock, as in simulated time, each state counts as known at its stamp.

@@ -87,7 +87,7 @@ def _window(motion: MeasuredMotion, first: int, stop: int) -> _Window | None:
         q_WB=turned(motion.q_WB[middle], at_middle[None, 3:])[0],
         v_WB_W=slopes[:3],
         w_WB_W=slopes[3:],
-        stamp_ns=motion.states[middle].stamp_ns,
+        stamp_ns=motion.stamp_ns(middle),
     )
     touch = touch_of(motion.body, state, motion.world, within=TOUCHING_GAP)
     if touch is None:
@@ -139,7 +139,7 @@ def _event(motion: MeasuredMotion, stretch: Sequence[_Window]) -> FoundEvent:
         since=float(motion.times[stretch[0].first]),
         first_sample=stretch[0].first,
         time=float(motion.times[sample]),
-        time_ns=motion.states[sample].stamp_ns,
+        time_ns=motion.stamp_ns(sample),
         time_std=0.0,
         state=last.middle,
         position_std=motion.position_noise,

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.constants import seconds_since, to_seconds
+from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.records import Record
 from contact_dynamics.rotations.many import rotation_vectors
 from contact_dynamics.tolerances import LEAST_ORIENTATION_NOISE, LEAST_POSITION_NOISE
@@ -24,7 +25,7 @@ from contact_dynamics.tolerances import LEAST_ORIENTATION_NOISE, LEAST_POSITION_
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.questions.uncertain_state import KnownState
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
 
@@ -43,22 +44,18 @@ class MeasuredMotion(Record):
     """One body's states without gaps; sample k is row k of each array.
 
     Attributes:
-        body: The body, with its shape.
-        world: The world that the body moves in.
-        states: The states in the order of their stamps, which differ.
-        arrivals_ns: When each state was known, ns, on the clock of the stamps.
-        epoch_ns: The stamp from which times count, ns.
-        times: (n,), s after the epoch.
-        p_WB_W: (n, 3), m, centre of mass in the world.
-        q_WB: (n, 4), unit quaternions x, y, z, w: body coordinates into world coordinates.
-        rate: Rate of the states, Hz.
-        position_noise: Standard deviation of each coordinate of a position, m.
-        orientation_noise: Standard deviation of each component of an orientation's rotation error, rad.
+        body: The body, with its shape. world: The world that the body moves in. published: The states in the
+        order of their stamps, which differ, with covariances where they had some. arrivals_ns: When each
+        state was known, ns, on the clock of the stamps. epoch_ns: The stamp from which times count, ns.
+        times: (n,), s after the epoch. p_WB_W: (n, 3), m, centre of mass in the world. q_WB: (n, 4), unit
+        quaternions x, y, z, w: body coordinates into world coordinates. rate: Rate of the states, Hz.
+        position_noise: Standard deviation of each coordinate of a position, m. orientation_noise: Standard
+        deviation of each component of an orientation's rotation error, rad.
     """
 
     body: Body
     world: World
-    states: tuple[BodyState, ...]
+    published: tuple[KnownState, ...]
     arrivals_ns: tuple[int, ...]
     epoch_ns: int
     times: FloatArray
@@ -70,24 +67,28 @@ class MeasuredMotion(Record):
 
     def __len__(self) -> int:
         """Return the number of states."""
-        return len(self.states)
+        return len(self.published)
 
     @property
     def gravity_W(self) -> FloatArray:
         """Acceleration of gravity, (3,), m/s^2, world axes."""
         return self.world.gravity_W
 
-    def known_by(self, asked_ns: int, *, since: int = 0) -> list[BodyState]:
+    def stamp_ns(self, sample: int) -> int:
+        """Return the stamp of a state, ns."""
+        return self.published[sample].stamp_ns
+
+    def known_by(self, asked_ns: int, *, since: int = 0) -> list[KnownState]:
         """Return the states from sample ``since`` on that had been stamped and had arrived by then."""
-        end = bisect_right(self.states, asked_ns, key=lambda state: state.stamp_ns)
-        stamped = zip(self.states[since:end], self.arrivals_ns[since:end], strict=True)
+        end = bisect_right(self.published, asked_ns, key=lambda state: state.stamp_ns)
+        stamped = zip(self.published[since:end], self.arrivals_ns[since:end], strict=True)
         return [state for state, arrival in stamped if arrival <= asked_ns]
 
 
 def motions_of(
     body: Body,
     world: World,
-    states: Sequence[BodyState],
+    states: Sequence[KnownState],
     *,
     arrivals_ns: Sequence[int],
     noise: tuple[float, float] | None = None,
@@ -115,14 +116,14 @@ def motions_of(
         if end - begin < FEWEST_STATES:
             continue
         stretch = ordered[begin:end]
-        p_WB_W = np.array([state.p_WB_W for state, _ in stretch])
-        q_WB = np.array([state.q_WB for state, _ in stretch])
+        p_WB_W = np.array([state_of(state).p_WB_W for state, _ in stretch])
+        q_WB = np.array([state_of(state).q_WB for state, _ in stretch])
         position_noise, orientation_noise = noise or estimated_noise(p_WB_W, q_WB)
         motions.append(
             MeasuredMotion(
                 body=body,
                 world=world,
-                states=tuple(state for state, _ in stretch),
+                published=tuple(state for state, _ in stretch),
                 arrivals_ns=tuple(arrival for _, arrival in stretch),
                 epoch_ns=stamps[0],
                 times=seconds_since(stamps[0], stamps[begin:end]),

@@ -36,6 +36,7 @@ class ResultsFolder:
         """
         path.mkdir(parents=True, exist_ok=True)
         self._path = path
+        self._there = {file.stem.rpartition("-")[2]: file for file in path.glob("*.json")}
 
     def find(self, job: Job) -> dict[str, Any] | None:
         """Return the result of a job that was done before under any name, or None if there is none.
@@ -43,14 +44,15 @@ class ResultsFolder:
         Raises:
             OSError: the recording cannot be read.
         """
-        for path in sorted(self._path.glob(f"*-{job.key()[:_KEY_DIGITS]}.json")):
-            try:
-                content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-                source_result(content)
-            except (ValueError, KeyError, TypeError):  # damaged: it is done again
-                continue
-            return {**content, "source": job.source.name}
-        return None
+        path = self._there.get(job.key()[:_KEY_DIGITS])
+        if path is None:
+            return None
+        try:
+            content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+            source_result(content)
+        except (ValueError, KeyError, TypeError):  # a damaged file is made again
+            return None
+        return {**content, "source": job.source.name}
 
     def put(self, job: Job, content: dict[str, Any]) -> None:
         """Keep the result of a job; one that could not be evaluated is not kept, and is tried again.

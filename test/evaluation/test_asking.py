@@ -16,6 +16,7 @@ from contact_dynamics.evaluation.recording import Recording, evaluate_recording,
 from contact_dynamics.evaluation.settings import Law, Method, Settings
 from contact_dynamics.evaluation.summary import is_inside
 from contact_dynamics.measured.read_toss import read_toss
+from contact_dynamics.questions.uncertain_state import UncertainState, state_of
 from contact_dynamics.rigid_body.body import BodyState
 from evaluation.made_motion import bounces, only_motion
 
@@ -43,12 +44,12 @@ def changed_after(motion: MeasuredMotion, stamp_ns: int, *, by_arrival: bool) ->
     nonsense = BodyState(
         p_WB_W=[9.0, 9.0, 9.0], q_WB=[1.0, 0.0, 0.0, 0.0], v_WB_W=[9.0] * 3, w_WB_W=[9.0] * 3
     )
-    times = motion.arrivals_ns if by_arrival else [state.stamp_ns for state in motion.states]
+    times = motion.arrivals_ns if by_arrival else [state.stamp_ns for state in motion.published]
     states = [
         state if time <= stamp_ns else replace(nonsense, stamp_ns=state.stamp_ns)
-        for state, time in zip(motion.states, times, strict=True)
+        for state, time in zip(motion.published, times, strict=True)
     ]
-    return replace(motion, states=tuple(states))
+    return replace(motion, published=tuple(states))
 
 
 # The brick slides for too short a time to ask before; rests and slides are asked alike.
@@ -116,6 +117,25 @@ def test_what_is_refused_is_said_in_the_row(brick: Recording, events: list[Found
     rows = list(compare_event(0, event, only_motion(brick), replace(brick.informed, world=nobody), QUICK))
     assert len(rows) == 2
     assert all("'brick'" in row.refused and row.time_error is None for row in rows)
+
+
+def test_a_published_covariance_is_held_against_what_came(brick: Recording) -> None:
+    """A state without a fit has none of its own; one that is published far too wide covers all there is."""
+    motion = only_motion(brick)
+    wide = np.diag(np.repeat([0.1, 0.1, 1.0, 1.0], 3) ** 2)
+    published = [UncertainState(state=state_of(state), covariance=wide) for state in motion.published]
+    uncertain = replace(brick, motions=(replace(motion, published=tuple(published)),))
+    settings = replace(QUICK, horizons=(0.02,))
+    for recording, has_covariances in ((brick, False), (uncertain, True)):
+        rows = [
+            row
+            for row in evaluate_recording(recording, settings).comparisons
+            if row.method is Method.NEWEST and row.kind in (EventKind.FLIGHT, EventKind.LANDING)
+        ]
+        assert len(rows) == 8
+        assert [row.distance is not None for row in rows] == [has_covariances] * 8
+        if has_covariances:
+            assert all(is_inside(row, 0.5) for row in rows)
 
 
 def coverage(seeds: range) -> dict[EventKind, list[Comparison]]:

@@ -28,7 +28,7 @@ def test_states_come_in_order_of_their_stamps_and_of_two_the_last_counts() -> No
     mixed = [*states[10:], *states[:10], states_at([stamps[5]])[0]]
     arrivals = list(range(len(mixed)))
     (motion,) = motions_of(BRICK, world_of(BRICK), mixed, arrivals_ns=arrivals)
-    assert [state.stamp_ns for state in motion.states] == stamps
+    assert [state.stamp_ns for state in motion.published] == stamps
     assert motion.arrivals_ns[5] == 20
     assert motion.rate == pytest.approx(100.0)
     assert motion.times == pytest.approx(1e-9 * np.array(stamps))
