@@ -44,7 +44,8 @@ if TYPE_CHECKING:
     from contact_dynamics.world import World
 
 FEWEST_ASKED: Final = 5
-"""Least number of states since the flight, the rest or the slide began, for a question about its end."""
+"""Least number of states since a flight began, for a question about its end. A fit of three or four could
+follow their noise anywhere. A question about a mode needs one state."""
 
 _SPARSE: Final = 1.0  # Hz: of a flight until contact, only its end counts
 
@@ -71,7 +72,7 @@ def compare_event(
     for horizon in settings.horizons:
         asked_ns = event.asked_ns(horizon)
         states = motion.known_by(asked_ns, since=event.first_sample)
-        if len(states) < FEWEST_ASKED:
+        if len(states) < (1 if event.mode else FEWEST_ASKED):
             continue
         store = StateStore(history=settings.fit_window, timeout=informed.state_timeout)
         for state in states:
