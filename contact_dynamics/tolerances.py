@@ -281,7 +281,8 @@ more than 3e-9."""
 
 CLEAR_ROWS_OF_MANY: Final = 1e-6
 """Dimensionless. It stands in for `CLEAR_ROWS` where there are more than 150 planes or wrenches. So many lie
-closer together without being degenerate."""
+closer together without being degenerate. With it, 60 sets of 150 to 400 contacts next to degeneracy got the
+modes that decimals give."""
 
 SAME_SHARP_ROWS: Final = 1e-14
 """Sine. Rows that are known to more digits than floats have are one if they meet at a smaller sine. If

@@ -92,7 +92,7 @@ def _judged(case: PlanarCase, accuracy: float) -> tuple[Judged, str]:
     """Return what mechanics says about all modes of a case, and what is undecided and why."""
     cells = kinematic_cells(case)
     judged = judge_all(case, cells, accuracy)
-    if any(beyond_grip(contact, case.rho) for contact in case.contacts):
+    if any(contact.friction > 1.0 and beyond_grip(contact, case.rho) for contact in case.contacts):
         return _whatever_the_grip(case, cells, accuracy, judged)
     if judged.undecided:
         return judged, f"rounding decides whether forces bring about {', '.join(judged.undecided)}"

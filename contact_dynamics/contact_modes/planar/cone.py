@@ -133,8 +133,9 @@ class PolyhedralCone:
         """
         if self.exact:
             return
+        same, clear = self._same, self._clear
         for size in sizes:
-            if self._same < size < self._clear or self._same < -size < self._clear:
+            if same < size < clear or same < -size < clear:
                 raise _NotClearError
 
     @property
@@ -169,11 +170,10 @@ class PolyhedralCone:
         if not lines:
             count = len(rays)
             pairs = [(i, (i + 1) % count) for i in range(count)] if count > 2 else [(0, 1)][: count // 2]
-            return [
-                sector
-                for i, j in pairs
-                for sector in self._parts(Sector(rays[i], rays[j], self.tight[i] & self.tight[j]))
-            ]
+            found = []
+            for i, j in pairs:
+                found += self._parts(Sector(rays[i], rays[j], self.tight[i] & self.tight[j]))
+            return found
         if len(lines) == 1:
             line = lines[0]
             return [
@@ -266,8 +266,8 @@ class PolyhedralCone:
 
     def _touch(self, indices: NDArray[np.int64], heights: FloatArray, lowest: FloatArray) -> None:
         """Record the rows that touch the cone and do not cut it, and on which rays they vanish."""
-        near = heights[lowest < self._clear]
-        if ((abs(near) > self._same) & (abs(near) < self._clear)).any():
+        near = abs(heights[lowest < self._clear])
+        if ((near > self._same) & (near < self._clear)).any():
             raise _NotClearError
         touching = np.flatnonzero(abs(lowest) <= self._same)
         if len(touching) == 0:
@@ -287,7 +287,9 @@ class PolyhedralCone:
         lowest = min(heights)
         if lowest >= self._clear:
             return
-        self._check_clear(*heights)
+        closest = min(map(abs, heights))
+        if closest < self._clear:
+            self._check_clear(*heights)
         tolerance = self._same
         if lowest > tolerance:
             return
@@ -297,7 +299,7 @@ class PolyhedralCone:
                 if height <= tolerance:
                     self.tight[i] |= bit
             return
-        self._cut_rays(heights, index)
+        self._cut_rays(heights, index, touches=closest <= tolerance)
 
     def _cut_lineality(self, row: Vector3, index: int) -> bool:
         """Cut with a row that does not vanish on all lines: one line becomes a ray.
@@ -323,17 +325,21 @@ class PolyhedralCone:
         self.tight.append(bit - 1)
         return True
 
-    def _cut_rays(self, heights: list[float], index: int) -> None:
-        """Drop the rays on the wrong side of the row, and add one where an edge of the cone crosses it."""
+    def _cut_rays(self, heights: list[float], index: int, *, touches: bool) -> None:
+        """Drop the rays on the wrong side of the row, and add one where an edge of the cone crosses it.
+
+        ``touches`` says whether the row vanishes on some ray.
+        """
         tolerance = self._same
         bit = 1 << index
         top = heights.index(max(heights))
         heights = heights[top:] + heights[:top]
         self.rays = rays = self.rays[top:] + self.rays[:top]
         self.tight = tight = self.tight[top:] + self.tight[:top]
-        for i, height in enumerate(heights):
-            if -tolerance <= height <= tolerance:
-                tight[i] |= bit
+        if touches:
+            for i, height in enumerate(heights):
+                if -tolerance <= height <= tolerance:
+                    tight[i] |= bit
         below = [i for i, height in enumerate(heights) if height < -tolerance]
         first, last = below[0], below[-1]
         edges = []
@@ -426,5 +432,6 @@ def _root(square: float) -> float:
 
 def _unit(vector: Vector3) -> Vector3:
     x, y, z = vector
-    size = _root(x * x + y * y + z * z)
+    square = x * x + y * y + z * z
+    size = math.sqrt(square) if type(square) is float else _root(square)
     return (x / size, y / size, z / size)

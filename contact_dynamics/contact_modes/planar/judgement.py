@@ -111,9 +111,12 @@ def _judged(
         return RefusedMode(mode=mode, refusal=Refusal.NO_SOLUTION, contact=-1, amount=shortfall)
     found = wrenches.solution(accuracy)
     forces = _in_cones(case, cell, [found.forces[position] for position, _ in cell.letters])
-    newton = _acceleration(case, cell, forces)
-    q = newton if found.motion is None else _with_motion(case, newton, found.motion)
-    missed = case.mass * norm(combined(1.0, newton, -1.0, q)) + _misses(case, cell, q)
+    q = _acceleration(case, cell, forces)
+    missed = 0.0
+    if found.motion is not None:
+        newton, q = q, _with_motion(case, q, found.motion)
+        missed = case.mass * norm(combined(1.0, newton, -1.0, q))
+    missed += _misses(case, cell, q)
     # Close to the boundary, the rounding of the forces may be larger than the strict inequalities.
     if _contradiction(case, cell, q) or missed > _allowed(case, accuracy, forces):
         return None
@@ -177,13 +180,16 @@ def _in_cones(case: PlanarCase, cell: Cell, forces: list[Vector2]) -> list[Vecto
 
 def _misses(case: PlanarCase, cell: Cell, q: Vector3) -> float:
     """Return the largest acceleration, times mass, N, that the letters say is zero and ``q`` says is not."""
+    x, y, z = q
     most = 0.0
     for position, letter in cell.letters:
         row = case.rows[position]
-        most = max(most, case.mass * abs(dot(row.unit_n, q) + row.b_n / row.size_n))
+        N = row.unit_n
+        most = max(most, abs(N[0] * x + N[1] * y + N[2] * z + row.b_n / row.size_n))
         if letter == FIXED:
-            most = max(most, case.mass * abs(dot(row.unit_t, q) + row.b_t / row.size_t))
-    return most
+            T = row.unit_t
+            most = max(most, abs(T[0] * x + T[1] * y + T[2] * z + row.b_t / row.size_t))
+    return case.mass * most
 
 
 def _contradiction(case: PlanarCase, cell: Cell, q: Vector3) -> bool:

@@ -22,6 +22,7 @@ from contact_dynamics.contact_modes import (
     statics,
     wrench_sets,
 )
+from contact_dynamics.contact_modes.planar import cone
 from contact_dynamics.errors import UndecidedError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_modes.evidence import check_evidence, check_forces
@@ -149,6 +150,57 @@ def test_friction_up_to_a_million_and_arms_up_to_ten_thousand_hold_their_load(bl
 def test_many_frictions_and_arms_hold_their_load(block: int) -> None:
     for seed in range(5_000 + 50 * block, 5_050 + 50 * block):
         check(gripping(seed), long_arms=True)
+
+
+def many(seed: int, most: int) -> PlanarContactProblem:
+    """Return 150 contacts or more on a floor, a ring, anywhere or in clusters, with offsets, and a load."""
+    chance = random.Random(seed)
+    body = PlanarBody(mass=10.0 ** chance.uniform(-1.0, 1.0), inertia=10.0 ** chance.uniform(-2.0, 1.0))
+    rho, count = body.radius_of_gyration, chance.randint(150, most)
+    kind = chance.choice(["floor", "floor", "ring", "cloud", "clusters"])
+
+    def anywhere() -> tuple[float, float, float]:
+        return rho * chance.uniform(-2.0, 2.0), rho * chance.uniform(-2.0, 2.0), chance.uniform(-3.2, 3.2)
+
+    clusters = [anywhere() for _ in range(chance.choice([2, 3, 5]))]
+    places = []
+    for i in range(count):
+        x, y, angle = chance.choice(clusters) if kind == "clusters" else anywhere()
+        if kind == "floor":
+            y, angle = -rho, 0.5 * math.pi
+        if kind == "ring":
+            turn = 2.0 * math.pi * i / count
+            x, y, angle = rho * math.cos(turn), 0.7 * rho * math.sin(turn), turn + math.pi
+        if kind != "ring" or chance.random() < 0.3:
+            x, y = x + near(chance) * rho, y + near(chance) * rho * chance.choice([0, 1])
+            angle += near(chance) * chance.choice([0, 1])
+        places.append((x, y, angle, chance.choice([0.0, 0.2, 0.5, 1.0, 2.0])))
+    return held(body, places, chance)
+
+
+def compare_with_decimals(problem: PlanarContactProblem, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Check floats against decimals, which decide about the contacts exactly as they are given."""
+    answer = check(problem)
+    with monkeypatch.context() as patched:
+        patched.setattr(cone, "CLEAR_ROWS_OF_MANY", 2.0)
+        patched.setattr(cone, "CLEAR_ROWS", 2.0)
+        exact = contact_modes(problem)
+    assert answer.kinematic_modes == exact.kinematic_modes
+    assert [mode.mode for mode in answer.modes] == [mode.mode for mode in exact.modes]
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_hundreds_of_contacts_are_told_apart_as_decimals_do(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    compare_with_decimals(many(seed, 250), monkeypatch)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("block", range(30))
+def test_many_sets_of_up_to_a_thousand_contacts(block: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    for seed in range(100 + 4 * block, 104 + 4 * block):
+        compare_with_decimals(many(seed, 1000), monkeypatch)
 
 
 @pytest.mark.parametrize("seed", range(60))
