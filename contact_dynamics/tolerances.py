@@ -295,6 +295,10 @@ carry more rounding than the accuracy asked for."""
 FORCES_ROUNDING: Final = 1e-13
 """Relative to the forces. Sums of forces round by this much."""
 
+NO_MOTION: Final = 1e-6
+"""Relative to the applied wrench over the mass. Where contacts are uncertain, slower accelerations count as
+rest. It is ten times the tolerance of SciPy's linear programs."""
+
 LARGEST_GRIP: Final = 1e10
 """Dimensionless, in the plane. A coefficient of friction above it, or above it divided by the contact's arm
 in radii of gyration, acts as that one does. The two differ in forces whose normal part is less than 1e-10 of

@@ -2,8 +2,9 @@
 
 You state a `PlanarContactProblem` or a `SpatialContactProblem`, and pass it to the functions of
 `plane_or_space`. `contact_modes` finds every consistent mode. `mode_margins` says how far the wrench is from
-leaving each of them, and `refused_modes` says why the other modes are not consistent. `wrench_sets` returns
-the wrenches of each mode. `statics` says whether a body at rest stays at rest.
+leaving each of them, `geometry_margins` how far contacts are from another verdict, and `refused_modes` says
+why the other modes are not consistent. `wrench_sets` returns the wrenches of each mode. `statics` says
+whether a body at rest stays at rest.
 
 A mode is a string with one of the `letters` for each contact. The plane and space share the types in
 `result`.
@@ -31,6 +32,7 @@ from contact_dynamics.contact_modes.planar.result import PlanarMode, PlanarModeA
 from contact_dynamics.contact_modes.planar.wrench_sets import PlanarWrenchSet, WrenchHalfSpace
 from contact_dynamics.contact_modes.plane_or_space import (
     contact_modes,
+    geometry_margins,
     mode_margins,
     refused_modes,
     statics,
@@ -39,6 +41,7 @@ from contact_dynamics.contact_modes.plane_or_space import (
 from contact_dynamics.contact_modes.result import (
     BodyStatics,
     Certainty,
+    GeometryMargin,
     ModeVerdict,
     Refusal,
     RefusedMode,
@@ -54,6 +57,7 @@ from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
 __all__ = [
     "BodyStatics",
     "Certainty",
+    "GeometryMargin",
     "Letter",
     "ModeVerdict",
     "PlanarContactProblem",
@@ -71,6 +75,7 @@ __all__ = [
     "VerdictsWithin",
     "WrenchHalfSpace",
     "contact_modes",
+    "geometry_margins",
     "mode_margins",
     "refused_modes",
     "spatial_kinematic_modes",

@@ -72,15 +72,40 @@ class VerdictsWithin(Record):
         uncertainty: The box in which the true contacts are.
         verdicts: The verdicts that occur in the box, the one on the problem itself first. Each of the others
             was found at some contacts in the box.
+        modes: The modes that are consistent at the problem itself or at some contacts that were found.
         certain: Whether it is proven that no other verdict occurs in the box. If it is not, the verdicts are
-            those that samples have shown.
+            those that samples have shown. If the verdict UNIQUE is certain, its mode is the same in the box.
         samples: How many contact sets in the box were tried.
     """
 
     uncertainty: ContactUncertainty
     verdicts: tuple[ModeVerdict, ...]
+    modes: tuple[str, ...]
     certain: bool
     samples: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class GeometryMargin(Record):
+    """How far the contacts would have to be off for another answer, in one of three ways.
+
+    Another answer is another verdict, or another mode that is UNIQUE.
+
+    Attributes:
+        kind: What is off: "points" (sizes are in m), "normals" (rad) or "frictions".
+        holds_within: It is proven that the answer is the same if all contacts are off by at most this. It is
+            0 if nothing could be proven.
+        changes_at: At some contacts that are off by at most this, another answer was found. It is infinite if
+            none was found.
+        verdict_beyond: The verdict there, or the present one if none was found.
+        modes_beyond: The consistent modes there, or none.
+    """
+
+    kind: str
+    holds_within: float
+    changes_at: float
+    verdict_beyond: ModeVerdict
+    modes_beyond: tuple[str, ...]
 
 
 def verdict_on(modes: Sized) -> ModeVerdict:

@@ -23,6 +23,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
 from contact_dynamics.contact_modes.planar.coincident import coincident
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, tangents, without
@@ -61,6 +62,8 @@ class PlanarContactProblem(Record):
             angular velocity counts as zero if it moves no contact relative to the centre of mass by more.
         acceleration_tolerance: >= 0, relative to the applied wrench and the centripetal terms. Forces and
             accelerations count as zero if a change of the wrench by that share can turn their sign.
+        uncertainty: How well the contacts are known. If they are not known exactly, the answer says which
+            verdicts occur.
 
     Raises:
         InvalidFieldError: a tolerance is negative.
@@ -73,6 +76,7 @@ class PlanarContactProblem(Record):
     wrench: PlanarWrench
     velocity_tolerance: float = VELOCITY_TOLERANCE
     acceleration_tolerance: float = ACCELERATION_TOLERANCE
+    uncertainty: ContactUncertainty = EXACT_CONTACTS
 
     def __post_init__(self) -> None:
         """Check the tolerances and the number of contacts."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from contact_dynamics.contact_modes.result import ModeVerdict, RefusedMode
+from contact_dynamics.contact_modes.result import ModeVerdict, RefusedMode, VerdictsWithin
 from contact_dynamics.plane.types import Vector2
 from contact_dynamics.records import Record
 
@@ -53,6 +53,7 @@ class PlanarModeAnswer(Record):
         acceleration_tolerance: m/s^2. Accelerations of the centre of mass up to this size counted as zero.
         undecided: What could not be decided, and why. It is empty unless the verdict is UNDECIDED.
         undecided_modes: The modes that are possible kinematically and neither consistent nor refused.
+        within: The verdicts that occur within the problem's uncertainty, or None if it has none.
     """
 
     verdict: ModeVerdict
@@ -64,6 +65,7 @@ class PlanarModeAnswer(Record):
     acceleration_tolerance: float
     undecided: str = ""
     undecided_modes: tuple[str, ...] = ()
+    within: VerdictsWithin | None = None
 
     @property
     def kinematic_modes(self) -> tuple[str, ...]:
