@@ -14,7 +14,7 @@ Moving surfaces and elastic contacts are not covered.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.contact_modes.letters import SEPARATES
 from contact_dynamics.contact_modes.planar.coincident import coincident
@@ -29,6 +29,11 @@ from contact_dynamics.tolerances import LARGEST_GRIP
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.planar.enumeration import Cell
     from contact_dynamics.contact_modes.planar.problem import PlanarCase, PlanarContactProblem
+
+
+_SOME_MODE: Final = "a body at rest always has a consistent mode, and rounding hides which"
+"""Lemke's method finds one whatever the friction, because contact forces do no positive work on accelerations
+from rest (Pang and Trinkle 1996)."""
 
 
 def planar_contact_modes(problem: PlanarContactProblem) -> PlanarModeAnswer:
@@ -94,6 +99,8 @@ def _judged(case: PlanarCase, accuracy: float) -> tuple[Judged, str]:
     judged = judge_all(case, cells, accuracy)
     if any(contact.friction > 1.0 and beyond_grip(contact, case.rho) for contact in case.contacts):
         return _whatever_the_grip(case, cells, accuracy, judged)
+    if not judged.consistent and case.lift is None and all(row.slides == 0.0 for row in case.rows):
+        return Judged([], [], sorted(cells)), _SOME_MODE
     if judged.undecided:
         return judged, f"rounding decides whether forces bring about {', '.join(judged.undecided)}"
     return judged, ""

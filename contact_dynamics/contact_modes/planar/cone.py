@@ -51,14 +51,16 @@ class Sector(NamedTuple):
     """A two-dimensional cone between two rays that are less than 180 degrees apart.
 
     Attributes:
-        start: The first ray, a unit vector.
-        end: The last ray, a unit vector.
-        tight: The bit set of the rows that vanish on the whole sector.
+        start: The first ray, a unit vector. end: The last ray, a unit vector. tight: The bit set of the rows
+        that vanish on the whole sector. halved: Whether its end lies inside a face, where a wide sector was
+        cut in two halves. Then this is the
+            first half.
     """
 
     start: Vector3
     end: Vector3
     tight: int
+    halved: bool = False
 
 
 _MANY: Final = 150
@@ -192,7 +194,7 @@ class PolyhedralCone:
 
         A sum of its two rays would be little more than rounding.
         """
-        start, end, tight = sector
+        start, end, tight, _ = sector
         if dot(start, end) > _ALMOST_OPPOSITE or not tight:
             return [sector]
         middle = _rounded(
@@ -201,7 +203,7 @@ class PolyhedralCone:
             )
         )
         middle = middle if dot(middle, end) > 0.0 else opposite(middle)
-        return [Sector(start, middle, tight), Sector(middle, end, tight)]
+        return [Sector(start, middle, tight, halved=True), Sector(middle, end, tight)]
 
     def _begin(self) -> tuple[int, ...]:
         """Start with two or three independent rows and return their indices, or () if all are parallel."""

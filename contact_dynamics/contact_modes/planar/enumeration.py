@@ -150,6 +150,8 @@ def _sector_cells(sector: Sector, tangents: list[_Tangent]) -> Iterator[tuple[Le
         yield _letters(staying, 0.5 * (stops[k - 1] + stops[k])), [points[k - 1], points[k]]
         if k < len(stops) - 1:
             yield _letters(staying, stops[k]), [points[k]]
+    if sector.halved:
+        yield tuple((one.position, one.end) for one in staying), [sector.end]
 
 
 def _staying(position: int, tangent: _Tangent, sector: Sector) -> _Staying:
