@@ -464,6 +464,9 @@ LETTERS_SETTLED: Final = 1e-13
 LETTERS_REGULAR: Final = 1e-11
 """Ratio of singular values. Below it, the unknowns count as dependent, because loads are shared."""
 
+LETTERS_NO_FORCE: Final = 1e-9
+"""Relative to the largest force. Where contacts share loads, one with less force has none."""
+
 LETTERS_ON_CONE: Final = 1e-9
 """Relative. A force that sticks may lie so far outside of its cone."""
 

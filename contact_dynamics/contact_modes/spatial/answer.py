@@ -22,11 +22,12 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
+from contact_dynamics.contact_modes.letters import STAYS, STICKS
 from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
 from contact_dynamics.contact_modes.spatial.exact_friction import Sliding, sharpened
 from contact_dynamics.contact_modes.spatial.exact_letters import forces_with_letters, letters_near
-from contact_dynamics.contact_modes.spatial.least_forces import least_forces, misdirection
+from contact_dynamics.contact_modes.spatial.least_forces import least_forces
+from contact_dynamics.contact_modes.spatial.mode_with_forces import are_the_same, mode_with_forces
 from contact_dynamics.contact_modes.spatial.one_contact import modes_of_one
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
@@ -42,7 +43,6 @@ from contact_dynamics.tolerances import (
     MODE_OBLIQUE,
     MODE_RESTS,
     MODE_STRAIGHT,
-    SAME_MOTION,
     STRICT,
 )
 
@@ -67,7 +67,8 @@ _DOUBT: Final = "rounding decides whether some modes are consistent: contacts or
 _AT_REST: Final = "whether all contacts can stick together hangs on rounding"
 
 _TURNED: Final = (
-    "friction could not be turned against the sliding of {}: modes with Coulomb's round cones may be others"
+    "friction could not be turned against the sliding of {}, which holds with friction pyramids, and may not "
+    "with Coulomb's round cones"
 )
 
 
@@ -77,10 +78,12 @@ class Evidence(NamedTuple):
     Attributes:
         modes: Each mode, with what the search of the pyramids found, or None if another way found the mode.
         undecided: What could not be decided, and why. It is empty where everything was decided.
+        undecided_modes: The letters of modes that hold with friction pyramids, and may not with round cones.
     """
 
     modes: list[tuple[SpatialMode, Found | None]]
     undecided: str
+    undecided_modes: tuple[str, ...] = ()
 
 
 def spatial_contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer:
@@ -92,29 +95,28 @@ def spatial_contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer:
             and ``sharpen`` is false.
     """
     case = spatial_case(problem)
-    modes: list[SpatialMode] = []
+    found = Evidence([], "")
     examined = 0
     approaching: tuple[int, ...] = ()
-    undecided = ""
     if isinstance(case, SpatialCase):
         search = search_of(case, problem.friction_facets)
         if problem.sharpen:
-            pairs, undecided = evidenced(case, search, facets=problem.friction_facets)
+            found = evidenced(case, search, facets=problem.friction_facets)
         else:
-            pairs, undecided = found_by(case, search, sharpen=False), _DOUBT if search.doubtful else ""
-        modes = [mode for mode, _ in pairs]
+            found = Evidence(found_by(case, search, sharpen=False), _DOUBT if search.doubtful else "")
         examined = search.examined
     else:
         approaching = case
-    verdict = ModeVerdict.UNDECIDED if undecided else verdict_on(modes)
+    verdict = ModeVerdict.UNDECIDED if found.undecided else verdict_on(found.modes)
     return SpatialModeAnswer(
         verdict=ModeVerdict.IMPACT if approaching else verdict,
-        modes=tuple(modes),
+        modes=tuple(mode for mode, _ in found.modes),
         approaching=approaching,
         velocity_tolerance=problem.velocity_tolerance,
         friction_facets=problem.friction_facets,
         examined=examined,
-        undecided=undecided,
+        undecided=found.undecided,
+        undecided_modes=found.undecided_modes,
     )
 
 
@@ -126,13 +128,23 @@ def evidenced(case: SpatialCase, search: Search, *, facets: int) -> Evidence:
         search: The search of that case.
         facets: The number of edges of its pyramids.
     """
+    found = _sought(case, search, facets)
+    exact = [pair for pair in found.modes if _is_exact(pair[0])]
+    others = tuple(dict.fromkeys(mode.mode for mode, _ in found.modes if not _is_exact(mode)))
+    turned = _TURNED.format(", ".join(others)) if others else ""
+    return Evidence(exact, found.undecided or turned, others)
+
+
+def _sought(case: SpatialCase, search: Search, facets: int) -> Evidence:
+    """Return the modes of a case, also those whose friction could not be turned."""
     kept = found_by(case, search, sharpen=True)
     undecided = _DOUBT if search.doubtful else ""
-    if np.any(case.sliding[case.touching]):
-        return Evidence(kept, undecided)
-    if len(case.touching) == 1 and search.touching[0].friction > 0.0:
+    slides = bool(np.any(case.sliding[case.touching]))
+    if not slides and len(case.touching) == 1 and search.touching[0].friction > 0.0:
         return Evidence(_of_one_contact(case, search, kept), "")
     refined = _refined(case, search, Evidence(kept, undecided), facets)
+    if slides:
+        return refined
     if 2 <= len(search.touching) <= _MOST_SOUGHT_TWICE and _are_oblique(search):
         refined = _with_those_between(case, refined, facets)
     return _with_rest(case, search, refined)
@@ -151,7 +163,7 @@ def _with_those_between(case: SpatialCase, found: Evidence, facets: int) -> Evid
     except TooLargeError:
         return found
     exact = [(mode, None) for mode, _ in further if mode.motion_unique and _is_exact(mode)]
-    return found._replace(modes=_without_twins([*found.modes, *exact]))
+    return found._replace(modes=_each_once([*found.modes, *exact]))
 
 
 def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[tuple[SpatialMode, Found | None]]:
@@ -166,21 +178,11 @@ def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[tuple[
     ]
     if not sharpen:
         return found
-    return _without_twins(sorted(found, key=lambda pair: pair[0].motion_unique))
-
-
-def _without_twins(
-    found: list[tuple[SpatialMode, Found | None]],
-) -> list[tuple[SpatialMode, Found | None]]:
-    kept: list[tuple[SpatialMode, Found | None]] = []
-    for mode, one in found:
-        if not any(_are_twins(mode, other) for other, _ in kept):
-            kept.append((mode, one))
-    return kept
+    return _each_once(sorted(found, key=lambda pair: pair[0].motion_unique))
 
 
 def _is_exact(mode: SpatialMode) -> bool:
-    return not mode.motion_unique or mode.misdirection <= MODE_STRAIGHT
+    return mode.misdirection <= MODE_STRAIGHT
 
 
 def _refined(case: SpatialCase, search: Search, found: Evidence, facets: int) -> Evidence:
@@ -189,16 +191,16 @@ def _refined(case: SpatialCase, search: Search, found: Evidence, facets: int) ->
     while not all(_is_exact(mode) for mode, _ in modes):
         facets *= 2
         exact = [pair for pair in modes if _is_exact(pair[0])]
-        turned = ", ".join(mode.mode for mode, _ in modes if not _is_exact(mode))
-        if facets > _MOST_FACETS:
-            return Evidence(modes, found.undecided or _TURNED.format(turned))
+        others = [mode for mode, _ in modes if not _is_exact(mode)]
+        if facets > _MOST_FACETS or not all(mode.motion_unique for mode in others):
+            break
         finer = search_of(case, facets)
         try:
             further = found_by(case, finer, sharpen=True)
         except TooLargeError:
-            return Evidence(modes, found.undecided or _TURNED.format(turned))
+            break
         further = [(mode, None) for mode, _ in _by_letters(case, finer, further)]
-        modes = _without_twins([*exact, *further])
+        modes = _each_once([*exact, *further])
         if finer.doubtful:
             return Evidence(modes, _DOUBT)
     return Evidence(modes, found.undecided)
@@ -213,13 +215,26 @@ def _by_letters(
         near: list[tuple[SpatialMode, Found | None]] = []
         if not _is_exact(mode):
             own = mode.contact_forces_W[case.touching] / case.motion.scale
-            letters = "".join(mode.mode[i] for i in case.touching.tolist())
-            for trial in letters_near(search, letters):
-                forces = forces_with_letters(search, trial, own)
+            letters = _letters_of(mode, case, search)
+            forces_unique, motion_unique = mode.forces_unique, mode.motion_unique
+            for trial in letters_near(search, letters) if motion_unique else (letters,):
+                forces = forces_with_letters(search, trial, own, shared=not forces_unique)
                 if forces is not None:
-                    near.append((_mode(case, trial, forces, forces_unique=True, motion_unique=True), None))
+                    found_so = one if trial == letters and not motion_unique else None
+                    exact = mode_with_forces(
+                        case, trial, forces, forces_unique=forces_unique, motion_unique=motion_unique
+                    )
+                    near.append((exact, found_so))
         kept += near or [(mode, one)]
-    return _without_twins(kept)
+    return _each_once(kept)
+
+
+def _letters_of(mode: SpatialMode, case: SpatialCase, search: Search) -> str:
+    """Return the letters of the touching contacts, where c stands for all that stay without friction."""
+    return "".join(
+        STAYS if contact.friction == 0.0 and mode.mode[i] == STICKS else mode.mode[i]
+        for i, contact in zip(case.touching.tolist(), search.touching, strict=True)
+    )
 
 
 def _of_one_contact(
@@ -235,9 +250,9 @@ def _of_one_contact(
     exact = modes_of_one(G, b, contact.normal, contact.friction)
     kept: list[tuple[SpatialMode, Found | None]] = []
     for one in exact:
-        mode = _mode(case, one.letter, one.force[None, :], forces_unique=True, motion_unique=True)
+        mode = mode_with_forces(case, one.letter, one.force[None, :], forces_unique=True, motion_unique=True)
         alike = [
-            pair for pair in found if pair[0].misdirection <= MODE_STRAIGHT and _are_twins(mode, pair[0])
+            pair for pair in found if pair[0].misdirection <= MODE_STRAIGHT and are_the_same(mode, pair[0])
         ]
         kept.append(alike[0] if alike else (mode, None))
     order = [mode for mode, _ in found]
@@ -264,21 +279,13 @@ def _with_rest(case: SpatialCase, search: Search, found: Evidence) -> Evidence:
         if held.forces is not None:
             unique = rests_in_one_way(search, rows)
             own = polished(search, rows, held.forces)
-            mode = _mode(case, letters, own, forces_unique=unique.forces, motion_unique=unique.motion)
+            mode = mode_with_forces(
+                case, letters, own, forces_unique=unique.forces, motion_unique=unique.motion
+            )
             return Evidence([*found.modes, (mode, None)], undecided)
         if not held.certain:
             undecided = _AT_REST
     return Evidence(found.modes, undecided)
-
-
-def _are_twins(mode: SpatialMode, other: SpatialMode) -> bool:
-    if mode.mode != other.mode:
-        return False
-    if not (mode.motion_unique and other.motion_unique):
-        return True
-    one = np.concatenate([mode.acceleration_W, mode.angular_acceleration_W])
-    two = np.concatenate([other.acceleration_W, other.angular_acceleration_W])
-    return bool(np.abs(one - two).max() <= SAME_MOTION * (1.0 + np.abs(one).max()))
 
 
 def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool) -> SpatialMode:
@@ -299,7 +306,7 @@ def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool)
     if set(letters) == {STICKS}:
         own = _rested(search, own)
     unique = motion_unique or forces_unique
-    return _mode(case, letters, own, forces_unique=forces_unique, motion_unique=unique)
+    return mode_with_forces(case, letters, own, forces_unique=forces_unique, motion_unique=unique)
 
 
 def _rested(search: Search, forces: FloatArray) -> FloatArray:
@@ -324,39 +331,6 @@ def _rested(search: Search, forces: FloatArray) -> FloatArray:
     return better if left(better) <= MODE_BETTER * before else forces
 
 
-def _mode(
-    case: SpatialCase, touching_letters: str, own: FloatArray, *, forces_unique: bool, motion_unique: bool
-) -> SpatialMode:
-    """Return a mode from the letters of the touching contacts and their forces, in the motion's units."""
-    motion, contacts, sliding, touching = case
-    forces = np.zeros((len(contacts), 3))
-    forces[touching] = own * motion.scale
-    body = motion.free + motion.of_forces @ forces.ravel()
-    points = (motion.points @ body).reshape(-1, 3) + motion.turning
-    across = points - np.sum(points * contacts.normals_W, axis=1)[:, None] * contacts.normals_W
-    letters = [SEPARATES] * len(contacts)
-    directions = np.zeros_like(points)
-    for i, letter in zip(touching.tolist(), touching_letters, strict=True):
-        way = sliding[i] if np.any(sliding[i]) else across[i]
-        size = float(np.linalg.norm(way))
-        # Without friction one letter stands for both, and the acceleration says whether the contact slides.
-        rests = letter == STAYS and not np.any(sliding[i]) and size <= STRICT * motion.scale
-        letters[i] = STICKS if rests else letter
-        if letters[i] == STAYS:
-            directions[i] = way / size
-    return SpatialMode(
-        mode="".join(letters),
-        acceleration_W=body[:3],
-        angular_acceleration_W=body[3:],
-        contact_forces_W=forces,
-        contact_accelerations_W=points,
-        tangential_directions_W=directions,
-        misdirection=misdirection(forces, directions, contacts.normals_W),
-        forces_unique=forces_unique,
-        motion_unique=motion_unique,
-    )
-
-
 def _sharpened(
     search: Search, found: Found, forces: FloatArray, acting: list[FloatArray]
 ) -> tuple[FloatArray, list[FloatArray]]:
@@ -370,3 +344,13 @@ def _sharpened(
     mode = Sliding(search.touching, search.pyramids, letters, search.of_forces, search.motion[:, -1])
     exact = sharpened(mode, forces)
     return (forces, acting) if exact is None else (exact.forces, exact.edges)
+
+
+def _each_once(
+    found: list[tuple[SpatialMode, Found | None]],
+) -> list[tuple[SpatialMode, Found | None]]:
+    kept: list[tuple[SpatialMode, Found | None]] = []
+    for mode, one in found:
+        if not any(are_the_same(mode, other) for other, _ in kept):
+            kept.append((mode, one))
+    return kept

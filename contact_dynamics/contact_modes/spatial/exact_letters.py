@@ -1,9 +1,13 @@
 """Forces of given letters with Coulomb's round cones, by Newton's method from forces that are close.
 
 A contact that sticks has three unknown components of force, and its acceleration vanishes. A contact that
-slides has two unknowns, its normal force and the direction of its friction. Its normal acceleration vanishes,
-and friction opposes the sliding. So there are as many equations as unknowns. In the end the solution is
-checked to have the letters, so that a mode that is found is a mode to rounding.
+begins to slide has two unknowns, its normal force and the direction of its friction. Its normal acceleration
+vanishes, and friction opposes the sliding. A contact that slides already has a known direction of friction,
+and one unknown. So there are as many equations as unknowns. In the end the solution is checked to have the
+letters, so that a mode that is found is a mode to rounding.
+
+Where contacts share loads, many forces may have the letters. Then each step is the shortest one, and leads to
+forces near those from which it starts.
 """
 
 from __future__ import annotations
@@ -15,7 +19,13 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
-from contact_dynamics.tolerances import LETTERS_ON_CONE, LETTERS_REGULAR, LETTERS_SETTLED, STRICT
+from contact_dynamics.tolerances import (
+    LETTERS_NO_FORCE,
+    LETTERS_ON_CONE,
+    LETTERS_REGULAR,
+    LETTERS_SETTLED,
+    STRICT,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -33,7 +43,8 @@ letters."""
 
 def letters_near(search: Search, letters: str) -> Iterator[str]:
     """Yield letters in which the contacts that stay and have friction stick or slide in any combination."""
-    swapped = [i for i, one in enumerate(search.touching) if letters[i] != SEPARATES and one.friction > 0.0]
+    stays = [letter != SEPARATES for letter in letters]
+    swapped = [i for i, one in enumerate(search.pyramids) if stays[i] and one.frame is not None]
     if len(swapped) > _MOST_SWAPPED:
         yield letters
         return
@@ -44,15 +55,18 @@ def letters_near(search: Search, letters: str) -> Iterator[str]:
         yield "".join(found)
 
 
-def forces_with_letters(search: Search, letters: str, forces: FloatArray) -> FloatArray | None:
-    """Return forces, (n, 3), of touching contacts at rest that have the letters, or None if none were found.
+def forces_with_letters(
+    search: Search, letters: str, forces: FloatArray, *, shared: bool = False
+) -> FloatArray | None:
+    """Return forces, (n, 3), of touching contacts that have the letters, or None if none were found.
 
     Args:
         search: The case.
         letters: s, c or f for each touching contact.
         forces: (n, 3), close to those that are sought, in the units of the motion.
+        shared: Whether contacts may share loads in many ways. Then contacts without force stay without it.
     """
-    system = _System(search, letters)
+    system = _System(search, letters, forces if shared else None)
     unknowns = system.start(forces)
     if len(unknowns) == 0:
         return None
@@ -60,10 +74,11 @@ def forces_with_letters(search: Search, letters: str, forces: FloatArray) -> Flo
         missed, slopes = system.at(unknowns)
         sizes = np.linalg.norm(slopes, axis=0)
         sizes[sizes == 0.0] = 1.0
-        left, spread, right = np.linalg.svd(slopes / sizes)
-        if not spread[-1] > LETTERS_REGULAR * spread[0]:
+        left, spread, right = np.linalg.svd(slopes / sizes, full_matrices=False)
+        seen = spread > LETTERS_REGULAR * spread[0]
+        if not (shared or seen.all()):
             return None
-        step = (right.T @ ((left.T @ missed) / spread)) / sizes
+        step = (right[seen].T @ ((left[:, seen].T @ missed) / spread[seen])) / sizes
         unknowns = unknowns - step
         if not np.all(np.isfinite(unknowns)):
             return None
@@ -78,48 +93,58 @@ def forces_with_letters(search: Search, letters: str, forces: FloatArray) -> Flo
 class _System:
     """The equations of some letters."""
 
-    def __init__(self, search: Search, letters: str) -> None:
+    def __init__(self, search: Search, letters: str, acting: FloatArray | None) -> None:
+        """State the equations.
+
+        Args:
+            search: The case.
+            letters: s, c or f for each touching contact.
+            acting: (n, 3), forces whose absence leaves a contact without force; None if all may act.
+        """
         self._search, self._letters = search, letters
-        self._frames = [
-            np.zeros((2, 3)) if pyramid.frame is None else np.array(pyramid.frame)
-            for pyramid in search.pyramids
-        ]
+        self._frames = [None if one.frame is None else np.array(one.frame) for one in search.pyramids]
+        sizes = np.ones(len(letters)) if acting is None else np.linalg.norm(acting, axis=1)
+        self._acts = (sizes > LETTERS_NO_FORCE * sizes.max(initial=0.0)).tolist()
 
     def start(self, forces: FloatArray) -> FloatArray:
         """Return the unknowns that are nearest to given forces."""
         found: list[float] = []
         for i, letter in enumerate(self._letters):
-            contact = self._search.touching[i]
+            contact, frame = self._search.touching[i], self._frames[i]
+            if letter == SEPARATES or not self._acts[i]:
+                continue
             if letter == STICKS:
                 found += forces[i].tolist()
-            elif letter != SEPARATES:
-                found.append(float(forces[i] @ contact.normal))
-                if contact.friction > 0.0:
-                    x, y = self._frames[i] @ forces[i]
-                    found.append(math.atan2(-y, -x))
+                continue
+            found.append(float(forces[i] @ contact.normal))
+            if frame is not None:
+                x, y = frame @ forces[i]
+                found.append(math.atan2(-y, -x))
         return np.array(found)
 
     def at(self, unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return by how much the equations are missed, (k,), and the derivatives of that, (k, k)."""
+        """Return by how much the equations are missed, (m,), and the derivatives of that, (m, k)."""
         forces, changes = self._forces_and_changes(unknowns)
         motion = self._motion(forces)
         of_unknowns = self._search.of_forces @ changes
         missed, slopes = [], []
         at = 0
         for i, letter in enumerate(self._letters):
-            contact = self._search.touching[i]
+            contact, frame = self._search.touching[i], self._frames[i]
             point, moved = contact.point @ motion, contact.point[:, :6] @ of_unknowns
             if letter == STICKS:
                 missed += point.tolist()
                 slopes += list(moved)
-                at += 3
+                at += 3 * self._acts[i]
             elif letter != SEPARATES:
                 missed.append(float(contact.normal @ point))
                 slopes.append(contact.normal @ moved)
+                if not self._acts[i]:
+                    continue
                 at += 1
-                if contact.friction > 0.0:
+                if frame is not None:
                     x, y = math.cos(unknowns[at]), math.sin(unknowns[at])
-                    one, two = self._frames[i]
+                    one, two = frame
                     across = x * two - y * one
                     missed.append(float(across @ point))
                     slope = across @ moved
@@ -135,7 +160,8 @@ class _System:
     def has_letters(self, forces: FloatArray) -> bool:
         """Return whether contacts do under these forces what the letters say."""
         motion = self._motion(forces)
-        for contact, letter, force in zip(self._search.touching, self._letters, forces, strict=True):
+        for i, (letter, force) in enumerate(zip(self._letters, forces, strict=True)):
+            contact = self._search.touching[i]
             point = contact.point @ motion
             pressing = float(contact.normal @ force)
             if letter == SEPARATES:
@@ -147,9 +173,11 @@ class _System:
                 across = float(np.linalg.norm(force - pressing * contact.normal))
                 if across > contact.friction * pressing * (1.0 + LETTERS_ON_CONE):
                     return False
-            elif contact.friction > 0.0:
+            elif self._frames[i] is not None:
                 friction = force - pressing * contact.normal
-                if not -float(friction @ point) > STRICT * float(np.linalg.norm(friction)):
+                slides = point - float(contact.normal @ point) * contact.normal
+                against = -float(friction @ point) > STRICT * float(np.linalg.norm(friction))
+                if not (against if pressing > 0.0 else float(np.linalg.norm(slides)) > STRICT):
                     return False
         return True
 
@@ -161,19 +189,21 @@ class _System:
         changes = np.zeros((3 * len(self._letters), len(unknowns)))
         at = 0
         for i, letter in enumerate(self._letters):
-            contact, own = self._search.touching[i], slice(3 * i, 3 * i + 3)
+            contact, frame, own = self._search.touching[i], self._frames[i], slice(3 * i, 3 * i + 3)
+            if letter == SEPARATES or not self._acts[i]:
+                continue
             if letter == STICKS:
                 forces[i] = unknowns[at : at + 3]
                 changes[own, at : at + 3] = np.eye(3)
                 at += 3
-            elif letter != SEPARATES:
-                edge = contact.normal
-                if contact.friction > 0.0:
-                    x, y = math.cos(unknowns[at + 1]), math.sin(unknowns[at + 1])
-                    one, two = self._frames[i]
-                    edge = edge - contact.friction * (x * one + y * two)
-                    changes[own, at + 1] = unknowns[at] * contact.friction * (y * one - x * two)
-                forces[i] = unknowns[at] * edge
-                changes[own, at] = edge
-                at += 1 if contact.friction == 0.0 else 2
+                continue
+            edge = self._search.pyramids[i].edges[0]  # the only one, unless the direction is unknown
+            if frame is not None:
+                x, y = math.cos(unknowns[at + 1]), math.sin(unknowns[at + 1])
+                one, two = frame
+                edge = contact.normal - contact.friction * (x * one + y * two)
+                changes[own, at + 1] = unknowns[at] * contact.friction * (y * one - x * two)
+            forces[i] = unknowns[at] * edge
+            changes[own, at] = edge
+            at += 1 if frame is None else 2
         return forces, changes

@@ -65,7 +65,8 @@ def spatial_refused_modes(
     if not isinstance(case, SpatialCase):
         return ()
     search = search_of(case, problem.friction_facets)
-    consistent = {mode.mode.replace(STICKS, STAYS) for mode in answer.modes}
+    possible = [*(mode.mode for mode in answer.modes), *answer.undecided_modes]
+    consistent = {letters.replace(STICKS, STAYS) for letters in possible}
     metric = np.array([1.0, 1.0, 1.0, length, length, length])
     return tuple(
         _known(case, search, string) or _short(case, search, string, metric)

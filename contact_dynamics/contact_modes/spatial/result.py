@@ -24,8 +24,8 @@ class SpatialMode(Record):
         contact_accelerations_W: (n, 3), m/s^2, the accelerations of the body's points in contact.
         tangential_directions_W: (n, 3), unit, the direction in which a contact slides; zero where it does
             not slide.
-        misdirection: rad, the largest angle between friction and the direction against the sliding. It is 0
-            where friction obeys Coulomb's law exactly.
+        misdirection: rad, the largest angle between friction and the direction against the sliding. It is
+            rounding, unless the problem's ``sharpen`` is false.
         forces_unique: Whether the forces are the only ones with this mode.
         motion_unique: Whether the accelerations are the only ones with this mode.
     """
@@ -56,6 +56,7 @@ class SpatialModeAnswer(Record):
         friction_facets: The number of edges of each friction pyramid.
         examined: The number of cases, of one letter or of a group of letters, that were tried.
         undecided: What could not be decided, and why. It is empty unless the verdict is UNDECIDED.
+        undecided_modes: The letters of modes that hold with friction pyramids, and may not with round cones.
     """
 
     verdict: ModeVerdict
@@ -65,3 +66,4 @@ class SpatialModeAnswer(Record):
     friction_facets: int
     examined: int
     undecided: str = ""
+    undecided_modes: tuple[str, ...] = ()

@@ -1,0 +1,69 @@
+"""The mode that contact forces bring about: its accelerations, its letters and the directions of sliding."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
+from contact_dynamics.contact_modes.spatial.least_forces import misdirection
+from contact_dynamics.contact_modes.spatial.result import SpatialMode
+from contact_dynamics.tolerances import SAME_MOTION, STRICT
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact_modes.spatial.problem import SpatialCase
+    from contact_dynamics.validation import FloatArray
+
+
+def mode_with_forces(
+    case: SpatialCase, touching_letters: str, own: FloatArray, *, forces_unique: bool, motion_unique: bool
+) -> SpatialMode:
+    """Return the mode that forces bring about.
+
+    Args:
+        case: The body with its contacts.
+        touching_letters: s, c or f for each touching contact.
+        own: (n, 3), the forces of the touching contacts, in the units of the motion.
+        forces_unique: Whether the forces are the only ones with this mode.
+        motion_unique: Whether the accelerations are the only ones with this mode.
+    """
+    """Return a mode from the letters of the touching contacts and their forces, in the motion's units."""
+    motion, contacts, sliding, touching = case
+    forces = np.zeros((len(contacts), 3))
+    forces[touching] = own * motion.scale
+    body = motion.free + motion.of_forces @ forces.ravel()
+    points = (motion.points @ body).reshape(-1, 3) + motion.turning
+    across = points - np.sum(points * contacts.normals_W, axis=1)[:, None] * contacts.normals_W
+    letters = [SEPARATES] * len(contacts)
+    directions = np.zeros_like(points)
+    for i, letter in zip(touching.tolist(), touching_letters, strict=True):
+        way = sliding[i] if np.any(sliding[i]) else across[i]
+        size = float(np.linalg.norm(way))
+        # Without friction one letter stands for both, and the acceleration says whether the contact slides.
+        rests = letter == STAYS and not np.any(sliding[i]) and size <= STRICT * motion.scale
+        letters[i] = STICKS if rests else letter
+        if letters[i] == STAYS:
+            directions[i] = way / size
+    return SpatialMode(
+        mode="".join(letters),
+        acceleration_W=body[:3],
+        angular_acceleration_W=body[3:],
+        contact_forces_W=forces,
+        contact_accelerations_W=points,
+        tangential_directions_W=directions,
+        misdirection=misdirection(forces, directions, contacts.normals_W),
+        forces_unique=forces_unique,
+        motion_unique=motion_unique,
+    )
+
+
+def are_the_same(mode: SpatialMode, other: SpatialMode) -> bool:
+    """Return whether two modes have the same letters and, where it is unique, the same motion."""
+    if mode.mode != other.mode:
+        return False
+    if not (mode.motion_unique and other.motion_unique):
+        return True
+    one = np.concatenate([mode.acceleration_W, mode.angular_acceleration_W])
+    two = np.concatenate([other.acceleration_W, other.angular_acceleration_W])
+    return bool(np.abs(one - two).max() <= SAME_MOTION * (1.0 + np.abs(one).max()))
