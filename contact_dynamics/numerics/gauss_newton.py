@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final, Generic, TypeVar
 
 import numpy as np
 
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.tolerances import SMALL_SHARE
 
 if TYPE_CHECKING:
@@ -65,6 +66,10 @@ def gauss_newton(
             weights.
         moved: a model changed by steps of the parameters, (k,).
         negligible: (m,), changes of what is computed, weighted, that count as none.
+
+    Raises:
+        InvalidFieldError: the derivatives by several parameters depend on each other, so that the measured
+            numbers do not determine the model.
     """
     misses = misses_of(model)
     rounds, converged = 0, False
@@ -74,7 +79,14 @@ def gauss_newton(
         sizes = np.sqrt(np.einsum("mk,mk->k", design, design))
         orthogonal, triangle = np.linalg.qr(design / sizes)
         explained = orthogonal.T @ misses
-        step = np.linalg.solve(triangle, explained) / sizes
+        try:
+            step = np.linalg.solve(triangle, explained) / sizes
+        except np.linalg.LinAlgError:
+            raise InvalidFieldError(
+                "states",
+                f"{len(misses)} numbers that leave a part of the motion open",
+                "more or other states",
+            ) from None
         cost = float(misses @ misses)
         small = bool((np.abs(design @ step) < negligible).all())
         converged = small or float(explained @ explained) < SMALL_SHARE * cost

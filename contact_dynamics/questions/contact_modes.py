@@ -31,7 +31,7 @@ from contact_dynamics.contact_modes.spatial.wrench_sets import WRENCH_FACETS
 from contact_dynamics.errors import InvalidFieldError, OutOfPlaneError, TooLargeError
 from contact_dynamics.plane.lifting import check_mirrored, mirror_partners
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions.extent import check_contacts, check_extent, check_wrench
+from contact_dynamics.questions.extent import check_contacts, check_extent, check_margin_length, check_wrench
 from contact_dynamics.questions.knowledge import Knowledge, check_optional, or_default
 from contact_dynamics.questions.lifted_modes import (
     lifted_margin,
@@ -241,6 +241,7 @@ def _case(question: ContactModeQuestion, knowledge: Knowledge) -> ModeCase:
     if len(contacts) > MOST_PLANAR_CONTACTS:
         raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MOST_PLANAR_CONTACTS}")
     check_contacts(contacts)
+    check_margin_length(question.margin_length)
     gravity_W = world.gravity_W if question.gravity_W is None else question.gravity_W
     force_W = question.force_W + subject.body.mass_properties.mass * gravity_W
     check_wrench(force_W, question.torque_W)

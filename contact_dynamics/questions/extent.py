@@ -18,6 +18,9 @@ MOST_IN_CONTACT: Final = 1e15
 """The largest number allowed, in m, m/s, rad/s, N or N m. Beside larger ones a metre or a newton is lost in
 rounding."""
 
+MOST_FRICTION: Final = 1e10
+"""Largest coefficient of friction. Contacts with more hold whatever presses them, to the last digit."""
+
 MOST_INERTIA: Final = 1e30
 """The largest mass and moment of inertia allowed, in kg and kg m^2. The smallest is its inverse."""
 
@@ -69,6 +72,16 @@ def check_contacts(contacts: ContactSet) -> None:
     largest = float(np.abs(contacts.p_WC_W).max(initial=0.0))
     if not largest <= MOST_IN_CONTACT:
         raise InvalidFieldError("contacts.positions", f"{largest:g} m", f"at most {MOST_IN_CONTACT:g} m")
+    roughest = float(contacts.frictions.max(initial=0.0))
+    if roughest > MOST_FRICTION:
+        raise InvalidFieldError("contacts.frictions", f"{roughest:g}", f"at most {MOST_FRICTION:g}")
+
+
+def check_margin_length(length: float | None) -> None:
+    """Refuse a length by which torques cannot be divided, by name."""
+    if length is not None and not 1.0 / MOST_IN_CONTACT <= length <= MOST_IN_CONTACT:
+        allowed = f"a number from {1.0 / MOST_IN_CONTACT:g} to {MOST_IN_CONTACT:g}"
+        raise InvalidFieldError("margin_length", f"{length:g}", allowed)
 
 
 def check_wrench(force_W: FloatArray, torque_W: FloatArray) -> None:

@@ -25,9 +25,10 @@ from contact_dynamics.questions import (
     UntilPlane,
     ask,
 )
+from contact_dynamics.questions.subject import changed_body
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.world import Body
-from questions.known_world import KNOWLEDGE, SIDE, WORLD, state
+from questions.known_world import CUBE, KNOWLEDGE, SIDE, WORLD, state
 
 FAST_SPIN = (1e9, 1e8, 1e8)  # rad/s, as a broken driver sends
 
@@ -145,6 +146,25 @@ def test_what_takes_too_long_is_refused_by_name(name: str) -> None:
             ),
             "contacts.positions: found 1.7e+308 m",
         ),
+        (
+            ContactModeQuestion(
+                body="cube",
+                state=state(),
+                contacts=ContactSet(
+                    p_WC_W=[[0, 0, 0], [1, 1, 0]],
+                    normals_W=[[0.6, 0, 0.8], [0, 0, 1]],
+                    frictions=[1.0, 1e300],
+                    restitutions=[0.0, 1.0],
+                ),
+            ),
+            "contacts.frictions: found 1e+300, allowed is at most 1e+10",
+        ),
+        (
+            ContactModeQuestion(
+                body="cube", state=state(), contacts=ring(3), want_statics=True, margin_length=5e-324
+            ),
+            "margin_length: found 4.94066e-324, allowed is a number from 1e-15 to 1e+15",
+        ),
     ],
 )
 def test_numbers_that_no_contact_has_are_refused_by_name(question: Any, words: str) -> None:
@@ -176,3 +196,18 @@ def test_a_body_that_leaves_all_contacts_has_margins() -> None:
     except ContactDynamicsError as error:
         pytest.fail(str(error))
     assert [mode.mode for mode in answer.modes] == ["ssss"]
+
+
+def test_states_that_leave_a_motion_open_are_refused() -> None:
+    """Where drag stops a ball within a millisecond, its states say nothing of the spin that it had."""
+    ball = changed_body(CUBE, MassProperties(mass=0.1, I_B=4e-5 * np.eye(3)), np.zeros(3))
+    states = StateStore(history=5.0, timeout=0.5)
+    for stamp_ns in range(0, 20_000_000, 4_000_000):
+        states.add("cube", state(1.0, v=(0.1, 0.0, -9.8e-9 * stamp_ns), stamp_ns=stamp_ns))
+    question = TumblingQuestion(
+        body=ball, state=PublishedState(fit_window=0.018), drag=Drag(linear_angular=1.0)
+    )
+    with pytest.raises(
+        InvalidFieldError, match=r"states: found .* numbers that leave a part of the motion open"
+    ):
+        ask(question, Knowledge(world=WORLD, states=states))
