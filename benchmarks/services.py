@@ -23,6 +23,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import rclpy
 from geometry_msgs.msg import Inertia
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
@@ -32,10 +33,20 @@ from rclpy.qos import QoSProfile
 
 from benchmarks._quotes import quote
 from contact_dynamics.demo.ros_domain import claim_domain
-from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from contact_dynamics_interfaces.msg import BodyStates
+from contact_dynamics_interfaces.srv import (
+    PredictContactMode,
+    PredictImpact,
+    PredictImpactBatch,
+    PredictTumbling,
+    PredictTumblingBatch,
+)
 
 CALLS = 500
 WARM_UP = 50
+BATCH = 1000
+"""States in one call of the services that take many."""
+
 QOS = QoSProfile(depth=1000)
 PATIENCE_S = 20.0
 ROOT = Path(__file__).parents[1]
@@ -43,6 +54,8 @@ SERVICES = {
     "predict_contact_mode": PredictContactMode,
     "predict_impact": PredictImpact,
     "predict_tumbling": PredictTumbling,
+    "predict_impact_batch": PredictImpactBatch,
+    "predict_tumbling_batch": PredictTumblingBatch,
 }
 
 
@@ -101,7 +114,7 @@ def _measure(*, start_server: Callable[[], int], start_empty: Callable[[], int])
         f"{'question':34} {'p50':>6} {'p99':>6} {'CPU':>6}   {'empty p50':>9} {'p99':>6} {'CPU':>6}"
         f"   {'ratio':>6}   {'inside':>7} {'of CPU':>6}"
     )
-    inside, ratios = [], {}
+    inside, ratios, singles = [], {}, {}
     for title, name, request in _questions():
         askers = [_Asker(node, executor, server, name) for server in ("contact_dynamics", "empty")]
         for asker, pid in zip(askers, (server_pid, empty_pid), strict=True):
@@ -110,7 +123,20 @@ def _measure(*, start_server: Callable[[], int], start_empty: Callable[[], int])
         print(_line(title, *askers), flush=True)
         medians = [statistics.median(asker.trips) for asker in askers]
         ratios[title] = medians[0] / medians[1]
+        singles[title] = medians[0]
         inside.append(statistics.median(askers[0].inside))
+        for asker in askers:
+            asker.close()
+    for title, name, request in _batches():
+        askers = [_Asker(node, executor, server, name) for server in ("contact_dynamics", "empty")]
+        for asker, pid in zip(askers, (server_pid, empty_pid), strict=True):
+            asker.pid = pid
+        _alternate(askers, request)
+        print(_line(f"{title}, {BATCH} at once", *askers))
+        each = 1e3 * statistics.median(askers[0].trips) / BATCH
+        print(
+            f"{'':34} {each:.1f} µs for each, {1e3 * singles[title] / each:.0f} times less than a single call"
+        )
         for asker in askers:
             asker.close()
     quote("services.ratio", list(ratios.values()))
@@ -225,6 +251,31 @@ def _questions() -> list[tuple[str, str, Any]]:
         ("tumbling, 10 times", "predict_tumbling", ten),
         ("tumbling, 1000 times", "predict_tumbling", many),
         ("tumbling until the first contact", "predict_tumbling", contact),
+    ]
+
+
+def _batches() -> list[tuple[str, str, Any]]:
+    """Return questions about many states at once, each with the title of the single one."""
+    draw = np.random.default_rng(29)
+    states = BodyStates(
+        positions=draw.normal(size=3 * BATCH).tolist(),
+        orientations=[0.0, 0.0, 0.0, 1.0] * BATCH,
+        linear_velocities=(draw.normal(size=(BATCH, 3)) - [0.0, 0.0, 5.0]).ravel().tolist(),
+        angular_velocities=draw.normal(size=3 * BATCH).tolist(),
+    )
+    tumblings = PredictTumblingBatch.Request(body_name="brick", states=states, times=[0.1])
+    points = np.array(states.positions).reshape(-1, 3) - [0.05, 0.02, 0.025]
+    impacts = PredictImpactBatch.Request(
+        body_name="brick",
+        states=states,
+        contact_positions=points.ravel().tolist(),
+        contact_normals=[0.0, 0.0, 1.0],
+        frictions=[0.5],
+        restitutions=[0.5],
+    )
+    return [
+        ("impact, one contact in space", "predict_impact_batch", impacts),
+        ("tumbling, one time", "predict_tumbling_batch", tumblings),
     ]
 
 

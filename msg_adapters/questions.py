@@ -107,7 +107,7 @@ def tumbling_question_from_msg(
     Raises:
         ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
     """
-    gravity_W, wrench, drag = _gravity(request), _wrench(request), _drag(request)
+    gravity_W, wrench, drag = asked_gravity(request), _wrench(request), _drag(request)
     body, state = _subject(request, world, world_frame, fit_window=request.fit_window)
     return TumblingQuestion(
         body=body,
@@ -145,16 +145,16 @@ def impact_question_from_msg(
         other=other,
         other_state=other_state,
         contacts=contacts,
-        horizon=_optional("horizon", request.horizon) if contacts is None else None,
-        restitution_law=_restitution_law(request.restitution_law),
+        horizon=optional("horizon", request.horizon) if contacts is None else None,
+        restitution_law=asked_restitution_law(request.restitution_law),
         several_contacts_law=_several_contacts_law(request),
         want_orders=request.want_orders,
         want_covariance=request.want_covariance,
         problem=problem,
         plane=_plane(request.plane_normal) if is_planar else None,
         out_of_plane_tolerance=_out_of_plane_tolerance(request) if is_planar else None,
-        velocity_tolerance=_optional("velocity_tolerance", request.velocity_tolerance),
-        distance_tolerance=_optional("distance_tolerance", request.distance_tolerance),
+        velocity_tolerance=optional("velocity_tolerance", request.velocity_tolerance),
+        distance_tolerance=optional("distance_tolerance", request.distance_tolerance),
     )
 
 
@@ -183,14 +183,14 @@ def contact_mode_question_from_msg(
             contacts=contacts,
             force_W=vector_from_msg(request.applied_wrench.force),
             torque_W=vector_from_msg(request.applied_wrench.torque),
-            gravity_W=_gravity(request),
+            gravity_W=asked_gravity(request),
             problem=problem,
             plane=_plane(request.plane_normal) if may_be_planar else None,
             out_of_plane_tolerance=_out_of_plane_tolerance(request) if may_be_planar else None,
-            velocity_tolerance=_optional("velocity_tolerance", request.velocity_tolerance),
-            distance_tolerance=_optional("distance_tolerance", request.distance_tolerance),
-            friction_facets=_optional("friction_facets", request.friction_facets),
-            margin_length=_optional("margin_length", request.margin_length) if compares_torques else None,
+            velocity_tolerance=optional("velocity_tolerance", request.velocity_tolerance),
+            distance_tolerance=optional("distance_tolerance", request.distance_tolerance),
+            friction_facets=optional("friction_facets", request.friction_facets),
+            margin_length=optional("margin_length", request.margin_length) if compares_torques else None,
             want_margins=request.want_margins,
             want_wrenches=request.want_wrenches,
             want_statics=request.want_statics,
@@ -210,7 +210,7 @@ def _subject(
         raise InvalidFieldError(
             "fit_window", fit_window, "0 for an explicit state: published states are fitted"
         )
-    body = _body(request.body_name, request.inertia, world)
+    body = asked_body(request.body_name, request.inertia, world)
     if is_explicit:
         return body, known_state_from_msg(request.state, world_frame=world_frame, p_FB_F=body.p_FB_F)
     return body, _published(stamp_ns, fit_window)
@@ -221,13 +221,18 @@ def _other(request: PredictImpact.Request, world: World, world_frame: str) -> tu
     explicit = request.other_state[0] if request.other_state else None
     if not request.other_body_name and explicit is None and not _is_described(request.other_inertia):
         return None, NEWEST
-    body = _body(request.other_body_name, request.other_inertia, world)
+    body = asked_body(request.other_body_name, request.other_inertia, world)
     if explicit is None:
         return body, _published(_stamp_ns(request))
     return body, known_state_from_msg(explicit, world_frame=world_frame, p_FB_F=body.p_FB_F)
 
 
-def _body(name: str, inertia: Inertia, world: World) -> Body:
+def asked_body(name: str, inertia: Inertia, world: World) -> Body:
+    """Return the body that a request names or describes.
+
+    Raises:
+        ContactDynamicsError: the name is not known or too long, or the numbers are no body's.
+    """
     if len(name) > _LONGEST_NAME:
         raise TooLargeError("body_name", f"{len(name)} characters", f"at most {_LONGEST_NAME}")
     is_described = _is_described(inertia)
@@ -275,7 +280,7 @@ def _published(stamp_ns: int | None, fit_window: float = 0.0) -> PublishedState:
     return PublishedState(stamp_ns=stamp_ns, fit_window=fit_window)
 
 
-def _optional(field: str, numbers: Sequence[Number]) -> Number | None:
+def optional(field: str, numbers: Sequence[Number]) -> Number | None:
     """Return the number of a field that may be left out, or None if it is."""
     if len(numbers) > 1:
         raise InvalidFieldError(field, f"{len(numbers)} numbers", "one, or none")
@@ -283,7 +288,7 @@ def _optional(field: str, numbers: Sequence[Number]) -> Number | None:
 
 
 def _out_of_plane_tolerance(request: _ContactRequest) -> float | None:
-    return _optional("out_of_plane_tolerance", request.out_of_plane_tolerance)
+    return optional("out_of_plane_tolerance", request.out_of_plane_tolerance)
 
 
 def _contacts(request: _ContactRequest) -> ContactSet | None:
@@ -297,7 +302,7 @@ def _contacts(request: _ContactRequest) -> ContactSet | None:
     )
 
 
-def _gravity(request: _GravityRequest) -> FloatArray | None:
+def asked_gravity(request: _GravityRequest) -> FloatArray | None:
     """Return the acceleration of gravity that a request asks for, or None for the configured one."""
     if request.gravity == request.GRAVITY_AS_CONFIGURED:
         return None
@@ -339,7 +344,7 @@ def _sampling(request: PredictTumbling.Request) -> Sampling:
         return AtTimes(times=request.times)
     if request.sampling == request.AT_STAMPS:
         return AtStamps(stamps_ns=request.stamps_ns)
-    rate, duration = _optional("rate", request.rate), _optional("duration", request.duration)
+    rate, duration = optional("rate", request.rate), optional("duration", request.duration)
     if request.sampling == request.AT_RATE:
         return AtRate(rate=rate, duration=duration)
     if request.sampling == request.UNTIL_CONTACT:
@@ -370,7 +375,8 @@ def _plane(normal: Vector3) -> PlaneOfMotion | None:
     return PlaneOfMotion(normal_W=vector_from_msg(normal))
 
 
-def _restitution_law(value: int) -> RestitutionLaw:
+def asked_restitution_law(value: int) -> RestitutionLaw:
+    """Return the law of a request's number, or raise `InvalidFieldError`."""
     try:
         return RestitutionLaw(value)
     except ValueError:
@@ -381,8 +387,8 @@ def _restitution_law(value: int) -> RestitutionLaw:
 def _several_contacts_law(request: PredictImpact.Request) -> SeveralContactsLaw | InTime:
     value = request.several_contacts_law
     if value == request.SEQUENTIAL_IN_TIME:
-        window = _optional("strike_window", request.strike_window)
-        most = _optional("most_strikes", request.most_strikes)
+        window = optional("strike_window", request.strike_window)
+        most = optional("most_strikes", request.most_strikes)
         return InTime(
             strike_window=STRIKE_WINDOW if window is None else window,
             most_strikes=MOST_STRIKES if most is None else most,

@@ -34,10 +34,13 @@ if TYPE_CHECKING:
     from contact_dynamics.questions.tumbling import TumblingQuestion
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
+    from contact_dynamics_interfaces.srv import PredictTumblingBatch
 
     Request: TypeAlias = PredictContactMode.Request | PredictImpact.Request | PredictTumbling.Request
     ContactRequest: TypeAlias = PredictContactMode.Request | PredictImpact.Request
-    GravityRequest: TypeAlias = PredictContactMode.Request | PredictTumbling.Request
+    GravityRequest: TypeAlias = (
+        PredictContactMode.Request | PredictTumbling.Request | PredictTumblingBatch.Request
+    )
 
 
 def tumbling_question_to_msg(
@@ -59,7 +62,7 @@ def tumbling_question_to_msg(
     if isinstance(question.state, PublishedState):
         msg.fit_window = question.state.fit_window
     _write_sampling(msg, question.sampling)
-    _write_gravity(msg, question.gravity_W)
+    write_gravity(msg, question.gravity_W)
     msg.applied_wrench = wrench_to_msg(question.wrench.force, question.wrench.torque)
     msg.wrench_in_body_axes = question.wrench.axes is WrenchAxes.BODY
     msg.linear_drag, msg.quadratic_drag = question.drag.linear, question.drag.quadratic
@@ -81,7 +84,7 @@ def impact_question_to_msg(
     if question.other is not None:
         _write_other(msg, question.other, question.other_state, world, world_frame)
     _write_contacts(msg, question.contacts)
-    msg.horizon = _optional(question.horizon)
+    msg.horizon = asked_optional(question.horizon)
     msg.restitution_law = int(question.restitution_law)
     law = question.several_contacts_law
     if isinstance(law, InTime):
@@ -107,10 +110,10 @@ def contact_mode_question_to_msg(
         raise NotSupportedError(message)
     _write_contacts(msg, question.contacts)
     msg.applied_wrench = wrench_to_msg(question.force_W, question.torque_W)
-    _write_gravity(msg, question.gravity_W)
+    write_gravity(msg, question.gravity_W)
     _write_problem(msg, question)
-    msg.friction_facets = _optional(question.friction_facets)
-    msg.margin_length = _optional(question.margin_length)
+    msg.friction_facets = asked_optional(question.friction_facets)
+    msg.margin_length = asked_optional(question.margin_length)
     msg.want_margins = question.want_margins
     msg.want_wrenches = question.want_wrenches
     msg.want_statics = question.want_statics
@@ -124,7 +127,7 @@ def _write_subject(
     """Write the body that a request is about, and where its state comes from."""
     body = world.body(body) if isinstance(body, str) else body
     msg.body_name = body.name
-    inertia = _inertia(body, world)
+    inertia = asked_inertia(body, world)
     if inertia is not None:
         msg.inertia = inertia
     if isinstance(source, PublishedState):
@@ -145,7 +148,7 @@ def _write_other(
     """Write the second body of an impact."""
     body = world.body(body) if isinstance(body, str) else body
     msg.other_body_name = body.name
-    inertia = _inertia(body, world)
+    inertia = asked_inertia(body, world)
     if inertia is not None:
         msg.other_inertia = inertia
     stamp_ns = stamp_ns_from_msg(msg.stamp) if msg.state_source == msg.STATE_AT_STAMP else None
@@ -157,7 +160,7 @@ def _write_other(
         raise NotSupportedError(message)
 
 
-def _inertia(body: Body, world: World) -> Inertia | None:
+def asked_inertia(body: Body, world: World) -> Inertia | None:
     """Return the inertia of a body that differs from the known one, or None if the body is the known one."""
     named = [known for known in world.bodies if known.name == body.name]
     if body in named:
@@ -176,7 +179,12 @@ def _write_contacts(msg: ContactRequest, contacts: ContactSet | None) -> None:
         contacts_to_msg(contacts, into=msg.contacts)
 
 
-def _write_gravity(msg: GravityRequest, gravity_W: FloatArray | None) -> None:
+def write_gravity(msg: GravityRequest, gravity_W: FloatArray | None) -> None:
+    """Write a gravity, with None for the configured one.
+
+    Raises:
+        NotSupportedError: it is neither the configured one nor zero.
+    """
     if gravity_W is not None and gravity_W.any():
         message = f"gravity_W: found {gravity_W.tolist()}, allowed is the server's, or zero"
         raise NotSupportedError(message)
@@ -198,7 +206,7 @@ def _write_sampling(msg: PredictTumbling.Request, sampling: Sampling) -> None:
         msg.plane_point = point_to_msg(sampling.plane_point)
         msg.plane_normal = vector_to_msg(sampling.plane_normal)
         msg.body_point = point_to_msg(sampling.body_point)
-    msg.rate, msg.duration = _optional(sampling.rate), _optional(sampling.duration)
+    msg.rate, msg.duration = asked_optional(sampling.rate), asked_optional(sampling.duration)
 
 
 def _write_problem(msg: ContactRequest, question: ContactModeQuestion | ImpactQuestion) -> None:
@@ -206,11 +214,11 @@ def _write_problem(msg: ContactRequest, question: ContactModeQuestion | ImpactQu
     msg.problem = int(question.problem)
     if question.plane is not None:
         msg.plane_normal = vector_to_msg(question.plane.normal_W)
-    msg.out_of_plane_tolerance = _optional(question.out_of_plane_tolerance)
-    msg.velocity_tolerance = _optional(question.velocity_tolerance)
-    msg.distance_tolerance = _optional(question.distance_tolerance)
+    msg.out_of_plane_tolerance = asked_optional(question.out_of_plane_tolerance)
+    msg.velocity_tolerance = asked_optional(question.velocity_tolerance)
+    msg.distance_tolerance = asked_optional(question.distance_tolerance)
 
 
-def _optional(value: Number | None) -> list[Number]:
+def asked_optional(value: Number | None) -> list[Number]:
     """Return a number as a request has it, which may be left out."""
     return [] if value is None else [value]

@@ -52,6 +52,13 @@ from contact_dynamics.questions import (
     UntilContact,
     UntilPlane,
 )
+from contact_dynamics.questions.many import (
+    ManyImpactsAnswer,
+    ManyImpactsQuestion,
+    ManyStates,
+    ManyTumblingsAnswer,
+    ManyTumblingsQuestion,
+)
 from contact_dynamics.questions.subject import NEWEST, changed_body
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import Flips, Poinsot, Regime, RollingCurves, Trajectory
@@ -547,6 +554,67 @@ def impact_questions(draw: st.DrawFn) -> ImpactQuestion:
         out_of_plane_tolerance=draw(some(not_negative)) if is_planar else None,
         velocity_tolerance=draw(some(not_negative)),
         distance_tolerance=draw(some(not_negative)),
+    )
+
+
+@st.composite
+def many_states(draw: st.DrawFn, count: int) -> ManyStates:
+    """So many states."""
+    return ManyStates(
+        p_WB_W=draw(arrays(count, 3)),
+        q_WB=np.array(draw(tuples_of(unit_vectors(4), count))).reshape(-1, 4),
+        v_WB_W=draw(arrays(count, 3)),
+        w_WB_W=draw(arrays(count, 3)),
+    )
+
+
+@st.composite
+def many_tumblings_questions(draw: st.DrawFn) -> ManyTumblingsQuestion:
+    """Up to three states, in the known gravity and in none."""
+    n = draw(st.integers(1, 3))
+    return ManyTumblingsQuestion(
+        body=draw(bodies()), states=draw(many_states(n)), seconds=draw(arrays(n)), gravity_W=draw(gravities)
+    )
+
+
+@st.composite
+def many_impacts_questions(draw: st.DrawFn) -> ManyImpactsQuestion:
+    """Up to three states, by all laws."""
+    n = draw(st.integers(1, 3))
+    return ManyImpactsQuestion(
+        body=draw(bodies()),
+        states=draw(many_states(n)),
+        p_WC_W=draw(arrays(n, 3)),
+        normals_W=np.array(draw(tuples_of(unit_vectors(), n))),
+        frictions=draw(arrays(n, of=st.floats(0.0, 5.0))),
+        restitutions=draw(arrays(n, of=st.floats(0.0, 1.0))),
+        restitution_law=draw(st.sampled_from(RestitutionLaw)),
+        velocity_tolerance=draw(some(not_negative)),
+    )
+
+
+@st.composite
+def many_tumblings_answers(draw: st.DrawFn) -> ManyTumblingsAnswer:
+    """Up to three states."""
+    states = draw(many_states(draw(st.integers(0, 3))))
+    return ManyTumblingsAnswer(body_name=draw(st.sampled_from(NAMES)), p_FB_F=NO_OFFSET, states=states)
+
+
+@st.composite
+def many_impacts_answers(draw: st.DrawFn) -> ManyImpactsAnswer:
+    """Up to three impacts, of which some do not happen."""
+    n = draw(st.integers(0, 3))
+    separates = np.array(draw(tuples_of(flags, n)), dtype=bool)
+    outcomes = np.array(
+        [int(each) for each in draw(tuples_of(st.sampled_from(ImpactOutcome), n))], dtype=np.int64
+    )
+    return ManyImpactsAnswer(
+        body_name=draw(st.sampled_from(NAMES)),
+        p_FB_F=NO_OFFSET,
+        outcomes=np.where(separates, 0, outcomes),
+        separates=separates,
+        states=draw(many_states(n)),
+        impulses_W=draw(arrays(n, 3)),
     )
 
 

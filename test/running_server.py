@@ -21,7 +21,13 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
 from contact_dynamics.demo.ros_domain import claim_domain
-from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from contact_dynamics_interfaces.srv import (
+    PredictContactMode,
+    PredictImpact,
+    PredictImpactBatch,
+    PredictTumbling,
+    PredictTumblingBatch,
+)
 
 ROOT = Path(__file__).parents[1]
 DOMAIN_ID = claim_domain()  # of this test run alone
@@ -31,6 +37,8 @@ SERVICES = {
     PredictContactMode: "/contact_dynamics/predict_contact_mode",
     PredictImpact: "/contact_dynamics/predict_impact",
     PredictTumbling: "/contact_dynamics/predict_tumbling",
+    PredictImpactBatch: "/contact_dynamics/predict_impact_batch",
+    PredictTumblingBatch: "/contact_dynamics/predict_tumbling_batch",
 }
 
 
@@ -81,7 +89,7 @@ def wait_for(started: subprocess.Popen[str], text: str) -> str:
 
 
 class Client:
-    """A node that calls the three services and publishes."""
+    """A node that calls the services and publishes."""
 
     def __init__(self, namespace: str = "") -> None:
         """Join the domain and find the services of the server in a namespace."""

@@ -1,4 +1,4 @@
-"""The server: one process with the three services, one store of states, and the log.
+"""The server: one process with the services, one store of states, and the log.
 
 It watches published states and answers `~/predict_contact_mode`, `~/predict_impact` and `~/predict_tumbling`.
 Drawing happens in another process (`visualizer`), which listens to the service events that this node

@@ -1,12 +1,24 @@
-"""The three services: which question each answers, and the adapters on both sides of it."""
+"""The services: which question each answers, and the adapters on both sides of it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Protocol, TypeAlias, TypeVar
 
-from contact_dynamics.questions import contact_modes, impact, tumbling
-from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from contact_dynamics.questions import contact_modes, impact, many, tumbling
+from contact_dynamics_interfaces.srv import (
+    PredictContactMode,
+    PredictImpact,
+    PredictImpactBatch,
+    PredictTumbling,
+    PredictTumblingBatch,
+)
+from msg_adapters.batches import (
+    impacts_answer_to_msg,
+    impacts_question_from_msg,
+    tumblings_answer_to_msg,
+    tumblings_question_from_msg,
+)
 from msg_adapters.contact_mode import contact_mode_answer_to_msg
 from msg_adapters.impact import impact_answer_to_msg
 from msg_adapters.questions import (
@@ -146,5 +158,17 @@ SERVICES: Final = (
         type_name="PredictTumbling",
         name="predict_tumbling",
         serve=_serving(tumbling_question_from_msg, tumbling.answer, tumbling_answer_to_msg),
+    ),
+    Service(
+        service_type=PredictImpactBatch,
+        type_name="PredictImpactBatch",
+        name="predict_impact_batch",
+        serve=_serving(impacts_question_from_msg, many.answer_impacts, impacts_answer_to_msg),
+    ),
+    Service(
+        service_type=PredictTumblingBatch,
+        type_name="PredictTumblingBatch",
+        name="predict_tumbling_batch",
+        serve=_serving(tumblings_question_from_msg, many.answer_tumblings, tumblings_answer_to_msg),
     ),
 )

@@ -14,7 +14,7 @@ The kinds share these files: `knowledge` (the world, defaults, and in a `state_s
 (which contacts), `extent` (how large numbers may be) and `problem` (in a plane or in space).
 Answers describe every impact in the same way (`resolved_impact`). They give modes of a plane in world axes
 (`lifted_modes`), and `planar_view` leads back.
-`settled_impact` has the impact that follows an inconsistency.
+`settled_impact` has the impact that follows an inconsistency. `many` asks about many states at once.
 
 `effort` tells whether a question is quick, and `workers` are processes that answer those that are not.
 """

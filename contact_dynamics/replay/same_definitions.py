@@ -24,6 +24,8 @@ _PACKAGE: Final = INTERFACES.partition("/")[0] + "/"
 DIGESTS: Final = {
     "PredictContactMode": "b1b9b9ab683ad5ca",
     "PredictImpact": "0e9a5c11c191d2d7",
+    "PredictImpactBatch": "55370ec29df49426",
+    "PredictTumblingBatch": "f198a921773488f5",
     "PredictTumbling": "d8fea09495ab8bd5",
 }
 """The digest of each service's fields (`digest`). A test compares them with the interface files."""

@@ -29,6 +29,11 @@ from message_values import (
     impact_answers,
     impact_questions,
     known_states,
+    many_impacts_answers,
+    many_impacts_questions,
+    many_states,
+    many_tumblings_answers,
+    many_tumblings_questions,
     modes_and_margins,
     resolved_impacts,
     rotations,
@@ -37,6 +42,18 @@ from message_values import (
     tumbling_answers,
     tumbling_questions,
     wrench_sets,
+)
+from msg_adapters.batches import (
+    body_states_from_msg,
+    body_states_to_msg,
+    impacts_answer_from_msg,
+    impacts_answer_to_msg,
+    impacts_question_from_msg,
+    impacts_question_to_msg,
+    tumblings_answer_from_msg,
+    tumblings_answer_to_msg,
+    tumblings_question_from_msg,
+    tumblings_question_to_msg,
 )
 from msg_adapters.body_state import known_state_from_msg, known_state_to_msg
 from msg_adapters.contact_mode import (
@@ -134,6 +151,31 @@ PAIRS = {
         _trajectories(),
         _trajectory_to_msg,
         lambda msg: (trajectory_from_msg(msg, p_FB_F=NO_OFFSET), read_covariances(msg)),
+    ),
+    "BodyStates": Pair(
+        many_states(3),
+        lambda value: body_states_to_msg(value, p_FB_F=NO_OFFSET),
+        lambda msg: body_states_from_msg(msg, p_FB_F=NO_OFFSET),
+    ),
+    "PredictImpactBatch.Request": Pair(
+        many_impacts_questions(),
+        lambda value: impacts_question_to_msg(value, world=WORLD, **FRAME),
+        lambda msg: impacts_question_from_msg(msg, world=WORLD, **FRAME),
+    ),
+    "PredictImpactBatch.Response": Pair(
+        many_impacts_answers(),
+        lambda value: impacts_answer_to_msg(value, **FRAME),
+        lambda msg: impacts_answer_from_msg(msg, world=NOWHERE),
+    ),
+    "PredictTumblingBatch.Request": Pair(
+        many_tumblings_questions(),
+        lambda value: tumblings_question_to_msg(value, world=WORLD, **FRAME),
+        lambda msg: tumblings_question_from_msg(msg, world=WORLD, **FRAME),
+    ),
+    "PredictTumblingBatch.Response": Pair(
+        many_tumblings_answers(),
+        lambda value: tumblings_answer_to_msg(value, **FRAME),
+        lambda msg: tumblings_answer_from_msg(msg, world=NOWHERE),
     ),
     "PredictContactMode.Request": Pair(
         contact_mode_questions(),

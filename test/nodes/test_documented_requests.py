@@ -15,7 +15,13 @@ from contact_dynamics.impact import ImpactOutcome, SequenceEnd
 from contact_dynamics.motion.integrated import Method
 from contact_dynamics.tumbling import Regime
 from contact_dynamics_interfaces.msg import Impact
-from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from contact_dynamics_interfaces.srv import (
+    PredictContactMode,
+    PredictImpact,
+    PredictImpactBatch,
+    PredictTumbling,
+    PredictTumblingBatch,
+)
 from running_server import ROOT, SERVICES, Client, server_and_client
 
 README = (ROOT / "contact_dynamics_interfaces" / "README.md").read_text(encoding="utf-8")
@@ -23,7 +29,13 @@ CALL = re.compile(
     r'^ros2 service call (\S+) contact_dynamics_interfaces/srv/(\w+) \\\n  "([^"]*)"\n#> (.*)$', re.MULTILINE
 )
 EXAMPLES = CALL.findall(README)
-COUNTS = {PredictContactMode: 7, PredictImpact: 6, PredictTumbling: 4}
+COUNTS = {
+    PredictContactMode: 7,
+    PredictImpact: 6,
+    PredictTumbling: 4,
+    PredictImpactBatch: 0,
+    PredictTumblingBatch: 1,
+}
 
 
 @pytest.fixture(scope="module")
@@ -109,13 +121,14 @@ TOLD = {
     PredictContactMode: contact_mode_told,
     PredictImpact: impact_told,
     PredictTumbling: tumbling_told,
+    PredictTumblingBatch: lambda _request, answer: numbers(answer.states.positions),
 }
 
 
 @pytest.mark.parametrize("service", SERVICES)
 def test_every_example_is_found(service: Any) -> None:
     found = [name for name, *_ in EXAMPLES if name == SERVICES[service]]
-    assert len(found) == README.count(f"ros2 service call {SERVICES[service]}") == COUNTS[service]
+    assert len(found) == README.count(f"ros2 service call {SERVICES[service]} ") == COUNTS[service]
 
 
 @pytest.mark.parametrize(("name", "type_name", "request_text", "stated"), EXAMPLES)

@@ -1,0 +1,210 @@
+"""Converts requests and responses about many states to questions and answers, and back.
+
+The arrays of a request are read as they are. A length that is no multiple of the row's raises
+`InvalidFieldError` with the field.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.impact import ImpactOutcome
+from contact_dynamics.questions.many import (
+    ManyImpactsAnswer,
+    ManyImpactsQuestion,
+    ManyStates,
+    ManyTumblingsAnswer,
+    ManyTumblingsQuestion,
+)
+from contact_dynamics.rigid_body.published_frame import centers_of_mass, origins_of_published_frame
+from contact_dynamics_interfaces.msg import BodyStates
+from contact_dynamics_interfaces.srv import PredictImpactBatch, PredictTumblingBatch
+from msg_adapters.body_state import center_of_mass
+from msg_adapters.contacts import flat
+from msg_adapters.questions import asked_body, asked_gravity, asked_restitution_law, optional
+from msg_adapters.requests import asked_inertia, asked_optional, write_gravity
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import Body, World
+
+_OWN_NAMES: Final = {
+    "p_WB_W": "states.positions",
+    "q_WB": "states.orientations",
+    "v_WB_W": "states.linear_velocities",
+    "w_WB_W": "states.angular_velocities",
+}
+
+
+def body_states_from_msg(msg: BodyStates, *, p_FB_F: FloatArray) -> ManyStates:
+    """Return the states of a body whose centre of mass is at ``p_FB_F``, (3,), m, in its published frame.
+
+    Raises:
+        InvalidFieldError: the arrays have different lengths, or a number is not finite.
+    """
+    q_WB = _rows("states.orientations", msg.orientations, 4)
+    origins = _rows("states.positions", msg.positions, 3)
+    if len(q_WB) != len(origins):
+        raise InvalidFieldError("states.orientations", f"{len(q_WB)} rows", f"{len(origins)} as positions")
+    try:
+        return ManyStates(
+            p_WB_W=centers_of_mass(origins, q_WB, p_FB_F),
+            q_WB=q_WB,
+            v_WB_W=_rows("states.linear_velocities", msg.linear_velocities, 3),
+            w_WB_W=_rows("states.angular_velocities", msg.angular_velocities, 3),
+        )
+    except InvalidFieldError as error:
+        name, bracket, row = error.field.partition("[")
+        raise type(error)(f"{_OWN_NAMES.get(name, name)}{bracket}{row}", error.found, error.allowed) from None
+
+
+def body_states_to_msg(
+    states: ManyStates, *, p_FB_F: FloatArray, into: BodyStates | None = None
+) -> BodyStates:
+    """Return states as a message: a new one, or the empty one to fill."""
+    msg = BodyStates() if into is None else into
+    msg.positions = flat(origins_of_published_frame(states.p_WB_W, states.q_WB, p_FB_F))
+    msg.orientations = flat(states.q_WB)
+    msg.linear_velocities = flat(states.v_WB_W)
+    msg.angular_velocities = flat(states.w_WB_W)
+    return msg
+
+
+def tumblings_question_from_msg(
+    request: PredictTumblingBatch.Request,
+    *,
+    world: World,
+    world_frame: str,  # noqa: ARG001  all is in it
+) -> ManyTumblingsQuestion:
+    """Return the question of a `PredictTumblingBatch` request."""
+    body = asked_body(request.body_name, request.inertia, world)
+    return ManyTumblingsQuestion(
+        body=body,
+        states=body_states_from_msg(request.states, p_FB_F=body.p_FB_F),
+        seconds=np.array(request.times),
+        gravity_W=asked_gravity(request),
+    )
+
+
+def tumblings_question_to_msg(
+    question: ManyTumblingsQuestion,
+    *,
+    world: World,
+    world_frame: str,  # noqa: ARG001  all is in it
+) -> PredictTumblingBatch.Request:
+    """Return the request of a question about many tumblings."""
+    msg = PredictTumblingBatch.Request()
+    body = _write_body(msg, question.body, world)
+    body_states_to_msg(question.states, p_FB_F=body.p_FB_F, into=msg.states)
+    msg.times = flat(question.seconds)
+    write_gravity(msg, question.gravity_W)
+    return msg
+
+
+def tumblings_answer_to_msg(
+    answer: ManyTumblingsAnswer,
+    *,
+    world_frame: str,  # noqa: ARG001  all is in it
+    into: PredictTumblingBatch.Response | None = None,
+) -> PredictTumblingBatch.Response:
+    """Return an answer as a response: a new one, or the empty one to fill."""
+    msg = PredictTumblingBatch.Response() if into is None else into
+    msg.body_name = answer.body_name
+    body_states_to_msg(answer.states, p_FB_F=answer.p_FB_F, into=msg.states)
+    return msg
+
+
+def tumblings_answer_from_msg(msg: PredictTumblingBatch.Response, *, world: World) -> ManyTumblingsAnswer:
+    """Return the answer that a response carries; ``world`` knows the body's centre of mass."""
+    p_FB_F = center_of_mass(msg.body_name, world)
+    states = body_states_from_msg(msg.states, p_FB_F=p_FB_F)
+    return ManyTumblingsAnswer(body_name=msg.body_name, p_FB_F=p_FB_F, states=states)
+
+
+def impacts_question_from_msg(
+    request: PredictImpactBatch.Request,
+    *,
+    world: World,
+    world_frame: str,  # noqa: ARG001  all is in it
+) -> ManyImpactsQuestion:
+    """Return the question of a `PredictImpactBatch` request."""
+    body = asked_body(request.body_name, request.inertia, world)
+    return ManyImpactsQuestion(
+        body=body,
+        states=body_states_from_msg(request.states, p_FB_F=body.p_FB_F),
+        p_WC_W=_rows("contact_positions", request.contact_positions, 3),
+        normals_W=_rows("contact_normals", request.contact_normals, 3),
+        frictions=np.array(request.frictions),
+        restitutions=np.array(request.restitutions),
+        restitution_law=asked_restitution_law(request.restitution_law),
+        velocity_tolerance=optional("velocity_tolerance", request.velocity_tolerance),
+    )
+
+
+def impacts_question_to_msg(
+    question: ManyImpactsQuestion,
+    *,
+    world: World,
+    world_frame: str,  # noqa: ARG001  all is in it
+) -> PredictImpactBatch.Request:
+    """Return the request of a question about many impacts."""
+    msg = PredictImpactBatch.Request()
+    body = _write_body(msg, question.body, world)
+    body_states_to_msg(question.states, p_FB_F=body.p_FB_F, into=msg.states)
+    msg.contact_positions, msg.contact_normals = flat(question.p_WC_W), flat(question.normals_W)
+    msg.frictions, msg.restitutions = flat(question.frictions), flat(question.restitutions)
+    msg.restitution_law = int(question.restitution_law)
+    msg.velocity_tolerance = asked_optional(question.velocity_tolerance)
+    return msg
+
+
+def impacts_answer_to_msg(
+    answer: ManyImpactsAnswer,
+    *,
+    world_frame: str,  # noqa: ARG001  all is in it
+    into: PredictImpactBatch.Response | None = None,
+) -> PredictImpactBatch.Response:
+    """Return an answer as a response: a new one, or the empty one to fill."""
+    msg = PredictImpactBatch.Response() if into is None else into
+    msg.body_name = answer.body_name
+    msg.outcomes = np.where(answer.separates, msg.SEPARATES, answer.outcomes).astype(np.uint8).tolist()
+    body_states_to_msg(answer.states, p_FB_F=answer.p_FB_F, into=msg.states_after)
+    msg.impulses = flat(answer.impulses_W)
+    return msg
+
+
+def impacts_answer_from_msg(msg: PredictImpactBatch.Response, *, world: World) -> ManyImpactsAnswer:
+    """Return the answer that a response carries; ``world`` knows the body's centre of mass."""
+    p_FB_F = center_of_mass(msg.body_name, world)
+    told = np.array(msg.outcomes, dtype=np.int64)
+    separates = told == msg.SEPARATES
+    return ManyImpactsAnswer(
+        body_name=msg.body_name,
+        p_FB_F=p_FB_F,
+        outcomes=np.where(separates, int(ImpactOutcome.NO_IMPULSE), told),
+        separates=separates,
+        states=body_states_from_msg(msg.states_after, p_FB_F=p_FB_F),
+        impulses_W=_rows("impulses", msg.impulses, 3),
+    )
+
+
+def _write_body(
+    msg: PredictTumblingBatch.Request | PredictImpactBatch.Request, body: Body | str, world: World
+) -> Body:
+    found = world.body(body) if isinstance(body, str) else body
+    msg.body_name = found.name
+    inertia = asked_inertia(found, world)
+    if inertia is not None:
+        msg.inertia = inertia
+    return found
+
+
+def _rows(field: str, numbers: Sequence[float], width: int) -> FloatArray:
+    if len(numbers) % width:
+        raise InvalidFieldError(field, f"{len(numbers)} numbers", f"rows of {width}")
+    return np.array(numbers, dtype=np.float64).reshape(-1, width)
