@@ -6,12 +6,14 @@ The command is `ros2 launch contact_dynamics server.launch.py`.
 from __future__ import annotations
 
 from ament_index_python.packages import get_package_share_path
-from launch.actions import DeclareLaunchArgument
+from launch.actions import DeclareLaunchArgument, SetEnvironmentVariable
 from launch.conditions import IfCondition
-from launch.substitutions import LaunchConfiguration
+from launch.substitutions import EnvironmentVariable, LaunchConfiguration
 from launch_ros.actions import Node
 
 from launch import LaunchDescription
+
+DISCOVERY = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 
 
 def generate_launch_description() -> LaunchDescription:
@@ -28,6 +30,13 @@ def generate_launch_description() -> LaunchDescription:
             DeclareLaunchArgument(
                 "view", default_value="false", description="Start the visualizer and rerun's viewer."
             ),
+            DeclareLaunchArgument(
+                "discovery_range",
+                default_value=EnvironmentVariable(DISCOVERY, default_value="LOCALHOST"),
+                choices=["LOCALHOST", "SUBNET", "OFF", "SYSTEM_DEFAULT"],
+                description=f"Who can find the server: this machine alone, or the network. Sets {DISCOVERY}.",
+            ),
+            SetEnvironmentVariable(DISCOVERY, LaunchConfiguration("discovery_range")),
             Node(package="contact_dynamics", executable="server", output="screen", parameters=[parameters]),
             Node(
                 package="contact_dynamics",

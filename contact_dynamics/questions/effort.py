@@ -17,6 +17,7 @@ from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH
 from contact_dynamics.questions.contact_modes import ContactModeQuestion
 from contact_dynamics.questions.impact_question import ImpactQuestion
+from contact_dynamics.questions.many import ManyImpactsQuestion, ManyTumblingsQuestion
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.sample_times import UntilContact, UntilPlane
 from contact_dynamics.questions.subject import PublishedState, subject_of
@@ -30,6 +31,9 @@ if TYPE_CHECKING:
 
 MOST_QUICK_CONTACTS: Final = 4
 """Contacts of a quick question. Modes and orders grow exponentially with them; a box stands on four."""
+
+MOST_QUICK_IMPACTS: Final = 200
+"""Impacts of a quick batch. One takes a tenth of a millisecond and less."""
 
 MOST_QUICK_CORNERS: Final = 64
 """Corners and rims of a shape, times the surfaces of the world, in a quick search for contacts."""
@@ -51,7 +55,9 @@ def is_quick(question: object, knowledge: Knowledge) -> bool:
             return _are_quick_modes(question, knowledge)
     except ContactDynamicsError:
         return True
-    return False
+    if isinstance(question, ManyImpactsQuestion):
+        return len(question.states) <= MOST_QUICK_IMPACTS
+    return isinstance(question, ManyTumblingsQuestion)  # 10 000 of them take 30 ms
 
 
 def excerpt(question: object, knowledge: Knowledge) -> Knowledge:
