@@ -1,0 +1,56 @@
+"""The policy for SROS 2 allows the server what a running server has, and nothing that it has not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import pytest
+import rclpy
+
+from contact_dynamics.nodes.server import Server
+from running_server import ROOT
+
+POLICY = ROOT / "config" / "sros2_policy.xml"
+NODE = "/contact_dynamics"
+
+
+@pytest.fixture
+def server(tmp_path: Path) -> Iterator[Server]:
+    rclpy.init(
+        args=[
+            "--ros-args", "--params-file", str(ROOT / "config" / "server.yaml"),
+            "-p", f"log_directory:={tmp_path}", "-p", "use_sim_time:=true",
+        ]
+    )  # fmt: skip
+    node = Server()
+    yield node
+    node.close()
+    node.destroy_node()
+    rclpy.shutdown()
+
+
+def allowed(kind: str, **permission: str) -> set[str]:
+    """The names of the server's profile with a permission."""
+    profile = ET.parse(POLICY).getroot().find(f".//profile[@node='{NODE[1:]}']")
+    assert profile is not None
+    return {
+        (name.text or "").replace("~", NODE)
+        for group in profile.findall(f"{kind}s")
+        if all(group.get(key) == value for key, value in permission.items())
+        for name in group.findall(kind)
+    }
+
+
+def test_the_server_may_do_what_it_does_and_no_more(server: Server) -> None:
+    def of_server(found: list[tuple[str, list[str]]]) -> set[str]:
+        return {name for name, _ in found}
+
+    name, namespace = server.get_name(), server.get_namespace()
+    publishes = of_server(server.get_publisher_names_and_types_by_node(name, namespace))
+    subscribes = of_server(server.get_subscriber_names_and_types_by_node(name, namespace))
+    serves = of_server(server.get_service_names_and_types_by_node(name, namespace))
+    assert publishes == allowed("topic", publish="ALLOW")
+    assert subscribes == allowed("topic", subscribe="ALLOW") - {"/parameter_events"}
+    assert serves == allowed("service", reply="ALLOW")
