@@ -226,7 +226,7 @@ def _blueprint(cells: Sequence[_Cell]) -> rrb.Blueprint:
     columns = min(COLUMN_COUNT, max(1, len(cells)))
     row_count = math.ceil(max(1, len(cells)) / COLUMN_COUNT)
     middle = 0.5 * apart * ((columns - 1) * u_W - (row_count - 1) * v_W)
-    distance = apart * max(0.95 * columns, 0.9 * row_count, 1.0)
+    distance = apart * max(0.95 * columns, 1.2 * row_count, 1.0)
     eye = rrb.EyeControls3D(
         kind=rrb.Eye3DKind.Orbital,
         position=middle + distance * (0.75 * up_W - 0.65 * v_W),

@@ -108,8 +108,12 @@ def _draw_errors(figure: Any, kind: EventKind, rows: Sequence[Comparison]) -> No
         axes.set_yscale("log")
         axes.grid(visible=True, axis="y", alpha=0.3)
         if column == 0:
-            axes.legend(
-                fontsize="small", title="boxes: quartiles; lines: 5 to 95 %", title_fontsize="x-small"
+            figure.legend(
+                loc="outside lower center",
+                ncols=len(ways),
+                fontsize="small",
+                title="boxes: quartiles; lines: 5 to 95 %",
+                title_fontsize="x-small",
             )
 
 
