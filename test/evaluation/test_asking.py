@@ -19,6 +19,7 @@ from contact_dynamics.measured.read_toss import read_toss
 from contact_dynamics.questions.uncertain_state import UncertainState, state_of
 from contact_dynamics.rigid_body.body import BodyState
 from evaluation.made_motion import bounces, only_motion
+from oracles.bouncing_toss import RATE
 
 QUICK = Settings(horizons=(0.05,), laws=(Law.POISSON,))
 
@@ -139,20 +140,28 @@ def test_a_published_covariance_is_held_against_what_came(brick: Recording) -> N
 
 
 def coverage(seeds: range) -> dict[EventKind, list[Comparison]]:
-    """The predictions with covariances about balls that fly through white noise, in an exact world."""
+    """The predictions with covariances about balls that fly through white noise, in an exact world.
+
+    The last landing is left out: it is measured between two frames, and the truth lies at the same place
+    between them for all seeds.
+    """
     found: dict[EventKind, list[Comparison]] = {EventKind.FLIGHT: [], EventKind.LANDING: []}
     for seed in seeds:
-        rows = evaluate_recording(bounces(seed=seed).recording, replace(QUICK, horizons=(0.1,))).comparisons
-        for row in rows:
-            if row.kind in found and row.distance is not None:
+        made = evaluate_recording(bounces(seed=seed).recording, replace(QUICK, horizons=(0.1,)))
+        for row in made.comparisons:
+            is_sharp = made.events[row.event].time_std < 0.1 / RATE
+            if row.kind in found and row.distance is not None and is_sharp:
                 found[row.kind].append(row)
+    assert {kind: len(rows) for kind, rows in found.items()} == {
+        EventKind.FLIGHT: 4 * len(seeds),
+        EventKind.LANDING: 3 * len(seeds),
+    }
     return found
 
 
 def test_covariances_cover_where_nothing_but_white_noise_is_in_the_way() -> None:
     """Within a few deviations of a binomial share; with distances that were twice as large it fails."""
     for rows in coverage(range(4)).values():
-        assert len(rows) == 16
         distances = [row.distance for row in rows if row.distance is not None]
         expected = np.sqrt(rows[0].degrees)
         assert 0.65 * expected < np.sqrt(np.mean(np.square(distances))) < 1.5 * expected
@@ -162,7 +171,6 @@ def test_covariances_cover_where_nothing_but_white_noise_is_in_the_way() -> None
 def test_shares_inside_the_regions_are_those_stated() -> None:
     for rows in coverage(range(60)).values():
         n = len(rows)
-        assert n == 240
         for level in (0.5, 0.9, 0.95):
             share = sum(bool(is_inside(row, level)) for row in rows) / n
             # four deviations; flights of one ball share nothing but the ball
