@@ -11,6 +11,7 @@ from nav_msgs.msg import Odometry
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
+from rclpy.utilities import remove_ros_args
 
 from contact_dynamics.constants import to_ns, to_seconds
 from contact_dynamics.demo.arguments import toss_publisher_parser
@@ -76,14 +77,14 @@ class TossPublisher(Node):
 
 def main(arguments: list[str]) -> int:
     """Publish one toss, and return the exit code."""
-    given = toss_publisher_parser().parse_args(arguments)
+    given = toss_publisher_parser().parse_args(remove_ros_args(arguments))
     try:
         toss = read_toss(given.toss)
     except (ContactDynamicsError, OSError) as error:
         print(error, file=sys.stderr)
         return 2
     ensure_ros_log_directory()
-    rclpy.init(args=[])
+    rclpy.init(args=arguments)
     publisher = TossPublisher(toss)
     try:
         if not publisher.wait_for_listeners(given.listeners):

@@ -402,3 +402,20 @@ def test_a_wrong_argument_is_named_and_nothing_is_started(
     printed = capsys.readouterr()
     assert words in printed.err
     assert printed.out == ""
+
+
+def test_the_toss_publisher_takes_the_arguments_that_ros_launch_appends() -> None:
+    """`launch_ros` ends every command with `--ros-args`."""
+    done = subprocess.run(
+        [
+            sys.executable, "-m", "contact_dynamics", "toss_publisher", "--toss", "nowhere.csv",
+            "--ros-args", "-r", "__node:=thrower",
+        ],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT_S,
+        check=False,
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert "found no file 'nowhere.csv'" in done.stderr
