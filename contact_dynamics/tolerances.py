@@ -299,6 +299,10 @@ NO_MOTION: Final = 1e-6
 """Relative to the applied wrench over the mass. Where contacts are uncertain, slower accelerations count as
 rest. It is ten times the tolerance of SciPy's linear programs."""
 
+LARGEST_PLANAR_ARM: Final = 1e8
+"""In radii of gyration, in the plane. If a contact is further away than this, several contacts are not
+decided about. Forces of ordinary size then round in their moments to more than wrenches are known to."""
+
 LARGEST_GRIP: Final = 1e10
 """Dimensionless, in the plane. A coefficient of friction above it, or above it divided by the contact's arm
 in radii of gyration, acts as that one does. The two differ in forces whose normal part is less than 1e-10 of

@@ -11,7 +11,8 @@ import math
 from dataclasses import dataclass
 
 from contact_dynamics.records import Record
-from contact_dynamics.validation import check_not_negative, check_within
+from contact_dynamics.tolerances import LARGEST_NUMBER
+from contact_dynamics.validation import check_within
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -24,7 +25,8 @@ class ContactUncertainty(Record):
         frictions: >= 0, the largest difference of a coefficient of friction. No true coefficient is negative.
 
     Raises:
-        InvalidFieldError: a number is negative or not finite, or the angle is larger than pi / 2.
+        InvalidFieldError: a number is negative, not finite or beyond `LARGEST_NUMBER`, or the angle is larger
+            than pi / 2.
     """
 
     points: float = 0.0
@@ -33,10 +35,12 @@ class ContactUncertainty(Record):
 
     def __post_init__(self) -> None:
         """Check all fields."""
-        object.__setattr__(self, "points", check_not_negative("uncertainty of points", self.points))
+        points = check_within("uncertainty of points", self.points, 0.0, LARGEST_NUMBER)
+        object.__setattr__(self, "points", points)
         normals = check_within("uncertainty of normals", self.normals, 0.0, 0.5 * math.pi)
         object.__setattr__(self, "normals", normals)
-        object.__setattr__(self, "frictions", check_not_negative("uncertainty of frictions", self.frictions))
+        frictions = check_within("uncertainty of frictions", self.frictions, 0.0, LARGEST_NUMBER)
+        object.__setattr__(self, "frictions", frictions)
 
     @property
     def is_exact(self) -> bool:

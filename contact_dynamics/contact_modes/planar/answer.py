@@ -24,7 +24,7 @@ from contact_dynamics.contact_modes.planar.one_contact import single_contact_mod
 from contact_dynamics.contact_modes.planar.problem import beyond_grip, never_slipping, planar_case
 from contact_dynamics.contact_modes.planar.result import PlanarMode, PlanarModeAnswer
 from contact_dynamics.contact_modes.result import ModeVerdict, RefusedMode, verdict_on
-from contact_dynamics.tolerances import LARGEST_GRIP
+from contact_dynamics.tolerances import LARGEST_GRIP, LARGEST_PLANAR_ARM
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.planar.enumeration import Cell
@@ -34,6 +34,10 @@ if TYPE_CHECKING:
 _SOME_MODE: Final = "a body at rest always has a consistent mode, and rounding hides which"
 """Lemke's method finds one whatever the friction, because contact forces do no positive work on accelerations
 from rest (Pang and Trinkle 1996)."""
+
+_TOO_FAR: Final = (
+    f"a contact is more than {LARGEST_PLANAR_ARM:g} radii of gyration away, where rounding decides"
+)
 
 
 def planar_contact_modes(problem: PlanarContactProblem) -> PlanarModeAnswer:
@@ -96,6 +100,8 @@ def planar_contact_modes(problem: PlanarContactProblem) -> PlanarModeAnswer:
 def _judged(case: PlanarCase, accuracy: float) -> tuple[Judged, str]:
     """Return what mechanics says about all modes of a case, and what is undecided and why."""
     cells = kinematic_cells(case)
+    if any(row.size_n > LARGEST_PLANAR_ARM or row.size_t > LARGEST_PLANAR_ARM for row in case.rows):
+        return Judged([], [], sorted(cells)), _TOO_FAR
     judged = judge_all(case, cells, accuracy)
     if any(contact.friction > 1.0 and beyond_grip(contact, case.rho) for contact in case.contacts):
         return _whatever_the_grip(case, cells, accuracy, judged)

@@ -10,7 +10,7 @@ from contact_dynamics.contact_modes.letters import SEPARATES
 from contact_dynamics.contact_modes.planar.answer import planar_contact_modes
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.judgement import judge_all
-from contact_dynamics.contact_modes.planar.problem import touching_case
+from contact_dynamics.contact_modes.planar.problem import check_length, touching_case
 from contact_dynamics.contact_modes.planar.wrench_sets import (
     PlanarWrenchSet,
     WrenchHalfSpace,
@@ -20,7 +20,6 @@ from contact_dynamics.contact_modes.result import ModeVerdict
 from contact_dynamics.plane.types import PlanarWrench
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import BEYOND_MARGIN
-from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.planar.problem import PlanarContactProblem
@@ -73,9 +72,7 @@ def planar_mode_margins(
         InvalidFieldError: the length is not > 0.
     """
     body, wrench, accuracy = problem.body, problem.wrench, problem.acceleration_tolerance
-    length = (
-        body.radius_of_gyration if margin_length is None else check_positive("margin_length", margin_length)
-    )
+    length = check_length(margin_length, body)
     case = touching_case(problem)
     if case is None:
         return _of_free_motion(problem, length)

@@ -32,10 +32,11 @@ from contact_dynamics.records import Record
 from contact_dynamics.tolerances import (
     ACCELERATION_TOLERANCE,
     LARGEST_GRIP,
+    LARGEST_NUMBER,
     ROW_TOLERANCE,
     VELOCITY_TOLERANCE,
 )
-from contact_dynamics.validation import check_not_negative
+from contact_dynamics.validation import check_not_negative, check_within
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -172,6 +173,17 @@ class PlanarCase(NamedTuple):
     def load(self) -> float:
         """Return the size with which forces are compared, N: the applied wrench plus centripetal terms."""
         return norm(self.w) + (self.mass * self.lift.scale if self.lift else 0.0)
+
+
+def check_length(margin_length: float | None, body: PlanarBody) -> float:
+    """Return the length, m, that makes a moment comparable with a force. Without one, it is rho.
+
+    Raises:
+        InvalidFieldError: the length is not from 1 / `LARGEST_NUMBER` to `LARGEST_NUMBER`.
+    """
+    if margin_length is None:
+        return body.radius_of_gyration
+    return check_within("margin_length", margin_length, 1.0 / LARGEST_NUMBER, LARGEST_NUMBER)
 
 
 def touching_case(problem: PlanarContactProblem) -> PlanarCase | None:

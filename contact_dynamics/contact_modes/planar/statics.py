@@ -24,6 +24,7 @@ from contact_dynamics.contact_modes.planar.friction_edges import edge_forces, sh
 from contact_dynamics.contact_modes.planar.judgement import EVIDENCE
 from contact_dynamics.contact_modes.planar.problem import (
     AT_REST,
+    check_length,
     contact_rows,
     effective_friction,
 )
@@ -32,7 +33,6 @@ from contact_dynamics.errors import UndecidedError
 from contact_dynamics.numerics.nonnegative_least_squares import distance_from_cone
 from contact_dynamics.numerics.vectors import Vector3, combined, dot, normalised, opposite
 from contact_dynamics.tolerances import FORCES_ROUNDING
-from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -59,9 +59,7 @@ def planar_statics(problem: PlanarContactProblem, *, margin_length: float | None
     """
     body, contacts, wrench = problem.body, problem.contacts, problem.wrench
     accuracy = problem.acceleration_tolerance
-    length = (
-        body.radius_of_gyration if margin_length is None else check_positive("margin_length", margin_length)
-    )
+    length = check_length(margin_length, body)
     answer = planar_contact_modes(replace(problem, velocity=AT_REST))
     target = (wrench.f[0], wrench.f[1], wrench.moment / length)
     rho = body.radius_of_gyration

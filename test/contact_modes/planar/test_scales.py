@@ -13,8 +13,14 @@ from fractions import Fraction
 
 import pytest
 
-from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes
-from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.contact_modes import (
+    ModeVerdict,
+    PlanarContactProblem,
+    contact_modes,
+    mode_margins,
+    statics,
+)
+from contact_dynamics.errors import InvalidFieldError, UndecidedError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_modes.evidence import planar_problem
 from oracles.contact_mode_cases import contact, draw, resting, rounded
@@ -120,3 +126,45 @@ def test_numbers_whose_products_leave_the_range_of_doubles_are_refused() -> None
     ):
         with pytest.raises(InvalidFieldError, match=r"1e[+-]?61.* allowed is a number .*1e\+60"):
             make()
+
+
+@pytest.mark.parametrize("arm", [1e9, 1e30, 1e60])
+def test_arms_beyond_the_domain_are_undecided_by_name(arm: float) -> None:
+    feet = [PlanarContact(r=(x, -1.0), normal=(0.0, 1.0), friction=0.5) for x in (-arm, arm)]
+    problem = PlanarContactProblem(
+        body=PlanarBody(mass=1.0, inertia=1.0), contacts=feet, wrench=PlanarWrench(f=(0.0, -9.8))
+    )
+    answer = contact_modes(problem)
+    assert (answer.verdict, answer.modes, answer.refused) == (ModeVerdict.UNDECIDED, (), ())
+    assert "1e+08 radii of gyration" in answer.undecided
+    assert mode_margins(problem) == ()
+    with pytest.raises(UndecidedError, match="radii of gyration"):
+        statics(problem)
+
+
+@pytest.mark.parametrize("length", [0.0, -1.0, 1e61, 1e-61, 1e300, math.nan])
+def test_lengths_that_leave_the_range_of_doubles_are_refused(length: float) -> None:
+    feet = [PlanarContact(r=(x, -1.0), normal=(0.0, 1.0), friction=0.5) for x in (-1.0, 1.0)]
+    problem = PlanarContactProblem(
+        body=PlanarBody(mass=1.0, inertia=1.0), contacts=feet, wrench=PlanarWrench(f=(0.0, -9.8))
+    )
+    for question in (mode_margins, statics):
+        with pytest.raises(InvalidFieldError, match="margin_length"):
+            question(problem, margin_length=length)
+
+
+@pytest.mark.parametrize("friction", [0.0, 1e-6, 1.0, 1e3, 1e6])
+@pytest.mark.parametrize("arm", [1e-4, 1.0, 1e2, 1e4])
+def test_a_block_of_any_arms_and_friction_slips_where_friction_ends(friction: float, arm: float) -> None:
+    """The domain is friction to 1e6 and arms to 1e4. Friction is a hundredth too little, or enough."""
+    feet = [
+        PlanarContact(r=(side * arm, -1e-9 * arm), normal=(0.0, 1.0), friction=friction)
+        for side in (-1.0, 1.0)
+    ]
+    for share, mode in ((0.99, "ff"), (1.01, "rr")):
+        wrench = PlanarWrench(f=(share * friction if friction else share - 0.99, -1.0))
+        answer = contact_modes(
+            PlanarContactProblem(body=PlanarBody(mass=1.0, inertia=1.0), contacts=feet, wrench=wrench)
+        )
+        assert mode in {one.mode for one in answer.modes}
+        assert answer.verdict in {ModeVerdict.UNIQUE, ModeVerdict.INDETERMINATE}
