@@ -289,10 +289,10 @@ class PolyhedralCone:
         lowest = min(heights)
         if lowest >= self._clear:
             return
-        closest = min(map(abs, heights))
-        if closest < self._clear:
-            self._check_clear(*heights)
-        tolerance = self._same
+        tolerance, clear = self._same, self._clear
+        near = [height for height in heights if -clear < height < clear]
+        if near:
+            self._check_clear(*near)
         if lowest > tolerance:
             return
         bit = 1 << index
@@ -301,7 +301,7 @@ class PolyhedralCone:
                 if height <= tolerance:
                     self.tight[i] |= bit
             return
-        self._cut_rays(heights, index, touches=closest <= tolerance)
+        self._cut_rays(heights, index, touches=bool(near))
 
     def _cut_lineality(self, row: Vector3, index: int) -> bool:
         """Cut with a row that does not vanish on all lines: one line becomes a ray.
@@ -330,7 +330,7 @@ class PolyhedralCone:
     def _cut_rays(self, heights: list[float], index: int, *, touches: bool) -> None:
         """Drop the rays on the wrong side of the row, and add one where an edge of the cone crosses it.
 
-        ``touches`` says whether the row vanishes on some ray.
+        ``touches`` is false if the row vanishes on no ray.
         """
         tolerance = self._same
         bit = 1 << index

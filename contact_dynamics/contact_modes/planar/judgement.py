@@ -196,6 +196,8 @@ def _contradiction(case: PlanarCase, cell: Cell, q: Vector3) -> bool:
     """Return whether a contact that should separate or start to slide does not."""
     size = norm(q)
     staying = dict(cell.letters)
+    if len(staying) == len(case.rows) and set(staying.values()) == {FIXED}:
+        return False
     for position, row in enumerate(case.rows):
         letter = staying.get(position)
         if letter is None:
