@@ -91,8 +91,8 @@ def wait_for(started: subprocess.Popen[str], text: str) -> str:
 class Client:
     """A node that calls the services and publishes."""
 
-    def __init__(self, namespace: str = "") -> None:
-        """Join the domain and find the services of the server in a namespace."""
+    def __init__(self, namespace: str = "", *, wait: bool = True) -> None:
+        """Join the domain and find the services of the server in a namespace, and wait for them."""
         self._context = Context()
         rclpy.init(context=self._context, domain_id=DOMAIN_ID)
         self.node = Node("test_client", context=self._context)
@@ -104,7 +104,11 @@ class Client:
             for service, name in SERVICES.items()
         }
         for client in self._clients.values():
-            assert client.wait_for_service(PATIENCE_S)
+            assert not wait or client.wait_for_service(PATIENCE_S)
+
+    def ready(self) -> int:
+        """Return how many of the three services there are now."""
+        return sum(client.service_is_ready() for client in self._clients.values())
 
     def publisher(self, msg_type: Any, topic: str, qos: QoSProfile = DEEP) -> Any:
         """Return a publisher that the server listens to.

@@ -34,6 +34,7 @@ SERVER_PARAMETERS: Final = {
     "out_of_plane_tolerance": "speed out of the plane that still counts as planar, m/s",
     "horizon": "how far ahead a first contact is looked for, s",
     "rate": "samples a second of trajectories, Hz",
+    "autostart": "false: wait for a lifecycle manager",
     "workers": "processes that answer what takes long",
     "answer_deadline": "how long an answer of a worker may take, s",
     "worker_memory": "memory that a worker may take for an answer, MB",

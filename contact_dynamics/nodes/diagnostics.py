@@ -67,6 +67,10 @@ class Diagnostics:
         array.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(array)
 
+    def remove(self) -> None:
+        """End publishing."""
+        self._node.destroy_publisher(self._publisher)
+
     def of_topics(
         self, topics: Iterable[TopicTraffic], faults: Mapping[tuple[str, str], int]
     ) -> DiagnosticStatus:

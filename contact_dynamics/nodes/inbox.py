@@ -89,6 +89,13 @@ class InboxNode(Node):
             self._in_rounds.append(subscription)
         return subscription
 
+    def unsubscribe(self) -> None:
+        """Give up all these subscriptions."""
+        for subscription in self.inbox:
+            self.destroy_subscription(subscription)
+        self.inbox.clear()
+        self._in_rounds.clear()
+
     def attend(self) -> None:
         """Take all messages, unless that was done a moment ago; see `RunnableNode`."""
         if time.monotonic() - self._emptied >= TAKE_EVERY_S:

@@ -115,6 +115,7 @@ class ServerParameters:
         state_history: s.
         future_tolerance: s.
         defaults: What holds where a question says nothing.
+        autostart: Whether the node configures and activates itself at its start.
         worker_limits: What the processes may take that answer what takes long.
         log_limits: How the log is cut into files, and which of them are kept.
     """
@@ -128,6 +129,7 @@ class ServerParameters:
     future_tolerance: float
     defaults: Defaults
     worker_limits: WorkerLimits
+    autostart: bool
     log: bool
     log_directory: str
     log_limits: LogLimits
@@ -182,6 +184,11 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
         ),
         defaults=_read_defaults(reader),
         worker_limits=_read_worker_limits(reader),
+        autostart=reader.read(
+            "autostart",
+            default=True,
+            description="Whether the node configures and activates itself at its start.",
+        ),
         log=reader.read("log", default=True, description="Log every state, request and response to MCAP."),
         log_directory=reader.read(
             "log_directory", "", "Folder for the log's folder. If empty, this is where the server starts."

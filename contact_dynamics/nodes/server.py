@@ -3,209 +3,113 @@
 It watches published states and answers `~/predict_contact_mode`, `~/predict_impact` and `~/predict_tumbling`.
 Drawing happens in another process (`visualizer`), which listens to the service events that this node
 publishes.
+
+It is a managed node, as those of Nav2 are. `autostart` configures and activates it at its start. Otherwise it
+waits for a lifecycle manager. Configured, it receives states and writes the log; active, it answers.
 """
 
 from __future__ import annotations
 
-import time
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
-from nav_msgs.msg import Path
-from rclpy.clock import JumpThreshold
-from rclpy.duration import Duration
-from rclpy.qos import QoSProfile, ReliabilityPolicy
-from rosgraph_msgs.msg import Clock
+from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 
+from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes.arguments import VISUALIZER_PARAMETERS, server_parser
-from contact_dynamics.nodes.diagnostics import AnswerTimes, Diagnostics
 from contact_dynamics.nodes.inbox import InboxNode
-from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_unknown_parameters
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.nodes.run_record import NODE_NAME, run_record
 from contact_dynamics.nodes.running import run_node
-from contact_dynamics.nodes.service_front import ServiceFront
-from contact_dynamics.nodes.services import SERVICES
-from contact_dynamics.nodes.state_subscriptions import STATE_QOS, subscribe_to_states
-from contact_dynamics.nodes.topic_faults import TopicFaults
-from contact_dynamics.questions.knowledge import Knowledge
-from contact_dynamics.questions.state_store import StateStore
-from contact_dynamics.questions.workers import Workers
-from contact_dynamics_interfaces.srv import PredictTumbling
-from msg_adapters.path import path_from_trajectory
+from contact_dynamics.nodes.serving import Serving
 
 if TYPE_CHECKING:
-    from contact_dynamics.nodes.inbox import Taken
-    from contact_dynamics.nodes.services import Service
-    from msg_adapters.status import Response
-
-SERVICE_QOS = QoSProfile(depth=1000)
-"""Queue depth of the services. With the usual 10, replies get lost when several clients ask at once."""
-
-EVENT_QOS = QoSProfile(depth=10 * SERVICE_QOS.depth)
-"""The queue of the service events is this deep. The log must lose none of them, and all requests that wait
-are answered, each with two events, before the first of these events is taken."""
-
-CLOCK_QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
-"""Queue of the simulated time. It matches every publisher, like the node's own subscription to the clock."""
-
-PATH_QOS = QoSProfile(depth=1)
-"""Queue of the predicted trajectory as a path. It is a picture, and only the newest one matters."""
+    from rclpy.lifecycle import LifecycleState
 
 
-LOOK_EVERY_S: Final = 1.0
-"""s. Time between two looks at topics and other nodes, which /diagnostics then tells of."""
-
-
-class Server(InboxNode):
+class Server(InboxNode, LifecycleNode):
     """The node `contact_dynamics`."""
 
     def __init__(self, **node_options: Any) -> None:
-        """Read the parameters, begin the log, subscribe and serve.
+        """Read the parameters, and configure and activate the node where ``autostart`` says so.
 
         Raises:
             ConfigurationError: a parameter is missing, unknown or not allowed.
         """
+        self._serving: Serving | None = None
+        self._problem: ContactDynamicsError | OSError | None = None
         super().__init__(NODE_NAME, **node_options)
         source = NodeParameters(self)
-        parameters = read_server_parameters(source)
+        self._configuration = read_server_parameters(source)
         # One file may configure both nodes.
         refuse_unknown_parameters(self, also_known=VISUALIZER_PARAMETERS)
-        states = StateStore(
-            history=parameters.state_history,
-            timeout=parameters.state_timeout,
-            future_tolerance=parameters.future_tolerance,
-        )
-        # A simulation or a log that is played again: without this its new states would count as old ones.
-        set_back = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
-        self._jumps = self.get_clock().create_jump_callback(set_back, post_callback=lambda _: states.clear())
-        self._asked_ns = 0  # when the present question came, by the node's clock
-        self._knowledge = Knowledge(
-            world=parameters.world,
-            states=states,
-            defaults=parameters.defaults,
-            now_ns=lambda: self._asked_ns or None,  # zero before a simulation tells the time
-        )
-        self._world_frame = parameters.world_frame
-        # The log begins after this, so that a configuration with an unknown source leaves no log.
-        self._faults = TopicFaults(self.get_logger().warning)
-        self._topics = subscribe_to_states(
-            self, parameters, states=states, record=self._record, faults=self._faults
-        )
-        self._log = Log(
-            parameters.log_directory if parameters.log else None,
-            run=self._run_description(source.topics),
-            limits=parameters.log_limits,
-            on_problem=self.get_logger().error,
-            on_deleted=self.get_logger().warning,
-        )
-        for topic in self._topics:
-            self._log.add_topic(topic.name, topic.type_name, STATE_QOS)
-        self._log_clock()
-        self._path = self.create_publisher(Path, "~/predicted_path", PATH_QOS)
-        limits = parameters.worker_limits
-        self._workers = Workers(limits) if limits.count > 0 else None
-        self._answer_times = AnswerTimes()
-        self._diagnostics = Diagnostics(self)
-        self._looked = time.monotonic()
-        self._fronts = [self._serve(service) for service in SERVICES]
-        self._log.start()
-        bodies = ", ".join(body.name for body in parameters.world.bodies) or "none"
-        self.get_logger().info(f"ready: bodies {bodies}; log {self._log.folder or 'off'}")
+        self._topics_by_parameter = source.topics
+        if not self._configuration.autostart:
+            self.get_logger().info("waits to be configured and activated, since autostart is false")
+            return
+        self.trigger_configure()
+        if self._problem is not None:
+            raise self._problem
+        self.trigger_activate()
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002  it is known
+        """Receive states, begin the log, and create the services."""
+        parameters = {name: self._parameters[name].value for name in sorted(self._parameters)}
+        run = run_record(parameters, self._topics_by_parameter)
+        self._problem = None
+        try:
+            self._serving = Serving(self, self._configuration, run=run)
+        except (ContactDynamicsError, OSError) as error:
+            self._problem = error
+            self.get_logger().error(f"cannot be configured: {error}")
+            self.unsubscribe()
+            return TransitionCallbackReturn.FAILURE
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Answer questions from now on."""
+        if self._serving is not None:
+            self._serving.activate(is_active=True)
+            self.get_logger().info(f"ready: {self._serving}")
+        returned: TransitionCallbackReturn = super().on_activate(state)
+        return returned
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Refuse questions from now on."""
+        if self._serving is not None:
+            self._serving.activate(is_active=False)
+        returned: TransitionCallbackReturn = super().on_deactivate(state)
+        return returned
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002  it is known
+        """Finish the log, and take back what configuring made."""
+        if self._serving is not None:
+            self.get_logger().info(self._serving.close())
+            self._serving.remove()
+            self._serving = None
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Do as when it is cleaned up; a signal ends the process."""
+        return self.on_cleanup(state)
 
     def attend(self) -> None:
-        """Take messages, and the events of the answer that has just left."""
+        """Take messages and events, and look around once a second."""
         super().attend()
-        for front in self._fronts:
-            front.take_events()
-        if time.monotonic() - self._looked >= LOOK_EVERY_S:
-            self._looked = time.monotonic()
-            self._look()
-
-    def _look(self) -> None:
-        """Look at topics and other nodes, and tell how everything is."""
-        for topic in self._topics:
-            topic.look()
-        full_names = [(namespace, name) for name, namespace in self.get_node_names_and_namespaces()]
-        if full_names.count((self.get_namespace(), self.get_name())) > 1:
-            text = "another node has this name: both answer the same questions"
-            self._faults.add(self.get_fully_qualified_name(), "same name", 1, text)
-        self._diagnostics.publish(
-            self._diagnostics.of_topics([topic.traffic for topic in self._topics], self._faults.counts),
-            self._diagnostics.of_answers(
-                self._answer_times, 0 if self._workers is None else self._workers.waiting
-            ),
-            self._diagnostics.of_log(self._log.status),
-        )
+        if self._serving is not None:
+            self._serving.attend()
 
     def close(self) -> bool:
         """Finish the log and say where it is; return True, since a log that fails has been told."""
-        self._close_workers()
-        self.take_messages()
-        self.get_logger().info(self._log.close())
+        if self._serving is not None:
+            self.get_logger().info(self._serving.close())
         return True
 
     def destroy_node(self) -> None:
         """End the workers and the node."""
-        self._close_workers()
+        if self._serving is not None:
+            self._serving.end_workers()
         super().destroy_node()
-
-    def _close_workers(self) -> None:
-        if self._workers is not None:
-            self._workers.close()
-
-    def _serve(self, served: Service) -> ServiceFront:
-        front = ServiceFront(
-            self,
-            served,
-            knowledge=self._knowledge,
-            world_frame=self._world_frame,
-            workers=self._workers,
-            begin=self._begin,
-            answered=self._note_answer,
-            qos=SERVICE_QOS,
-            event_qos=EVENT_QOS,
-            record=self._record_event,
-        )
-        self._log.add_topic(
-            front.topic, f"contact_dynamics_interfaces/srv/{served.type_name}_Event", EVENT_QOS
-        )
-        return front
-
-    def _begin(self, asked_ns: int) -> None:
-        self._asked_ns = asked_ns
-
-    def _record_event(self, topic: str, data: bytes, log_time_ns: int, publish_time_ns: int | None) -> None:
-        self._log.record(topic, data, log_time_ns=log_time_ns, publish_time_ns=publish_time_ns)
-
-    def _log_clock(self) -> None:
-        """Log the simulated time, which the stamps of states and events are of, where there is one."""
-        if not self._parameters["use_sim_time"].value:
-            return
-
-        def record(tick: Taken) -> None:
-            self._record(topic, tick)
-
-        topic: str = self.subscribe(Clock, "/clock", record, CLOCK_QOS).topic_name
-        self._log.add_topic(topic, "rosgraph_msgs/msg/Clock", CLOCK_QOS)
-
-    def _record(self, topic: str, taken: Taken) -> None:
-        self._log.record(topic, taken.data, log_time_ns=taken.received_ns)
-
-    def _note_answer(self, response: Response) -> None:
-        self._answer_times.note(response)
-        self._publish_path(response)
-
-    def _publish_path(self, response: Response) -> None:
-        """Publish the newest trajectory for RViz, if somebody listens."""
-        is_path = isinstance(response, PredictTumbling.Response) and response.status == response.OK
-        if is_path and self._path.get_subscription_count() > 0:
-            self._path.publish(path_from_trajectory(response.trajectory))  # type: ignore[attr-defined]
-
-    def _run_description(self, topics: dict[str, str]) -> dict[str, str]:
-        """Return all that an answer depends on besides the states; ``topics`` has their full names."""
-        parameters = {name: self._parameters[name].value for name in sorted(self._parameters)}
-        return run_record(parameters, topics)
 
 
 def main(arguments: list[str]) -> int:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from rclpy.service_introspection import ServiceIntrospectionState
 
-from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.errors import BusyError, ContactDynamicsError
 from contact_dynamics.nodes.call_times import CallTimes
 from contact_dynamics.questions.effort import excerpt, is_quick
 from msg_adapters.status import report_error
@@ -59,7 +59,11 @@ class _Answering:
 
 
 class ServiceFront:
-    """Serves one of the services."""
+    """Serves one of the services.
+
+    Attributes:
+        is_active: Whether questions are answered. Otherwise they are refused.
+    """
 
     def __init__(
         self,
@@ -99,8 +103,11 @@ class ServiceFront:
         self._answered = answered
         self._record = record
         self._times = CallTimes(lambda: node.get_clock().now().nanoseconds)
+        self.is_active = False
         self._gone: dict[bytes, float] = {}  # clients, and until when they count as gone
-        service = node.create_service(served.service_type, f"~/{served.name}", self._take, qos_profile=qos)
+        self._service = service = node.create_service(
+            served.service_type, f"~/{served.name}", self._take, qos_profile=qos
+        )
         service.configure_introspection(node.get_clock(), event_qos, ServiceIntrospectionState.CONTENTS)
         self._send_response = service.send_response
         # An executor of rclpy sends what the callback returns at once. This is its way to send.
@@ -109,6 +116,10 @@ class ServiceFront:
         self._events = node.subscribe(
             served.service_type.Event, self.topic, self._record_event, event_qos, in_rounds=False
         )
+
+    def remove(self) -> None:
+        """Take the service from the node."""
+        self._node.destroy_service(self._service)
 
     def take_events(self) -> None:
         """Take the events of requests and responses that wait, for the log."""
@@ -146,6 +157,9 @@ class ServiceFront:
             self._send(answering)
 
         def serve() -> None:
+            if not self.is_active:
+                message = "the server is not active, which its lifecycle manager decides"
+                raise BusyError(message)
             answering.is_done = self._served.serve(
                 request,
                 answering.response,

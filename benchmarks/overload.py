@@ -1,0 +1,218 @@
+"""The server under more than it can do: 20 bodies at 1 kHz, and four clients that ask as fast as they can.
+
+It prints how many questions were answered and how fast, how old the states in the answers were, what came of
+the states that were published, and how the memory grew. `python -m benchmarks.overload 120` takes two
+minutes, and a second number is the rate of each body, Hz.
+
+Publisher, clients and server share the machine, so that the numbers are of all of them together.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import rclpy
+import yaml
+from diagnostic_msgs.msg import DiagnosticArray
+from nav_msgs.msg import Odometry
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from rclpy.serialization import serialize_message
+
+from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics_interfaces.srv import PredictTumbling
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+BODIES = 20
+CLIENTS = 4
+SECONDS = 20.0
+RATE = 1000.0
+PATIENCE_S = 30.0
+DEEP = QoSProfile(depth=1000)
+ROOT = Path(__file__).parents[1]
+
+
+def run(seconds: float = SECONDS, rate: float = RATE) -> None:
+    """Measure and print."""
+    os.environ.update(ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST", ROS_DOMAIN_ID=str(claim_domain()))
+    print(f"{BODIES} bodies at {rate:g} Hz, {CLIENTS} clients, {seconds:g} s")
+    with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
+        file = Path(folder) / "bodies.yaml"
+        file.write_text(yaml.safe_dump(_configuration(folder)), encoding="utf-8")
+        server = [sys.executable, "-m", "contact_dynamics", "server", "--params-file", str(file)]
+        server_process = stack.enter_context(_process([*server, "--ros-args", "--log-level", "error"]))
+        publisher = stack.enter_context(_process(_myself("publish", seconds, rate)))
+        clients = [stack.enter_context(_process(_myself("ask", seconds, index))) for index in range(CLIENTS)]
+        watched = _watch(server_process.pid, seconds)
+        sent = json.loads(publisher.communicate(timeout=seconds + PATIENCE_S)[0])
+        asked = [json.loads(client.communicate(timeout=seconds + PATIENCE_S)[0]) for client in clients]
+        counts = _states(server_process.pid)
+    _print(asked, sent, counts, watched)
+
+
+def _print(asked: list[dict[str, Any]], sent: int, counts: dict[str, int], watched: dict[str, float]) -> None:
+    trips = sorted(trip for each in asked for trip in each["trips"])
+    ages = sorted(age for each in asked for age in each["ages"])
+    refused = sum(each["refused"] for each in asked)
+    print(f"answers: {len(trips)}, {len(trips) / watched['seconds']:.0f} a second; {refused} refused")
+    print(
+        f"round trip: p50 {_at(trips, 0.5):.2f} ms, p99 {_at(trips, 0.99):.2f} ms, longest {trips[-1]:.1f} ms"
+    )
+    print(f"age of the state in an answer: p50 {_at(ages, 0.5):.2f} ms, p99 {_at(ages, 0.99):.2f} ms")
+    missing = sent - counts["messages"] - counts["lost"]
+    print(
+        f"states: {sent} published, {counts['messages']} received, {counts['lost']} lost and told, "
+        f"{missing} before the first or after the last that came"
+    )
+    print(
+        f"server: {watched['cpu']:.2f} cores, {watched['memory']:.0f} MB resident at the end, "
+        f"growing by {watched['slope']:.3f} MB/s in the second half"
+    )
+
+
+def _configuration(folder: str) -> dict[str, Any]:
+    names = [f"body{index}" for index in range(BODIES)]
+    parameters: dict[str, Any] = {"bodies": names, "log_directory": folder}
+    for name in names:
+        parameters[f"body.{name}.mass"] = 0.4
+        parameters[f"body.{name}.inertia"] = [0.001, 0.002, 0.0025, 0.0, 0.0, 0.0]
+        parameters[f"body.{name}.odometry_topic"] = f"/{name}/odometry"
+    return {"/**": {"ros__parameters": parameters}}
+
+
+def _watch(pid: int, seconds: float) -> dict[str, float]:
+    """Return what a process took in this time."""
+    begun, cpu = time.monotonic(), _cpu_s(pid)
+    memory: list[tuple[float, float]] = []
+    while (elapsed := time.monotonic() - begun) < seconds:
+        memory.append((elapsed, _resident_mb(pid)))
+        time.sleep(0.5)
+    later = memory[len(memory) // 2 :]
+    slope = statistics.linear_regression(*zip(*later, strict=True)).slope
+    return {"seconds": elapsed, "cpu": (_cpu_s(pid) - cpu) / elapsed, "memory": later[-1][1], "slope": slope}
+
+
+def _states(pid: int) -> dict[str, int]:
+    """Return how many states the server received and lost, as it tells itself."""
+    reports: list[DiagnosticArray] = []
+    rclpy.init()
+    node = Node("watcher")
+    node.create_subscription(DiagnosticArray, "/diagnostics", reports.append, DEEP)
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    deadline = time.monotonic() + PATIENCE_S
+    while len(reports) < 3 and time.monotonic() < deadline:  # the first may be of before the last state
+        executor.spin_once(timeout_sec=1.0)
+    rclpy.shutdown()
+    if not reports:
+        raise RuntimeError(f"process {pid} tells nothing on /diagnostics")
+    values = [pair for status in reports[-1].status for pair in status.values if "/odometry: " in pair.key]
+    return {
+        kind: sum(int(pair.value) for pair in values if pair.key.endswith(f": {kind}"))
+        for kind in ("messages", "lost")
+    }
+
+
+def _publish(seconds: float, rate: float) -> None:
+    rclpy.init()
+    node = Node("publisher")
+    topics = [node.create_publisher(Odometry, f"/body{index}/odometry", DEEP) for index in range(BODIES)]
+    messages = [Odometry(child_frame_id=f"body{index}") for index in range(BODIES)]
+    deadline = time.monotonic() + PATIENCE_S
+    while not all(topic.get_subscription_count() for topic in topics) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    begun, rounds = time.monotonic(), 0
+    while (elapsed := time.monotonic() - begun) < seconds:
+        if rounds > elapsed * rate:
+            time.sleep(0.5 / rate)
+            continue
+        for topic, message in zip(topics, messages, strict=True):
+            message.header.frame_id = "world"
+            message.header.stamp.sec, message.header.stamp.nanosec = divmod(time.time_ns(), 1_000_000_000)
+            topic.publish(serialize_message(message))
+        rounds += 1
+    time.sleep(5.0)  # what is on its way arrives, and the server tells of it
+    print(rounds * BODIES)
+
+
+def _ask(seconds: float, index: int) -> None:
+    rclpy.init()
+    node = Node(f"client{index}")
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    client = node.create_client(PredictTumbling, "/contact_dynamics/predict_tumbling", qos_profile=DEEP)
+    client.wait_for_service(PATIENCE_S)
+
+    def ask(body: int) -> Any:
+        future = client.call_async(PredictTumbling.Request(body_name=f"body{body}", times=[0.1]))
+        while not future.done():
+            executor.spin_once(timeout_sec=PATIENCE_S)
+        return future.result()
+
+    while ask(BODIES - 1).status != 0:  # until its states are told
+        time.sleep(0.1)
+    trips, ages, refused, asked = [], [], 0, 0
+    begun = time.monotonic()
+    while time.monotonic() - begun < seconds:
+        asked += 1
+        start = time.perf_counter()
+        answer = ask((index + asked) % BODIES)
+        if answer.status != answer.OK:
+            refused += 1
+            continue
+        stamp = answer.state.header.stamp
+        trips.append(1e3 * (time.perf_counter() - start))
+        ages.append(1e-6 * (time.time_ns() - stamp.sec * 1_000_000_000 - stamp.nanosec))
+    print(json.dumps({"trips": trips, "ages": ages, "refused": refused}))
+
+
+@contextmanager
+def _process(command: list[str]) -> Iterator[subprocess.Popen[str]]:
+    started = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)  # noqa: S603  our own
+    try:
+        yield started
+    finally:
+        started.terminate()
+        started.wait(PATIENCE_S)
+        if started.stdout is not None:
+            started.stdout.close()
+
+
+def _myself(*arguments: object) -> list[str]:
+    return [sys.executable, "-m", "benchmarks.overload", *map(str, arguments)]
+
+
+def _at(values: list[float], share: float) -> float:
+    return values[min(len(values) - 1, int(share * len(values)))]
+
+
+def _resident_mb(pid: int) -> float:
+    text = Path(f"/proc/{pid}/status").read_text(encoding="utf-8")
+    return int(text.split("VmRSS:")[1].split("kB")[0]) / 1024
+
+
+def _cpu_s(pid: int) -> float:
+    fields = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+if __name__ == "__main__":
+    match sys.argv[1:]:
+        case ["publish", seconds, rate]:
+            _publish(float(seconds), float(rate))
+        case ["ask", seconds, index]:
+            _ask(float(seconds), int(index))
+        case numbers:
+            run(*map(float, numbers))

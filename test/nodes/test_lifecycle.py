@@ -1,0 +1,98 @@
+"""The server as a managed node, over the services by which a lifecycle manager brings nodes up and down."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from lifecycle_msgs.msg import State, Transition
+from lifecycle_msgs.srv import ChangeState, GetState
+from nav_msgs.msg import Odometry
+
+from contact_dynamics.recording import BagReader
+from contact_dynamics_interfaces.srv import PredictTumbling
+from running_server import PATIENCE_S, ROOT, SERVICES, Client, process
+
+
+class Manager:
+    """A client that also moves the server between its states."""
+
+    def __init__(self) -> None:
+        self.client = Client(wait=False)
+        node = self.client.node
+        self._change = node.create_client(ChangeState, "/contact_dynamics/change_state")
+        self._get = node.create_client(GetState, "/contact_dynamics/get_state")
+        assert self._change.wait_for_service(PATIENCE_S)
+        assert self._get.wait_for_service(PATIENCE_S)
+
+    def change(self, transition: int) -> bool:
+        return bool(
+            self._call(self._change, ChangeState.Request(transition=Transition(id=transition))).success
+        )
+
+    def state(self) -> int:
+        return int(self._call(self._get, GetState.Request()).current_state.id)
+
+    def _call(self, client: Any, request: Any) -> Any:
+        future = client.call_async(request)
+        self.client.spin_until(future.done)
+        return future.result()
+
+
+@pytest.fixture
+def manager(tmp_path: Path) -> Iterator[Manager]:
+    arguments = (
+        "--params-file",
+        str(ROOT / "config" / "server.yaml"),
+        "--ros-args",
+        "-p",
+        "autostart:=false",
+    )
+    arguments += ("-p", f"log_directory:={tmp_path}", "-p", "state_timeout:=1000.0")
+    with process("server", *arguments, ready="autostart is false"):
+        manager = Manager()
+        try:
+            yield manager
+        finally:
+            manager.client.close()
+
+
+def test_a_manager_brings_the_server_up_and_down_and_up_again(manager: Manager, tmp_path: Path) -> None:
+    question = PredictTumbling.Request(body_name="brick", times=[0.0])
+    assert manager.state() == State.PRIMARY_STATE_UNCONFIGURED
+    assert manager.client.ready() == 0
+    for run in (1, 2):
+        assert manager.change(Transition.TRANSITION_CONFIGURE)
+        assert len(list(tmp_path.iterdir())) == run
+        manager.client.spin_until(lambda: manager.client.ready() == len(SERVICES))
+        states = manager.client.publisher(Odometry, "/brick/odometry")
+        msg = Odometry(child_frame_id="brick")
+        msg.header.frame_id, msg.header.stamp = "world", manager.client.node.get_clock().now().to_msg()
+        states.publish(msg)
+        refused = manager.client.ask(question)
+        assert refused.status == refused.BUSY
+        assert "not active" in refused.message
+        assert manager.change(Transition.TRANSITION_ACTIVATE)
+        manager.client.spin_until(lambda: manager.client.ask(question).status == 0)  # the state came before
+        assert manager.state() == State.PRIMARY_STATE_ACTIVE
+        assert manager.change(Transition.TRANSITION_DEACTIVATE)
+        assert manager.client.ask(question).status == refused.BUSY
+        assert manager.change(Transition.TRANSITION_CLEANUP)
+        assert manager.state() == State.PRIMARY_STATE_UNCONFIGURED
+        manager.client.node.destroy_publisher(states)
+        manager.client.spin_until(lambda: manager.client.ready() == 0)
+    logs = [BagReader(folder) for folder in tmp_path.iterdir()]
+    assert all(any(message.topic == "/brick/odometry" for message in log.messages()) for log in logs)
+    assert all(log.damage is None for log in logs)
+
+
+def test_an_autostarted_server_is_active(tmp_path: Path) -> None:
+    arguments = ("--ros-args", "-p", f"log_directory:={tmp_path}")
+    with process("server", *arguments, ready="ready"):
+        manager = Manager()
+        try:
+            assert manager.state() == State.PRIMARY_STATE_ACTIVE
+        finally:
+            manager.client.close()
