@@ -58,7 +58,8 @@ class InboxNode(Node):
     @property
     def subscriptions(self) -> Iterator[Subscription]:
         """The subscriptions that an executor waits for."""
-        return (each for each in super().subscriptions if each not in self.inbox)
+        by_hand = [*self.inbox, self._clock_subscription]
+        return (each for each in super().subscriptions if each not in by_hand)
 
     def subscribe(
         self,
@@ -104,6 +105,9 @@ class InboxNode(Node):
     def take_messages(self) -> None:
         """Take all messages that wait."""
         self._emptied = time.monotonic()
+        clock = self._clock_subscription
+        if clock is not None:  # first, because states that are ahead of the clock are refused
+            self._take_time(clock)
         for subscription in self._in_rounds:
             self.empty(subscription)
 
@@ -129,6 +133,21 @@ class InboxNode(Node):
                 data, info = taken
                 received_ns = self._after_the_question(info["received_timestamp"])
                 receive(Taken(data, received_ns, info["publication_sequence_number"]))
+
+    @property
+    def _clock_subscription(self) -> Subscription | None:
+        """The subscription by which the node takes a simulation's time. rclpy has no public name for it."""
+        source = getattr(self, "_time_source", None)  # there is none while the node is being made
+        return None if source is None else source._clock_sub  # noqa: SLF001
+
+    @staticmethod
+    def _take_time(clock: Subscription) -> None:
+        with clock.handle:
+            for _ in range(clock.qos_profile.depth):
+                taken = clock.handle.take_message(clock.msg_type, False)  # noqa: FBT003  not raw
+                if taken is None:
+                    return
+                clock.callback(taken[0])
 
     def _after_the_question(self, received_ns: int) -> int:
         """Return when a message came; one that came while a question was being taken counts as later."""
