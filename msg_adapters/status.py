@@ -32,6 +32,11 @@ class Response(Protocol):
     computation_time: float
 
 
+def code_name(error: Exception) -> str:
+    """Return the name of the code that says what is wrong; a service without it has a wider one instead."""
+    return next((name for kind, name in _CODE_NAMES if isinstance(error, kind)), "INTERNAL_ERROR")
+
+
 def report_error(response: Response, error: Exception) -> None:
     """Write an error into a response, as its code and a message with what was found and what is allowed."""
     for error_type, code_name in _CODE_NAMES:

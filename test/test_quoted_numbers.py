@@ -49,6 +49,7 @@ NOT_MEASURED: dict[
     ],
     "docs/log.md": ["30 minutes or 1000 MB", "100 ms", "5 s old", "64 MiB", "1 kHz", "256 KiB", "240 Hz"],
     "docs/notation.md": ["−90°", "0.1 µs"],  # of a double at 1.8e9 s
+    "docs/replay.md": ["the next 50 ms", "again within 50 ms", "steps on by 0.1 s", "every 0.1 s"],
     "docs/several-contacts.md": ["some milliseconds apart", "within 1 cm", "0.05 s unless"],
     "docs/tumbling.md": [
         "a tenth of a second ahead",

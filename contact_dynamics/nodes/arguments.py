@@ -11,7 +11,6 @@ from typing import Final
 VISUALIZER_PARAMETERS: Final = {
     "server": "full name of the server node whose answers are drawn",
     "rrd_path": "file to draw into, which is replaced",
-    "from_log": "log of the server to draw instead of listening: a folder or an .mcap file",
     "spawn": "true: start rerun's viewer",
     "serve": "true: serve the picture at the port, for viewers that connect",
     "connect": "URL of a viewer that is open already",

@@ -4,24 +4,21 @@ It is a process of its own: it listens to the bodies' states and to the service 
 publishes, and nothing goes back. It takes the server's parameters, which describe bodies, surfaces and
 topics, and its own (`config/visualizer.yaml`). A drawing that fails is told once, and the rest goes on.
 
-It draws a log of the server as it does what it hears (`from_log`), and then ends.
+`replay.view` draws a log in the same way.
 """
 
 from __future__ import annotations
 
 import os
-import signal
 import sys
 import time
 import traceback
-import warnings
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.clock import Clock, ClockType
 from rclpy.qos import QoSProfile
-from rclpy.serialization import deserialize_message
 from service_msgs.msg import ServiceEventInfo
 
 from contact_dynamics.nodes.arguments import visualizer_parser
@@ -33,7 +30,6 @@ from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
 from contact_dynamics.nodes.topic_faults import TopicFaults
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.uncertain_state import state_of
-from contact_dynamics.recording import BagReader, DamagedLogWarning
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import DEFAULT_PORT, OpenRecording, Sinks, ViewerMode, raise_errors
 from contact_dynamics.viewing.words import CONTACT_MODE, IMPACT, TUMBLING
@@ -62,9 +58,6 @@ DRAW_PERIOD_S: Final = 0.05
 
 SERVER_WAIT_S: Final = 3.0
 """How long a start waits for a server: as long as one that is started at the same time may take."""
-
-LOGGED_AT_ONCE: Final = 1000
-"""Messages of a log between two drawings of their states."""
 
 _POLL_S: Final = 0.02
 
@@ -114,44 +107,22 @@ class Visualizer(InboxNode):
         self._told: set[str] = set()
         parameters = read_server_parameters(NodeParameters(self))
         self._world = parameters.world
-        server, surface_side, self.log_path, self._sinks = _read_own_parameters(self)
+        server, surface_side, self._sinks = _read_own_parameters(self)
         refuse_unknown_parameters(self)
         self._recording = OpenRecording(self._sinks, on_problem=self.get_logger().warning)
         self._picture = Picture(self._recording.stream, self._world, surface_side=surface_side)
         self._states = _WaitingStates()
-        self._receivers: dict[str, Callable[[bytes], None]] = {}  # by topic, for what was logged
         events = [self._listen(shown, f"{server}/{shown.name}") for shown in _SHOWN]
-        if not self.log_path:
-            self._wait_for_server(server, events, server_wait)
-        topics = subscribe_to_states(
+        self._wait_for_server(server, events, server_wait)
+        subscribe_to_states(
             self,
             parameters,
             states=self._states,
             record=lambda _topic, _taken: None,
             faults=TopicFaults(self.get_logger().warning),
         )
-        self._receivers |= {topic.name: partial(self.deliver, topic.name) for topic in topics}
         self.create_timer(DRAW_PERIOD_S, self.draw_states, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.get_logger().info(f"ready: draws {server} to {self._recording.description}")
-
-    def draw_log(self) -> None:
-        """Draw the states and answers of the log that the parameters name, and tell what of it is damaged.
-
-        Raises:
-            NotALogError: there is none.
-        """
-        count = 0
-        log = BagReader(self.log_path)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DamagedLogWarning)  # told below, where all else is told
-            for count, message in enumerate(log.messages(set(self._receivers)), start=1):
-                self._guarded(message.topic, partial(self._receivers[message.topic], message.data))
-                if count % LOGGED_AT_ONCE == 0:
-                    self.draw_states()
-        self.draw_states()
-        if log.damage is not None:
-            self.get_logger().warning(log.damage)
-        self.get_logger().info(f"drew {count} messages of {self.log_path}")
 
     def draw_states(self) -> None:
         """Draw the states that came since the last time."""
@@ -164,9 +135,7 @@ class Visualizer(InboxNode):
         self.draw_states()
         if self._sinks.viewer is ViewerMode.NONE:
             self._guarded("the last look", self._picture.frame_all)
-        took_all = self._recording.close()
-        # Who listens goes on with the file. Who draws a log wants to see it.
-        return took_all and not (self.log_path and self._recording.viewer_failed)
+        return self._recording.close()
 
     def _wait_for_server(self, server: str, events: list[Subscription], patience: float) -> None:
         """Wait for the server's events, so that nothing is missed by who plays states to their listeners."""
@@ -183,9 +152,7 @@ class Visualizer(InboxNode):
                 self._guarded(service, lambda: self._show(shown, event))
 
         event_type = shown.service_type.Event
-        subscription = self.create_subscription(event_type, f"{service}/_service_event", receive, EVENT_QOS)
-        self._receivers[subscription.topic_name] = lambda data: receive(deserialize_message(data, event_type))
-        return subscription
+        return self.create_subscription(event_type, f"{service}/_service_event", receive, EVENT_QOS)
 
     def _show(self, shown: _Shown, event: Any) -> None:
         response = event.response[0]
@@ -243,7 +210,7 @@ class _WaitingStates(StateStore):
         return {name: sorted(states, key=lambda state: state.stamp_ns) for name, states in waiting.items()}
 
 
-def _read_own_parameters(node: Node) -> tuple[str, float, str, Sinks]:
+def _read_own_parameters(node: Node) -> tuple[str, float, Sinks]:
     def read(name: str, default: Any, description: str, **ranges: Any) -> Any:
         try:
             descriptor = ParameterDescriptor(description=description, read_only=True, **ranges)
@@ -258,11 +225,6 @@ def _read_own_parameters(node: Node) -> tuple[str, float, str, Sinks]:
         2.0,
         "Side of the square that a surface is drawn as, m.",
         floating_point_range=[FloatingPointRange(from_value=1e-3, to_value=1e4)],
-    )
-    log_path = read(
-        "from_log",
-        "",
-        "Log of the server, a folder or an .mcap file, to draw instead of listening. Empty: none.",
     )
     rrd_path = read("rrd_path", "", "File to draw into, which is replaced. Empty: none.")
     spawn = read("spawn", False, "Start rerun's viewer, unless one listens at the port already.")  # noqa: FBT003
@@ -284,21 +246,13 @@ def _read_own_parameters(node: Node) -> tuple[str, float, str, Sinks]:
         message = "rrd_path, spawn, serve, connect: found none, needed is somewhere to draw to"
         raise ConfigurationError(message)
     viewer = ViewerMode(chosen[0]) if chosen else ViewerMode.NONE
-    return server, side, log_path, Sinks(rrd_path=rrd_path, viewer=viewer, port=port, url=url)
-
-
-def _make_visualizer() -> Visualizer:
-    visualizer = Visualizer(server_wait=SERVER_WAIT_S)
-    if visualizer.log_path:
-        visualizer.draw_log()
-        signal.raise_signal(signal.SIGTERM)  # it is told to stop, as there is nothing to listen to
-    return visualizer
+    return server, side, Sinks(rrd_path=rrd_path, viewer=viewer, port=port, url=url)
 
 
 def main(arguments: list[str]) -> int:
-    """Run the visualizer until it is told to stop or has drawn a log, and return the exit code."""
+    """Run the visualizer until it is told to stop; return the exit code."""
     exit_code = run_node(
-        _make_visualizer,
+        lambda: Visualizer(server_wait=SERVER_WAIT_S),
         verb="visualizer",
         parser=visualizer_parser(),
         arguments=arguments,

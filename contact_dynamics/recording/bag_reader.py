@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
-from contact_dynamics.recording.file_messages import Loss, MessageFile, Span
+from contact_dynamics.recording.file_messages import Loss, MessageFile, Span, Topic
 from contact_dynamics.recording.mcap_messages import McapMessages
 from contact_dynamics.recording.packed import SUFFIXES, unpacked_file, unpacked_message
 from contact_dynamics.recording.sqlite_messages import SqliteMessages
@@ -112,6 +112,15 @@ class BagReader:
                     if made is not None:
                         yield made
 
+    def topics(self) -> list[Topic]:
+        """Return the topics that the log describes before its first message or at its end."""
+        self.losses = []
+        found: dict[str, Topic] = {}
+        for path in self.paths:
+            with self._opened(path) as file:
+                found |= {topic.name: topic for topic in file.topics()}
+        return list(found.values())
+
     def definitions(self) -> dict[str, str]:
         """Return the text of each type that the log describes before its first message or at its end.
 
@@ -123,6 +132,25 @@ class BagReader:
             with self._opened(path) as file:
                 found |= file.definitions()
         return found
+
+    def extent(self) -> tuple[int, int]:
+        """Return the first and the last log time, ns since the epoch; both are zero without messages.
+
+        The index of each file tells them. Where the last file has none, the last time is that of its first
+        message.
+        """
+        self.losses = []
+        found: list[tuple[int, int]] = []
+        for path in self.paths:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", DamagedLogWarning)  # told when the messages are read
+                with self._opened(path) as file:
+                    extent = file.extent()
+            if extent is not None:
+                found.append(extent)
+        if not found:
+            return 0, 0
+        return min(start_ns for start_ns, _ in found), max(end_ns for _, end_ns in found)
 
     def run(self) -> dict[str, str]:
         """Return the writer's record of its run. It is empty if the record is missing or damaged."""

@@ -88,8 +88,17 @@ class MessageFile(Protocol):
     def messages(self, topics: Collection[str] | None, span: Span) -> Iterator[StoredMessage]:
         """Yield the messages of some topics, or of all, in the order in which they were written."""
 
+    def topics(self) -> list[Topic]:
+        """Return the topics that the file describes before its first message or at its end."""
+
     def definitions(self) -> dict[str, str]:
         """Return the text of each type that the file describes, by the type's name."""
+
+    def extent(self) -> tuple[int, int] | None:
+        """Return the first and the last log time, ns, or None without messages.
+
+        Where a file has no index, the last one is not known, and it is the first.
+        """
 
     def run(self) -> dict[str, str] | None:
         """Return the record of the run that made it, or None if the record is missing or damaged."""

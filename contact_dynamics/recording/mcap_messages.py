@@ -74,6 +74,18 @@ class McapMessages:
         if undefined:
             self._walk.lose_undefined(undefined)
 
+    def topics(self) -> list[Topic]:
+        """Return the topics that are described before the first message or at the end."""
+        definitions = _Definitions(self._walk)
+        numbers = {*(self._walk.summary or Summary()).channels}
+        for record in self._walk.records():
+            if isinstance(record, Message):
+                break
+            definitions.add(record)
+            if isinstance(record, Channel):
+                numbers.add(record.id)
+        return [topic for number in sorted(numbers) if (topic := definitions.topic(number)) is not None]
+
     def definitions(self) -> dict[str, str]:
         """Return the text of each type that is described before the first message or at the end."""
         schemas: list[Schema] = []
@@ -84,6 +96,16 @@ class McapMessages:
                 schemas.append(record)
         schemas += (self._walk.summary or Summary()).schemas.values()
         return {schema.name: text for schema in schemas if (text := _ros2msg(schema))}
+
+    def extent(self) -> tuple[int, int] | None:
+        """Return the first and the last log time, ns, or None without messages; see `MessageFile`."""
+        chunks = (self._walk.summary or Summary()).chunks
+        filled = [chunk for chunk in chunks if chunk.message_end_time > 0]
+        if filled:
+            return min(c.message_start_time for c in filled), max(c.message_end_time for c in filled)
+        messages = (record for record in self._walk.records() if isinstance(record, Message))
+        first = next(messages, None)
+        return None if first is None else (first.log_time, first.log_time)
 
     def run(self) -> dict[str, str] | None:
         """Return the record of the run that made it, or None if there is none that is whole."""

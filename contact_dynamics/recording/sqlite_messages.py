@@ -76,6 +76,10 @@ class SqliteMessages:
             if isinstance(timestamp, int) and isinstance(data, bytes):
                 yield StoredMessage(known[topic_id], data, timestamp, timestamp)
 
+    def topics(self) -> list[Topic]:
+        """Return the topics of the file."""
+        return list(self._topics().values())
+
     def definitions(self) -> dict[str, str]:
         """Return the text of each type. Bags from before ROS 2 Iron have none."""
         with suppress(sqlite3.Error):
@@ -84,6 +88,15 @@ class SqliteMessages:
             )
             return {str(name): str(text) for name, encoding, text in rows if encoding == "ros2msg" and text}
         return {}
+
+    def extent(self) -> tuple[int, int] | None:
+        """Return the first and the last log time, ns, or None without messages that can be reached."""
+        with suppress(sqlite3.Error):
+            for start_ns, end_ns in self._database.execute(
+                "SELECT min(timestamp), max(timestamp) FROM messages"
+            ):
+                return None if start_ns is None else (int(start_ns), int(end_ns))
+        return None
 
     def run(self) -> None:
         """Return None, because the server writes no database."""

@@ -6,12 +6,12 @@ answers, and responses are written by the same functions. It needs no ROS.
 
 from __future__ import annotations
 
-from contextlib import suppress
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes.parameters import read_server_parameters
-from contact_dynamics.nodes.run_record import LoggedParameters
 from contact_dynamics.nodes.services import SERVICES
 from contact_dynamics.nodes.state_sources import state_sources
 from contact_dynamics.questions.extent import check_believable
@@ -20,29 +20,55 @@ from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr import decode_without_ros
 from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
+from contact_dynamics.replay.events import Answer
+from msg_adapters.contact_mode import contact_mode_answer_from_msg
+from msg_adapters.impact import impact_answer_from_msg
 from msg_adapters.status import report_error
+from msg_adapters.tumbling import tumbling_answer_from_msg
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
+    from contact_dynamics.nodes.parameters import ParameterSource
     from contact_dynamics.recording.bag_reader import LoggedMessage
+    from contact_dynamics.rigid_body.body import BodyState
+    from msg_adapters.state_adapter import Reader
 
 CLOCK: Final = "/clock"
+
+_ANSWERS: Final[Mapping[str, Callable[..., Answer]]] = {
+    "PredictContactMode": contact_mode_answer_from_msg,
+    "PredictImpact": impact_answer_from_msg,
+    "PredictTumbling": tumbling_answer_from_msg,
+}
+
+
+@dataclass(slots=True, kw_only=True)
+class Refused:
+    """Messages of one topic that made no state.
+
+    Attributes:
+        reason: Why the first of them was refused.
+        count: How many were.
+    """
+
+    reason: str
+    count: int = 0
 
 
 class ServerAgain:
     """Answers requests as the server of a log did, from its configuration and what it had received."""
 
-    def __init__(self, run: Mapping[str, str]) -> None:
-        """Take the configuration from the log's record of its run.
+    def __init__(self, source: ParameterSource) -> None:
+        """Take the configuration, from a log's record of its run or from a file.
 
         Raises:
-            ConfigurationError: the record lacks a parameter, or has one that is not allowed.
+            ConfigurationError: a parameter is missing, or one is not allowed.
         """
-        parameters = read_server_parameters(LoggedParameters(run))
+        parameters = read_server_parameters(source)
+        self.world = parameters.world
+        self.refused: dict[str, Refused] = {}
         self._asked_ns = 0
         self._clock_ns = 0
-        self._is_simulated = run.get("use_sim_time") == str(True)
+        self._is_simulated = source.value("use_sim_time", False, "Whether time is simulated.")  # noqa: FBT003
         self._states = StateStore(
             history=parameters.state_history,
             timeout=parameters.state_timeout,
@@ -55,25 +81,59 @@ class ServerAgain:
             defaults=parameters.defaults,
             now_ns=lambda: self._asked_ns or None,  # it is zero before a simulation tells the time
         )
-        self._sources = {source.full_name: source.readers for source in state_sources(parameters)}
+        self._sources = {each.full_name: each.readers for each in state_sources(parameters)}
 
     @property
     def topics(self) -> frozenset[str]:
         """The topics that answers depend on."""
         return frozenset({*self._sources, CLOCK})
 
-    def receive(self, message: LoggedMessage) -> None:
-        """Take a message about a body, or a tick of the simulated time. Ignore what the server ignored."""
+    def receive(self, message: LoggedMessage, *, is_live: bool = True) -> list[tuple[str, BodyState]]:
+        """Take a message about bodies, or a tick of the simulated time; ignore what the server ignored.
+
+        Args:
+            message: a message of one of the `topics`.
+            is_live: whether the clock at its reception is known. If not, a state is taken whatever its stamp.
+
+        Returns:
+            The bodies and their states, where the message completes any.
+        """
         if message.topic == CLOCK:
             self._tick(leading_stamp_ns(message.data))
-            return
+            return []
         now_ns = self._clock_ns or None if self._is_simulated else message.log_time_ns
-        for body_name, state_from in self._sources[message.topic]:
-            with suppress(ContactDynamicsError):
-                state = state_from(decode_without_ros(message))
-                if state is not None:
-                    check_believable(state_of(state))
-                    self._states.add(body_name, state, now_ns=now_ns)
+        came = (
+            self._take(message, body_name, state_from, now_ns=now_ns if is_live else None)
+            for body_name, state_from in self._sources[message.topic]
+        )
+        return [each for each in came if each is not None]
+
+    def _take(
+        self, message: LoggedMessage, body_name: str, state_from: Reader, *, now_ns: int | None
+    ) -> tuple[str, BodyState] | None:
+        try:
+            state = state_from(decode_without_ros(message))
+            if state is None:
+                return None
+            check_believable(state_of(state))
+            self._states.add(body_name, state, now_ns=now_ns)
+        except ContactDynamicsError as error:
+            self.refused.setdefault(message.topic, Refused(reason=str(error))).count += 1
+            return None
+        return body_name, state_of(state)
+
+    def knowledge_at(self, asked_ns: int) -> Knowledge:
+        """Return what is known at a time, ns by the clock of the states."""
+        self._asked_ns = asked_ns
+        return self._knowledge
+
+    def answer_from(self, service_type: str, response: Any) -> Answer:
+        """Return the answer that a response carries; its status is OK.
+
+        Raises:
+            ContactDynamicsError: a number in it is not allowed.
+        """
+        return _ANSWERS[service_type.rpartition("/")[2]](response, world=self.world)
 
     def answer(
         self, service_type: str, request: object, make_response: Callable[[], Any], *, asked_ns: int

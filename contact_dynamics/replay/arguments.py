@@ -1,35 +1,233 @@
-"""The arguments of `contact-dynamics replay`."""
+"""The arguments of `contact-dynamics replay`, with its modes."""
 
 from __future__ import annotations
 
 import argparse
+import math
+from typing import TYPE_CHECKING, Any, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+VERIFY: Final = "verify"
+TABLE: Final = "table"
+VIEW: Final = "view"
+PUBLISH: Final = "publish"
+
+MODES: Final = {
+    VERIFY: "ask every logged question again and compare the answers (what a LOG without a mode does)",
+    TABLE: "write a row for each question: what was asked, answered, and then measured",
+    VIEW: "draw states and answers in rerun, live or to a file",
+    PUBLISH: "publish states, and ask questions again, over ROS",
+}
+"""What `replay` can do with a log."""
+
+QUESTIONS: Final = ("landing", "impact", "modes")
+"""What can be asked of a recording that holds no questions."""
+
+DEFAULT_PORT: Final = 9876
 
 
 def replay_parser() -> argparse.ArgumentParser:
     """Return the parser of `contact-dynamics replay`."""
-    parser = argparse.ArgumentParser(
+    parser = _WithDefaultMode(
         prog="contact-dynamics replay",
-        description="Ask every logged question again, with the states that were logged, and compare the "
-        "answers. This needs the logs alone, no ROS.",
-        epilog="The exit code is 0 if all answers are as logged, 1 if an answer differs or a call cannot be "
-        "read, and 2 if a file is no log of the server.",
+        description="Replay a log. Only the mode publish needs ROS.",
+        epilog="`contact-dynamics replay LOG` verifies. `contact-dynamics replay MODE --help` says more.",
+    )
+    modes = parser.add_subparsers(dest="mode", metavar="MODE", parser_class=argparse.ArgumentParser)
+    _add_verify(modes.add_parser(VERIFY, help=MODES[VERIFY], description=_sentence(MODES[VERIFY])))
+    _add_table(modes.add_parser(TABLE, help=MODES[TABLE], description=_sentence(MODES[TABLE])))
+    _add_view(modes.add_parser(VIEW, help=MODES[VIEW], description=_sentence(MODES[VIEW])))
+    _add_publish(modes.add_parser(PUBLISH, help=MODES[PUBLISH], description=_sentence(MODES[PUBLISH])))
+    return parser
+
+
+class _WithDefaultMode(argparse.ArgumentParser):
+    """A parser that takes what names no mode as the arguments of the first one."""
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        given: Sequence[str] = args or ()
+        names_mode = bool(given) and given[0] in {*MODES, "-h", "--help"}
+        return super().parse_known_args([*given] if names_mode else [VERIFY, *given], namespace)
+
+
+def _add_verify(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = (
+        "exit code: 0 all answers are as logged; 1 an answer differs, or a call cannot be read; "
+        "2 a log is none of the server. The time that an answer took does not count."
     )
     parser.add_argument(
-        "logs", nargs="*", metavar="LOG", help="folder of a log of the server, or its .mcap file"
+        "logs",
+        nargs="*",
+        metavar="LOG",
+        help="folder of a log of the server, one of its files, or a folder of such folders",
     )
     parser.add_argument(
         "--tolerance",
-        type=_tolerance,
+        type=_not_negative,
         default=0.0,
         metavar="T",
         help="how much a number may differ, relative to the larger of the two, or to 1 if both are smaller "
         "(default: 0, so that every bit counts)",
     )
-    return parser
 
 
-def _tolerance(text: str) -> float:
-    value = float(text)
-    if not 0.0 <= value < float("inf"):
+def _add_table(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = "The page docs/replay.md explains the columns."
+    parser.add_argument(
+        "logs", nargs="+", metavar="LOG", help="a log of the server, or a recording with --config"
+    )
+    parser.add_argument(
+        "--out",
+        metavar="FILE",
+        help=".csv or .parquet file, which is replaced (default: CSV to the terminal)",
+    )
+    _add_span(parser)
+    _add_foreign(parser)
+
+
+def _add_view(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("log", metavar="LOG", help="a log of the server, or a recording with --config")
+    parser.add_argument("--rrd", metavar="FILE", default="", help="file to draw into, which is replaced")
+    viewer = parser.add_mutually_exclusive_group()
+    viewer.add_argument(
+        "--spawn", action="store_true", help="open rerun's viewer (what happens without --rrd)"
+    )
+    viewer.add_argument("--serve", action="store_true", help="serve the picture at the port, for viewers")
+    viewer.add_argument("--connect", metavar="URL", default="", help="a viewer that is open already")
+    parser.add_argument(
+        "--port", type=int, default=DEFAULT_PORT, help=f"of --spawn and --serve (default: {DEFAULT_PORT})"
+    )
+    parser.add_argument(
+        "--surface-side",
+        type=_positive,
+        default=2.0,
+        metavar="M",
+        help="side of a drawn surface, m (default: 2)",
+    )
+    _add_span(parser)
+    _add_foreign(parser)
+
+
+def _add_publish(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = (
+        "While it runs, the space bar pauses it, and a dot steps on. ROS's own arguments follow --ros-args."
+    )
+    parser.add_argument("log", metavar="LOG", help="a log of the server, or any recording with --all-topics")
+    parser.add_argument(
+        "--rate",
+        type=_positive,
+        default=1.0,
+        metavar="R",
+        help="how many times as fast as it was (default: 1)",
+    )
+    parser.add_argument(
+        "--loop", action="store_true", help="begin again at the end, until it is told to stop"
+    )
+    parser.add_argument("--paused", action="store_true", help="begin paused")
+    parser.add_argument(
+        "--requests",
+        action="store_true",
+        help="ask the logged questions again, each at its time, and compare",
+    )
+    parser.add_argument(
+        "--clock", action="store_true", help="publish the time of the log at /clock, 100 times a second"
+    )
+    parser.add_argument(
+        "--stamps",
+        choices=("now", "logged"),
+        help="stamps of the states: shifted to the present (default), or as logged (default with --clock)",
+    )
+    parser.add_argument(
+        "--all-topics",
+        action="store_true",
+        help="publish every topic, not only states (default without a server's log)",
+    )
+    parser.add_argument(
+        "--wait",
+        type=_not_negative,
+        default=3.0,
+        metavar="S",
+        help="wait this long for listeners, s (default: 3)",
+    )
+    _add_span(parser)
+
+
+def _add_span(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--start",
+        type=_not_negative,
+        default=0.0,
+        metavar="S",
+        help="begin this long after the log's beginning, s",
+    )
+    parser.add_argument(
+        "--end", type=_positive, default=None, metavar="S", help="end this long after the log's beginning, s"
+    )
+
+
+def _add_foreign(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group(
+        "recordings of others", "Any bag of rosbag2 with states of bodies will do."
+    )
+    group.add_argument(
+        "--config", metavar="FILE", help="how a server would be configured, as config/server.yaml"
+    )
+    group.add_argument(
+        "--topics",
+        action="append",
+        default=[],
+        metavar="BODY=TOPIC",
+        help="where its states are, if not where --config says: BODY=ODOMETRY or BODY=POSE,TWIST",
+    )
+    group.add_argument(
+        "--ask",
+        action="append",
+        default=[],
+        choices=QUESTIONS,
+        help="a question to ask all along: landing (where will it be?), impact (which velocities then?), "
+        "modes (which contact mode?); can be given several times",
+    )
+    group.add_argument(
+        "--body", action="append", default=[], metavar="NAME", help="ask about this body (default: all)"
+    )
+    group.add_argument(
+        "--every",
+        type=_not_negative,
+        default=0.1,
+        metavar="S",
+        help="ask this often, s (default: 0.1; 0: at each state)",
+    )
+    group.add_argument(
+        "--fit-window",
+        type=_not_negative,
+        default=0.0,
+        metavar="S",
+        help="fit to the states of this time, s (default: 0)",
+    )
+
+
+def _sentence(text: str) -> str:
+    return f"{text[0].upper()}{text[1:]}."
+
+
+def _not_negative(text: str) -> float:
+    value = _number(text)
+    if not 0.0 <= value < math.inf:
         raise argparse.ArgumentTypeError(f"found {text}, allowed is a number >= 0")
     return value
+
+
+def _positive(text: str) -> float:
+    value = _number(text)
+    if not 0.0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"found {text}, allowed is a number > 0")
+    return value
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"found {text}, allowed is a number") from None

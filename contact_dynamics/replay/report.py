@@ -8,7 +8,12 @@ from typing import TYPE_CHECKING, Final
 from contact_dynamics.constants import NS_PER_S
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from contact_dynamics.replay.verify import OtherAnswer, Verification
+
+AS_LOGGED: Final = "as logged"
+"""What comes of a log whose answers are all the same today."""
 
 _LONGEST_VALUE: Final = 120  # characters, since a message that an answer carries can be pages long
 
@@ -31,6 +36,14 @@ def report(found: Verification) -> str:
         lines.append(f"  and {untold} questions more with other answers")
     lines += _gaps(found)
     return "\n".join(lines)
+
+
+def summary(results: Sequence[tuple[str, str]]) -> str:
+    """Return a table of several logs: the name of each, and what came of it."""
+    width = max(len(name) for name, _ in results)
+    good = sum(result == AS_LOGGED for _, result in results)
+    lines = [f"  {name:{width}}  {result}" for name, result in results]
+    return "\n".join([f"{good} of {len(results)} logs are answered as logged", *lines])
 
 
 def _table(found: Verification) -> list[str]:

@@ -1,67 +1,217 @@
-"""The command `contact-dynamics replay` asks logs again, one after the other, and prints a table for each."""
+"""The command `contact-dynamics replay`: one function for each mode that needs no ROS."""
 
 from __future__ import annotations
 
+import os
 import sys
-import time
+from contextlib import suppress
+from importlib.util import find_spec
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
+from contact_dynamics.constants import ns_after
 from contact_dynamics.errors import ContactDynamicsError
-from contact_dynamics.replay.arguments import replay_parser
-from contact_dynamics.replay.report import report
+from contact_dynamics.nodes.run_record import LoggedParameters
+from contact_dynamics.recording.bag_reader import BagReader
+from contact_dynamics.recording.file_messages import Span
+from contact_dynamics.replay.arguments import PUBLISH, TABLE, VERIFY, VIEW, replay_parser
+from contact_dynamics.replay.asking import AskedEvents, Asking
+from contact_dynamics.replay.configuration import Configuration
+from contact_dynamics.replay.logged import LoggedEvents
+from contact_dynamics.replay.progress import Progress
+from contact_dynamics.replay.report import AS_LOGGED, report, summary
+from contact_dynamics.replay.rows import Rows
+from contact_dynamics.replay.table_file import open_table
 from contact_dynamics.replay.verify import verify_log
 
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Sequence
+
 DIFFERENT: Final = 1
-"""This exit code says that an answer differs, or that a call cannot be read."""
+"""This exit code says that an answer differs, that a call cannot be read, or that a viewer failed."""
 
 NO_LOG: Final = 2
 """This exit code says that a file cannot be replayed at all."""
 
-_TELL_EVERY_S: Final = 1.0
+LACKS: Final = 3
+"""This exit code says that a mode needs what is not installed."""
+
+_KINDS: Final = ("*.mcap*", "*.db3*")
 
 
 def main(arguments: list[str]) -> int:
-    """Replay each log and return the exit code."""
+    """Run the mode that the arguments name and return the exit code."""
     parser = replay_parser()
-    given = parser.parse_args(arguments)
-    if not given.logs:  # argparse would complain of this before it complains of a mistyped option
-        parser.error("found no LOG, needed is one at least")
+    ours, of_ros = _split(arguments)
+    given = parser.parse_args(ours)
+    if of_ros and given.mode != PUBLISH:
+        parser.error(f"--ros-args: found with {given.mode}, allowed is it with {PUBLISH}")
+    if given.mode == VERIFY:
+        if not given.logs:  # argparse would complain of this before it complains of a mistyped option
+            parser.error("found no LOG, needed is one at least")
+        return _verify(given)
+    lacking = _lacking(given.mode)
+    if lacking:
+        return _refused(f"{given.mode} needs what is not installed: {lacking}", LACKS)
+    try:
+        if given.mode == TABLE:
+            return _table(given)
+        if given.mode == VIEW:
+            return _view(given)
+        from contact_dynamics.replay.publish import publish  # it needs ROS
+
+        return publish(given, of_ros, span=_span(Path(given.log), given))
+    except (ContactDynamicsError, OSError) as error:
+        return _refused(str(error), NO_LOG)
+
+
+def _verify(given: argparse.Namespace) -> int:
     worst = 0
-    for name in given.logs:
-        progress = _Progress(name)
+    results: list[tuple[str, str]] = []
+    logs = [log for name in given.logs for log in logs_in(Path(name))]
+    for log in logs:
+        progress = _progress(log)
         try:
-            found = verify_log(Path(name), tolerance=given.tolerance, on_progress=progress.tell)
+            found = verify_log(log, tolerance=given.tolerance, on_progress=progress.tell)
         except (ContactDynamicsError, OSError) as error:
             progress.end()
-            print(f"contact-dynamics replay: {error}", file=sys.stderr)
-            worst = NO_LOG
+            worst = _refused(str(error), NO_LOG)
+            results.append((str(log), "cannot be verified"))
             continue
         progress.end()
         print(report(found), flush=True)
+        results.append((str(log), AS_LOGGED if found.agrees else "different"))
         worst = max(worst, 0 if found.agrees else DIFFERENT)
+    if len(logs) > 1:
+        print(summary(results))
     return worst
 
 
-class _Progress:
-    """A line on the terminal that says once a second how much of the log has been read."""
+def _table(given: argparse.Namespace) -> int:
+    worst = 0
+    with open_table(None if given.out is None else Path(given.out)) as write:
+        for name in given.logs:
+            progress = _progress(Path(name))
+            count = 0
+            try:
+                events = _events(Path(name), given)
+                for count, row in enumerate(Rows(events, log=name), start=1):
+                    write(row)
+                    asked_ns = row["log_time_ns"]
+                    progress.tell(asked_ns if isinstance(asked_ns, int) else 0, f"{count} questions")
+            except (ContactDynamicsError, OSError) as error:
+                if len(given.logs) == 1:
+                    raise
+                worst = _refused(str(error), NO_LOG)
+                continue
+            finally:
+                progress.end()
+            _tell(name, f"{count} questions", events)
+    return worst
 
-    def __init__(self, name: str) -> None:
-        self._name = name
-        self._watched = sys.stderr.isatty()
-        self._next = time.monotonic() + _TELL_EVERY_S
-        self._told = False
 
-    def tell(self, states: int, questions: int) -> None:
-        """Show how many states were taken and how many questions asked."""
-        if not self._watched or time.monotonic() < self._next:
-            return
-        self._next = time.monotonic() + _TELL_EVERY_S
-        self._told = True
-        line = f"\r{self._name}: {states} states, {questions} questions"
-        print(line, end="", file=sys.stderr, flush=True)
+def _view(given: argparse.Namespace) -> int:
+    from contact_dynamics.replay.view import draw  # rerun takes a second to import
+    from contact_dynamics.viewing.sinks import Sinks, ViewerMode
 
-    def end(self) -> None:
-        """Clear the line."""
-        if self._told:
-            print("\r\033[K", end="", file=sys.stderr, flush=True)
+    chosen = [
+        mode for mode, on in ((ViewerMode.SERVE, given.serve), (ViewerMode.CONNECT, given.connect)) if on
+    ]
+    if given.spawn or not (chosen or given.rrd):
+        chosen = [ViewerMode.SPAWN]
+    sinks = Sinks(
+        rrd_path=given.rrd,
+        viewer=chosen[0] if chosen else ViewerMode.NONE,
+        port=given.port,
+        url=given.connect,
+    )
+    path = Path(given.log)
+    events = _events(path, given)
+    progress = _progress(path)
+    drawn = draw(
+        events,
+        sinks,
+        surface_side=given.surface_side,
+        on_problem=lambda problem: print(f"contact-dynamics replay: {problem}", file=sys.stderr),
+        on_progress=lambda stamp_ns: progress.tell(stamp_ns, "drawing"),
+    )
+    progress.end()
+    _tell(str(path), f"drew {drawn.states} states and {drawn.answers} answers", events)
+    if not drawn.took_all:
+        sys.stdout.flush()
+        os._exit(DIFFERENT)  # a usual exit would wait for a viewer that hangs
+    return DIFFERENT if drawn.viewer_failed else 0
+
+
+def logs_in(path: Path) -> list[Path]:
+    """Return a log, or the logs whose folders are in a folder, by name."""
+    if not path.is_dir() or _is_bag(path):
+        return [path]
+    return sorted(folder for folder in path.iterdir() if folder.is_dir() and _is_bag(folder)) or [path]
+
+
+def _is_bag(folder: Path) -> bool:
+    return any(next(folder.glob(kind), None) is not None for kind in _KINDS)
+
+
+def _events(path: Path, given: argparse.Namespace) -> LoggedEvents | AskedEvents:
+    span = _span(path, given)
+    asking = Asking(
+        names=tuple(given.ask), bodies=tuple(given.body), every=given.every, fit_window=given.fit_window
+    )
+    if given.config is not None:
+        return AskedEvents(path, Configuration(Path(given.config), given.topics), asking=asking, span=span)
+    if asking.names:
+        logged = LoggedParameters(BagReader(path).run())
+        return AskedEvents(path, logged, asking=asking, span=span)
+    return LoggedEvents(path, span=span)
+
+
+def _span(path: Path, given: argparse.Namespace) -> Span:
+    """Return the part of a log between --start and --end, which count from its beginning."""
+    if given.start == 0.0 and given.end is None:
+        return Span()
+    start_ns, _ = BagReader(path).extent()
+    return Span(
+        ns_after(start_ns, given.start) if given.start > 0.0 else None,
+        None if given.end is None else ns_after(start_ns, given.end),
+    )
+
+
+def _progress(path: Path) -> Progress:
+    start_ns = end_ns = 0
+    if sys.stderr.isatty():
+        with suppress(ContactDynamicsError, OSError):  # what is wrong is told when the log is read
+            start_ns, end_ns = BagReader(path).extent()
+    return Progress(str(path), start_ns=start_ns, end_ns=end_ns)
+
+
+def _tell(name: str, what: str, events: LoggedEvents | AskedEvents) -> None:
+    print(f"{name}: {what}", file=sys.stderr)
+    for topic, refused in events.refused.items():
+        print(
+            f"  {topic}: {refused.count} messages are no states; the first: {refused.reason}", file=sys.stderr
+        )
+    if events.damage is not None:
+        print(f"  {events.damage}", file=sys.stderr)
+
+
+def _refused(reason: str, code: int) -> int:
+    print(f"contact-dynamics replay: {reason}", file=sys.stderr)
+    return code
+
+
+def _lacking(mode: str) -> str:
+    if mode == VIEW and find_spec("rerun") is None:
+        return "rerun. The extra [view] brings it: pip install '.[view]'"
+    if mode == PUBLISH and find_spec("rclpy") is None:
+        return "ROS 2 Jazzy. Source it, or run `make setup` in the project's folder (see README.md)"
+    return ""
+
+
+def _split(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Return our arguments, and ROS's from `--ros-args` on."""
+    given = list(arguments)
+    at = given.index("--ros-args") if "--ros-args" in given else len(given)
+    return given[:at], given[at:]

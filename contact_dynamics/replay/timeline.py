@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.recording.definitions import EVENT_SUFFIX
+from contact_dynamics.recording.file_messages import Span
 from contact_dynamics.recording.service_calls import EVENT_TOPIC_SUFFIX, ServiceCall, service_calls
 
 if TYPE_CHECKING:
@@ -19,10 +20,12 @@ if TYPE_CHECKING:
     from contact_dynamics.recording.bag_reader import BagReader, LoggedMessage
 
 INTERFACES: Final = "contact_dynamics_interfaces/srv/"
+EVERYTHING: Final = Span()
+"""A log from its beginning to its end."""
 
 
 def in_order(
-    calls_from: BagReader, states_from: BagReader, topics: Collection[str]
+    calls_from: BagReader, states_from: BagReader, topics: Collection[str], *, span: Span = EVERYTHING
 ) -> Iterator[LoggedMessage | ServiceCall]:
     """Yield the messages of some topics, and each call at the place where its request came.
 
@@ -30,15 +33,19 @@ def in_order(
         calls_from: the log, for the calls of this package's services.
         states_from: the same log, opened a second time, for the messages of the topics.
         topics: the topics that answers depend on.
+        span: which part of the log is read.
     """
-    states = states_from.messages(topics)
+    states = states_from.messages(topics, start_ns=span.start_ns, end_ns=span.end_ns)
     state = next(states, None)
-    for call in service_calls(_events(calls_from)):
+    for call in service_calls(_events(calls_from, span)):
         if call.request_event is not None:
             while state is not None and state.log_time_ns <= call.request_event.log_time_ns:
                 yield state
                 state = next(states, None)
         yield call
+    while state is not None:  # what was measured after the last question
+        yield state
+        state = next(states, None)
 
 
 def is_event_of_ours(message: LoggedMessage) -> bool:
@@ -50,5 +57,6 @@ def is_event_of_ours(message: LoggedMessage) -> bool:
     )
 
 
-def _events(log: BagReader) -> Iterator[LoggedMessage]:
-    return (message for message in log.messages() if is_event_of_ours(message))
+def _events(log: BagReader, span: Span) -> Iterator[LoggedMessage]:
+    messages = log.messages(start_ns=span.start_ns, end_ns=span.end_ns)
+    return (message for message in messages if is_event_of_ours(message))

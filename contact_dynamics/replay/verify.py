@@ -7,16 +7,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.nodes.run_record import PARAMETERS, versions_here
+from contact_dynamics.nodes.run_record import versions_here
 from contact_dynamics.recording.bag_reader import BagReader, LoggedMessage
 from contact_dynamics.recording.cdr import decode_without_ros
-from contact_dynamics.recording.definitions import EVENT_SUFFIX
-from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
+from contact_dynamics.recording.errors import DamagedLogWarning
 from contact_dynamics.recording.service_calls import ServiceCall
 from contact_dynamics.replay.compare import Difference, differences
-from contact_dynamics.replay.same_definitions import check_definitions
-from contact_dynamics.replay.stand_ins import stand_in
-from contact_dynamics.replay.timeline import INTERFACES, in_order
+from contact_dynamics.replay.of_log import server_of_log
+from contact_dynamics.replay.timeline import in_order
 from contact_dynamics.validation import check_not_negative
 
 if TYPE_CHECKING:
@@ -103,7 +101,7 @@ class Verification:
 
 
 def verify_log(
-    path: Path, *, tolerance: float = 0.0, on_progress: Callable[[int, int], object] | None = None
+    path: Path, *, tolerance: float = 0.0, on_progress: Callable[[int, str], object] | None = None
 ) -> Verification:
     """Ask every question of a log again and compare the answers field by field.
 
@@ -113,8 +111,8 @@ def verify_log(
         path: a log of the server, as its folder or as an ``.mcap`` file.
         tolerance: >= 0. How much a number may differ, relative to the larger one, or to 1 if both are
             smaller. With zero every bit counts.
-        on_progress: a function that is called after each message, with the number of states taken and of
-            questions asked so far.
+        on_progress: a function that is called after each message, with its log time, ns, and with what was
+            read so far, in words.
 
     Raises:
         NotALogError: the path has no log, or a log of something else than the server.
@@ -125,7 +123,7 @@ def verify_log(
     check_not_negative("tolerance", tolerance)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DamagedLogWarning)  # the result says it
-        run, server = _server_of(path)
+        run, server = server_of_log(path)
         found = Verification(
             path=path,
             tolerance=tolerance,
@@ -141,31 +139,10 @@ def verify_log(
             else:
                 states += 1
                 server.receive(each)
-            if on_progress is not None:
-                on_progress(states, questions)
+                if on_progress is not None:
+                    on_progress(each.log_time_ns, f"{states} states, {questions} questions")
         found.damage = log.damage
     return found
-
-
-def _server_of(path: Path) -> tuple[dict[str, str], ServerAgain]:
-    """Return the record of a log's run, and a server that is configured by it."""
-    log = BagReader(path)
-    definitions = log.definitions()
-    events = [name for name in definitions if name.startswith(INTERFACES) and name.endswith(EVENT_SUFFIX)]
-    if not events:
-        known = ", ".join(sorted(definitions)) or "none"
-        raise NotALogError(f"{path}: not a log of the server: no service of it in the log's types ({known})")
-    run = log.run()
-    if PARAMETERS not in run and "world_frame" not in run:
-        damage = f" ({log.damage})" if log.damage else ""
-        raise NotALogError(
-            f"{path}: not a log of the server: no record of how its run was configured{damage}"
-        )
-    check_definitions(path, definitions, run.get("version"))
-    stand_in(definitions.items())
-    from contact_dynamics.replay.again import ServerAgain  # it imports messages, which may exist only now
-
-    return run, ServerAgain(run)
 
 
 def _ask(call: ServiceCall, server: ServerAgain, found: Verification) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import socket
 import warnings
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +15,6 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
-from rclpy.serialization import serialize_message
 from scipy.spatial.transform import Rotation
 from service_msgs.msg import ServiceEventInfo
 
@@ -26,7 +24,6 @@ with warnings.catch_warnings():
     from viewing.drawn import STAMP_NS, Drawn, read_drawn
 
 from contact_dynamics.nodes.parameters import ConfigurationError
-from contact_dynamics.recording import BagWriter
 from contact_dynamics_interfaces.msg import (
     BodyState,
     ContactMode,
@@ -38,7 +35,7 @@ from contact_dynamics_interfaces.msg import (
 )
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.stamps import stamp_to_msg
-from running_server import DOMAIN_ID, ROOT, process, server_and_client, wait_for
+from running_server import DOMAIN_ID, ROOT, process, server_and_client
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -487,78 +484,3 @@ def test_answers_of_a_server_are_drawn_by_a_process_beside_it(tmp_path: Path) ->
     drawn = read_drawn(path)
     strip = drawn.array("/world/predicted/brick/path", "LineStrips3D:strips")[0]
     np.testing.assert_allclose(strip, np.array(answer.trajectory.positions).reshape(-1, 3), atol=1e-6)
-
-
-def test_a_log_is_drawn_as_what_is_heard(tmp_path: Path) -> None:
-    state = body_state()
-    asked = PredictTumbling.Request(
-        body_name="brick", state_source=PredictTumbling.Request.STATE_EXPLICIT, state=state
-    )
-    asked.sampling, asked.rate, asked.duration = PredictTumbling.Request.AT_RATE, [100.0], [0.25]
-    with server_and_client(tmp_path / "log") as client:
-        publisher = client.publisher(Odometry, "/brick/odometry")
-        publisher.publish(odometry(STAMP_NS, 0.1))
-        answer = client.ask(asked)
-        assert answer.status == answer.OK, answer.message
-    (log,) = (tmp_path / "log").iterdir()
-    path = tmp_path / "drawn.rrd"
-    arguments = visualizer_with(from_log=log, rrd_path=path)
-    with process("visualizer", *arguments, ready="messages of") as started:
-        assert started.wait(10.0) == 0
-    drawn = read_drawn(path)
-    assert drawn.stamps("/world/bodies/brick", "Transform3D:translation") == [STAMP_NS]
-    strip = drawn.array("/world/predicted/brick/path", "LineStrips3D:strips")[0]
-    np.testing.assert_allclose(strip, np.array(answer.trajectory.positions).reshape(-1, 3), atol=1e-6)
-
-
-def test_a_log_that_was_to_be_seen_and_is_not_ends_with_the_reason(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    for name in ("DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"):
-        monkeypatch.delenv(name, raising=False)
-    with server_and_client(tmp_path / "log") as client:
-        assert client.ask(PredictTumbling.Request(body_name="brick")) is not None
-    (log,) = (tmp_path / "log").iterdir()
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    arguments = visualizer_with(from_log=log, spawn="true", port=port)
-    reason = "neither WAYLAND_DISPLAY nor WAYLAND_SOCKET nor DISPLAY is set"
-    with process("visualizer", *arguments) as started:
-        assert "nowhere to draw to: rerun's viewer ended with" in wait_for(started, reason)
-        assert started.wait(10.0) == 2
-    path = tmp_path / "drawn.rrd"
-    with process("visualizer", *arguments, "-p", f"rrd_path:={path}", ready=reason) as started:
-        assert started.wait(10.0) == 1  # the file is there, what was asked for was to see it
-    assert path.stat().st_size > 0
-
-
-def test_a_damaged_log_is_drawn_but_for_the_damage_which_is_told(tmp_path: Path) -> None:
-    """One chunk of three has a flipped bit, and one state is of another type than its topic should have."""
-    stamps = [STAMP_NS + number for number in range(6)]
-    with BagWriter(tmp_path / "log") as writer:
-        writer.add_topic("/brick/odometry", "nav_msgs/msg/Odometry")
-        for number, stamp in enumerate(stamps):
-            data = serialize_message(odometry(stamp, 0.1 * number))
-            writer.write("/brick/odometry", data[:20] if number == 5 else data, log_time_ns=stamp)
-            if number % 2 == 1:
-                writer.flush()
-    data = bytearray(writer.path.read_bytes())
-    data[data.index(b"zstd", data.index(b"zstd") + 1) + 20] ^= 1
-    writer.path.write_bytes(data)
-    path = tmp_path / "drawn.rrd"
-    arguments = visualizer_with(from_log=tmp_path / "log", rrd_path=path)
-    with process("visualizer", *arguments) as started:
-        told = wait_for(started, "messages of")
-        assert started.wait(10.0) == 0
-    assert told.count("is damaged or was cut short") == 1
-    assert ", 2 messages (" in told
-    assert told.count("/brick/odometry: message ignored") == 1
-    drawn = read_drawn(path)
-    assert drawn.stamps("/world/bodies/brick", "Transform3D:translation") == [*stamps[:2], stamps[4]]
-
-
-def test_a_log_that_is_none_is_named(tmp_path: Path) -> None:
-    arguments = visualizer_with(from_log=tmp_path, rrd_path=tmp_path / "drawn.rrd")
-    with process("visualizer", *arguments, ready="no MCAP file here") as started:
-        assert started.wait(10.0) == 2

@@ -1,0 +1,86 @@
+"""What happened, in the order in which it came: states of bodies, and answers to questions about them.
+
+`logged.LoggedEvents` reads them from a log of the server. `asking.AskedEvents` reads states from any
+recording and asks questions of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol, TypeAlias
+
+from contact_dynamics.questions.contact_modes import ContactModeAnswer
+from contact_dynamics.questions.impact import ImpactAnswer
+from contact_dynamics.questions.tumbling import TumblingAnswer
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.world import World
+
+Answer: TypeAlias = TumblingAnswer | ImpactAnswer | ContactModeAnswer
+
+OK = "OK"
+"""The status of a question that was answered."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StateCame:
+    """A state was published.
+
+    Attributes:
+        body_name: The body.
+        state: Its state, of the centre of mass.
+    """
+
+    body_name: str
+    state: BodyState
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Answered:
+    """A question was answered or refused.
+
+    Attributes:
+        service: The service that was asked, as "predict_impact".
+        number: Number of the question among those to this service, from 1.
+        log_time_ns: When it came, ns since the epoch by the machine's clock. It is None if nobody asked it
+            then.
+        asked_ns: When it came, ns by the clock of the states' stamps.
+        question: What was asked, by the names of the request's fields, as far as it is not the default.
+        answer: The answer. It is None if the question was refused, or if the answer cannot be read.
+        status: "OK", or the name of the code with which it was refused.
+        message: What was said of it.
+        computation_time: s, how long the answer took.
+    """
+
+    service: str
+    number: int
+    log_time_ns: int | None
+    asked_ns: int
+    question: Mapping[str, object]
+    answer: Answer | None
+    status: str
+    message: str
+    computation_time: float
+
+
+Event: TypeAlias = StateCame | Answered
+
+
+class Events(Protocol):
+    """A recording that events are read from.
+
+    Attributes:
+        world: The bodies and surfaces that they are about.
+    """
+
+    world: World
+
+    def __iter__(self) -> Iterator[Event]:
+        """Read the recording and yield what happened."""
+
+    @property
+    def damage(self) -> str | None:
+        """What of the recording could not be read, in words, or None if all was whole."""

@@ -1,0 +1,134 @@
+"""The events of a log of the server: its states, and its answers as they were given."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
+from contact_dynamics.recording.bag_reader import BagReader
+from contact_dynamics.recording.cdr import decode_without_ros
+from contact_dynamics.recording.errors import DamagedLogWarning
+from contact_dynamics.recording.message_types import Message
+from contact_dynamics.recording.service_calls import ServiceCall
+from contact_dynamics.replay.compare import differences
+from contact_dynamics.replay.events import OK, Answered, StateCame
+from contact_dynamics.replay.of_log import server_of_log
+from contact_dynamics.replay.timeline import in_order
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+
+    from contact_dynamics.recording.file_messages import Span
+    from contact_dynamics.replay.again import Refused
+    from contact_dynamics.replay.events import Answer, Event
+
+
+class LoggedEvents:
+    """A log of the server as a source of events."""
+
+    def __init__(self, path: Path, *, span: Span) -> None:
+        """Read how the run was configured.
+
+        Args:
+            path: the log: its folder, or one of its files.
+            span: which part of it is read.
+
+        Raises:
+            NotALogError: it is no log, or none of the server.
+            ConfigurationError: its record of the run lacks a parameter, or has one that is not allowed.
+        """
+        _, self._server = server_of_log(path)
+        self.world = self._server.world
+        self._span = span
+        self._numbers: dict[str, int] = {}
+        self._reader = BagReader(path)
+        self._path = path
+
+    @property
+    def refused(self) -> Mapping[str, Refused]:
+        """Messages that made no state, by topic."""
+        return self._server.refused
+
+    @property
+    def damage(self) -> str | None:
+        """What of the log could not be read, in words, or None if all was whole."""
+        return self._reader.damage
+
+    def __iter__(self) -> Iterator[Event]:
+        """Read the log; each answer comes after the states that were known when its question came."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DamagedLogWarning)  # told by `damage`
+            again = BagReader(self._path)
+            for each in in_order(self._reader, again, self._server.topics, span=self._span):
+                if isinstance(each, ServiceCall):
+                    answered = self._answered(each)
+                    if answered is not None:
+                        yield answered
+                    continue
+                for body_name, state in self._server.receive(each):
+                    yield StateCame(body_name=body_name, state=state)
+
+    def _answered(self, call: ServiceCall) -> Answered | None:
+        if call.request_event is None or call.response_event is None:
+            return None
+        number = self._numbers[call.service] = self._numbers.get(call.service, 0) + 1
+        question: dict[str, object] = {}
+        answer: Answer | None = None
+        try:
+            request = part_of(decode_without_ros(call.request_event), "request")
+            response: Any = part_of(decode_without_ros(call.response_event), "response")
+            question = not_default(request)
+            status, message = _status(response), str(response.message)
+            seconds = float(response.computation_time)
+            if status == OK:
+                answer = self._server.answer_from(call.service_type, response)
+        except (ContactDynamicsError, AttributeError) as error:  # the latter of a log with other fields
+            status, message, seconds = "UNREADABLE", f"this version cannot read it: {error}", 0.0
+        return Answered(
+            service=call.service.rpartition("/")[2],
+            number=number,
+            log_time_ns=call.request_event.log_time_ns,
+            asked_ns=call.request_event.publish_time_ns,
+            question=question,
+            answer=answer,
+            status=status,
+            message=message,
+            computation_time=seconds,
+        )
+
+
+def part_of(event: Message, part: str) -> Message:
+    """Return the request or the response that an event carries; without it raise `InvalidFieldError`."""
+    contents: list[Message] = getattr(event, part)
+    if not contents:
+        raise InvalidFieldError("event", f"an event without its {part}", "introspection with contents")
+    return contents[0]
+
+
+def not_default(message: Message) -> dict[str, object]:
+    """Return the fields of a message that differ from an empty one, as plain numbers, texts and lists."""
+    changed = {each.field.removeprefix("number of ") for each in differences(message, type(message)())}
+    names = {name.partition(".")[0].partition("[")[0] for name in changed}
+    return {
+        field.name: _plain(getattr(message, field.name)) for field in message.FIELDS if field.name in names
+    }
+
+
+def _plain(value: Any) -> object:
+    if isinstance(value, Message):
+        return {field.name: _plain(getattr(value, field.name)) for field in value.FIELDS}
+    if isinstance(value, (str, bool, int, float)):
+        return value
+    return [_plain(each) for each in (value.tolist() if isinstance(value, np.ndarray) else value)]
+
+
+def _status(response: Any) -> str:
+    """Return the name of a response's status; its codes are above those of its other constants."""
+    if response.status == response.OK:
+        return OK
+    constants = vars(type(response)).items()
+    return next((name for name, value in constants if name.isupper() and value == response.status), "UNKNOWN")

@@ -1,0 +1,49 @@
+"""The server that a log is of: configured by the log's own record."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING
+
+from contact_dynamics.nodes.run_record import PARAMETERS, LoggedParameters
+from contact_dynamics.recording.bag_reader import BagReader
+from contact_dynamics.recording.definitions import EVENT_SUFFIX
+from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
+from contact_dynamics.replay.same_definitions import check_definitions
+from contact_dynamics.replay.stand_ins import stand_in
+from contact_dynamics.replay.timeline import INTERFACES
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from contact_dynamics.replay.again import ServerAgain
+
+
+def server_of_log(path: Path) -> tuple[dict[str, str], ServerAgain]:
+    """Return the record of a log's run, and a server that is configured by it.
+
+    Raises:
+        NotALogError: it is no log, or none of the server.
+        ConfigurationError: its record of the run lacks a parameter, or has one that is not allowed.
+        NotSupportedError: the log's services have other fields than this version's; or ROS is not installed,
+            and another log in this process gave a message other fields.
+    """
+    log = BagReader(path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DamagedLogWarning)  # told when the log is read
+        definitions = log.definitions()
+        run = log.run()
+    events = [name for name in definitions if name.startswith(INTERFACES) and name.endswith(EVENT_SUFFIX)]
+    if not events:
+        known = ", ".join(sorted(definitions)) or "none"
+        raise NotALogError(f"{path}: not a log of the server: no service of it in the log's types ({known})")
+    if PARAMETERS not in run and "world_frame" not in run:
+        damage = f" ({log.damage})" if log.damage else ""
+        raise NotALogError(
+            f"{path}: not a log of the server: no record of how its run was configured{damage}"
+        )
+    check_definitions(path, definitions, run.get("version"))
+    stand_in(definitions.items())
+    from contact_dynamics.replay.again import ServerAgain  # here, for it imports what now stands in for ROS
+
+    return run, ServerAgain(LoggedParameters(run))

@@ -1,0 +1,256 @@
+"""Publishes the states of a log over ROS as they came, and asks its questions again, each at its time.
+
+A server whose clock is the machine's would refuse the stamps of a log as old. So stamps are shifted to the
+present, unless the log's own time is published at `/clock` for those who run with ``use_sim_time``.
+"""
+
+from __future__ import annotations
+
+import struct
+import sys
+import time
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import rclpy
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from rclpy.serialization import deserialize_message
+from rclpy.signals import SignalHandlerOptions
+from rosgraph_msgs.msg import Clock
+
+from contact_dynamics.constants import NS_PER_S
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.nodes.ros_log_directory import ensure_ros_log_directory
+from contact_dynamics.nodes.running import stop_signals
+from contact_dynamics.recording.bag_reader import BagReader
+from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
+from contact_dynamics.recording.decoding import message_class
+from contact_dynamics.recording.definitions import EVENT_SUFFIX
+from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
+from contact_dynamics.recording.service_calls import EVENT_TOPIC_SUFFIX, ServiceCall
+from contact_dynamics.replay.again import CLOCK
+from contact_dynamics.replay.of_log import server_of_log
+from contact_dynamics.replay.pacing import Pacing, single_keys
+from contact_dynamics.replay.progress import Progress
+from contact_dynamics.replay.timeline import in_order
+from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Iterator
+
+    from rclpy.client import Client
+    from rclpy.publisher import Publisher
+    from rclpy.task import Future
+
+    from contact_dynamics.recording.bag_reader import LoggedMessage
+    from contact_dynamics.recording.file_messages import Span, Topic
+
+NODE_NAME: Final = "contact_dynamics_replay"
+
+QOS: Final = QoSProfile(depth=1000)
+"""The publishers are reliable, with a second of states at 1 kHz in their queues."""
+
+_TICK_NS: Final = NS_PER_S // 100
+_ANSWERS_S: Final = 10.0  # how long answers are waited for at the end
+_STAMPED: Final = ("std_msgs/Header", "builtin_interfaces/Time")
+_LITTLE_ENDIAN: Final = 1  # the second byte of a serialised message
+_POLL_S: Final = 0.02
+
+
+def publish(given: argparse.Namespace, of_ros: list[str], *, span: Span) -> int:
+    """Publish a log as the arguments say; return the exit code: 1 where a question got no answer.
+
+    Raises:
+        NotALogError: it is no recording; or it is none of the server, and that is what was asked for.
+    """
+    path = Path(given.log)
+    start_ns, end_ns = BagReader(path).extent()
+    progress = Progress(str(path), start_ns=start_ns, end_ns=end_ns)
+    ensure_ros_log_directory()
+    with stop_signals() as stop, single_keys():
+        rclpy.init(args=of_ros, signal_handler_options=SignalHandlerOptions.NO)
+        try:
+            publisher = _LogPublisher(path, given, span=span)
+            pacing = Pacing(
+                rate=given.rate, is_paused=given.paused, meanwhile=publisher.meanwhile, is_over=stop.is_set
+            )
+            publisher.wait_for_listeners(given.wait)
+            while publisher.play(pacing, progress) and given.loop:
+                pass
+            complete = stop.is_set() or publisher.wait_for_answers()
+        finally:
+            progress.end()
+            rclpy.try_shutdown()
+    print(publisher.told, file=sys.stderr)
+    return 0 if complete else 1
+
+
+class _LogPublisher:
+    """A node that publishes what a log holds."""
+
+    def __init__(self, path: Path, given: argparse.Namespace, *, span: Span) -> None:
+        self._path = path
+        self._span = span
+        self._asks = given.requests
+        topics = _topics(path, given=given)
+        self._topics = frozenset(topic.name for topic in topics)
+        self._is_shifted = (given.stamps or ("logged" if given.clock else "now")) == "now"
+        self._node = Node(NODE_NAME)
+        self._publishers: dict[str, tuple[Publisher, bool]] = {}  # and whether messages begin with a stamp
+        self._clients: dict[str, Client] = {}
+        self._skipped: dict[str, str] = {}
+        self._published = self._asked = self._answered = 0
+        self._next_tick_ns = 0
+        for topic in topics:
+            self._add(topic)
+        ticks = given.clock and CLOCK not in self._publishers
+        self._ticks = self._node.create_publisher(Clock, CLOCK, QOS) if ticks else None
+
+    @property
+    def told(self) -> str:
+        """What was published and asked, in words."""
+        lines = [f"{self._path}: {self._published} messages published"]
+        if self._asks:
+            lines[0] += f", {self._asked} questions asked, {self._answered} answered"
+        lines += [f"  {topic}: not published: {reason}" for topic, reason in self._skipped.items()]
+        return "\n".join(lines)
+
+    def wait_for_listeners(self, patience_s: float) -> None:
+        """Wait until somebody listens to each topic and serves each service, or until patience ends."""
+        deadline = time.monotonic() + patience_s
+        while time.monotonic() < deadline and not self._is_heard():
+            time.sleep(_POLL_S)
+
+    def play(self, pacing: Pacing, progress: Progress) -> bool:
+        """Publish the log once; return False where it was told to stop before its end."""
+        self._next_tick_ns = 0
+        begun = False
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DamagedLogWarning)  # what is left is published
+            for each in self._events():
+                log_ns = _time_of(each)
+                if log_ns is None:
+                    continue
+                if not begun:
+                    begun = True
+                    pacing.begin(log_ns)
+                if not pacing.wait_until(log_ns):
+                    return False
+                if isinstance(each, ServiceCall):
+                    self._ask(each, pacing)
+                else:
+                    self._publish(each, pacing)
+                progress.tell(log_ns, f"{self._published} messages")
+        return begun
+
+    def meanwhile(self, log_ns: int, seconds: float) -> None:
+        """Tick, and take answers, while nothing is due."""
+        if self._ticks is not None and log_ns >= self._next_tick_ns:
+            self._ticks.publish(Clock(clock=stamp_to_msg(log_ns)))
+            self._next_tick_ns = log_ns + _TICK_NS
+        if self._clients:
+            rclpy.spin_once(self._node, timeout_sec=seconds)
+        else:
+            time.sleep(seconds)
+
+    def wait_for_answers(self) -> bool:
+        """Wait for answers that are due; return whether all came."""
+        deadline = time.monotonic() + _ANSWERS_S
+        while time.monotonic() < deadline and self._answered < self._asked:
+            rclpy.spin_once(self._node, timeout_sec=_POLL_S)
+        return self._answered == self._asked
+
+    def _add(self, topic: Topic) -> None:
+        try:
+            kind = message_class(topic.type_name)
+        except InvalidFieldError as error:
+            self._skipped[topic.name] = str(error)
+            return
+        first = next(iter(kind.get_fields_and_field_types().values()), "")
+        is_stamped = first in _STAMPED and topic.name != CLOCK
+        self._publishers[topic.name] = (self._node.create_publisher(kind, topic.name, QOS), is_stamped)
+
+    def _is_heard(self) -> bool:
+        topics = all(publisher.get_subscription_count() > 0 for publisher, _ in self._publishers.values())
+        return topics and all(client.service_is_ready() for client in self._clients.values())
+
+    def _events(self) -> Iterator[LoggedMessage | ServiceCall]:
+        if self._asks:
+            log, again = BagReader(self._path), BagReader(self._path)
+            return in_order(log, again, self._topics, span=self._span)
+        return BagReader(self._path).messages(
+            self._topics, start_ns=self._span.start_ns, end_ns=self._span.end_ns
+        )
+
+    def _publish(self, message: LoggedMessage, pacing: Pacing) -> None:
+        if message.topic not in self._publishers:
+            return
+        publisher, is_stamped = self._publishers[message.topic]
+        data = message.data
+        if self._is_shifted and is_stamped:
+            data = _stamped(data, pacing.present_of(leading_stamp_ns(data)))
+        publisher.publish(data)
+        self._published += 1
+
+    def _ask(self, call: ServiceCall, pacing: Pacing) -> None:
+        if call.request_event is None:
+            return
+        event_type = message_class(f"{call.service_type}{EVENT_SUFFIX}")
+        event = deserialize_message(call.request_event.data, event_type)
+        if not event.request:
+            return
+        request = event.request[0]
+        if self._is_shifted:
+            _move(request, pacing)
+        if call.service not in self._clients:
+            self._clients[call.service] = self._node.create_client(
+                message_class(call.service_type), call.service
+            )
+            self._clients[call.service].wait_for_service(timeout_sec=_ANSWERS_S)
+        future = self._clients[call.service].call_async(request)
+        future.add_done_callback(self._count_answer)
+        self._asked += 1
+
+    def _count_answer(self, _future: Future) -> None:
+        self._answered += 1
+
+
+def _topics(path: Path, *, given: argparse.Namespace) -> list[Topic]:
+    """Return the topics to publish: those of bodies' states, or all of a recording that is no server's."""
+    wanted = None
+    if given.requests or not given.all_topics:
+        try:
+            wanted = server_of_log(path)[1].topics
+        except NotALogError:
+            if given.requests:
+                raise
+    found = BagReader(path).topics()
+    if given.all_topics or wanted is None:
+        wanted = frozenset(topic.name for topic in found if not topic.name.endswith(EVENT_TOPIC_SUFFIX))
+    if not given.clock:
+        wanted -= {CLOCK}  # a clock of other times than the present would mislead who listens to it
+    return [topic for topic in found if topic.name in wanted]
+
+
+def _time_of(each: LoggedMessage | ServiceCall) -> int | None:
+    if not isinstance(each, ServiceCall):
+        return each.log_time_ns
+    return None if each.request_event is None else each.request_event.log_time_ns
+
+
+def _stamped(data: bytes, stamp_ns: int) -> bytes:
+    """Return a serialised message that begins with a stamp, with another one."""
+    order = "<" if data[1] == _LITTLE_ENDIAN else ">"
+    return data[:4] + struct.pack(f"{order}iI", *divmod(stamp_ns, NS_PER_S)) + data[12:]
+
+
+def _move(request: Any, pacing: Pacing) -> None:
+    """Move the times that a request names into the present."""
+    stamp_ns = stamp_ns_from_msg(request.stamp)
+    if stamp_ns > 0:
+        stamp_to_msg(pacing.present_of(stamp_ns), into=request.stamp)
+    if len(getattr(request, "stamps_ns", ())) > 0:
+        request.stamps_ns = [pacing.present_of(each) for each in request.stamps_ns]

@@ -1,0 +1,221 @@
+"""A row for each question of a recording: what was asked, what the answer was, and what was then measured.
+
+Positions are those of the body's published frame, linear velocities those of its centre of mass, in world
+axes.
+
+`then_measured` says what stands beside an answer as measured.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+import numpy as np
+
+from contact_dynamics.constants import ns_after
+from contact_dynamics.questions.contact_modes import ContactModeAnswer
+from contact_dynamics.questions.impact import ImpactAnswer
+from contact_dynamics.questions.tumbling import TumblingAnswer
+from contact_dynamics.replay.events import Answered, StateCame
+from contact_dynamics.replay.then_measured import Measuring
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rigid_body.published_frame import origin_of_published_frame
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from contact_dynamics.replay.events import Answer, Events
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import World
+
+Cell: TypeAlias = str | int | float | None
+
+_MOST_WAITING: Final = 10_000
+"""Rows that wait for what is measured. Beyond, the oldest is given without."""
+
+_STATE: Final = ("x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz")
+
+COLUMNS: Final[dict[str, type]] = {
+    "log": str,
+    "service": str,
+    "number": int,
+    "log_time_ns": int,
+    "asked_ns": int,
+    "body": str,
+    "question": str,
+    "status": str,
+    "message": str,
+    "computation_time": float,
+    "state_stamp_ns": int,
+    "states_fitted": int,
+    "says": str,
+    "surface": str,
+    "predicted_ns": int,
+    **{f"predicted_{name}": float for name in _STATE},
+    "measured_ns": int,
+    **{f"measured_{name}": float for name in _STATE},
+    "position_error": float,
+    "angle_error": float,
+    "velocity_error": float,
+    "spin_error": float,
+}
+"""The columns of a row and their types. Any cell can be empty.
+
+Times are ns, ``computation_time`` is s. The state that the answer used is stamped ``state_stamp_ns``: the
+one that was taken, or the newest of ``states_fitted``. Lengths are m, quaternions x, y, z, w, velocities m/s
+and rad/s. The errors are the distance, m, the angle, rad, and the differences of the velocities, m/s and
+rad/s.
+"""
+
+
+@dataclass(slots=True, kw_only=True)
+class _Waiting:
+    row: dict[str, Cell]
+    measuring: Measuring | None  # None if nothing of it can be measured
+
+
+class Rows:
+    """Makes rows of events. Memory is for the rows that wait for what is measured, whatever the length."""
+
+    def __init__(self, events: Events, *, log: str) -> None:
+        """Read from ``events``, which are of the recording named ``log``."""
+        self._events = events
+        self._world: World = events.world
+        self._log = log
+        self._newest: dict[str, BodyState] = {}
+        self._waiting: deque[_Waiting] = deque()
+
+    def __iter__(self) -> Iterator[dict[str, Cell]]:
+        """Yield the rows in the order in which the questions were asked."""
+        for event in self._events:
+            if isinstance(event, StateCame):
+                for waiting in self._waiting:
+                    if waiting.measuring is not None:
+                        waiting.measuring.see(event.body_name, event.state)
+                self._newest[event.body_name] = event.state
+            else:
+                self._waiting.append(self._row(event))
+            while self._waiting and (self._is_done(self._waiting[0]) or len(self._waiting) > _MOST_WAITING):
+                yield self._finished(self._waiting.popleft())
+        yield from (self._finished(waiting) for waiting in self._waiting)
+
+    @staticmethod
+    def _is_done(waiting: _Waiting) -> bool:
+        return waiting.measuring is None or waiting.measuring.is_complete
+
+    def _finished(self, waiting: _Waiting) -> dict[str, Cell]:
+        measuring = waiting.measuring
+        measured = None if measuring is None else measuring.result()
+        if measuring is not None and measured is not None:
+            waiting.row["measured_ns"] = measured.stamp_ns
+            waiting.row |= self._cells("measured", measuring.body_name, measured)
+            waiting.row |= _errors(measuring.predicted, measured)
+        return waiting.row
+
+    def _row(self, answered: Answered) -> _Waiting:
+        row: dict[str, Cell] = dict.fromkeys(COLUMNS)
+        body = answered.question.get("body_name", "")
+        row |= {
+            "log": self._log,
+            "service": answered.service,
+            "number": answered.number,
+            "log_time_ns": answered.log_time_ns,
+            "asked_ns": answered.asked_ns,
+            "body": body if isinstance(body, str) else "",
+            "question": json.dumps(dict(answered.question)),
+            "status": answered.status,
+            "message": answered.message,
+            "computation_time": answered.computation_time,
+        }
+        if answered.answer is None:
+            return _Waiting(row=row, measuring=None)
+        row |= _said(answered.answer)
+        name, predicted = answered.answer.body_name, _predicted(answered.answer)
+        if predicted is not None:
+            row["predicted_ns"] = predicted.stamp_ns
+            row |= self._cells("predicted", name, predicted)
+        newest = self._newest.get(name)
+        if predicted is None or predicted.stamp_ns == 0 or newest is None:
+            return _Waiting(row=row, measuring=None)
+        return _Waiting(
+            row=row,
+            measuring=Measuring(
+                body=self._world.body(name),
+                predicted=predicted,
+                newest=newest,
+                gravity_W=self._world.gravity_W,
+                is_impact=isinstance(answered.answer, ImpactAnswer),
+            ),
+        )
+
+    def _cells(self, kind: str, body_name: str, state: BodyState) -> dict[str, Cell]:
+        offset = self._offset(body_name)
+        numbers = [
+            *origin_of_published_frame(state, offset).tolist(),
+            *state.q_WB.tolist(),
+            *state.v_WB_W.tolist(),
+            *state.w_WB_W.tolist(),
+        ]
+        return {f"{kind}_{name}": number for name, number in zip(_STATE, numbers, strict=True)}
+
+    def _offset(self, body_name: str) -> FloatArray:
+        known = [body.p_FB_F for body in self._world.bodies if body.name == body_name]
+        return known[0] if known else np.zeros(3)
+
+
+def _said(answer: Answer) -> dict[str, Cell]:
+    """Return the cells of what an answer says and of the states that it used."""
+    fit = None if isinstance(answer, ContactModeAnswer) else answer.fit
+    fitted = 0 if fit is None else fit.count
+    if isinstance(answer, TumblingAnswer):
+        event = answer.event
+        says, surface = ("flight", "") if event is None else (event.kind.name.lower(), event.surface)
+        stamp_ns = answer.state.stamp_ns
+    elif isinstance(answer, ImpactAnswer):
+        outcome = answer.impact.outcome
+        says = "several at once" if outcome is None else outcome.name.lower()
+        surface = ", ".join(dict.fromkeys(answer.contacts.surfaces))
+        stamp_ns = answer.state.stamp_ns and ns_after(answer.state.stamp_ns, -answer.seconds_to_contact)
+    else:
+        modes = ", ".join(mode.mode for mode in answer.modes)
+        says = f"{answer.verdict.name.lower()}: {modes}" if modes else answer.verdict.name.lower()
+        surface = ", ".join(dict.fromkeys(answer.contacts.surfaces))
+        stamp_ns = answer.state.stamp_ns
+    return {
+        "body": answer.body_name,
+        "state_stamp_ns": stamp_ns or None,
+        "states_fitted": fitted,
+        "says": says,
+        "surface": surface,
+    }
+
+
+def _predicted(answer: Answer) -> BodyState | None:
+    """Return the state that an answer predicts: at the end of a trajectory, or just after an impact."""
+    if isinstance(answer, ImpactAnswer):
+        return answer.impact.state
+    if isinstance(answer, ContactModeAnswer) or len(answer.trajectory) == 0:
+        return None
+    path, stamp_ns = answer.trajectory, answer.state.stamp_ns
+    return BodyState(
+        p_WB_W=path.p_WB_W[-1],
+        q_WB=path.q_WB[-1],
+        v_WB_W=path.v_WB_W[-1],
+        w_WB_W=path.w_WB_W[-1],
+        stamp_ns=stamp_ns and ns_after(stamp_ns, float(path.seconds[-1])),
+    )
+
+
+def _errors(predicted: BodyState, measured: BodyState) -> dict[str, Cell]:
+    """Return how far measured and predicted are apart."""
+    apart = np.linalg.norm(predicted.q_WB - measured.q_WB), np.linalg.norm(predicted.q_WB + measured.q_WB)
+    return {
+        "position_error": float(np.linalg.norm(predicted.p_WB_W - measured.p_WB_W)),
+        "angle_error": 4.0 * math.asin(min(1.0, 0.5 * float(min(apart)))),
+        "velocity_error": float(np.linalg.norm(predicted.v_WB_W - measured.v_WB_W)),
+        "spin_error": float(np.linalg.norm(predicted.w_WB_W - measured.w_WB_W)),
+    }

@@ -1,0 +1,146 @@
+"""Draws a recording in rerun: states of bodies, and the answers that it holds or that are asked now."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Final
+
+from contact_dynamics.questions.impact import ImpactAnswer
+from contact_dynamics.questions.tumbling import TumblingAnswer
+from contact_dynamics.replay.events import Answered, StateCame
+from contact_dynamics.viewing.picture import Picture
+from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode, raise_errors
+from contact_dynamics.viewing.words import CONTACT_MODE, IMPACT, TUMBLING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from contact_dynamics.replay.events import Events
+    from contact_dynamics.rigid_body.body import BodyState
+
+KINDS: Final = {
+    "predict_tumbling": TUMBLING,
+    "predict_impact": IMPACT,
+    "predict_contact_mode": CONTACT_MODE,
+}
+
+_AT_ONCE: Final = 1000
+"""States that are drawn together, because a batch costs what a single state does."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Drawn:
+    """What came of a drawing.
+
+    Attributes:
+        states: Number of states.
+        answers: Number of answers, with the refused ones.
+        took_all: Whether the sinks took all of it.
+        viewer_failed: Whether a viewer was asked for that could not be reached, or failed later.
+    """
+
+    states: int
+    answers: int
+    took_all: bool
+    viewer_failed: bool
+
+
+def draw(
+    events: Events,
+    sinks: Sinks,
+    *,
+    surface_side: float,
+    on_problem: Callable[[str], object],
+    on_progress: Callable[[int], object],
+) -> Drawn:
+    """Draw a recording, and return what came of it.
+
+    Args:
+        events: the recording.
+        sinks: where to draw to.
+        surface_side: m, the side of the squares that stand for surfaces.
+        on_problem: a function that is told, in words, what cannot be drawn, each kind once.
+        on_progress: a function that is told the stamp of what is drawn, ns.
+
+    Raises:
+        NowhereToDrawError: a viewer was asked for alone, and there is none.
+        OSError: the file cannot be written.
+    """
+    raise_errors()
+    recording = OpenRecording(sinks, on_problem=on_problem)
+    drawing = _Drawing(
+        Picture(recording.stream, events.world, surface_side=surface_side), on_problem=on_problem
+    )
+    for event in events:
+        drawing.show(event)
+        if isinstance(event, StateCame):
+            on_progress(event.state.stamp_ns)
+    drawing.finish(look_at_all=sinks.viewer is ViewerMode.NONE)
+    took_all = recording.close()
+    return Drawn(
+        states=drawing.states,
+        answers=drawing.answers,
+        took_all=took_all,
+        viewer_failed=recording.viewer_failed,
+    )
+
+
+class _Drawing:
+    """A picture, and the states that wait to be drawn together."""
+
+    def __init__(self, picture: Picture, *, on_problem: Callable[[str], object]) -> None:
+        self.states = 0
+        self.answers = 0
+        self._picture = picture
+        self._on_problem = on_problem
+        self._told: set[str] = set()
+        self._waiting: dict[str, list[BodyState]] = {}
+        self._count = 0
+
+    def show(self, event: StateCame | Answered) -> None:
+        """Draw an event, or keep a state to be drawn with others."""
+        if isinstance(event, StateCame):
+            self.states += 1
+            self._count += 1
+            self._waiting.setdefault(event.body_name, []).append(event.state)
+            if self._count >= _AT_ONCE:
+                self._draw_states()
+            return
+        self.answers += 1
+        self._draw_states()
+        self._guarded(event.service, lambda: self._show_answer(event))
+
+    def finish(self, *, look_at_all: bool) -> None:
+        """Draw what is left, and look at all of it where no viewer was open from the beginning."""
+        self._draw_states()
+        if look_at_all:
+            self._guarded("the last look", self._picture.frame_all)
+
+    def _show_answer(self, answered: Answered) -> None:
+        answer, now_ns = answered.answer, self._picture.newest_stamp_ns() or answered.asked_ns
+        remark, seconds = answered.message, answered.computation_time
+        if answer is None:
+            refused = f"refused ({answered.status}): {remark}"
+            self._picture.tell(KINDS[answered.service], refused, stamp_ns=now_ns, is_error=True)
+        elif isinstance(answer, TumblingAnswer):
+            self._picture.show_tumbling(answer, now_ns=now_ns, remark=remark, computation_time=seconds)
+        elif isinstance(answer, ImpactAnswer):
+            self._picture.show_impact(answer, now_ns=now_ns, remark=remark, computation_time=seconds)
+        else:
+            self._picture.show_contact_modes(answer, now_ns=now_ns, remark=remark, computation_time=seconds)
+
+    def _draw_states(self) -> None:
+        self._count = 0
+        waiting, self._waiting = self._waiting, {}
+        for body_name, states in waiting.items():
+            ordered = sorted(states, key=lambda state: state.stamp_ns)
+            self._guarded("states", partial(self._picture.add_states, body_name, ordered))
+
+    def _guarded(self, kind: str, show: Callable[[], object]) -> None:
+        try:
+            show()
+        except Exception as error:  # noqa: BLE001  what one answer has must not cost the picture of the rest
+            if kind not in self._told:
+                self._told.add(kind)
+                self._on_problem(f"cannot draw {kind}; not told again: {type(error).__name__}: {error}")

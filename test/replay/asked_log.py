@@ -1,0 +1,132 @@
+"""A log of a real server for the tests of replay, and the command line without ROS."""
+
+from __future__ import annotations
+
+import math
+import os
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from geometry_msgs.msg import PoseStamped, TwistStamped
+from nav_msgs.msg import Odometry
+
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from running_server import ROOT, server_and_client
+
+ROUNDS = 8
+BLOCKED = """
+import sys
+class NoRos:
+    def find_spec(self, name, path=None, target=None):
+        first = name.partition(".")[0]
+        if first in {"rclpy", "rpyutils", "ament_index_python"} or first.endswith(("_msgs", "_interfaces")):
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+sys.meta_path.insert(0, NoRos())
+from contact_dynamics.command_line import main
+sys.exit(main(sys.argv[1:]))
+"""
+"""The command line where no module of ROS can be found."""
+
+
+def without_ros(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    """Run `contact-dynamics replay` in a process in which nothing of ROS can be imported."""
+    return subprocess.run(
+        [sys.executable, "-c", BLOCKED, "replay", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "AMENT_PREFIX_PATH": ""},
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Asked:
+    """A log, and how many questions each service was asked."""
+
+    log: Path
+    counts: dict[str, int]
+
+
+def odometry(stamp: Any, number: int) -> Odometry:
+    """A state of the brick in the air, tumbling."""
+    msg = Odometry(child_frame_id="brick")
+    msg.header.frame_id, msg.header.stamp = "world", stamp
+    msg.pose.pose.position.x, msg.pose.pose.position.z = 0.1 * number, 1.0 + 0.01 * number
+    half = 0.05 * number
+    msg.pose.pose.orientation.x, msg.pose.pose.orientation.w = math.sin(half), math.cos(half)
+    msg.twist.twist.linear.x, msg.twist.twist.angular.y = 0.3 * number, 1.0 + number
+    return msg
+
+
+def questions(number: int) -> list[Any]:
+    """What depends on the newest states, and what depends on the question alone; some are refused."""
+    until = PredictTumbling.Request(body_name="brick", sampling=PredictTumbling.Request.UNTIL_CONTACT)
+    fitted = PredictTumbling.Request(body_name="brick", fit_window=0.2, want_covariance=True)
+    standing = PredictContactMode.Request(
+        state_source=PredictContactMode.Request.STATE_EXPLICIT, body_name="brick", want_margins=True
+    )
+    standing.state.pose.position.z = 0.025
+    standing.applied_wrench.force.x = 0.2 * number
+    return [
+        until,
+        fitted,
+        PredictImpact.Request(body_name="brick"),
+        standing,
+        PredictImpact.Request(body_name=f"cat {number}"),
+        PredictTumbling.Request(body_name="ball", duration=[math.nan if number % 2 else 0.1]),
+    ]
+
+
+def configured(folder: Path) -> Path:
+    """The commented configuration, with a ball whose pose and twist are published apart."""
+    text = (ROOT / "config" / "server.yaml").read_text(encoding="utf-8")
+    assert "bodies: [brick]" in text
+    ball = (
+        "    body.ball.mass: 0.2\n    body.ball.inertia: [0.0]\n    body.ball.sphere: [0.04]\n"
+        "    body.ball.pose_topic: ball/pose\n    body.ball.twist_topic: ball/twist\n"
+    )
+    file = folder / "server.yaml"
+    text = text.replace("bodies: [brick]", "bodies: [brick, ball]")
+    file.write_text(f"{text.rstrip()}\n\n{ball}", encoding="utf-8")
+    return file
+
+
+def session(folder: Path) -> Asked:
+    """A session in which states and questions alternate, and one comes when the states are too old."""
+    counts: dict[str, int] = {}
+    with server_and_client(folder / "logs", params_file=configured(folder)) as client:
+        publishers = {
+            "odometry": client.publisher(Odometry, "/brick/odometry"),
+            "pose": client.publisher(PoseStamped, "/ball/pose"),
+            "twist": client.publisher(TwistStamped, "/ball/twist"),
+        }
+
+        def publish(number: int) -> None:
+            stamp = client.node.get_clock().now().to_msg()
+            publishers["odometry"].publish(odometry(stamp, number))
+            pose, twist = PoseStamped(), TwistStamped()
+            for msg in (pose, twist):
+                msg.header.frame_id, msg.header.stamp = "world", stamp
+            pose.pose.position.z, twist.twist.linear.y = 1.0 + 0.1 * number, 0.5
+            publishers["twist"].publish(twist)
+            publishers["pose"].publish(pose)
+
+        def ask(request: Any) -> Any:
+            name = type(request).__name__.removesuffix("_Request")
+            counts[name] = counts.get(name, 0) + 1
+            return client.ask(request)
+
+        for number in range(ROUNDS):
+            for step in range(4):
+                publish(4 * number + step)
+            for request in questions(number):
+                ask(request)
+        time.sleep(1.5)
+        stale = ask(PredictImpact.Request(body_name="brick"))
+        assert stale.status == PredictImpact.Response.STALE_STATE
+    (log,) = (folder / "logs").iterdir()
+    return Asked(log=log, counts=counts)

@@ -1,0 +1,149 @@
+"""Tables of logs of a server, and of recordings that no server was part of."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+from rosbags.rosbag2 import CompressionMode, StoragePlugin
+
+from contact_dynamics.recording import BagReader
+from contact_dynamics.replay.rows import COLUMNS
+from contact_dynamics.replay.run import main
+from replay.asked_log import Asked, without_ros
+from replay.flights import CONFIGURATION, RATE, START_NS, write_flight
+
+EXACT = 1e-6
+"""Stamps are whole ns, and a serialised state has the rounding of a double: both are far below."""
+
+
+def rows_of(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_a_row_for_each_question_of_a_log(asked: Asked, tmp_path: Path) -> None:
+    assert main(["table", str(asked.log), "--out", str(tmp_path / "table.csv")]) == 0
+    rows = rows_of(tmp_path / "table.csv")
+    assert list(rows[0]) == list(COLUMNS)
+    counts = {service: sum(row["service"] == service for row in rows) for service in ("predict_impact",)}
+    assert counts["predict_impact"] == asked.counts["PredictImpact"]
+    assert len(rows) == sum(asked.counts.values())
+    published = {
+        message.publish_time_ns
+        for message in BagReader(asked.log).messages({"/brick/odometry", "/ball/pose"})
+    }
+    landings = [row for row in rows if '"sampling": 3' in row["question"]]
+    assert landings
+    assert {row["says"] for row in landings} == {"contact"}
+    assert {row["surface"] for row in landings} == {"floor"}
+    assert {int(row["state_stamp_ns"]) for row in landings} <= published
+    fitted = [row for row in rows if "fit_window" in row["question"]]
+    assert all(row["status"] != "OK" or int(row["states_fitted"]) > 0 for row in fitted)
+    cats = [row for row in rows if row["body"].startswith("cat")]
+    assert {row["status"] for row in cats} == {"UNKNOWN_BODY"}
+    assert rows[-1]["status"] == "STALE_STATE"
+    for row in rows:
+        assert json.loads(row["question"]).get("body_name", "") == row["body"]
+
+
+def test_parquet_has_the_cells_of_csv_and_needs_no_ros(asked: Asked, tmp_path: Path) -> None:
+    assert main(["table", str(asked.log), "--out", str(tmp_path / "table.csv")]) == 0
+    done = without_ros("table", asked.log, "--out", tmp_path / "table.parquet")
+    assert done.returncode == 0, done.stderr
+    table = pq.read_table(tmp_path / "table.parquet")
+    assert table.column_names == list(COLUMNS)
+    rows = rows_of(tmp_path / "table.csv")
+    for name in ("asked_ns", "service", "status", "says", "predicted_x", "state_stamp_ns"):
+        cells = ["" if cell is None else str(cell) for cell in table.column(name).to_pylist()]
+        assert cells == [row[name] for row in rows], name
+
+
+def test_a_part_of_a_log(asked: Asked, tmp_path: Path) -> None:
+    """The last second and a half has one question, the one whose state was too old."""
+    begin, end = BagReader(asked.log).extent()
+    seconds = (end - begin) / 1e9
+    out = tmp_path / "table.csv"
+    assert main(["table", str(asked.log), "--start", str(seconds - 1.0), "--out", str(out)]) == 0
+    assert len(rows_of(out)) == 1
+    assert main(["table", str(asked.log), "--end", str(seconds - 1.0), "--out", str(out)]) == 0
+    assert len(rows_of(out)) == sum(asked.counts.values()) - 1
+
+
+@pytest.mark.parametrize(
+    ("storage", "mode"),
+    [
+        (StoragePlugin.SQLITE3, CompressionMode.NONE),
+        (StoragePlugin.SQLITE3, CompressionMode.FILE),
+        (StoragePlugin.MCAP, CompressionMode.MESSAGE),
+    ],
+)
+def test_what_would_it_have_said(tmp_path: Path, storage: StoragePlugin, mode: CompressionMode) -> None:
+    """A stack that never ran our node recorded an exact flight: landing and impact are as it went on."""
+    write_flight(tmp_path / "bag", storage=storage, mode=mode)
+    (tmp_path / "server.yaml").write_text(CONFIGURATION)
+    asking = ["--ask", "landing", "--ask", "impact", "--ask", "modes", "--every", "0.1"]
+    configured = ["--config", tmp_path / "server.yaml", "--topics", "ball=/tracker/ball"]
+    done = without_ros("table", tmp_path / "bag", *configured, *asking, "--out", tmp_path / "table.csv")
+    assert done.returncode == 0, done.stderr
+    assert "/tracker/ball: 2 messages are no states; the first: header.frame_id" in done.stderr
+    rows = rows_of(tmp_path / "table.csv")
+    assert len(rows) == 3 * 10
+    landings = [row for row in rows if row["service"] == "predict_tumbling"]
+    impacts = [row for row in rows if row["service"] == "predict_impact"]
+    assert {row["status"] for row in landings + impacts} == {"OK"}
+    seen = [row for row in landings + impacts if row["measured_ns"]]
+    assert len(seen) == 12  # those before the strike; what comes after the next one is not recorded
+    for row in seen:
+        assert int(row["asked_ns"]) - START_NS < int(0.65e9)
+        for kind in ("position", "angle", "velocity", "spin"):
+            assert float(row[f"{kind}_error"]) < EXACT, (row["service"], kind)
+
+
+def test_questions_come_as_often_as_they_are_asked_for(tmp_path: Path) -> None:
+    write_flight(tmp_path / "bag")
+    (tmp_path / "server.yaml").write_text(CONFIGURATION)
+    out = tmp_path / "table.csv"
+    common = [str(tmp_path / "bag"), "--config", str(tmp_path / "server.yaml"), "--out", str(out)]
+    common += ["--topics", "ball=/tracker/ball", "--ask", "modes"]
+    assert main(["table", *common, "--every", "0"]) == 0
+    assert len(rows_of(out)) == int(0.95 * RATE) - 2
+    assert main(["table", *common, "--every", "0.25"]) == 0
+    gaps = np.diff([int(row["asked_ns"]) for row in rows_of(out)])
+    assert (gaps >= 250_000_000).all()
+    assert (gaps < 250_000_000 + 3 * 1_000_000_000 // RATE).all()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["--out", "table.xls"], "out: found table.xls, allowed is a file that ends in .csv or .parquet"),
+        (["--config", "none.yaml"], "none.yaml"),
+        (["--config", "empty.yaml"], "empty.yaml: found no parameters"),
+        (["--config", "broken.yaml"], "broken.yaml: no YAML: "),
+        (
+            ["--config", "server.yaml", "--topics", "ball"],
+            "--topics: found 'ball', allowed are BODY=ODOMETRY",
+        ),
+        (["--config", "server.yaml", "--body", "cat"], "body: found cat, allowed is one of ['ball']"),
+        ([], "not a log of the server: no service of it in the log's types"),
+    ],
+)
+def test_what_is_wrong_is_named(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    arguments: list[str],
+    told: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_flight(tmp_path / "bag")
+    (tmp_path / "server.yaml").write_text(CONFIGURATION)
+    (tmp_path / "empty.yaml").write_text("")
+    (tmp_path / "broken.yaml").write_text("a: [")
+    assert main(["table", "bag", *arguments]) == 2
+    assert told in capsys.readouterr().err
