@@ -63,6 +63,12 @@ VERBS: Final = {
         (),
         "compare predictions with what came, in logs and recorded tosses",
     ),
+    "recover": Verb(
+        "contact_dynamics.replay.recover",
+        "contact_dynamics.replay.arguments:recover_parser",
+        (),
+        "rewrite a damaged log, so that every reader takes it",
+    ),
     "toss_publisher": Verb(
         "contact_dynamics.demo.toss_publisher",
         "contact_dynamics.demo.arguments:toss_publisher_parser",

@@ -6,16 +6,21 @@ with the closing zero, as uint32, and its bytes. A sequence is its count, as uin
 
 Source: OMG, Real-time Publish-Subscribe Wire Protocol 2.2, section 10; ROS 2 calls it ``cdr``.
 
+Each type is compiled once. Numbers that follow each other, across nested messages too, are one `struct`; only
+where it begins within eight bytes matters, because a string before it can have any length.
+
 The library `mcap` leaves messages as bytes. `mcap-ros2-support` refuses types with an underscore in their
 name, which the events of services have.
 """
 
 from __future__ import annotations
 
+import itertools
 import struct
 import sys
 from array import array
-from typing import TYPE_CHECKING, Any, Final
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -23,29 +28,29 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.recording.message_types import PRIMITIVES, Field, Message, message_types
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from contact_dynamics.recording.bag_reader import LoggedMessage
+
+    Build: TypeAlias = Callable[[list[Any]], Any]
+    Read: TypeAlias = Callable[[bytes, int, list[Any]], int]
 
 _HEAD: Final = 4  # bytes of encapsulation
 _CDR: Final = {0: ">", 1: "<"}  # second byte: byte order
 _NATIVE: Final = "<" if sys.byteorder == "little" else ">"
-_NUMBERS: Final = {
-    order: {name: struct.Struct(order + code) for name, code in PRIMITIVES.items()} for order in "<>"
-}
+_ALIGNMENT: Final = 8  # bytes, the largest
+_SIZES: Final = {code: struct.calcsize(f"<{code}") for code in PRIMITIVES.values()}
 
 
 def decode_without_ros(message: LoggedMessage) -> Message:
-    """Return the message logged, with the fields of its type, or of its event if it is a service's.
+    """Return the message logged, with the fields of its type; of a service's event, those of the event.
 
     Raises:
         InvalidFieldError: the log does not describe its type, or the bytes are no message of it.
     """
     if not message.definition:
         raise InvalidFieldError(message.topic, f"no text of {message.type_name}", "its fields, as ros2msg")
-    package, _, name = message.type_name.partition("/")
-    message_type = message_types(message.type_name, message.definition)[
-        f"{package}/{name.rpartition('/')[2]}"
-    ]
-    return deserialize(message.data, message_type)
+    return deserialize(message.data, _type_of(message.type_name, message.definition))
 
 
 def deserialize(data: bytes, message_type: type[Message]) -> Message:
@@ -57,76 +62,221 @@ def deserialize(data: bytes, message_type: type[Message]) -> Message:
     if len(data) < _HEAD or data[0] != 0 or data[1] not in _CDR:
         raise InvalidFieldError("data", f"bytes that begin with {data[:_HEAD].hex()}", "CDR: 0000 or 0001")
     try:
-        return _Cursor(data, _CDR[data[1]]).message(message_type)
-    except (struct.error, ValueError, RecursionError) as error:
+        kind: Any = message_type  # classes are hashable, which not all tools know
+        plan = _plan(kind, _CDR[data[1]])
+        return plan.message_at(data, _HEAD)[0]
+    except (struct.error, ValueError, OverflowError, RecursionError) as error:
         expected = f"a serialised {message_type.__name__} ({error})"
         raise InvalidFieldError("data", f"{len(data)} bytes", expected) from None
 
 
-class _Cursor:
-    """A place in the bytes of a message."""
+@lru_cache(maxsize=256)
+def _type_of(type_name: str, definition: str) -> type[Message]:
+    package, _, name = type_name.partition("/")
+    return message_types(type_name, definition)[f"{package}/{name.rpartition('/')[2]}"]
 
-    def __init__(self, data: bytes, order: str) -> None:
-        self._data = data
-        self._at = _HEAD
-        self._swap = order != _NATIVE
-        self._numbers = _NUMBERS[order]
 
-    def message(self, message_type: type[Message]) -> Message:
-        """Return the message that begins here."""
-        made = message_type.__new__(message_type)
-        for field in message_type.FIELDS:
-            value = self._several if field.is_array else self._one
-            setattr(made, field.name, value(field, message_type))
-        if not message_type.FIELDS:
-            self._at += 1  # a type without fields has a byte that means nothing
+class _Plan(NamedTuple):
+    """How messages of a type are read: first all values in their order, then the objects that hold them."""
+
+    reads: tuple[Read, ...]
+    build: Build
+
+    def message_at(self, data: bytes, at: int) -> tuple[Message, int]:
+        """Return the message that begins at a place, and where it ends."""
+        values: list[Any] = []
+        for read in self.reads:
+            at = read(data, at, values)
+        return self.build(values), at
+
+
+@lru_cache(maxsize=512)
+def _plan(message_type: Any, order: str) -> _Plan:
+    """Return how messages of a type, which is a subclass of `Message`, are read."""
+    reads: list[Read] = []
+    numbers: list[tuple[str, int | None]] = []  # that follow each other: what they are, and how many of them
+    places = itertools.count()  # of the values
+
+    def end_numbers() -> None:
+        if numbers:
+            reads.append(_numbers(tuple(numbers), order))
+            numbers.clear()
+
+    def add(owner: type[Message]) -> Build:
+        """Add what reads a message, and return what makes it of the values."""
+        singles: list[tuple[str, int]] = []
+        parts: list[tuple[str, Build]] = []
+        if not owner.FIELDS:
+            numbers.append(("x", None))  # a type without fields has a byte that means nothing
+        for field in owner.FIELDS:
+            code = PRIMITIVES.get(field.type_name)
+            if code is not None and (not field.is_array or field.count is not None):
+                numbers.append((code, field.count if field.is_array else None))
+                singles.append((field.name, next(places)))
+            elif not field.is_array and field.type_name in owner.TYPES:
+                parts.append((field.name, add(owner.TYPES[field.type_name])))
+            else:
+                end_numbers()
+                reads.append(_several(field, owner, order) if field.is_array else _string(order))
+                singles.append((field.name, next(places)))
+        return _building(owner, singles, parts)
+
+    build = add(message_type)
+    end_numbers()
+    return _Plan(tuple(reads), build)
+
+
+def _building(
+    message_type: type[Message], singles: list[tuple[str, int]], parts: list[tuple[str, Build]]
+) -> Build:
+    """Return what makes a message of values, given the places of some and what makes the others."""
+    make = message_type.__new__
+
+    def build(values: list[Any]) -> Any:
+        made = make(message_type)
+        fields = made.__dict__
+        for name, place in singles:
+            fields[name] = values[place]
+        for name, part in parts:
+            fields[name] = part(values)
         return made
 
-    def _one(self, field: Field, owner: type[Message]) -> Any:
-        number = self._numbers.get(field.type_name)
-        if number is not None:
-            self._align(number.size)
-            (value,) = number.unpack_from(self._data, self._at)
-            self._at += number.size
-            return value
-        if field.type_name == "string":
-            return self._string()
-        return self.message(owner.TYPES[field.type_name])
-
-    def _several(self, field: Field, owner: type[Message]) -> Any:
-        count = self._length() if field.count is None else field.count
-        code = PRIMITIVES.get(field.type_name)
-        if count > len(self._data) - self._at:  # each takes a byte at least
-            message = f"{field.name} claims {count} elements, {len(self._data) - self._at} bytes are left"
-            raise ValueError(message)
-        if code is None or code == "?":
-            return [self._one(field, owner) for _ in range(count)]
-        numbers = array(code)
-        if count > 0:
-            self._align(numbers.itemsize)
-            numbers.frombytes(self._bytes(count * numbers.itemsize))
-        if self._swap:
-            numbers.byteswap()
-        return numbers if field.count is None else np.array(numbers)
-
-    def _string(self) -> str:
-        raw = self._bytes(self._length())
-        return raw[:-1].decode("utf-8") if raw else ""
-
-    def _length(self) -> int:
-        length: int = self._one(_COUNT, Message)
-        return length
-
-    def _align(self, size: int) -> None:
-        self._at += (_HEAD - self._at) % size
-
-    def _bytes(self, count: int) -> bytes:
-        raw = self._data[self._at : self._at + count]
-        if len(raw) < count:
-            message = f"{count} bytes are due at {self._at}, {len(raw)} are left"
-            raise ValueError(message)
-        self._at += count
-        return raw
+    return build
 
 
-_COUNT: Final = Field(name="length", type_name="uint32")
+def _numbers(numbers: tuple[tuple[str, int | None], ...], order: str) -> Read:
+    """Return what reads numbers, and arrays of fixed lengths, that follow each other."""
+    layouts: dict[int, struct.Struct] = {}
+    arrays: list[tuple[int, str, int]] = []  # places among the values, what they are, and how many
+    index = 0
+    for code, count in numbers:
+        if count is not None:
+            arrays.append((index, code, count))
+        index += code != "x"
+
+    def read(data: bytes, at: int, values: list[Any]) -> int:
+        offset = (at - _HEAD) % _ALIGNMENT
+        layout = layouts.get(offset)
+        if layout is None:
+            layout = layouts[offset] = struct.Struct(_layout(numbers, order, offset))
+        found = layout.unpack_from(data, at)
+        if arrays:
+            begin = len(values)
+            values.extend(found)
+            for place, code, count in arrays:
+                values[begin + place] = _fixed(values[begin + place], code, count, order)
+        else:
+            values.extend(found)
+        return at + layout.size
+
+    return read
+
+
+def _layout(numbers: tuple[tuple[str, int | None], ...], order: str, offset: int) -> str:
+    """Return the format of numbers that begin ``offset`` bytes behind an aligned place."""
+    parts = [order]
+    for code, count in numbers:
+        if code == "x":
+            parts.append("x")
+            offset += 1
+            continue
+        size = _SIZES[code]
+        gap = -offset % size if count != 0 else 0
+        parts.append("x" * gap)
+        parts.append(code if count is None else f"{size * count}s")
+        offset += gap + size * (1 if count is None else count)
+    return "".join(parts)
+
+
+def _fixed(raw: bytes, code: str, count: int, order: str) -> Any:
+    if code == "?":
+        return list(struct.unpack(f"{count}?", raw))
+    return np.frombuffer(raw, dtype=np.dtype(f"{order}{code}")).astype(code)  # a copy, to write to
+
+
+def _several(field: Field, owner: type[Message], order: str) -> Read:
+    """Return what reads a sequence, or an array of strings or messages."""
+    code = PRIMITIVES.get(field.type_name)
+    if code is not None:
+        return _sequence_of_numbers(field, code, order)
+    string = _string(order)
+    length = struct.Struct(f"{order}I")
+
+    def read_strings(data: bytes, at: int, values: list[Any]) -> int:
+        strings: list[Any] = []
+        number, at = _length(field, length, data, at)
+        for _ in range(number):
+            at = string(data, at, strings)
+        values.append(strings)
+        return at
+
+    def read_messages(data: bytes, at: int, values: list[Any]) -> int:
+        kind: Any = owner.TYPES[field.type_name]
+        plan = _plan(kind, order)  # only here, because a type can have a sequence of itself
+        messages: list[Any] = []
+        number, at = _length(field, length, data, at)
+        for _ in range(number):
+            made, at = plan.message_at(data, at)
+            messages.append(made)
+        values.append(messages)
+        return at
+
+    return read_strings if field.type_name == "string" else read_messages
+
+
+def _sequence_of_numbers(field: Field, code: str, order: str) -> Read:
+    length = struct.Struct(f"{order}I")
+    size = _SIZES[code]
+
+    def read(data: bytes, at: int, values: list[Any]) -> int:
+        number, at = _length(field, length, data, at)
+        raw = b""
+        if number > 0:
+            at += (_HEAD - at) % size
+            raw = _bytes(data, at, number * size)
+        if code == "?":
+            values.append(list(struct.unpack(f"{number}?", raw)))
+        else:
+            numbers = array(code)
+            numbers.frombytes(raw)
+            if order != _NATIVE:
+                numbers.byteswap()
+            values.append(numbers)
+        return at + len(raw)
+
+    return read
+
+
+def _length(field: Field, length: struct.Struct, data: bytes, at: int) -> tuple[int, int]:
+    """Return how many elements there are, and where the first begins."""
+    if field.count is not None:
+        number = field.count
+    else:
+        at += (_HEAD - at) % length.size
+        (number,) = length.unpack_from(data, at)
+        at += length.size
+    if number > len(data) - at:  # each takes a byte at least
+        message = f"{field.name} claims {number} elements, {len(data) - at} bytes are left"
+        raise ValueError(message)
+    return number, at
+
+
+def _string(order: str) -> Read:
+    length = struct.Struct(f"{order}I")
+
+    def read(data: bytes, at: int, values: list[Any]) -> int:
+        at += (_HEAD - at) % length.size
+        (count,) = length.unpack_from(data, at)
+        raw = _bytes(data, at + length.size, count)
+        values.append(raw[:-1].decode("utf-8") if raw else "")
+        return at + length.size + count
+
+    return read
+
+
+def _bytes(data: bytes, at: int, count: int) -> bytes:
+    raw = data[at : at + count]
+    if len(raw) < count:
+        message = f"{count} bytes are due at {at}, {len(raw)} are left"
+        raise ValueError(message)
+    return raw

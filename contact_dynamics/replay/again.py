@@ -127,13 +127,14 @@ class ServerAgain:
         self._asked_ns = asked_ns
         return self._knowledge
 
-    def answer_from(self, service_type: str, response: Any) -> Answer:
-        """Return the answer that a response carries; its status is OK.
+    def answer_from(self, service_type: str, response: Any) -> Answer | None:
+        """Return the answer that a response carries, whose status is OK, or None for a batch of answers.
 
         Raises:
             ContactDynamicsError: a number in it is not allowed.
         """
-        return _ANSWERS[service_type.rpartition("/")[2]](response, world=self.world)
+        read = _ANSWERS.get(service_type.rpartition("/")[2])
+        return None if read is None else read(response, world=self.world)
 
     def answer(
         self, service_type: str, request: object, make_response: Callable[[], Any], *, asked_ns: int

@@ -1,4 +1,4 @@
-"""The arguments of `contact-dynamics replay`, with its modes."""
+"""The arguments of `contact-dynamics replay`, with its modes, and of `contact-dynamics recover`."""
 
 from __future__ import annotations
 
@@ -40,6 +40,21 @@ def replay_parser() -> argparse.ArgumentParser:
     _add_table(modes.add_parser(TABLE, help=MODES[TABLE], description=_sentence(MODES[TABLE])))
     _add_view(modes.add_parser(VIEW, help=MODES[VIEW], description=_sentence(MODES[VIEW])))
     _add_publish(modes.add_parser(PUBLISH, help=MODES[PUBLISH], description=_sentence(MODES[PUBLISH])))
+    return parser
+
+
+def recover_parser() -> argparse.ArgumentParser:
+    """Return the parser of `contact-dynamics recover`."""
+    parser = argparse.ArgumentParser(
+        prog="contact-dynamics recover",
+        description="Rewrite a damaged or unfinished log into a new folder, so that every reader takes it. "
+        "The damaged log stays as it is. This needs no ROS.",
+        epilog="The exit code is 0 if the new log was written, whatever is lost, and 2 if it was not.",
+    )
+    parser.add_argument(
+        "log", nargs="?", metavar="LOG", help="folder of a log or of another bag in MCAP, or one file of it"
+    )
+    parser.add_argument("--out", metavar="FOLDER", help="the new folder (default: LOG_recovered, beside it)")
     return parser
 
 

@@ -249,7 +249,7 @@ def _stamped(data: bytes, stamp_ns: int) -> bytes:
 
 def _move(request: Any, pacing: Pacing) -> None:
     """Move the times that a request names into the present."""
-    stamp_ns = stamp_ns_from_msg(request.stamp)
+    stamp_ns = stamp_ns_from_msg(request.stamp) if hasattr(request, "stamp") else 0  # batches have none
     if stamp_ns > 0:
         stamp_to_msg(pacing.present_of(stamp_ns), into=request.stamp)
     if len(getattr(request, "stamps_ns", ())) > 0:

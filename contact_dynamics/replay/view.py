@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.questions.impact import ImpactAnswer
 from contact_dynamics.questions.tumbling import TumblingAnswer
-from contact_dynamics.replay.events import Answered, StateCame
+from contact_dynamics.replay.events import OK, Answered, StateCame
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode, raise_errors
 from contact_dynamics.viewing.words import CONTACT_MODE, IMPACT, TUMBLING
@@ -120,9 +120,13 @@ class _Drawing:
     def _show_answer(self, answered: Answered) -> None:
         answer, now_ns = answered.answer, self._picture.newest_stamp_ns() or answered.asked_ns
         remark, seconds = answered.message, answered.computation_time
+        if answer is None and answered.status == OK:
+            return  # a batch of answers, of which there is no picture
         if answer is None:
             refused = f"refused ({answered.status}): {remark}"
-            self._picture.tell(KINDS[answered.service], refused, stamp_ns=now_ns, is_error=True)
+            self._picture.tell(
+                KINDS.get(answered.service, answered.service), refused, stamp_ns=now_ns, is_error=True
+            )
         elif isinstance(answer, TumblingAnswer):
             self._picture.show_tumbling(answer, now_ns=now_ns, remark=remark, computation_time=seconds)
         elif isinstance(answer, ImpactAnswer):

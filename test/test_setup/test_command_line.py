@@ -18,6 +18,7 @@ BROUGHT = ("numpy", "numpy.libs", "scipy", "scipy.libs", "mcap", "lz4", "zstanda
 OPTIONS = {
     "demo": ["--toss", "--view", "--output", "--quiet"],
     "evaluate": ["--against", "--dask", "--results", "--rerun", "RECORDING"],
+    "recover": ["--out", "LOG"],
     "replay": ["verify", "table", "view", "publish", "LOG"],
     "server": ["--params-file", "--ros-args", *SERVER_PARAMETERS],
     "toss_publisher": ["--toss", "--listeners"],

@@ -1,0 +1,42 @@
+"""The command `contact-dynamics recover` rewrites a damaged log, so that every reader takes it."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Final
+
+from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.recording.recovery import recover
+from contact_dynamics.replay.arguments import recover_parser
+
+REFUSED: Final = 2
+"""This exit code says that nothing was written."""
+
+
+def main(arguments: list[str]) -> int:
+    """Rewrite a log and return the exit code."""
+    parser = recover_parser()
+    given = parser.parse_args(arguments)
+    if given.log is None:  # argparse would complain of this before it complains of a mistyped option
+        parser.error("found no LOG, needed is one")
+    path = Path(given.log)
+    folder = Path(given.out) if given.out else path.with_name(f"{path.name.partition('.')[0]}_recovered")
+    watched = sys.stderr.isatty()
+
+    def tell(count: int) -> None:
+        if watched:
+            print(f"\r\033[K{path}: {count} messages", end="", file=sys.stderr, flush=True)
+
+    try:
+        recovered = recover(path, folder, on_progress=tell)
+    except (ContactDynamicsError, OSError) as error:
+        print(f"contact-dynamics recover: {error}", file=sys.stderr)
+        return REFUSED
+    finally:
+        if watched:
+            print("\r\033[K", end="", file=sys.stderr, flush=True)
+    print(f"{recovered.folder}: {recovered.messages} messages")
+    for loss in recovered.losses:
+        print(f"  lost of {loss.path}: {loss}")
+    return 0
