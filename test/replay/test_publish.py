@@ -15,7 +15,6 @@ from rosbags.rosbag2 import StoragePlugin
 
 from contact_dynamics.recording import BagReader, ServiceCall, decode_without_ros, service_calls
 from contact_dynamics.replay.compare import differences
-from contact_dynamics.replay.verify import verify_log
 from replay.asked_log import Asked, configured
 from replay.flights import flight, write_flight
 from running_server import ROOT, environment, process
@@ -64,7 +63,6 @@ def test_the_time_of_the_log_gives_its_states_and_its_answers(asked: Asked, tmp_
         answers = [decode_without_ros(call).response[0] for call in (old.response_event, new.response_event)]
         assert list(differences(*answers)) == []
     assert explicit == asked.counts["PredictContactMode"]
-    assert verify_log(log).agrees
 
 
 def test_stamps_are_moved_to_the_present(asked: Asked, tmp_path: Path) -> None:
@@ -83,7 +81,6 @@ def test_stamps_are_moved_to_the_present(asked: Asked, tmp_path: Path) -> None:
         answered.append(sum(response.status == response.OK for response in responses))
     # In the first round, questions about published states, of which there are four, can overtake the first.
     assert answered[0] - 4 <= answered[1] <= answered[0]
-    assert verify_log(log).agrees
 
 
 def test_a_recording_of_others_in_its_time_and_faster(tmp_path: Path) -> None:
