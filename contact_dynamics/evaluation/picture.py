@@ -16,15 +16,16 @@ import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 
+from contact_dynamics.diagrams.shape import drawn_shape
 from contact_dynamics.evaluation.events import find_events
 from contact_dynamics.evaluation.found_event import EventKind
 from contact_dynamics.evaluation.report import COLUMNS, UNITS
 from contact_dynamics.evaluation.settings import Method
+from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.records import Record
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import entity
-from contact_dynamics.viewing.scene import solid, tangents
-from contact_dynamics.viewing.shape import drawn_shape
+from contact_dynamics.viewing.scene import solid
 from contact_dynamics.viewing.sinks import APPLICATION
 from contact_dynamics.viewing.trajectory import outline
 
@@ -137,7 +138,7 @@ def _draw(recording: rr.RecordingStream, number: int, cell: _Cell, apart: float)
     motion, event = cell.motion, cell.event
     shape = drawn_shape(motion.body.shape)
     up_W = _up(motion)
-    u_W, v_W = tangents(up_W)
+    u_W, v_W = tangents_near_x(up_W)
     place = apart * ((number % COLUMN_COUNT) * u_W - (number // COLUMN_COUNT) * v_W)
     at_W = event.state.p_WB_W
     recording.log(path, rr.Transform3D(translation=place - at_W), static=True)
@@ -222,7 +223,7 @@ def _up(motion: MeasuredMotion) -> FloatArray:
 def _blueprint(cells: Sequence[_Cell]) -> rrb.Blueprint:
     apart = _APART * max((drawn_shape(cell.motion.body.shape).size for cell in cells), default=1.0)
     up_W = _up(cells[0].motion) if cells else np.array([0.0, 0.0, 1.0])
-    u_W, v_W = tangents(up_W)
+    u_W, v_W = tangents_near_x(up_W)
     columns = min(COLUMN_COUNT, max(1, len(cells)))
     row_count = math.ceil(max(1, len(cells)) / COLUMN_COUNT)
     middle = 0.5 * apart * ((columns - 1) * u_W - (row_count - 1) * v_W)

@@ -21,6 +21,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.qos import QoSProfile
 from service_msgs.msg import ServiceEventInfo
 
+from contact_dynamics.diagrams.words import CONTACT_MODE, IMPACT, TUMBLING
 from contact_dynamics.nodes.arguments import visualizer_parser
 from contact_dynamics.nodes.inbox import InboxNode
 from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_unknown_parameters
@@ -32,7 +33,6 @@ from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import DEFAULT_PORT, OpenRecording, Sinks, ViewerMode, raise_errors
-from contact_dynamics.viewing.words import CONTACT_MODE, IMPACT, TUMBLING
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.contact_mode import contact_mode_answer_from_msg
 from msg_adapters.impact import impact_answer_from_msg

@@ -12,7 +12,7 @@ but the order of a pyramid's edges and the last bits of answers do. So each choi
 | `tangents`, `tangent_rows` | normal x least | only the plane matters |
 | `tangents_towards` | towards a direction, or least x normal | edges of friction pyramids start there |
 | `along_least` | least, made orthogonal | the one tangent of a side that is alike all around |
-| `near_x` | x, made orthogonal; y for normals along x | people look at it, or a rim begins there |
+| `near_x`, `tangents_near_x` | x, made orthogonal; y for normals along x | people look, or a rim begins |
 | `tangents_by_sign` | a formula without a choice of axes | a batch must not branch |
 """
 
@@ -123,6 +123,13 @@ def along_least(normal: FloatArray) -> FloatArray:
 def near_x(normal: FloatArray) -> FloatArray:
     """Return a tangent, (3,), not unit, of a unit normal, (3,): x made orthogonal, or y for one near x."""
     return across(np.array(AXES[0] if abs(normal[0]) < ALONG_X else AXES[1]), normal)
+
+
+def tangents_near_x(normal: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return two unit vectors, (3,), that with a unit normal make a right-handed frame: x and y for z."""
+    first = near_x(normal)
+    first = first / np.linalg.norm(first)
+    return first, np.cross(normal, first)
 
 
 def tangents_by_sign(normal: Triple[Real]) -> tuple[Triple[Real], Triple[Real]]:

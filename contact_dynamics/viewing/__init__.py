@@ -4,11 +4,12 @@ It draws the answers of `contact_dynamics.questions` and their parts. They may c
 Python, from a live server, or from its log.
 
 In reading order: the colours (`palette`) and what they mean in words (`legend`), names of what is drawn
-(`entities`), bodies and surfaces (`shape`, `scene`), what was measured (`measured`), the three kinds of
-answers (`trajectory`, `impact` with its `impulse_space`, `contact_modes`) and what they say (`words`),
-lecture 25's picture of rotations (`poinsot`), lecture 26's of modes and wrenches (`planar_scene`,
-`planar_modes`, `wrench_chart`, `mode_map`, `force_dual`), the arrangement of the views (`blueprint`), all of
-it together (`picture`), and where it goes (`sinks`), a file or a viewer that is started (`viewer_process`).
+(`entities`), bodies and surfaces (`scene`), what was measured (`measured`), the three kinds of answers
+(`trajectory`, `impact` with its `impulse_space`, `contact_modes`), lecture 25's picture of rotations
+(`poinsot`), lecture 26's of modes and wrenches (`planar_scene`, `planar_modes`, `mode_map`, `force_dual`),
+the arrangement of the views (`blueprint`), all of it together (`picture`), and where it goes (`sinks`), a
+file or a viewer that is started (`viewer_process`). The arrays that the diagrams show come from
+`contact_dynamics.diagrams`.
 
 Everything is drawn on one timeline, `stamp`: the stamps of the states, to the nanosecond. An answer appears
 at the stamp of the state that it was computed from, never later, so that a live view that follows the newest

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun.blueprint as rrb
 
+from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.viewing import contact_modes, impact, palette, trajectory
 from contact_dynamics.viewing.entities import (
     ANSWER_LOG,
@@ -26,7 +27,6 @@ from contact_dynamics.viewing.entities import (
     predicted_entity,
     trail_entity,
 )
-from contact_dynamics.viewing.scene import tangents
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -82,7 +82,7 @@ def eye_on(points_W: FloatArray, *, up_W: FloatArray, margin: float) -> Eye:
     target = 0.5 * (low + high)
     level = points_W - np.outer(points_W @ up_W, up_W)
     travel = level[-1] - level[0]
-    side = np.cross(travel, up_W) if float(np.linalg.norm(travel)) > NO_TRAVEL else -tangents(up_W)[1]
+    side = np.cross(travel, up_W) if float(np.linalg.norm(travel)) > NO_TRAVEL else -tangents_near_x(up_W)[1]
     side = side / np.linalg.norm(side)
     bulge = float((level.mean(axis=0) - 0.5 * (level[0] + level[-1])) @ side)
     if bulge < -STRAIGHT * float(np.linalg.norm(travel)):

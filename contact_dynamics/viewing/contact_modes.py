@@ -19,8 +19,8 @@ from contact_dynamics.viewing.trajectory import outline
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes import SpatialMode
+    from contact_dynamics.diagrams.shape import Shape
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
-    from contact_dynamics.viewing.shape import Shape
 
 FORCE_LENGTH: Final = 0.6
 """Length of the longest force arrow, relative to the body's size. Labels say how much force it stands for."""

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import impact_entity
-from contact_dynamics.viewing.scene import tangents
 from contact_dynamics.viewing.trajectory import outline
 
 if TYPE_CHECKING:
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from contact_dynamics.diagrams.shape import Shape
     from contact_dynamics.questions.impact import ImpactAnswer
     from contact_dynamics.questions.resolved_impact import SequenceStrike
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.viewing.shape import Shape
 
 ARROW_LENGTH: Final = 1.1
 """Length of the longest arrow of a kind, relative to the body's size. Labels say how much it stands for."""
@@ -203,7 +203,7 @@ def friction_cones(
     for p_W, normal_W, friction in zip(points_W, normals_W, frictions.tolist(), strict=True):
         if friction == 0.0:
             continue
-        u_W, v_W = tangents(normal_W)
+        u_W, v_W = tangents_near_x(normal_W)
         half_angle = math.atan(friction)
         around = np.outer(np.cos(angles), u_W) + np.outer(np.sin(angles), v_W)
         rim = p_W + height * (math.cos(half_angle) * normal_W + math.sin(half_angle) * around)

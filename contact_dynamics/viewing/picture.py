@@ -10,6 +10,16 @@ import numpy as np
 import rerun as rr
 
 from contact_dynamics.constants import ns_after, to_ns
+from contact_dynamics.diagrams.planar_scene import silhouette
+from contact_dynamics.diagrams.shape import Shape, drawn_shape
+from contact_dynamics.diagrams.words import (
+    CONTACT_MODE,
+    IMPACT,
+    TUMBLING,
+    contact_modes_in_words,
+    impact_in_words,
+    tumbling_in_words,
+)
 from contact_dynamics.shapes.convex import NO_SHAPE
 from contact_dynamics.tumbling.regime import Regime
 from contact_dynamics.viewing.blueprint import WINDOW_S, Eye, eye_on, make_blueprint
@@ -27,7 +37,7 @@ from contact_dynamics.viewing.impact import draw_impact
 from contact_dynamics.viewing.impulse_space import draw_impulse_space
 from contact_dynamics.viewing.legend import LEGEND_TEXT
 from contact_dynamics.viewing.measured import draw_prediction_at, draw_states, set_time, style_series
-from contact_dynamics.viewing.planar_modes import DrawnMap, draw_planar_map, draw_planar_modes, silhouette
+from contact_dynamics.viewing.planar_modes import draw_planar_map, draw_planar_modes
 from contact_dynamics.viewing.poinsot import (
     clear_poinsot,
     count_of_flight,
@@ -35,21 +45,13 @@ from contact_dynamics.viewing.poinsot import (
     draw_rolling,
 )
 from contact_dynamics.viewing.scene import draw_axes, draw_body, draw_obstacle, draw_surface
-from contact_dynamics.viewing.shape import Shape, drawn_shape
 from contact_dynamics.viewing.trajectory import draw_trajectory
-from contact_dynamics.viewing.words import (
-    CONTACT_MODE,
-    IMPACT,
-    TUMBLING,
-    contact_modes_in_words,
-    impact_in_words,
-    tumbling_in_words,
-)
 from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from contact_dynamics.diagrams.planar_modes import AnswersMap
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.questions.impact import ImpactAnswer
     from contact_dynamics.questions.tumbling import TumblingAnswer
@@ -82,7 +84,7 @@ class Picture:
         self._predictions: dict[str, _Prediction] = {}
         self._answers: dict[str, str] = {}
         self._told_ns: int | None = None  # stamp of the last answer
-        self._map: DrawnMap | None = None
+        self._map: AnswersMap | None = None
         self._rolling: dict[str, Poinsot] = {}  # bodies whose predicted flight still goes on
         self._framed = False
         self._eye: Eye | None = None

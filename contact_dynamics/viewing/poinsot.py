@@ -16,31 +16,24 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.diagrams.poinsot import poinsot_figure
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import poinsot_entity
 from contact_dynamics.viewing.measured import time_column
-from contact_dynamics.viewing.scene import tangents
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves
-    from contact_dynamics.validation import FloatArray
 
 SAME_MOMENTUM: Final = 0.2
 """Relative. If the angular momentum is off by more, the flight is over. In the demo's toss the noise of
 motion capture makes up to 0.08 of it, and impacts make more than 1."""
 
-_PLANE_MARGIN: Final = 1.25  # size of the plane, relative to what lies on it
-_GRID: Final = 10  # number of lines across the plane in each direction
-_BELOW: Final = 0.005  # relative distance by which the plane is too low, not to hide the herpolhode
 _CURVE_WIDTH: Final = -1.2  # a negative size is in points of the screen
 _GRID_WIDTH: Final = -0.6
-_NET_POINTS: Final = 73
-_MERIDIANS: Final = 8
-_PARALLELS: Final = 7
 _ARROW_WIDTH: Final = 0.02  # relative to the largest semi-axis
 
 
@@ -63,38 +56,29 @@ def draw_poinsot(
     The body must rotate, because there is no plane at rest.
     """
     path = poinsot_entity(body_name)
-    unit = float(picture.ellipsoid_semi_axes.max())
-    down_W = picture.L_W / np.linalg.norm(picture.L_W)
-    u_W, v_W = tangents(-down_W)
-    axes = np.array([u_W, v_W, -down_W])
-    recording.log(path, rr.Transform3D(mat3x3=axes / unit))
-    net = [strip @ picture.principal_axes_B.T for strip in ellipsoid_net(picture.ellipsoid_semi_axes)]
-    ellipsoid = rr.LineStrips3D(net, colors=palette.translucent(palette.MEASURED, 0.45), radii=_GRID_WIDTH)
+    figure = poinsot_figure(picture, curves)
+    unit = figure.unit
+    recording.log(path, rr.Transform3D(mat3x3=figure.axes_W / unit))
+    ellipsoid = rr.LineStrips3D(
+        figure.net_B, colors=palette.translucent(palette.MEASURED, 0.45), radii=_GRID_WIDTH
+    )
     recording.log(f"{path}/body/ellipsoid", ellipsoid)
     polhode = rr.LineStrips3D([curves.polhode_B], colors=palette.POLHODE, radii=_CURVE_WIDTH)
     recording.log(f"{path}/body/polhode", polhode)
     herpolhode = rr.LineStrips3D([curves.herpolhode_W], colors=palette.HERPOLHODE, radii=_CURVE_WIDTH)
     recording.log(f"{path}/herpolhode", herpolhode)
-    foot_W = (1.0 + _BELOW) * picture.invariable_plane_distance * down_W
-    reach = float(np.linalg.norm(curves.herpolhode_W - foot_W, axis=1).max(initial=0.0))
-    half = _PLANE_MARGIN * max(reach, 0.5 * unit)
-    places = np.linspace(-half, half, _GRID + 1).tolist()
-    lines = [
-        foot_W + np.array([s * a - half * b, s * a + half * b])
-        for a, b in ((u_W, v_W), (v_W, u_W))
-        for s in places
-    ]
     recording.log(
-        f"{path}/plane/grid", rr.LineStrips3D(lines, colors=palette.SURFACE_GRID, radii=_GRID_WIDTH)
+        f"{path}/plane/grid", rr.LineStrips3D(figure.grid_W, colors=palette.SURFACE_GRID, radii=_GRID_WIDTH)
     )
-    corners = foot_W + half * np.array([-u_W - v_W, u_W - v_W, u_W + v_W, v_W - u_W])
     patch = rr.Mesh3D(
-        vertex_positions=corners, triangle_indices=[[0, 1, 2], [0, 2, 3]], albedo_factor=palette.SURFACE
+        vertex_positions=figure.corners_W,
+        triangle_indices=[[0, 1, 2], [0, 2, 3]],
+        albedo_factor=palette.SURFACE,
     )
     recording.log(f"{path}/plane/patch", patch)
     momentum = rr.Arrows3D(
         origins=[[0.0, 0.0, 0.0]],
-        vectors=[foot_W],
+        vectors=[figure.foot_W],
         colors=palette.NORMAL,
         radii=_ARROW_WIDTH * unit,
         labels=["angular momentum"],
@@ -126,17 +110,3 @@ def draw_rolling(recording: rr.RecordingStream, body_name: str, states: Sequence
     rates = np.array([state.w_WB_W for state in states])
     arrows = rr.Arrows3D.columns(vectors=rates, origins=np.zeros_like(rates))
     recording.send_columns(f"{path}/angular_velocity", indexes=[stamps], columns=arrows)
-
-
-def ellipsoid_net(semi_axes: FloatArray) -> list[FloatArray]:
-    """Return meridians and parallels, (k, 3) each, of an ellipsoid about the axes of coordinates."""
-    around = np.linspace(0.0, 2.0 * np.pi, _NET_POINTS)
-    strips = []
-    for longitude in np.linspace(0.0, np.pi, _MERIDIANS, endpoint=False).tolist():
-        ring = [np.cos(longitude) * np.sin(around), np.sin(longitude) * np.sin(around), np.cos(around)]
-        strips.append(np.column_stack(ring) * semi_axes)
-    for latitude in np.linspace(-0.5 * np.pi, 0.5 * np.pi, _PARALLELS + 2)[1:-1].tolist():
-        level = np.full(_NET_POINTS, np.sin(latitude))
-        ring = [np.cos(latitude) * np.cos(around), np.cos(latitude) * np.sin(around), level]
-        strips.append(np.column_stack(ring) * semi_axes)
-    return strips

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
-from contact_dynamics.numerics.vectors import near_x
+from contact_dynamics.diagrams.shape import convex_shape
+from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import SCENE, SURFACES, body_entity, entity, trail_entity
-from contact_dynamics.viewing.shape import convex_shape
 
 if TYPE_CHECKING:
+    from contact_dynamics.diagrams.shape import Shape
     from contact_dynamics.shapes.obstacle import Obstacle
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.viewing.shape import Shape
     from contact_dynamics.world import Surface
 
 GRID_SPACING: Final = 0.1
@@ -42,7 +42,7 @@ def draw_surface(
 ) -> None:
     """Draw a square of a surface with that side, m, about the point nearest to ``center_W``, (3,), m."""
     p_W = center_W - float(surface.gaps(center_W)) * surface.normal_W
-    u_W, v_W = (0.5 * side * tangent for tangent in tangents(surface.normal_W))
+    u_W, v_W = (0.5 * side * tangent for tangent in tangents_near_x(surface.normal_W))
     patch = rr.Mesh3D(
         vertex_positions=p_W + np.array([-u_W - v_W, u_W - v_W, u_W + v_W, v_W - u_W]),
         triangle_indices=[[0, 1, 2], [0, 2, 3]],
@@ -94,10 +94,3 @@ def solid(shape: Shape, color: palette.Color) -> rr.Mesh3D:
         vertex_normals=np.repeat(shape.normals_B, 3, axis=0),
         albedo_factor=color,
     )
-
-
-def tangents(normal_W: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return two unit vectors, (3,), that with a unit normal make a right-handed frame: x and y for z."""
-    u_W = near_x(normal_W)
-    u_W = u_W / np.linalg.norm(u_W)
-    return u_W, np.cross(normal_W, u_W)

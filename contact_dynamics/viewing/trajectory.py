@@ -17,10 +17,10 @@ from contact_dynamics.viewing.entities import predicted_entity
 from contact_dynamics.viewing.scene import solid
 
 if TYPE_CHECKING:
+    from contact_dynamics.diagrams.shape import Shape
     from contact_dynamics.motion.covariance import CarriedCovariance
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.viewing.shape import Shape
 
 MOST_PATH_POINTS: Final = 2000
 """If there are more samples than this, they are thinned out evenly. It is the width of a screen."""

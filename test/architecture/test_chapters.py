@@ -37,6 +37,7 @@ CHAPTERS = (
     "contact_modes",  # lecture 26
     "impact",  # lecture 27
     "questions",
+    "diagrams",
     "msg_adapters",
     "recording",
     "viewing",

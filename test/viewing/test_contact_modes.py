@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics.contact_modes import SpatialMode
+from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.viewing import palette
@@ -16,7 +17,6 @@ from contact_dynamics.viewing.contact_modes import (
     letters_of_contacts,
     mode_names,
 )
-from contact_dynamics.viewing.shape import convex_shape
 from viewing.answers import contact_mode_answer
 
 if TYPE_CHECKING:

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from contact_dynamics.diagrams.impulse_space import main_contact
+from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.impact import ImpactOutcome, PathEvent
 from contact_dynamics.questions import SequenceStrike, StruckBody
 from contact_dynamics.viewing.impact import draw_impact, friction_cones, main_strikes
-from contact_dynamics.viewing.impulse_space import main_contact
-from contact_dynamics.viewing.shape import convex_shape
 from viewing.answers import impact_answer, of_two
 
 if TYPE_CHECKING:

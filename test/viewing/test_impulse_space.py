@@ -15,19 +15,14 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from contact_dynamics.contact.contact import Contact, ContactSet
+from contact_dynamics.diagrams.impulse_space import Line, contact_axes, line_in_box, main_contact
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent
 from contact_dynamics.impact.several.orders import several_impact
 from contact_dynamics.impact.spatial.one_contact import spatial_impact, spatial_pair_impact
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import ImpactAnswer, StruckBody
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.viewing.impulse_space import (
-    Line,
-    contact_axes,
-    draw_impulse_space,
-    line_in_box,
-    main_contact,
-)
+from contact_dynamics.viewing.impulse_space import draw_impulse_space
 from contact_dynamics.viewing.measured import set_time
 from viewing.answers import impact_answer, of_two
 from viewing.drawn import STAMP_NS, read_drawn

@@ -6,22 +6,22 @@ import numpy as np
 import pytest
 
 from contact_dynamics.contact_modes import PlanarContactProblem, PlanarWrenchSet, contact_modes, wrench_sets
-from contact_dynamics.plane.force_dual import acceleration_centre
-from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
-from contact_dynamics.viewing import palette
-from contact_dynamics.viewing.force_dual import draw_force_dual, split_generators
-from contact_dynamics.viewing.mode_map import (
+from contact_dynamics.diagrams.force_dual import split_generators
+from contact_dynamics.diagrams.mode_map import (
     NO_MODE,
     OUTSIDE,
     borders_of,
     chart_for,
-    color_of_modes,
-    draw_mode_map,
     look_alike,
     mode_regions,
     widest_places,
 )
-from contact_dynamics.viewing.wrench_chart import DirectionChart, ForceChart, ForceDualChart, WrenchChart
+from contact_dynamics.diagrams.wrench_chart import DirectionChart, ForceChart, ForceDualChart, WrenchChart
+from contact_dynamics.plane.force_dual import acceleration_centre
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.viewing import palette
+from contact_dynamics.viewing.force_dual import draw_force_dual
+from contact_dynamics.viewing.mode_map import color_of_modes, draw_mode_map
 
 if TYPE_CHECKING:
     from collections.abc import Callable

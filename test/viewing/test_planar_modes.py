@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.diagrams.planar_modes import MOST_SETS
+from contact_dynamics.diagrams.planar_scene import silhouette
+from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import ContactModeQuestion, Problem
 from contact_dynamics.questions.contact_modes import answer
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.viewing.planar_modes import MOST_SETS, draw_planar_map, draw_planar_modes, silhouette
-from contact_dynamics.viewing.shape import convex_shape
+from contact_dynamics.viewing.planar_modes import draw_planar_map, draw_planar_modes
 from contact_dynamics.world import Body, box_vertices
 
 if TYPE_CHECKING:

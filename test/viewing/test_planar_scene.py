@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes
+from contact_dynamics.diagrams.planar_scene import cone_edges
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
-from contact_dynamics.viewing.planar_scene import cone_edges, draw_planar_scene
+from contact_dynamics.viewing.planar_scene import draw_planar_scene
 
 if TYPE_CHECKING:
     from collections.abc import Callable

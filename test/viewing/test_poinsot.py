@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from contact_dynamics.diagrams.poinsot import ellipsoid_net
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.tumbling.poinsot_construction import poinsot, rolling_curves
@@ -14,7 +15,6 @@ from contact_dynamics.viewing.poinsot import (
     count_of_flight,
     draw_poinsot,
     draw_rolling,
-    ellipsoid_net,
 )
 from viewing.answers import tumbling_answer
 from viewing.drawn import read_drawn

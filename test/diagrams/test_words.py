@@ -9,9 +9,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics.contact_modes import Certainty, ModeVerdict, SpatialModeMargin
-from contact_dynamics.impact import ImpactOutcome, SequenceEnd
-from contact_dynamics.tumbling import Regime
-from contact_dynamics.viewing.words import (
+from contact_dynamics.diagrams.words import (
     CERTAINTIES,
     OUTCOMES,
     REGIMES,
@@ -19,6 +17,8 @@ from contact_dynamics.viewing.words import (
     VERDICTS,
     margin_in_words,
 )
+from contact_dynamics.impact import ImpactOutcome, SequenceEnd
+from contact_dynamics.tumbling import Regime
 
 
 @pytest.mark.parametrize(

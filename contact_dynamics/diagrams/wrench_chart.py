@@ -21,7 +21,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Protocol
 
 import numpy as np
-import rerun.blueprint as rrb
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -79,12 +78,6 @@ def part_centre(chart: WrenchChart, part: int) -> Vector2:
     between = gap(chart.resolution)
     half = 0.5 * chart.resolution
     return (between + half + part * (chart.resolution + between), between + half)
-
-
-def bounds(chart: WrenchChart) -> rrb.VisualBounds2D:
-    """Return the bounds of a view that shows a whole chart and a note above it."""
-    width, height = picture_size(chart)
-    return rrb.VisualBounds2D(x_range=(0.0, width), y_range=(-0.3 * gap(chart.resolution), height))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

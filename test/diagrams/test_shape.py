@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
+from contact_dynamics.diagrams.shape import NO_SIZE, Shape, convex_shape, drawn_shape
 from contact_dynamics.shapes.convex import NO_SHAPE, box, capsule, cone, cylinder, rounded, sphere
 from contact_dynamics.validation import FloatArray
-from contact_dynamics.viewing.shape import NO_SIZE, Shape, convex_shape, drawn_shape
 from contact_dynamics.world import box_vertices
 
 SIZES = st.floats(1e-3, 10.0)

@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics.contact_modes import WrenchHalfSpace
-from contact_dynamics.plane.force_dual import force_dual
-from contact_dynamics.plane.types import PlanarBody, PlanarWrench
-from contact_dynamics.viewing.wrench_chart import (
+from contact_dynamics.diagrams.wrench_chart import (
     ANTICLOCKWISE,
     CLOCKWISE,
     HIDDEN,
@@ -17,6 +15,8 @@ from contact_dynamics.viewing.wrench_chart import (
     part_centre,
     picture_size,
 )
+from contact_dynamics.plane.force_dual import force_dual
+from contact_dynamics.plane.types import PlanarBody, PlanarWrench
 
 BODY = PlanarBody(mass=2.0, inertia=0.5)
 RHO = BODY.radius_of_gyration
