@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import enum
+import html
 import math
 from collections.abc import Iterable, Mapping
 from decimal import Decimal
@@ -56,6 +57,10 @@ class Record:
     def __str__(self) -> str:
         """Return the fields, one on each line."""
         return "\n".join([type(self).__name__, *_lines(self, "  ")])
+
+    def _repr_html_(self) -> str:
+        """Return the fields as a table, which notebooks show. Fields of fields open with a click."""
+        return _table(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fields by name, as plain numbers, strings, lists and dicts that JSON takes.
@@ -145,3 +150,24 @@ def _lines(record: object, indent: str) -> list[str]:
         else:
             lines.append(f"{indent}{name:{width}}  {_short(value)}")
     return lines
+
+
+def _table(record: object) -> str:
+    """Return the fields as a table in HTML."""
+    rows = "".join(
+        f'<tr><th style="text-align:left">{html.escape(name)}</th>'
+        f'<td style="text-align:left">{_cell(value)}</td></tr>'
+        for name, value in _fields(record)
+    )
+    return f"<table><caption>{type(record).__name__}</caption>{rows}</table>"
+
+
+def _cell(value: Any) -> str:
+    """Return a value in a table. Other results, and lists of them, are closed until they are clicked."""
+    if isinstance(value, Record):
+        return f"<details><summary>{type(value).__name__}</summary>{_table(value)}</details>"
+    if isinstance(value, tuple | list) and value and all(isinstance(each, Record) for each in value):
+        tables = "".join(_table(each) for each in value[:_MOST_SHOWN])
+        more = f"<p>and {len(value) - _MOST_SHOWN} more</p>" if len(value) > _MOST_SHOWN else ""
+        return f"<details><summary>{len(value)} entries</summary>{tables}{more}</details>"
+    return html.escape(_short(value))

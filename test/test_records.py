@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from decimal import Decimal
 from enum import Enum
 from typing import NamedTuple
+from xml.etree import ElementTree as ET
 
 import numpy as np
 
@@ -96,3 +97,20 @@ def test_an_enumeration_prints_as_its_name() -> None:
     assert str(Law.POISSON) == f"{Law.POISSON}" == "POISSON"
     assert f"{Law.POISSON:>9}" == "  POISSON"
     assert Law.POISSON == 0
+
+
+def test_a_notebook_shows_a_table_of_the_fields() -> None:
+    outer = Outer(name="<brick>", several=(Inner(),) * 12)
+    shown = outer._repr_html_()
+    assert "<brick>" not in shown
+    assert "&lt;brick&gt;" in shown
+    root = ET.fromstring(shown)  # tags close
+    assert [row[0].text for row in root if row.tag == "tr"] == list(outer.to_dict())
+    cells = {row[0].text: row[1] for row in root if row.tag == "tr"}
+    assert cells["vector"].text == "[1, 0.333333, nan]"
+    assert cells["table"].text == "array of shape (100, 3)"
+    summary, table = cells["inner"][0]
+    assert summary.text == "Inner"
+    assert "".join(table.itertext()).startswith("InnercolourREDlong0.333333")
+    assert len(cells["several"].findall("details/table")) == 9
+    assert "and 3 more" in shown
