@@ -51,7 +51,8 @@ setup(
     zip_safe=False,
     install_requires=requirements("core"),
     extras_require={
-        kind: requirements(kind) for kind in ("jazzy", "view", "evaluate", "test", "bench", "docs")
+        **{kind: requirements(kind) for kind in ("jazzy", "view", "plot", "test", "bench", "docs")},
+        "evaluate": [*requirements("evaluate"), *requirements("plot")],
     },
     entry_points={"console_scripts": ["contact-dynamics = contact_dynamics.command_line:main"]},
     data_files=[

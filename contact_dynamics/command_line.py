@@ -69,6 +69,12 @@ VERBS: Final = {
         (),
         "rewrite a damaged log, so that every reader takes it",
     ),
+    "plot": Verb(
+        "contact_dynamics.plots.run",
+        "contact_dynamics.plots.arguments:plot_parser",
+        ("matplotlib",),
+        "draw the answers of a log as diagrams into files",
+    ),
     "toss_publisher": Verb(
         "contact_dynamics.demo.toss_publisher",
         "contact_dynamics.demo.arguments:toss_publisher_parser",
@@ -114,7 +120,9 @@ def _remedy(verb: str, missing: list[str]) -> str:
     lines = [f"contact-dynamics {verb} needs what is not installed: {', '.join(missing)}."]
     if "rerun" in missing:
         lines.append("rerun: the extra [view] brings it. In the project's folder: pip install '.[view]'")
-    if set(missing) - {"rerun"}:
+    if "matplotlib" in missing:
+        lines.append("matplotlib: the extra [plot] brings it. In the project's folder: pip install '.[plot]'")
+    if set(missing) - {"rerun", "matplotlib"}:
         lines.append(
             "ROS 2 Jazzy and the project's interface package. With an installed ROS: source it, and a\n"
             "workspace in which colcon has built the project. Without: `make setup` in the project's\n"

@@ -19,6 +19,7 @@ EXAMPLES = {
     "impulse_space.py": "r = (1, -2): reverses in compression",
     "landing_on_corners.py": "ms: corner 1",
     "newtons_cradle.py": "0.000  0.000  0.000  0.000  1.000 m/s",
+    "diagrams_on_paper.py": "rsrs, ",
     "tray.py": "brings about rsrs",
     "wheel_over_an_edge.py": "1.6 m/s on its edge : s, presses with 0.000 N",
 }

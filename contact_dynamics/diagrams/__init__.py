@@ -1,9 +1,11 @@
 """Computes what pictures show, as plain arrays. Nothing here draws.
 
-Renderers draw these arrays and compute none of their own, so that all of them show the same numbers.
+Two renderers draw these arrays: `contact_dynamics.viewing` in rerun, and `contact_dynamics.plots` with
+Matplotlib. They compute none of their own, so that both show the same numbers.
 
 In reading order: the faces and edges of bodies (`shape`), lecture 27's impulse space (`impulse_space`),
 lecture 26's body with its contacts (`planar_scene`, `planar_modes`), charts of applied wrenches
 (`wrench_chart`) and the map of modes on them (`mode_map`), lecture 26's construction for one mode
-(`force_dual`), lecture 25's rolling ellipsoid (`poinsot`), and what answers say in words (`words`).
+(`force_dual`), lecture 25's rolling ellipsoid (`poinsot`), energies and momenta over a trajectory
+(`trajectory_curves`), and what answers say in words (`words`).
 """

@@ -13,7 +13,7 @@ import numpy as np
 
 from contact_dynamics.contact_modes.planar.wrench_sets import length_of
 from contact_dynamics.contact_modes.spatial.applied_wrench import applied_wrench
-from contact_dynamics.diagrams.mode_map import chart_for
+from contact_dynamics.diagrams.mode_map import LIVE_RESOLUTION, chart_for
 from contact_dynamics.diagrams.planar_scene import planar_scene_of
 from contact_dynamics.diagrams.words import margin_in_words
 from contact_dynamics.questions.planar_view import seen_contacts, seen_modes, seen_wrench, seen_wrench_set
@@ -115,7 +115,11 @@ def modes_side_by_side(
 
 
 def map_of_answer(
-    answer: ContactModeAnswer, plane: PlaneOfMotion, *, body: MassProperties | None = None
+    answer: ContactModeAnswer,
+    plane: PlaneOfMotion,
+    *,
+    body: MassProperties | None = None,
+    resolution: int = LIVE_RESOLUTION,
 ) -> AnswersMap | None:
     """Return the map of an answer, or None if it has no wrench sets, or more than `MOST_SETS`.
 
@@ -124,6 +128,7 @@ def map_of_answer(
         plane: The plane of motion.
         body: Mass properties, from which the wrench in question follows. If it is None, the wrench is not
             known.
+        resolution: Points on a side of the chart.
     """
     if not answer.wrench_sets or len(answer.wrench_sets) > MOST_SETS:
         return None
@@ -131,7 +136,7 @@ def map_of_answer(
     applied = _applied(answer, plane, body)
     return AnswersMap(
         sets=sets,
-        chart=chart_for(sets, length=length_of(sets), applied=applied),
+        chart=chart_for(sets, length=length_of(sets), applied=applied, resolution=resolution),
         applied=applied,
         change=_change(answer, plane),
     )

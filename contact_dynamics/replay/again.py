@@ -84,6 +84,11 @@ class ServerAgain:
         self._sources = {each.full_name: each.readers for each in state_sources(parameters)}
 
     @property
+    def world_frame(self) -> str:
+        """The name of the world's frame."""
+        return self._world_frame
+
+    @property
     def topics(self) -> frozenset[str]:
         """The topics that answers depend on."""
         return frozenset({*self._sources, CLOCK})

@@ -155,8 +155,8 @@ def _ask(call: ServiceCall, server: ServerAgain, found: Verification) -> None:
         _unreadable(found, tally, "the log has an answer without its question")
         return
     try:
-        request, _ = _contents(call.request_event, "request")
-        logged, make_response = _contents(call.response_event, "response")
+        request, _ = contents(call.request_event, "request")
+        logged, make_response = contents(call.response_event, "response")
     except InvalidFieldError as error:
         _unreadable(found, tally, str(error))
         return
@@ -194,7 +194,7 @@ def _beyond(found: Iterable[Difference], tolerance: float) -> tuple[bool, tuple[
     return same, tuple(told)
 
 
-def _contents(event: LoggedMessage, part: str) -> tuple[Message, type[Message]]:
+def contents(event: LoggedMessage, part: str) -> tuple[Message, type[Message]]:
     """Return the request or the response that an event carries, and its type."""
     contents: list[Message] = getattr(decode_without_ros(event), part)
     if not contents:

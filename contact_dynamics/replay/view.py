@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
+from contact_dynamics.diagrams.words import CONTACT_MODE, IMPACT, TUMBLING
 from contact_dynamics.questions.impact import ImpactAnswer
 from contact_dynamics.questions.tumbling import TumblingAnswer
 from contact_dynamics.replay.events import OK, Answered, StateCame
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode, raise_errors
-from contact_dynamics.viewing.words import CONTACT_MODE, IMPACT, TUMBLING
 
 if TYPE_CHECKING:
     from collections.abc import Callable

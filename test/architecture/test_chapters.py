@@ -45,6 +45,7 @@ CHAPTERS = (
     "nodes",
     "replay",
     "evaluation",
+    "plots",
     "demo",
     "command_line",
     "__main__",

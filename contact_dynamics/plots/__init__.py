@@ -1,0 +1,47 @@
+"""Draws results with Matplotlib: the viewer's diagrams, for papers, notebooks and terminals without a viewer.
+
+Each function draws one diagram into the `Axes` that it is given. What it draws are the arrays of
+`contact_dynamics.diagrams`, which the viewer draws too. `contact_dynamics.plots` can be imported without
+Matplotlib, which the extra ``[plot]`` brings.
+
+In reading order: the colours (`colors`) and what all diagrams share (`style`), lecture 25's curves
+(`trajectory`) and rolling ellipsoid (`poinsot`), lecture 26's body with its contacts (`planar_scene`),
+contact forces in their cones (`contact_forces`) and charts of wrenches (`wrenches`), lecture 27's impulse
+space (`impulse_space`), all diagrams of an answer as figures (`figures`), and the command
+`contact-dynamics plot` (`arguments`, `logged_answers`, `run`).
+"""
+
+from contact_dynamics.plots.contact_forces import draw_contact_forces
+from contact_dynamics.plots.figures import figures_of
+from contact_dynamics.plots.impulse_space import draw_impulse_space
+from contact_dynamics.plots.planar_scene import draw_planar_scene
+from contact_dynamics.plots.poinsot import draw_poinsot
+from contact_dynamics.plots.style import save_figure
+from contact_dynamics.plots.trajectory import (
+    draw_angular_momentum,
+    draw_angular_velocity,
+    draw_attitude,
+    draw_energy,
+    draw_momentum,
+    draw_position,
+    draw_velocity,
+)
+from contact_dynamics.plots.wrenches import draw_force_dual, draw_mode_map
+
+__all__ = [
+    "draw_angular_momentum",
+    "draw_angular_velocity",
+    "draw_attitude",
+    "draw_contact_forces",
+    "draw_energy",
+    "draw_force_dual",
+    "draw_impulse_space",
+    "draw_mode_map",
+    "draw_momentum",
+    "draw_planar_scene",
+    "draw_poinsot",
+    "draw_position",
+    "draw_velocity",
+    "figures_of",
+    "save_figure",
+]

@@ -1,0 +1,48 @@
+"""The arguments of `contact-dynamics plot`."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Final
+
+MOST_QUESTIONS: Final = 100
+"""This many questions of a log are drawn unless the command says otherwise."""
+
+
+def plot_parser() -> argparse.ArgumentParser:
+    """Return the parser of `contact-dynamics plot`."""
+    parser = argparse.ArgumentParser(
+        prog="contact-dynamics plot",
+        description="Draw the diagrams of a log's answers into files: trajectories, Poinsot's picture, "
+        "impacts in impulse space, contact modes with their forces, maps of modes and force duals. It needs "
+        "the log alone, no ROS and no viewer.",
+        epilog="Each file's name has the question's number in the log, its service, its body and the "
+        "diagram. The exit code is 0 if something was drawn, 1 if the log has no answer with a diagram, and "
+        "2 if it is no log of the server or a file cannot be written.",
+    )
+    parser.add_argument(
+        "log", nargs="?", metavar="LOG", help="folder of a log of the server, or its .mcap file"
+    )
+    parser.add_argument("--output", type=Path, metavar="DIR", help="folder for the files, which is made")
+    parser.add_argument(
+        "--format", choices=("svg", "png"), default="svg", help="format of the files (default: svg)"
+    )
+    parser.add_argument(
+        "--most",
+        type=_count,
+        default=MOST_QUESTIONS,
+        metavar="N",
+        help=f"draw the first N answered questions (default: {MOST_QUESTIONS})",
+    )
+    return parser
+
+
+def _count(text: str) -> int:
+    try:
+        value = int(text)
+    except ValueError:
+        value = 0
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"found {text}, allowed is a whole number >= 1")
+    return value

@@ -1,0 +1,163 @@
+"""All diagrams of an answer, as figures of Matplotlib."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.diagrams.planar_modes import map_of_answer, modes_side_by_side
+from contact_dynamics.diagrams.planar_scene import silhouette
+from contact_dynamics.diagrams.shape import drawn_shape
+from contact_dynamics.diagrams.wrench_chart import DirectionChart, ForceDualChart
+from contact_dynamics.plots.contact_forces import draw_contact_forces
+from contact_dynamics.plots.impulse_space import draw_impulse_space
+from contact_dynamics.plots.planar_scene import draw_planar_scene
+from contact_dynamics.plots.poinsot import draw_poinsot
+from contact_dynamics.plots.trajectory import (
+    draw_angular_momentum,
+    draw_angular_velocity,
+    draw_attitude,
+    draw_energy,
+    draw_momentum,
+    draw_position,
+    draw_velocity,
+)
+from contact_dynamics.plots.wrenches import draw_force_dual, draw_mode_map
+from contact_dynamics.questions.contact_modes import ContactModeAnswer
+from contact_dynamics.questions.impact import ImpactAnswer
+from contact_dynamics.shapes.convex import NO_SHAPE
+from contact_dynamics.tumbling.regime import Regime
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from contact_dynamics.questions.tumbling import TumblingAnswer
+    from contact_dynamics.rigid_body.body import MassProperties
+    from contact_dynamics.shapes.convex import ConvexShape
+    from contact_dynamics.validation import FloatArray
+
+MOST_MODES: Final = 6
+"""Figures of this many consistent modes are made, the first ones."""
+
+_RESOLUTION: Final = 600  # points on a side of the charts of wrenches
+
+
+class NamedFigure(NamedTuple):
+    """A figure and what it shows, in words that suit a file's name."""
+
+    name: str
+    figure: Figure
+
+
+def figures_of(
+    answer: TumblingAnswer | ImpactAnswer | ContactModeAnswer,
+    *,
+    gravity_W: FloatArray,
+    body: MassProperties | None = None,
+    other: MassProperties | None = None,
+    shape: ConvexShape = NO_SHAPE,
+) -> Iterator[NamedFigure]:
+    """Yield the figures of an answer. There are none for an answer without a diagram.
+
+    Args:
+        answer: The answer to any of the three questions.
+        gravity_W: (3,), m/s^2, world axes, for the potential energy.
+        body: Mass properties of the body. Without them there are no lines in impulse space, no energies and
+            no momenta.
+        other: Mass properties of a second body that is struck.
+        shape: The body's shape, for its outline.
+    """
+    if isinstance(answer, ImpactAnswer):
+        yield from _of_impact(answer, body, other)
+    elif isinstance(answer, ContactModeAnswer):
+        yield from _of_modes(answer, body, shape)
+    else:
+        yield from _of_tumbling(answer, body, gravity_W)
+
+
+def _of_impact(
+    answer: ImpactAnswer, body: MassProperties | None, other: MassProperties | None
+) -> Iterator[NamedFigure]:
+    if len(answer.impact.path_W) == 0:
+        return
+    figure = _figure(8.0, 4.6)
+    draw_impulse_space(figure.add_subplot(), body, answer, other=other)
+    yield NamedFigure("impulse-space", figure)
+
+
+def _of_tumbling(
+    answer: TumblingAnswer, body: MassProperties | None, gravity_W: FloatArray
+) -> Iterator[NamedFigure]:
+    trajectory = answer.trajectory
+    if len(trajectory) > 0:
+        figure = _figure(13.0, 11.0)
+        figure.suptitle(f"{answer.body_name or 'a body'}: predicted motion")
+        places = iter(range(1, 8))
+
+        def axes() -> Axes:
+            return figure.add_subplot(4, 2, next(places))
+
+        draw_position(axes(), trajectory, covariance=answer.covariance)
+        draw_attitude(axes(), trajectory)
+        draw_velocity(axes(), trajectory)
+        draw_angular_velocity(axes(), trajectory)
+        if body is not None:
+            draw_momentum(axes(), trajectory, body)
+            draw_angular_momentum(axes(), trajectory, body)
+            draw_energy(axes(), trajectory, body, gravity_W=gravity_W)
+        yield NamedFigure("motion", figure)
+    rotation, curves = answer.poinsot, answer.curves
+    if rotation is not None and curves is not None and rotation.regime is not Regime.AT_REST:
+        figure = _figure(8.0, 6.0)
+        draw_poinsot(figure.add_subplot(projection="3d"), rotation, curves, answer.state)
+        yield NamedFigure("poinsot", figure)
+
+
+def _of_modes(
+    answer: ContactModeAnswer, body: MassProperties | None, shape: ConvexShape
+) -> Iterator[NamedFigure]:
+    for i, mode in enumerate(answer.modes[:MOST_MODES], start=1):
+        figure = _figure(7.0, 4.6)
+        draw_contact_forces(
+            figure.add_subplot(), answer.contacts, mode, title=f"contact forces in {mode.mode}"
+        )
+        yield NamedFigure(f"contact-forces-{i}", figure)
+    plane = answer.plane
+    if plane is None:
+        return
+    outline = silhouette(drawn_shape(shape), plane.axes_W @ answer.state.R_WB)
+    view = modes_side_by_side(answer, plane, outline=outline)
+    for i, title in enumerate(view.titles[:MOST_MODES]):
+        figure = _figure(8.0, 4.6)
+        draw_planar_scene(figure.add_subplot(), view.scene(i), title=title)
+        yield NamedFigure(f"planar-scene-{i + 1}", figure)
+    shown = map_of_answer(answer, plane, body=body, resolution=_RESOLUTION)
+    if shown is None:
+        return
+    figure = _figure(11.0, 5.0)
+    draw_mode_map(figure.add_subplot(), shown.sets, shown.chart, applied=shown.applied, change=shown.change)
+    yield NamedFigure("mode-map", figure)
+    if not isinstance(shown.chart, DirectionChart):  # the construction is that of a body at rest
+        return
+    half_side, middle = 0.5 * float(np.max(view.high - view.low)), 0.5 * (view.low + view.high)
+    chart = ForceDualChart(
+        length=shown.chart.length,
+        half_side=half_side,
+        centre=(float(middle[0]), float(middle[1])),
+        resolution=_RESOLUTION,
+    )
+    for i, seen in enumerate(view.modes[:MOST_MODES], start=1):
+        one = next(one for one in shown.sets if one.mode == seen.mode)
+        figure = _figure(11.0, 5.0)
+        draw_force_dual(figure.add_subplot(), one, view.contacts, chart, outlines=[outline])
+        yield NamedFigure(f"force-dual-{i}", figure)
+
+
+def _figure(width: float, height: float) -> Figure:
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), layout="compressed")  # it knows of equal scales

@@ -1,0 +1,91 @@
+"""Draws an impact in impulse space. `contact_dynamics.diagrams.impulse_space` says what it shows."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from contact_dynamics.diagrams.impulse_space import BELOW, EVENTS, impulse_space_of, line_in_box, main_contact
+from contact_dynamics.diagrams.words import outcome_in_words
+from contact_dynamics.impact.law import PathEvent
+from contact_dynamics.plots import colors
+from contact_dynamics.plots.style import legend_beside, lines_through_zero
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from contact_dynamics.questions.impact import ImpactAnswer
+    from contact_dynamics.rigid_body.body import MassProperties
+
+_MARKERS: Final = {
+    PathEvent.SLIDING_STOPS: "s",
+    PathEvent.COMPRESSION_ENDS: "o",
+    PathEvent.RESTITUTION_ENDS: "^",
+}
+
+
+def draw_impulse_space(
+    axes: Axes,
+    mass_properties: MassProperties | None,
+    answer: ImpactAnswer,
+    *,
+    other: MassProperties | None = None,
+) -> None:
+    """Draw the impulse path of an impact's main contact, N s, with what bounds and bends it.
+
+    In space, path and sticking line are projected onto the plane of the normal and the total impulse, and the
+    legend says so.
+
+    Args:
+        axes: The axes to draw into.
+        mass_properties: Those of the body. If they are None, there are no sticking and compression lines.
+        answer: The impact.
+        other: Mass properties of the body that is struck. Without them there are no lines for two bodies.
+    """
+    space = impulse_space_of(mass_properties, answer, other=other)
+    projected, cut = (", projected", ", cut") if space.in_space else ("", "")
+    lines_through_zero(axes)
+    friction = float(answer.contacts.frictions[main_contact(answer.impact)])
+    axes.fill(*space.cone.T, color=colors.PURPLE, alpha=0.12, linewidth=0.0)
+    axes.plot(
+        *space.cone.T, color=colors.PURPLE, label=f"friction cone, μ = {friction:.3g}", gid="friction_cone"
+    )
+    for name, style, color, lines in (
+        (f"sticking line{projected}", "--", colors.BLUE, space.sticking),
+        (
+            f"{'compression plane' if space.in_space else 'compression line'}{cut}",
+            "-.",
+            colors.ORANGE,
+            space.compression,
+        ),
+    ):
+        for i, part in enumerate(part for line in lines for part in line_in_box(line, space.extent)):
+            axes.plot(
+                *part.T,
+                color=color,
+                linestyle=style,
+                label=name if i == 0 else None,
+                gid=f"{name.partition(',')[0].replace(' ', '_')}_{i}",
+            )
+    axes.plot(
+        *space.path.T, color=colors.BLACK, linewidth=2.2, label=f"impulse so far{projected}", gid="path"
+    )
+    for i, (event, (t, n)) in enumerate(zip(space.events, space.points.tolist(), strict=True)):
+        axes.plot(
+            [t],
+            [n],
+            linestyle="",
+            marker=_MARKERS[event],
+            markersize=8.0,
+            markerfacecolor="white",
+            color=colors.BLACK,
+            label=f"{EVENTS[event]}:\n({t:.3g}, {n:.3g}) N s",
+            gid=f"event_{i}",
+            zorder=3.0,
+        )
+    axes.set_aspect("equal")
+    axes.set_xlim(-space.extent, space.extent)
+    axes.set_ylim(-BELOW * space.extent, space.extent)
+    axes.set_xlabel("tangential impulse, N s")
+    axes.set_ylabel("normal impulse, N s")
+    axes.set_title(f"{answer.body_name or 'a body'} {outcome_in_words(answer.impact.outcome)}")
+    legend_beside(axes)

@@ -1,0 +1,115 @@
+"""Reads the answers of a log as the server gave them, each with the bodies that its question was about."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from contact_dynamics.questions.contact_modes import ContactModeAnswer
+from contact_dynamics.questions.impact import ImpactAnswer
+from contact_dynamics.questions.tumbling import TumblingAnswer
+from contact_dynamics.recording.bag_reader import BagReader
+from contact_dynamics.recording.errors import DamagedLogWarning
+from contact_dynamics.recording.service_calls import service_calls
+from contact_dynamics.records import Record
+from contact_dynamics.replay.of_log import server_of_log
+from contact_dynamics.replay.timeline import is_event_of_ours
+from contact_dynamics.replay.verify import contents
+from contact_dynamics.validation import FloatArray
+from contact_dynamics.world import Body
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+    from typing import Any
+
+    from contact_dynamics.world import World
+
+OK: Final = 0
+"""The status of a response that has an answer, in all services."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class LoggedAnswer(Record):
+    """An answer of a log.
+
+    Attributes:
+        number: Number of its question among all of the log, from 1.
+        kind: "tumbling", "impact" or "contact-modes".
+        answer: The answer as the server gave it.
+        body: The body that the question was about, or None if the log does not describe it.
+        other: A second body that was struck, or None.
+        gravity_W: (3,), m/s^2, world axes.
+    """
+
+    number: int
+    kind: str
+    answer: TumblingAnswer | ImpactAnswer | ContactModeAnswer
+    body: Body | None
+    other: Body | None
+    gravity_W: FloatArray
+
+
+def logged_answers(path: Path) -> Iterator[LoggedAnswer]:
+    """Yield the answers of a log, in the order in which they were given.
+
+    Refused questions and batches are left out.
+
+    Raises:
+        NotALogError: the path has no log, or a log of something else than the server.
+        ConfigurationError: its record of the run lacks a parameter, or has one that is not allowed.
+        NotSupportedError: the log's services have other fields than this version's.
+        InvalidFieldError: a call has no contents.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DamagedLogWarning)  # what is whole is drawn
+        _, server = server_of_log(path)
+        readers = _readers()
+        log = BagReader(path)
+        events = (message for message in log.messages() if is_event_of_ours(message))
+        for number, call in enumerate(service_calls(events), start=1):
+            reader = readers.get(call.service_type.rpartition("/")[2])
+            if reader is None or call.request_event is None or call.response_event is None:
+                continue
+            response: Any = contents(call.response_event, "response")[0]
+            if response.status != OK:
+                continue
+            request = contents(call.request_event, "request")[0]
+            kind, question_from, answer_from = reader
+            question = question_from(request, world=server.world, world_frame=server.world_frame)
+            gravity_W = getattr(question, "gravity_W", None)  # an impact needs none
+            yield LoggedAnswer(
+                number=number,
+                kind=kind,
+                answer=answer_from(response, world=server.world),
+                body=_body(question.body, server.world),
+                other=_body(getattr(question, "other", None), server.world),
+                gravity_W=server.world.gravity_W if gravity_W is None else gravity_W,
+            )
+
+
+def _readers() -> dict[str, tuple[str, Callable[..., Any], Callable[..., Any]]]:
+    """Return by type of service what it is called, and what reads its requests and responses."""
+    # They import messages, which may exist only after the log has told what they look like.
+    from msg_adapters.contact_mode import contact_mode_answer_from_msg
+    from msg_adapters.impact import impact_answer_from_msg
+    from msg_adapters.questions import (
+        contact_mode_question_from_msg,
+        impact_question_from_msg,
+        tumbling_question_from_msg,
+    )
+    from msg_adapters.tumbling import tumbling_answer_from_msg
+
+    return {
+        "PredictTumbling": ("tumbling", tumbling_question_from_msg, tumbling_answer_from_msg),
+        "PredictImpact": ("impact", impact_question_from_msg, impact_answer_from_msg),
+        "PredictContactMode": ("contact-modes", contact_mode_question_from_msg, contact_mode_answer_from_msg),
+    }
+
+
+def _body(body: Body | str | None, world: World) -> Body | None:
+    """Return a body that a question describes or names, or None if the world does not have it."""
+    if body is None or isinstance(body, Body):
+        return body
+    return next((each for each in world.bodies if each.name == body), None)

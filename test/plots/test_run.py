@@ -1,0 +1,149 @@
+"""The command on the log of a real server, with and without ROS and Matplotlib."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import pytest
+
+pytest.importorskip("matplotlib", reason="matplotlib of requirements/test.txt is not installed")
+
+from contact_dynamics.diagrams.impulse_space import main_contact
+from contact_dynamics.impact.law import PathEvent
+from contact_dynamics.plots.logged_answers import logged_answers
+from contact_dynamics.plots.run import NO_LOG, NOTHING_DRAWN, main
+from contact_dynamics.questions.impact import ImpactAnswer
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from running_server import ROOT, server_and_client
+
+BLOCKED = """
+import sys
+class Missing:
+    def find_spec(self, name, path=None, target=None):
+        first = name.partition(".")[0]
+        if first in {names} or first.endswith(("_msgs", "_interfaces")):
+            raise ModuleNotFoundError(f"No module named {{name!r}}", name=name)
+sys.meta_path.insert(0, Missing())
+from contact_dynamics.command_line import main
+sys.exit(main(sys.argv[1:]))
+"""
+"""The command line where some modules cannot be found, and no package of messages."""
+
+
+def without(names: set[str], *arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    """Run `contact-dynamics plot` in a process that lacks these modules."""
+    return subprocess.run(
+        [sys.executable, "-c", BLOCKED.format(names=names), "plot", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "AMENT_PREFIX_PATH": ""},
+    )
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The log of a server that was asked one question of each kind, and one that it refused."""
+    folder = tmp_path_factory.mktemp("plotted")
+    tumbling = PredictTumbling.Request(
+        body_name="brick",
+        state_source=PredictTumbling.Request.STATE_EXPLICIT,
+        times=[0.1, 0.2],
+        curve_points=50,
+    )
+    tumbling.state.angular_velocity.y = 6.0
+    tumbling.state.angular_velocity.z = 0.5
+    impact = PredictImpact.Request(body_name="brick", state_source=PredictImpact.Request.STATE_EXPLICIT)
+    impact.state.pose.position.z = 0.4
+    impact.state.pose.orientation.x, impact.state.pose.orientation.w = 0.3, 0.9539392
+    impact.state.linear_velocity.x = 0.5
+    standing = PredictContactMode.Request(
+        body_name="brick", state_source=PredictContactMode.Request.STATE_EXPLICIT, want_margins=True
+    )
+    standing.state.pose.position.z = 0.025
+    with server_and_client(folder, params_file=ROOT / "config" / "server.yaml") as client:
+        for request in (tumbling, PredictImpact.Request(body_name="cat"), impact, standing):
+            answer = client.ask(request)
+            assert (answer.status == answer.OK) == (request.body_name == "brick"), answer.message
+    (found,) = folder.iterdir()
+    return found
+
+
+def test_each_answer_has_its_diagrams_without_ros(log: Path, tmp_path: Path) -> None:
+    names = {"rclpy", "rpyutils", "ament_index_python", "rerun"}
+    run = without(names, log, "--output", tmp_path / "out")
+    assert run.returncode == 0, run.stderr
+    files = {path.name for path in (tmp_path / "out").iterdir()}
+    assert {
+        "001-tumbling-brick-motion.svg",
+        "001-tumbling-brick-poinsot.svg",
+        "003-impact-brick-impulse-space.svg",
+        "004-contact-modes-brick-contact-forces-1.svg",
+    } <= files
+    assert set(run.stdout.split()) == {str(tmp_path / "out" / name) for name in files}
+    impact = next(each.answer for each in logged_answers(log) if isinstance(each.answer, ImpactAnswer))
+    words = "".join(ET.parse(tmp_path / "out" / "003-impact-brick-impulse-space.svg").getroot().itertext())
+    contact = main_contact(impact.impact)
+    vertices = zip(impact.impact.path_W, impact.impact.path_contacts, impact.impact.path_events, strict=True)
+    end_W = next(
+        impulse_W
+        for impulse_W, owner, event in vertices
+        if owner == contact and event is PathEvent.RESTITUTION_ENDS
+    )
+    normal = float(end_W @ impact.contacts.normals_W[contact])
+    assert f"{normal:.3g}) N s" in words
+
+
+def test_pictures_and_few_answers(log: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([str(log), "--output", str(tmp_path), "--format", "png", "--most", "1"]) == 0
+    assert capsys.readouterr().err == "2 diagrams of 1 answers\n"
+    for path in tmp_path.iterdir():
+        assert path.read_bytes().startswith(b"\x89PNG"), path
+
+
+def test_a_missing_matplotlib_is_named_with_what_brings_it(tmp_path: Path) -> None:
+    helped = without({"matplotlib"}, "--help")
+    assert helped.returncode == 0, helped.stderr
+    assert "--output DIR" in helped.stdout
+    run = without({"matplotlib"}, "log", "--output", tmp_path)
+    assert run.returncode == 3
+    assert "matplotlib" in run.stderr
+    assert "pip install '.[plot]'" in run.stderr
+    assert "ROS" not in run.stderr
+
+
+def test_what_is_no_log_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([str(tmp_path / "nowhere"), "--output", str(tmp_path / "out")]) == NO_LOG
+    assert "nowhere" in capsys.readouterr().err
+
+
+def test_a_log_without_answers_has_nothing_to_draw(log: Path, tmp_path: Path) -> None:
+    from contact_dynamics.recording import BagReader, BagWriter
+
+    reader = BagReader(log)
+    with BagWriter(tmp_path / "empty", run=reader.run()) as writer:
+        writer.add_topic(
+            "/contact_dynamics/predict_impact/_service_event",
+            "contact_dynamics_interfaces/srv/PredictImpact_Event",
+        )
+    assert main([str(tmp_path / "empty"), "--output", str(tmp_path / "out")]) == NOTHING_DRAWN
+
+
+@pytest.mark.parametrize(("given", "missing"), [(["--output", "out"], "LOG"), (["log"], "--output")])
+def test_log_and_folder_are_needed(
+    given: list[str], missing: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        main(given)
+    assert f"found no {missing}, needed are LOG and --output DIR" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("most", ["0", "-3", "many"])
+def test_a_count_that_is_none_is_refused(most: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["log", "--output", "out", "--most", most])
+    assert f"found {most}, allowed is a whole number >= 1" in capsys.readouterr().err
