@@ -105,6 +105,7 @@ LISTS: dict[str, dict[str, Any]] = {
     "ContactSet": ONE_CONTACT,
     "ConvexShape": {"vertices": TRIANGLE},
     "Curvatures": {"along": [1], "across": [0], "directions_W": [[1, 0, 0]]},
+    "ManyStates": {name: [numbers] for name, numbers in AT_REST.items()},
     "MassProperties": BODY,
     "Obstacle": {"name": "obstacle", "vertices_W": TRIANGLE, **SURFACE},
     "PlaneOfMotion": {"normal_W": [0, -1, 0]},
