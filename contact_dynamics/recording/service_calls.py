@@ -8,7 +8,7 @@ too.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from contact_dynamics.recording.cdr_stamp import EventType, event_info
 from contact_dynamics.recording.decoding import decode
@@ -20,6 +20,12 @@ if TYPE_CHECKING:
     from contact_dynamics.recording.bag_reader import LoggedMessage
 
 EVENT_TOPIC_SUFFIX: Final = "/_service_event"
+
+MOST_HELD: Final = 10_000
+"""Answered calls that wait for one before them. A request whose response was lost must not hold up all of a
+log, nor fill the memory."""
+
+_Key: TypeAlias = "tuple[str, bytes, int]"  # topic of the events, client, number of the request
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,26 +57,45 @@ class ServiceCall:
         return _content(self.response_event, "response")
 
 
-def service_calls(messages: Iterable[LoggedMessage]) -> Iterator[ServiceCall]:
-    """Yield each call when its response comes, and at the end the calls without one."""
-    waiting: dict[tuple[str, bytes, int], ServiceCall] = {}
+def service_calls(messages: Iterable[LoggedMessage], *, most_held: int = MOST_HELD) -> Iterator[ServiceCall]:
+    """Yield the calls in the order in which their requests came.
+
+    A hard question is answered after quick ones that came later, so a call waits here until those before it
+    are answered. The calls without a response come when the log ends, or when many later ones wait.
+
+    Args:
+        messages: the messages of a log, also others than events.
+        most_held: how many answered calls wait for one before them, >= 0.
+    """
+    open_calls: dict[_Key, ServiceCall] = {}  # in the order of their requests
+    answered: set[_Key] = set()  # those of them whose response has come
     for message in messages:
         if not message.topic.endswith(EVENT_TOPIC_SUFFIX):
             continue
         info = event_info(message.data)
         key = (message.topic, info.client_gid, info.sequence_number)
-        call = waiting.get(key) or ServiceCall(
+        call = open_calls.get(key) or ServiceCall(
             service=message.topic.removesuffix(EVENT_TOPIC_SUFFIX),
             service_type=message.type_name.removesuffix(EVENT_SUFFIX),
             client_gid=info.client_gid,
             sequence_number=info.sequence_number,
         )
         if info.event_type is EventType.REQUEST_RECEIVED:
-            waiting[key] = replace(call, request_event=message)
+            open_calls[key] = replace(call, request_event=message)
         elif info.event_type is EventType.RESPONSE_SENT:
-            waiting.pop(key, None)
-            yield replace(call, response_event=message)
-    yield from waiting.values()
+            call = replace(call, response_event=message)
+            if key not in open_calls:  # the log begins after the request
+                yield call
+                continue
+            open_calls[key] = call
+            answered.add(key)
+        while open_calls:
+            first = next(iter(open_calls))
+            if first not in answered and len(answered) <= most_held:
+                break
+            answered.discard(first)
+            yield open_calls.pop(first)
+    yield from open_calls.values()
 
 
 def _content(event: LoggedMessage | None, part: str) -> Any:

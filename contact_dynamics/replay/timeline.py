@@ -2,8 +2,8 @@
 
 A log has states in the order in which they came. The events of a call come later in it than the states that
 came while the answer was computed. So the file is read twice at the same time. One reading finds the calls,
-and the other follows with the states up to the ``log_time`` of each request. Only one call and one message
-are in memory, however long the log is.
+and the other follows with the states up to the ``log_time`` of each request. However long the log is, one
+message is in memory, and the calls that wait for the answer to one before them.
 """
 
 from __future__ import annotations

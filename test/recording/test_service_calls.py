@@ -36,18 +36,36 @@ def test_pairs_by_service_client_and_number() -> None:
     ]
     calls = list(service_calls(events))
     assert [(call.service, call.client_gid, call.sequence_number) for call in calls] == [
-        ("/ask", GID_B, 1),
         ("/ask", GID_A, 1),
+        ("/ask", GID_B, 1),
         ("/other", GID_A, 1),
         ("/ask", GID_A, 2),
     ]
     assert [(call.request_event, call.response_event) for call in calls] == [
-        (events[1], events[4]),
         (events[0], events[5]),
+        (events[1], events[4]),
         (events[2], events[6]),
         (events[3], None),
     ]
     assert {call.service_type for call in calls} == {"nav_msgs/srv/GetPlan"}
+
+
+def test_a_call_comes_at_the_place_of_its_request_although_later_ones_were_answered_first() -> None:
+    request, response = EventType.REQUEST_RECEIVED, EventType.RESPONSE_SENT
+    events = [event(request, GID_A, number) for number in (1, 2, 3)]
+    events += [event(response, GID_A, number) for number in (3, 2, 1)]
+    assert [call.sequence_number for call in service_calls(events)] == [1, 2, 3]
+
+
+def test_a_lost_response_does_not_hold_up_the_rest_of_a_log() -> None:
+    request, response = EventType.REQUEST_RECEIVED, EventType.RESPONSE_SENT
+    events = [event(request, GID_A, 0)]  # it is never answered
+    events += [event(kind, GID_A, number) for number in range(1, 20) for kind in (request, response)]
+    calls = list(service_calls(events, most_held=5))
+    assert [call.sequence_number for call in calls] == list(range(20))
+    assert [call.response_event is None for call in calls] == [True] + 19 * [False]
+    first = next(service_calls(iter(events[: 2 * 6 + 1]), most_held=5))
+    assert first.sequence_number == 0  # five are held, and with the sixth it goes
 
 
 def test_the_clients_own_events_and_other_topics_make_no_calls_of_their_own() -> None:

@@ -15,6 +15,7 @@ from rosbags.rosbag2 import StoragePlugin
 
 from contact_dynamics.recording import BagReader, ServiceCall, decode_without_ros, service_calls
 from contact_dynamics.replay.compare import differences
+from contact_dynamics.replay.verify import verify_log
 from replay.asked_log import Asked, configured
 from replay.flights import flight, write_flight
 from running_server import ROOT, environment, process
@@ -63,11 +64,14 @@ def test_the_time_of_the_log_gives_its_states_and_its_answers(asked: Asked, tmp_
         answers = [decode_without_ros(call).response[0] for call in (old.response_event, new.response_event)]
         assert list(differences(*answers)) == []
     assert explicit == asked.counts["PredictContactMode"]
+    assert verify_log(log).agrees
 
 
 def test_stamps_are_moved_to_the_present(asked: Asked, tmp_path: Path) -> None:
     """A server by the machine's clock takes the states as new ones, and answers questions about them."""
     arguments = ["--params-file", str(configured(tmp_path)), "--ros-args"]
+    # On a loaded machine a state may be old when the question comes. The one that is too old is 1.5 s late.
+    arguments += ["-p", "state_timeout:=1.2"]
     arguments += ["-p", f"log_directory:={tmp_path / 'logs'}"]
     with process("server", *arguments, ready="ready"):
         done = published(asked.log, "--requests", "--wait", "20")
@@ -79,8 +83,10 @@ def test_stamps_are_moved_to_the_present(asked: Asked, tmp_path: Path) -> None:
     for path in (asked.log, log):
         responses = [decode_without_ros(call.response_event).response[0] for call in calls_of(path)]
         answered.append(sum(response.status == response.OK for response in responses))
-    # In the first round, questions about published states, of which there are four, can overtake the first.
-    assert answered[0] - 4 <= answered[1] <= answered[0]
+    # DDS does not keep the order between topics and services. Rounds are 20 ms apart, with four questions
+    # about published states in each. Those of two rounds can overtake the first states.
+    assert answered[0] - 8 <= answered[1] <= answered[0]
+    assert verify_log(log).agrees
 
 
 def test_a_recording_of_others_in_its_time_and_faster(tmp_path: Path) -> None:
