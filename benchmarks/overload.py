@@ -1,21 +1,27 @@
 """The server under more than it can do: 20 bodies at 1 kHz, and four clients that ask as fast as they can.
 
-It prints how many questions were answered and how fast, how old the states in the answers were, what came of
-the states that were published, and how the memory grew. `python -m benchmarks.overload 120` takes two
-minutes, and a second number is the rate of each body, Hz.
+It prints how many questions were answered and how fast, why others were not, how old the states in the
+answers were, what came of the states that were published, and how the memory grew.
+`python -m benchmarks.overload 120` asks for two minutes, and a second number is the rate of each body, Hz.
 
-Publisher, clients and server share the machine, so that the numbers are of all of them together.
+Publisher, clients and server share the machine, so that the numbers are of all of them together. The time
+begins when each client has had its first answers. The memory still fills then: with the states of five
+seconds, and with the queues of DDS, each of which keeps the room that its longest wait so far took. So the
+last third tells whether the memory grows for good.
 """
 
 from __future__ import annotations
 
 import json
+import math
 import os
 import statistics
 import subprocess
 import sys
 import tempfile
+import threading
 import time
+from collections import Counter
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -28,6 +34,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.serialization import serialize_message
+from rclpy.signals import SignalHandlerOptions
 
 from contact_dynamics.demo.ros_domain import claim_domain
 from contact_dynamics_interfaces.srv import PredictTumbling
@@ -40,6 +47,8 @@ CLIENTS = 4
 SECONDS = 20.0
 RATE = 1000.0
 PATIENCE_S = 30.0
+ANSWER_S = 10.0  # for an answer; the server answers a client that seemed gone again after 5 s
+REASONS = ("NO_STATE", "STALE_STATE", "BUSY", "TIMEOUT")  # of the refusals that a load can cause
 DEEP = QoSProfile(depth=1000)
 ROOT = Path(__file__).parents[1]
 
@@ -53,11 +62,13 @@ def run(seconds: float = SECONDS, rate: float = RATE) -> None:
         file.write_text(yaml.safe_dump(_configuration(folder)), encoding="utf-8")
         server = [sys.executable, "-m", "contact_dynamics", "server", "--params-file", str(file)]
         server_process = stack.enter_context(_process([*server, "--ros-args", "--log-level", "error"]))
-        publisher = stack.enter_context(_process(_myself("publish", seconds, rate)))
+        publisher = stack.enter_context(_process(_myself("publish", rate)))
         clients = [stack.enter_context(_process(_myself("ask", seconds, index))) for index in range(CLIENTS)]
+        for client in clients:
+            _line(client)  # it has its first answer
         watched = _watch(server_process.pid, seconds)
-        sent = json.loads(publisher.communicate(timeout=seconds + PATIENCE_S)[0])
-        asked = [json.loads(client.communicate(timeout=seconds + PATIENCE_S)[0]) for client in clients]
+        asked = [json.loads(_line(client)) for client in clients]
+        sent = json.loads(publisher.communicate(timeout=PATIENCE_S)[0])  # it ends with its input
         counts = _states(server_process.pid)
     _print(asked, sent, counts, watched)
 
@@ -65,10 +76,15 @@ def run(seconds: float = SECONDS, rate: float = RATE) -> None:
 def _print(asked: list[dict[str, Any]], sent: int, counts: dict[str, int], watched: dict[str, float]) -> None:
     trips = sorted(trip for each in asked for trip in each["trips"])
     ages = sorted(age for each in asked for age in each["ages"])
-    refused = sum(each["refused"] for each in asked)
-    print(f"answers: {len(trips)}, {len(trips) / watched['seconds']:.0f} a second; {refused} refused")
+    failed: Counter[str] = Counter()
+    for each in asked:
+        failed.update(each["failed"])
+    reasons = ", ".join(f"{count} {reason}" for reason, count in failed.most_common()) or "none"
+    print(f"answers: {len(trips)}, {len(trips) / watched['seconds']:.0f} a second")
+    print(f"questions without an answer: {reasons}")
     print(
-        f"round trip: p50 {_at(trips, 0.5):.2f} ms, p99 {_at(trips, 0.99):.2f} ms, longest {trips[-1]:.1f} ms"
+        f"round trip: p50 {_at(trips, 0.5):.2f} ms, p99 {_at(trips, 0.99):.2f} ms, "
+        f"longest {_at(trips, 1.0):.1f} ms"
     )
     print(f"age of the state in an answer: p50 {_at(ages, 0.5):.2f} ms, p99 {_at(ages, 0.99):.2f} ms")
     missing = sent - counts["messages"] - counts["lost"]
@@ -78,7 +94,7 @@ def _print(asked: list[dict[str, Any]], sent: int, counts: dict[str, int], watch
     )
     print(
         f"server: {watched['cpu']:.2f} cores, {watched['memory']:.0f} MB resident at the end, "
-        f"growing by {watched['slope']:.3f} MB/s in the second half"
+        f"growing by {watched['half']:.3f} MB/s in the second half, {watched['third']:.3f} in the last third"
     )
 
 
@@ -99,9 +115,17 @@ def _watch(pid: int, seconds: float) -> dict[str, float]:
     while (elapsed := time.monotonic() - begun) < seconds:
         memory.append((elapsed, _resident_mb(pid)))
         time.sleep(0.5)
-    later = memory[len(memory) // 2 :]
-    slope = statistics.linear_regression(*zip(*later, strict=True)).slope
-    return {"seconds": elapsed, "cpu": (_cpu_s(pid) - cpu) / elapsed, "memory": later[-1][1], "slope": slope}
+    return {
+        "seconds": elapsed,
+        "cpu": (_cpu_s(pid) - cpu) / elapsed,
+        "memory": memory[-1][1],
+        "half": _slope(memory[len(memory) // 2 :]),
+        "third": _slope(memory[2 * len(memory) // 3 :]),
+    }
+
+
+def _slope(points: list[tuple[float, float]]) -> float:
+    return statistics.linear_regression(*zip(*points, strict=True)).slope if len(points) > 1 else math.nan
 
 
 def _states(pid: int) -> dict[str, int]:
@@ -125,8 +149,16 @@ def _states(pid: int) -> dict[str, int]:
     }
 
 
-def _publish(seconds: float, rate: float) -> None:
-    rclpy.init()
+def _publish(rate: float) -> None:
+    """Publish until the input ends, so that all clients have states for as long as they ask."""
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    ended = threading.Event()
+
+    def wait_for_end() -> None:
+        sys.stdin.read()
+        ended.set()
+
+    threading.Thread(target=wait_for_end, daemon=True).start()
     node = Node("publisher")
     topics = [node.create_publisher(Odometry, f"/body{index}/odometry", DEEP) for index in range(BODIES)]
     messages = [Odometry(child_frame_id=f"body{index}") for index in range(BODIES)]
@@ -134,8 +166,8 @@ def _publish(seconds: float, rate: float) -> None:
     while not all(topic.get_subscription_count() for topic in topics) and time.monotonic() < deadline:
         time.sleep(0.05)
     begun, rounds = time.monotonic(), 0
-    while (elapsed := time.monotonic() - begun) < seconds:
-        if rounds > elapsed * rate:
+    while not ended.is_set():
+        if rounds > (time.monotonic() - begun) * rate:
             time.sleep(0.5 / rate)
             continue
         for topic, message in zip(topics, messages, strict=True):
@@ -148,7 +180,7 @@ def _publish(seconds: float, rate: float) -> None:
 
 
 def _ask(seconds: float, index: int) -> None:
-    rclpy.init()
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     node = Node(f"client{index}")
     executor = SingleThreadedExecutor()
     executor.add_node(node)
@@ -157,37 +189,63 @@ def _ask(seconds: float, index: int) -> None:
 
     def ask(body: int) -> Any:
         future = client.call_async(PredictTumbling.Request(body_name=f"body{body}", times=[0.1]))
-        while not future.done():
-            executor.spin_once(timeout_sec=PATIENCE_S)
-        return future.result()
+        executor.spin_until_future_complete(future, timeout_sec=ANSWER_S)
+        if future.done():
+            return future.result()
+        client.remove_pending_request(future)
+        return None
 
-    while ask(BODIES - 1).status != 0:  # until its states are told
-        time.sleep(0.1)
-    trips, ages, refused, asked = [], [], 0, 0
+    deadline = time.monotonic() + PATIENCE_S
+    for body in range(BODIES):  # until the states of all are told
+        while ((answer := ask(body)) is None or answer.status != answer.OK) and time.monotonic() < deadline:
+            time.sleep(0.1)
+    print("asking", flush=True)
+    trips, ages, asked = [], [], 0
+    failed: Counter[str] = Counter()
     begun = time.monotonic()
     while time.monotonic() - begun < seconds:
         asked += 1
         start = time.perf_counter()
         answer = ask((index + asked) % BODIES)
+        if answer is None:
+            failed[f"without a response in {ANSWER_S:g} s"] += 1
+            continue
         if answer.status != answer.OK:
-            refused += 1
+            failed[_reason(answer)] += 1
             continue
         stamp = answer.state.header.stamp
         trips.append(1e3 * (time.perf_counter() - start))
         ages.append(1e-6 * (time.time_ns() - stamp.sec * 1_000_000_000 - stamp.nanosec))
-    print(json.dumps({"trips": trips, "ages": ages, "refused": refused}))
+    print(json.dumps({"trips": trips, "ages": ages, "failed": failed}), flush=True)
+
+
+def _reason(answer: PredictTumbling.Response) -> str:
+    """Return what a question was refused for: the name of the status, or the message of one not expected."""
+    return next((name for name in REASONS if getattr(answer, name) == answer.status), str(answer.message))
 
 
 @contextmanager
 def _process(command: list[str]) -> Iterator[subprocess.Popen[str]]:
-    started = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)  # noqa: S603  our own
-    try:
-        yield started
-    finally:
-        started.terminate()
-        started.wait(PATIENCE_S)
-        if started.stdout is not None:
-            started.stdout.close()
+    started = subprocess.Popen(  # noqa: S603  our own
+        command, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    with started:  # which closes its pipes
+        try:
+            yield started
+        finally:
+            started.terminate()
+            try:
+                started.wait(PATIENCE_S)
+            except subprocess.TimeoutExpired:
+                started.kill()
+
+
+def _line(process: subprocess.Popen[str]) -> str:
+    """Return the next line that a process prints."""
+    line = process.stdout.readline() if process.stdout is not None else ""
+    if not line:
+        raise RuntimeError(f"process {process.pid} ended before it had told what it measured")
+    return line
 
 
 def _myself(*arguments: object) -> list[str]:
@@ -195,7 +253,7 @@ def _myself(*arguments: object) -> list[str]:
 
 
 def _at(values: list[float], share: float) -> float:
-    return values[min(len(values) - 1, int(share * len(values)))]
+    return values[min(len(values) - 1, int(share * len(values)))] if values else math.nan
 
 
 def _resident_mb(pid: int) -> float:
@@ -210,8 +268,8 @@ def _cpu_s(pid: int) -> float:
 
 if __name__ == "__main__":
     match sys.argv[1:]:
-        case ["publish", seconds, rate]:
-            _publish(float(seconds), float(rate))
+        case ["publish", rate]:
+            _publish(float(rate))
         case ["ask", seconds, index]:
             _ask(float(seconds), int(index))
         case numbers:
