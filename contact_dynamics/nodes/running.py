@@ -12,10 +12,11 @@ import gc
 import signal
 import threading
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Final, Protocol
 
 import rclpy
+from rclpy.exceptions import InvalidHandle
 from rclpy.experimental import EventsExecutor
 from rclpy.logging import get_logger
 from rclpy.signals import SignalHandlerOptions
@@ -120,5 +121,6 @@ def _spin(node: RunnableNode, stop: threading.Event) -> None:
         node.destroy_service(service)
     drained = time.monotonic() + _DRAIN_S
     while time.monotonic() < drained:
-        executor.spin_once(timeout_sec=0.1 * _DRAIN_S)
+        with suppress(InvalidHandle):  # a request that came to one of these services before it was destroyed
+            executor.spin_once(timeout_sec=0.1 * _DRAIN_S)
         node.attend()

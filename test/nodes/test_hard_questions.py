@@ -82,6 +82,48 @@ def test_a_client_that_leaves_with_requests_pending_freezes_nobody(client: Clien
     assert time.monotonic() - begun < 5.0  # of the 20 s that it took to send to who is gone
 
 
+def test_a_server_that_a_busy_machine_stops_answers_all_the_same() -> None:
+    """Stopped for 0.07 s while it sends, it once took its client for gone. Here a stop meets each moment."""
+    with process("server", *ARGUMENTS, ready="ready") as server:
+        client = Client()
+        try:
+            long = quick()
+            long.times = [0.0001 * i for i in range(20_000)]
+            client.ask(long)  # the first takes longer
+            begun = time.monotonic()
+            client.ask(long)
+            trip = time.monotonic() - begun
+            for i in range(32):
+                future = client.begin_to_ask(long)
+                time.sleep(trip * i / 32)
+                server.send_signal(signal.SIGSTOP)
+                time.sleep(0.07)
+                server.send_signal(signal.SIGCONT)
+                client.spin_until(future.done)
+                assert future.result().status == 0, future.result().message
+        finally:
+            client.close()
+
+
+def test_answers_that_are_ready_while_the_server_ends_do_not_make_it_fail() -> None:
+    arguments = ("-p", "answer_deadline:=3600.0", "-p", "workers:=2", "-p", "most_waiting:=1000")
+    with process("server", *ARGUMENTS, *arguments, ready="ready") as server:
+        client = Client()
+        try:
+            slowed = quick()
+            slowed.linear_drag = 0.1
+            slowed.times = [0.001 * i for i in range(1000)]
+            answer = client.ask(slowed)  # a worker, which is ready from here on
+            assert answer.status == answer.OK, answer.message
+            pending = [client.begin_to_ask(slowed) for _ in range(500)]
+            client.spin_until(pending[20].done)
+            server.send_signal(signal.SIGINT)
+            assert server.wait(PATIENCE_S) == 0
+            assert not pending[-1].done()
+        finally:
+            client.close()
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_the_server_ends_soon_whatever_is_being_computed(number: signal.Signals) -> None:
     arguments = ("-p", "answer_deadline:=3600.0", "-p", "workers:=1")
