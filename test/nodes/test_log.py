@@ -30,7 +30,14 @@ from rosbags.highlevel import AnyReader
 
 from contact_dynamics.recording import BagReader, decode, service_calls
 from contact_dynamics.replay.verify import verify_log
-from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from contact_dynamics_interfaces.msg import BodyStates
+from contact_dynamics_interfaces.srv import (
+    PredictContactMode,
+    PredictImpact,
+    PredictImpactBatch,
+    PredictTumbling,
+    PredictTumblingBatch,
+)
 from msg_adapters.stamps import stamp_ns_from_msg
 from running_server import PATIENCE_S, ROOT, SERVICES, Client, process
 
@@ -82,7 +89,7 @@ def state(client: Client, draw: random.Random) -> Odometry:
 
 
 def questions(number: int) -> list[Any]:
-    """Good and bad requests to all three services."""
+    """A good and a bad request to each service."""
     tumbling = PredictTumbling.Request(body_name="brick", sampling=PredictTumbling.Request.UNTIL_CONTACT)
     tumbling.rate = [100.0 * (number + 1)]
     mode = PredictContactMode.Request(
@@ -90,13 +97,29 @@ def questions(number: int) -> list[Any]:
     )
     mode.state.pose.position.z = 0.025  # flat on the floor
     mode.applied_wrench.force.x = 0.1 * number
+    falling = BodyStates(
+        positions=[0.0, 0.0, 1.0],
+        orientations=[0.0, 0.0, 0.0, 1.0],
+        linear_velocities=[0.1 * number, 0.0, -1.0],
+        angular_velocities=[0.0, 3.0, 0.0],
+    )
+    strikes = PredictImpactBatch.Request(body_name="brick", states=falling, restitutions=[0.5])
+    strikes.contact_positions, strikes.contact_normals, strikes.frictions = (
+        [0.1, 0.0, 1.0],
+        [0.0, 0.0, 1.0],
+        [0.3],
+    )
     return [
         tumbling,
         PredictImpact.Request(body_name="brick"),
         mode,
+        strikes,
+        PredictTumblingBatch.Request(body_name="brick", states=falling, times=[0.25]),
         PredictTumbling.Request(body_name=f"cat {number}"),
         PredictImpact.Request(body_name="brick", horizon=[float("nan")]),
         PredictContactMode.Request(body_name="brick"),  # in the air: no contact
+        PredictImpactBatch.Request(body_name="brick", states=falling),  # no contact is given
+        PredictTumblingBatch.Request(body_name="brick", states=falling, times=[float("inf")]),
     ]
 
 
