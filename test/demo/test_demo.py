@@ -309,7 +309,9 @@ def test_stopped_in_the_middle_it_stops_all_and_closes_the_log(tmp_path: Path) -
             assert process.poll() is None, process.communicate()
             assert time.monotonic() < deadline
             time.sleep(0.02)
-        assert len(processes_with(mark)) == 4  # it, the server, the visualizer, the publisher
+        # The server has more processes, which compute: a number that is not the demo's business.
+        started = [line for line in processes_with(mark) if "-m contact_dynamics " in line]
+        assert len(started) == 4  # it, the server, the visualizer, the publisher
         process.send_signal(signal.SIGINT)
         time.sleep(0.2)
         process.send_signal(signal.SIGINT)
