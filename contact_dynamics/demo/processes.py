@@ -103,11 +103,16 @@ class Processes:
         return found
 
     def stop(self) -> None:
-        """Ask each process to finish, wait, and kill the one that does not."""
+        """Ask all processes to finish, wait for each, and kill the one that does not.
+
+        All are asked at once. A server that waited for the visualizer to end would find the states silent.
+        """
+        for _, process in reversed(self._running):
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
         while self._running:
             _, process = self._running.pop()
             if process.poll() is None:
-                process.send_signal(signal.SIGINT)
                 with contextlib.suppress(subprocess.TimeoutExpired):
                     process.wait(STOP_PATIENCE_S)
             with contextlib.suppress(ProcessLookupError):

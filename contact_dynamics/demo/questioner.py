@@ -35,7 +35,7 @@ LAST_MOMENT: Final = 0.025
 """Time before the predicted landing at which it asks for the impact, s: late, but early enough to act."""
 
 SILENCE_S: Final = 1.0
-"""The toss is over when no state has come for this time, s."""
+"""If states are missing, the toss is over when its publisher has ended and none has come for this time, s."""
 
 REST_FRAMES: Final = 2
 """Number of frames for which a body must be slow before it asks for the contact mode."""
@@ -117,7 +117,7 @@ class Questioner(Node):
         landing: float | None = None  # predicted, s on the recording's clock
         # velocities look back over WINDOW, so it must have seen that much flight before it asks
         blind_until = 0.0
-        while playing() or time.monotonic() - self._heard < SILENCE_S:
+        while self.received < len(self._toss) and (playing() or time.monotonic() - self._heard < SILENCE_S):
             if not self._spin():
                 continue
             if self._at_rest() and not self.modes:

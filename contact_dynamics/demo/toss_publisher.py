@@ -91,8 +91,8 @@ def main(arguments: list[str]) -> int:
             print(f"fewer than {given.listeners} listeners on {topic_of(toss)}", file=sys.stderr)
             return 1
         publisher.play()
-        publisher.drain()
         print(f"published {len(toss)} states on {topic_of(toss)}", flush=True)
+        publisher.drain()
     except (KeyboardInterrupt, ExternalShutdownException):
         return 130
     finally:
