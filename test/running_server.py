@@ -105,6 +105,8 @@ class Client:
         }
         for client in self._clients.values():
             assert not wait or client.wait_for_service(PATIENCE_S)
+        if wait:
+            self.wait_until_found()
 
     def ready(self) -> int:
         """Return how many of the three services there are now."""
@@ -114,17 +116,32 @@ class Client:
         """Return a publisher that the server listens to.
 
         That it is matched here says nothing of the server, which may find it later and then takes nothing
-        that was sent before. DDS announces the endpoints of a process in the order they were made in, so a
-        server that answers a client made after the publisher has found the publisher.
+        that was sent before.
         """
         made = self.node.create_publisher(msg_type, topic, qos)
         self.spin_until(lambda: made.get_subscription_count() > 0)
+        self.wait_until_found()
+        return made
+
+    def wait_until_found(self) -> None:
+        """Wait until the server has found all that this node has made.
+
+        DDS announces the endpoints of a process in the order they were made in, so a server that answers a
+        client made last has found the others. It drops an answer if it has not found who asked within 0.1 s,
+        which happens on a busy machine. So this asks again.
+        """
         probe = self.node.create_client(GetParameters, self._namespace + "/contact_dynamics/get_parameters")
         assert probe.wait_for_service(PATIENCE_S)
-        answer = probe.call_async(GetParameters.Request(names=["bodies"]))
-        self.spin_until(answer.done)
+        answers: list[Any] = []
+
+        def is_answered() -> bool:
+            if not answers or time.monotonic() - begun > len(answers):  # once a second
+                answers.append(probe.call_async(GetParameters.Request(names=["bodies"])))
+            return any(answer.done() for answer in answers)
+
+        begun = time.monotonic()
+        self.spin_until(is_answered)
         self.node.destroy_client(probe)
-        return made
 
     def ask(self, request: Any) -> Any:
         """Call the service that a request belongs to; return the response."""

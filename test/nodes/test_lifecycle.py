@@ -26,6 +26,7 @@ class Manager:
         self._get = node.create_client(GetState, "/contact_dynamics/get_state")
         assert self._change.wait_for_service(PATIENCE_S)
         assert self._get.wait_for_service(PATIENCE_S)
+        self.client.wait_until_found()
 
     def change(self, transition: int) -> bool:
         return bool(
