@@ -20,7 +20,7 @@ from contact_dynamics.evaluation.run import main
 from contact_dynamics.evaluation.settings import Settings
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING, read_toss
 from evaluation.made_logs import parameters_of_toss, write_log
-from replay.test_verify import BLOCKED
+from replay.asked_log import BLOCKED
 from running_server import ROOT
 from viewing.drawn import read_drawn
 
