@@ -33,6 +33,8 @@ from contact_dynamics.tolerances import LARGEST_GRIP, NOTHING_DUE, VELOCITY_TOLE
 from contact_dynamics.validation import check_positive, check_whole
 
 if TYPE_CHECKING:
+    from typing import Any
+
     from numpy.typing import NDArray
 
     from contact_dynamics.contact.contact import ContactSet
@@ -176,7 +178,7 @@ def _favours(rng: np.random.Generator, shape: tuple[int, int]) -> FloatArray:
 
 
 def _increment(
-    seen: _Set, twists: FloatArray, at: FloatArray, due: FloatArray, unit: FloatArray
+    seen: _Set, twists: FloatArray, at: NDArray[np.integer[Any]], due: FloatArray, unit: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return one increment of the impulse at contact ``at`` of each sample, and what it then owes, J."""
     response, mu = seen.response[at], seen.frictions[at]
