@@ -7,5 +7,5 @@
 
 At size, `job` is one recording's work, `workers` share it, `results_folder` keeps what is done, and `result`
 is the whole. `summary` and `significance` put it together. `report`, `tables`, `plots` and `picture` show it.
-`arguments`, `run` and `progress` are the command.
+`arguments` and `run` are the command.
 """

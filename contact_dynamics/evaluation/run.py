@@ -11,7 +11,6 @@ from contact_dynamics.evaluation.arguments import evaluate_parser
 from contact_dynamics.evaluation.job import Job, code_versions, failed
 from contact_dynamics.evaluation.log_states import parameters_of
 from contact_dynamics.evaluation.plots import write_plots
-from contact_dynamics.evaluation.progress import Progress
 from contact_dynamics.evaluation.report import report, report_changes
 from contact_dynamics.evaluation.result import Evaluation, SourceResult, read_evaluation, source_result
 from contact_dynamics.evaluation.results_folder import ResultsFolder
@@ -21,6 +20,7 @@ from contact_dynamics.evaluation.sources import find_sources
 from contact_dynamics.evaluation.tables import write_csv, write_parquet
 from contact_dynamics.evaluation.workers import run_jobs
 from contact_dynamics.nodes.parameter_file import ParameterFile
+from contact_dynamics.replay.progress import Progress
 
 if TYPE_CHECKING:
     import argparse
@@ -120,16 +120,18 @@ def _all(
             left.append(number)
         else:
             found[number] = content
+    before = len(found)
     if found:
         print(f"{len(found)} of {len(jobs)} recordings were evaluated before", file=sys.stderr)
-    progress = Progress(len(left))
+    progress = Progress("evaluating", end=len(left))
     try:
         for done, content in run_jobs([jobs[i] for i in left], processes=given.jobs, dask=given.dask):
             job = jobs[left[done]]
             if folder is not None:
                 folder.put(job, content)
             found[left[done]] = content
-            progress.tell(job.source.name)
+            count = len(found) - before
+            progress.tell(count, f"{count} of {len(left)}: {job.source.name[-60:]}")
     finally:
         progress.end()
     return Evaluation(

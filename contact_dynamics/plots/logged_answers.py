@@ -52,7 +52,7 @@ class LoggedAnswer(Record):
 
 
 def logged_answers(path: Path) -> Iterator[LoggedAnswer]:
-    """Yield the answers of a log, in the order in which they were given.
+    """Yield the answers of a log, in the order in which the questions came.
 
     Refused questions and batches are left out.
 

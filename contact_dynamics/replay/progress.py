@@ -1,4 +1,4 @@
-"""A line on the terminal that says how far a reading is, where somebody watches."""
+"""A line on the terminal that says how far long work is, where somebody watches."""
 
 from __future__ import annotations
 
@@ -11,38 +11,42 @@ _BAR: Final = 24  # characters
 
 
 class Progress:
-    """How far one log is. The line is cleared at the end."""
+    """How far one piece of work is. The line is cleared at the end."""
 
-    def __init__(self, name: str, *, start_ns: int, end_ns: int) -> None:
+    def __init__(self, name: str, *, begin: float = 0.0, end: float = 0.0) -> None:
         """Begin.
 
         Args:
-            name: what is read.
-            start_ns: the log time at which it begins, ns.
-            end_ns: the log time at which it ends, ns. Not later than the beginning: it is not known.
+            name: what is worked on.
+            begin: where the work begins, in any unit, such as a log time or a number of logs.
+            end: where it ends. It is not known if it is not later than the beginning.
         """
         self._name = name
-        self._start_ns = start_ns
-        self._length_ns = end_ns - start_ns
+        self._begin = begin
+        self._length = end - begin
         self._watched = sys.stderr.isatty()
-        self._next = time.monotonic() + _TELL_EVERY_S
+        self._begun_s = time.monotonic()
+        self._next_s = self._begun_s + _TELL_EVERY_S
         self._told = False
 
-    def tell(self, log_time_ns: int, what: str) -> None:
-        """Show that the reading has come to a log time, and what was read, in words."""
-        if not self._watched or time.monotonic() < self._next:
+    def tell(self, at: float, what: str) -> None:
+        """Show how far the work has come, in the unit of its beginning, and what was done, in words."""
+        now_s = time.monotonic()
+        if not self._watched or now_s < self._next_s:
             return
-        self._next = time.monotonic() + _TELL_EVERY_S
+        self._next_s = now_s + _TELL_EVERY_S
         self._told = True
-        print(f"\r\033[K{self._name}: {self._bar(log_time_ns)}{what}", end="", file=sys.stderr, flush=True)
+        bar = self._bar(at, now_s - self._begun_s)
+        print(f"\r\033[K{self._name}: {bar}{what}", end="", file=sys.stderr, flush=True)
 
     def end(self) -> None:
         """Clear the line."""
         if self._told:
             print("\r\033[K", end="", file=sys.stderr, flush=True)
 
-    def _bar(self, log_time_ns: int) -> str:
-        if self._length_ns <= 0:
+    def _bar(self, at: float, worked_s: float) -> str:
+        if self._length <= 0:
             return ""
-        share = min(1.0, max(0.0, (log_time_ns - self._start_ns) / self._length_ns))
-        return f"{'#' * round(share * _BAR):{_BAR}} {100 * share:3.0f} %, "
+        share = min(1.0, max(0.0, (at - self._begin) / self._length))
+        left = f", {worked_s * (1.0 - share) / share:.0f} s left" if share > 0.0 else ""
+        return f"{'#' * round(share * _BAR):{_BAR}} {100 * share:3.0f} %{left}, "

@@ -68,7 +68,7 @@ def publish(given: argparse.Namespace, of_ros: list[str], *, span: Span) -> int:
     """
     path = Path(given.log)
     start_ns, end_ns = BagReader(path).extent()
-    progress = Progress(str(path), start_ns=start_ns, end_ns=end_ns)
+    progress = Progress(str(path), begin=start_ns, end=end_ns)
     ensure_ros_log_directory()
     with stop_signals() as stop, single_keys():
         rclpy.init(args=of_ros, signal_handler_options=SignalHandlerOptions.NO)

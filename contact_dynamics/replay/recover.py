@@ -9,6 +9,7 @@ from typing import Final
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.recording.recovery import recover
 from contact_dynamics.replay.arguments import recover_parser
+from contact_dynamics.replay.progress import Progress
 
 REFUSED: Final = 2
 """This exit code says that nothing was written."""
@@ -22,20 +23,14 @@ def main(arguments: list[str]) -> int:
         parser.error("found no LOG, needed is one")
     path = Path(given.log)
     folder = Path(given.out) if given.out else path.with_name(f"{path.name.partition('.')[0]}_recovered")
-    watched = sys.stderr.isatty()
-
-    def tell(count: int) -> None:
-        if watched:
-            print(f"\r\033[K{path}: {count} messages", end="", file=sys.stderr, flush=True)
-
+    progress = Progress(str(path))
     try:
-        recovered = recover(path, folder, on_progress=tell)
+        recovered = recover(path, folder, on_progress=lambda count: progress.tell(count, f"{count} messages"))
     except (ContactDynamicsError, OSError) as error:
         print(f"contact-dynamics recover: {error}", file=sys.stderr)
         return REFUSED
     finally:
-        if watched:
-            print("\r\033[K", end="", file=sys.stderr, flush=True)
+        progress.end()
     print(f"{recovered.folder}: {recovered.messages} messages")
     for loss in recovered.losses:
         print(f"  lost of {loss.path}: {loss}")

@@ -184,7 +184,7 @@ def _progress(path: Path) -> Progress:
     if sys.stderr.isatty():
         with suppress(ContactDynamicsError, OSError):  # what is wrong is told when the log is read
             start_ns, end_ns = BagReader(path).extent()
-    return Progress(str(path), start_ns=start_ns, end_ns=end_ns)
+    return Progress(str(path), begin=start_ns, end=end_ns)
 
 
 def _tell(name: str, what: str, events: LoggedEvents | AskedEvents) -> None:
