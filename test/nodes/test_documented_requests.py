@@ -141,3 +141,31 @@ def test_each_is_answered_as_stated(
     answer = client.ask(request)
     assert (answer.status, answer.message) == (answer.OK, "")
     assert TOLD[service](request, answer) == stated
+
+
+PASTED = re.compile(
+    r'^ros2 service call (\S+) contact_dynamics_interfaces/srv/(\w+) \\\n  "([^"]*)"$', re.MULTILINE
+)
+WITHOUT_STATE = "docs/tutorials/catch.md"  # it asks about states that somebody publishes
+ELSEWHERE = [
+    (str(path.relative_to(ROOT)), *call)
+    for path in (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")))
+    for call in PASTED.findall(path.read_text(encoding="utf-8"))
+]
+
+
+def test_the_other_pages_have_requests() -> None:
+    assert {"README.md", "docs/quick-start-ros.md", "docs/tutorials/bounce.md"} < {
+        page for page, *_ in ELSEWHERE
+    }
+
+
+@pytest.mark.parametrize(("page", "name", "type_name", "request_text"), ELSEWHERE)
+def test_a_request_of_another_page_is_answered(
+    client: Client, page: str, name: str, type_name: str, request_text: str
+) -> None:
+    (service,) = (service for service in SERVICES if service.__name__ == type_name)
+    assert SERVICES[service] == name
+    answer = client.ask(fill(service.Request(), yaml.safe_load(request_text)))
+    expected = answer.NO_STATE if page == WITHOUT_STATE else answer.OK
+    assert answer.status == expected, answer.message
