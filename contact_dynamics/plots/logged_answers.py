@@ -13,18 +13,23 @@ from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.errors import DamagedLogWarning
 from contact_dynamics.recording.service_calls import service_calls
 from contact_dynamics.records import Record
+from contact_dynamics.replay.event_parts import part_of
 from contact_dynamics.replay.of_log import server_of_log
 from contact_dynamics.replay.timeline import is_event_of_ours
-from contact_dynamics.replay.verify import contents
 from contact_dynamics.validation import FloatArray
 from contact_dynamics.world import Body
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
     from pathlib import Path
-    from typing import Any
 
     from contact_dynamics.world import World
+
+_KINDS: Final = {
+    "PredictTumbling": "tumbling",
+    "PredictImpact": "impact",
+    "PredictContactMode": "contact-modes",
+}
 
 OK: Final = 0
 """The status of a response that has an answer, in all services."""
@@ -65,47 +70,28 @@ def logged_answers(path: Path) -> Iterator[LoggedAnswer]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DamagedLogWarning)  # what is whole is drawn
         _, server = server_of_log(path)
-        readers = _readers()
         log = BagReader(path)
         events = (message for message in log.messages() if is_event_of_ours(message))
         for number, call in enumerate(service_calls(events), start=1):
-            reader = readers.get(call.service_type.rpartition("/")[2])
-            if reader is None or call.request_event is None or call.response_event is None:
+            kind = _KINDS.get(call.service_type.rpartition("/")[2])
+            if kind is None or call.request_event is None or call.response_event is None:
                 continue
-            response: Any = contents(call.response_event, "response")[0]
+            response = part_of(call.response_event, "response")
             if response.status != OK:
                 continue
-            request = contents(call.request_event, "request")[0]
-            kind, question_from, answer_from = reader
-            question = question_from(request, world=server.world, world_frame=server.world_frame)
+            question = server.question_from(call.service_type, part_of(call.request_event, "request"))
+            answer = server.answer_from(call.service_type, response)
+            if question is None or answer is None:
+                continue
             gravity_W = getattr(question, "gravity_W", None)  # an impact needs none
             yield LoggedAnswer(
                 number=number,
                 kind=kind,
-                answer=answer_from(response, world=server.world),
+                answer=answer,
                 body=_body(question.body, server.world),
                 other=_body(getattr(question, "other", None), server.world),
                 gravity_W=server.world.gravity_W if gravity_W is None else gravity_W,
             )
-
-
-def _readers() -> dict[str, tuple[str, Callable[..., Any], Callable[..., Any]]]:
-    """Return by type of service what it is called, and what reads its requests and responses."""
-    # They import messages, which may exist only after the log has told what they look like.
-    from msg_adapters.contact_mode import contact_mode_answer_from_msg
-    from msg_adapters.impact import impact_answer_from_msg
-    from msg_adapters.questions import (
-        contact_mode_question_from_msg,
-        impact_question_from_msg,
-        tumbling_question_from_msg,
-    )
-    from msg_adapters.tumbling import tumbling_answer_from_msg
-
-    return {
-        "PredictTumbling": ("tumbling", tumbling_question_from_msg, tumbling_answer_from_msg),
-        "PredictImpact": ("impact", impact_question_from_msg, impact_answer_from_msg),
-        "PredictContactMode": ("contact-modes", contact_mode_question_from_msg, contact_mode_answer_from_msg),
-    }
 
 
 def _body(body: Body | str | None, world: World) -> Body | None:

@@ -20,9 +20,14 @@ from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr import decode_without_ros
 from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
-from contact_dynamics.replay.events import Answer
+from contact_dynamics.replay.events import Answer, Question
 from msg_adapters.contact_mode import contact_mode_answer_from_msg
 from msg_adapters.impact import impact_answer_from_msg
+from msg_adapters.questions import (
+    contact_mode_question_from_msg,
+    impact_question_from_msg,
+    tumbling_question_from_msg,
+)
 from msg_adapters.status import report_error
 from msg_adapters.tumbling import tumbling_answer_from_msg
 
@@ -33,6 +38,12 @@ if TYPE_CHECKING:
     from msg_adapters.state_adapter import Reader
 
 CLOCK: Final = "/clock"
+
+_QUESTIONS: Final[Mapping[str, Callable[..., Question]]] = {
+    "PredictContactMode": contact_mode_question_from_msg,
+    "PredictImpact": impact_question_from_msg,
+    "PredictTumbling": tumbling_question_from_msg,
+}
 
 _ANSWERS: Final[Mapping[str, Callable[..., Answer]]] = {
     "PredictContactMode": contact_mode_answer_from_msg,
@@ -131,6 +142,15 @@ class ServerAgain:
         """Return what is known at a time, ns by the clock of the states."""
         self._asked_ns = asked_ns
         return self._knowledge
+
+    def question_from(self, service_type: str, request: Any) -> Question | None:
+        """Return the question that a request asks, or None for a batch of questions.
+
+        Raises:
+            ContactDynamicsError: the request is refused.
+        """
+        read = _QUESTIONS.get(service_type.rpartition("/")[2])
+        return None if read is None else read(request, world=self.world, world_frame=self._world_frame)
 
     def answer_from(self, service_type: str, response: Any) -> Answer | None:
         """Return the answer that a response carries, whose status is OK, or None for a batch of answers.

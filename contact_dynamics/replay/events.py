@@ -9,9 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol, TypeAlias
 
-from contact_dynamics.questions.contact_modes import ContactModeAnswer
+from contact_dynamics.questions.contact_modes import ContactModeAnswer, ContactModeQuestion
 from contact_dynamics.questions.impact import ImpactAnswer
-from contact_dynamics.questions.tumbling import TumblingAnswer
+from contact_dynamics.questions.impact_question import ImpactQuestion
+from contact_dynamics.questions.tumbling import TumblingAnswer, TumblingQuestion
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.world import World
 
+Question: TypeAlias = TumblingQuestion | ImpactQuestion | ContactModeQuestion
 Answer: TypeAlias = TumblingAnswer | ImpactAnswer | ContactModeAnswer
 
 OK = "OK"

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
+from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.recording.bag_reader import BagReader
-from contact_dynamics.recording.cdr import decode_without_ros
 from contact_dynamics.recording.errors import DamagedLogWarning
 from contact_dynamics.recording.message_types import Message
 from contact_dynamics.recording.service_calls import ServiceCall
 from contact_dynamics.replay.compare import differences
+from contact_dynamics.replay.event_parts import part_of
 from contact_dynamics.replay.events import OK, Answered, StateCame
 from contact_dynamics.replay.of_log import server_of_log
 from contact_dynamics.replay.timeline import in_order
@@ -79,8 +79,8 @@ class LoggedEvents:
         question: dict[str, object] = {}
         answer: Answer | None = None
         try:
-            request = part_of(decode_without_ros(call.request_event), "request")
-            response: Any = part_of(decode_without_ros(call.response_event), "response")
+            request = part_of(call.request_event, "request")
+            response = part_of(call.response_event, "response")
             question = not_default(request)
             status, message = _status(response), str(response.message)
             seconds = float(response.computation_time)
@@ -99,14 +99,6 @@ class LoggedEvents:
             message=message,
             computation_time=seconds,
         )
-
-
-def part_of(event: Message, part: str) -> Message:
-    """Return the request or the response that an event carries; without it raise `InvalidFieldError`."""
-    contents: list[Message] = getattr(event, part)
-    if not contents:
-        raise InvalidFieldError("event", f"an event without its {part}", "introspection with contents")
-    return contents[0]
 
 
 def not_default(message: Message) -> dict[str, object]:

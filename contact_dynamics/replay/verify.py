@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.nodes.run_record import versions_here
-from contact_dynamics.recording.bag_reader import BagReader, LoggedMessage
-from contact_dynamics.recording.cdr import decode_without_ros
+from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.errors import DamagedLogWarning
 from contact_dynamics.recording.service_calls import ServiceCall
 from contact_dynamics.replay.compare import Difference, differences
+from contact_dynamics.replay.event_parts import part_of
 from contact_dynamics.replay.of_log import server_of_log
 from contact_dynamics.replay.timeline import in_order
 from contact_dynamics.validation import check_not_negative
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
     from pathlib import Path
 
-    from contact_dynamics.recording.message_types import Message
     from contact_dynamics.replay.again import ServerAgain
 
 MOST_TOLD: Final = 10
@@ -155,8 +154,9 @@ def _ask(call: ServiceCall, server: ServerAgain, found: Verification) -> None:
         _unreadable(found, tally, "the log has an answer without its question")
         return
     try:
-        request, _ = contents(call.request_event, "request")
-        logged, make_response = contents(call.response_event, "response")
+        request = part_of(call.request_event, "request")
+        logged = part_of(call.response_event, "response")
+        make_response = type(logged)
     except InvalidFieldError as error:
         _unreadable(found, tally, str(error))
         return
@@ -192,14 +192,6 @@ def _beyond(found: Iterable[Difference], tolerance: float) -> tuple[bool, tuple[
             if len(told) == MOST_FIELDS_TOLD:
                 break
     return same, tuple(told)
-
-
-def contents(event: LoggedMessage, part: str) -> tuple[Message, type[Message]]:
-    """Return the request or the response that an event carries, and its type."""
-    contents: list[Message] = getattr(decode_without_ros(event), part)
-    if not contents:
-        raise InvalidFieldError(event.topic, f"an event without its {part}", "introspection with contents")
-    return contents[0], type(contents[0])
 
 
 def _unreadable(found: Verification, tally: ServiceTally, reason: str) -> None:
