@@ -399,10 +399,13 @@ def test_pose_and_twist_of_one_stamp_are_a_state(servers: Servers, *, frame: str
 
 
 def test_services_stand_in_the_namespace(servers: Servers) -> None:
-    names = {name for name, _ in servers.robot.node.get_service_names_and_types()}
-    for service in ("predict_contact_mode", "predict_impact", "predict_tumbling"):
-        for namespace in ("", "/robot1", "/simulated"):
-            assert f"{namespace}/contact_dynamics/{service}" in names
+    expected = {
+        f"{namespace}/contact_dynamics/{service}"
+        for service in ("predict_contact_mode", "predict_impact", "predict_tumbling")
+        for namespace in ("", "/robot1", "/simulated")
+    }
+    node = servers.robot.node
+    servers.robot.spin_until(lambda: expected <= {name for name, _ in node.get_service_names_and_types()})
     unknown = servers.robot.ask(PredictTumbling.Request(body_name="brick", times=[0.0]))
     assert unknown.status == unknown.UNKNOWN_BODY
     assert "'club', 'disc'" in unknown.message
