@@ -1,4 +1,4 @@
-"""The questions about contact modes. Each takes a problem in the plane or in space.
+"""These functions ask about contact modes. Each takes a problem in the plane or in space.
 
 You state a problem once, as a `PlanarContactProblem` or a `SpatialContactProblem`, and ask it every question.
 The files of `planar` and `spatial` answer them, under the same names.
@@ -18,11 +18,13 @@ from contact_dynamics.contact_modes.planar.statics import planar_statics
 from contact_dynamics.contact_modes.planar.uncertain import planar_verdicts_within
 from contact_dynamics.contact_modes.planar.wrench_sets import planar_wrench_sets
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
+from contact_dynamics.contact_modes.spatial.geometry_margins import spatial_geometry_margins
 from contact_dynamics.contact_modes.spatial.margins import spatial_mode_margins
 from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
 from contact_dynamics.contact_modes.spatial.refusals import spatial_refused_modes
 from contact_dynamics.contact_modes.spatial.result import SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial.statics import spatial_statics
+from contact_dynamics.contact_modes.spatial.uncertain import spatial_verdicts_within
 from contact_dynamics.contact_modes.spatial.wrench_sets import spatial_wrench_sets
 from contact_dynamics.errors import InvalidFieldError
 
@@ -58,7 +60,10 @@ def contact_modes(
             return answer
         return replace(answer, within=planar_verdicts_within(problem, answer))
     if isinstance(problem, SpatialContactProblem):
-        return spatial_contact_modes(problem)
+        in_space = spatial_contact_modes(problem)
+        if problem.uncertainty.is_exact:
+            return in_space
+        return replace(in_space, within=spatial_verdicts_within(problem, in_space))
     raise _not_a_problem(problem)
 
 
@@ -181,24 +186,37 @@ def wrench_sets(
     raise _not_a_problem(problem)
 
 
+@overload
 def geometry_margins(
     problem: PlanarContactProblem, answer: PlanarModeAnswer | None = None
+) -> tuple[GeometryMargin, ...]: ...
+@overload
+def geometry_margins(
+    problem: SpatialContactProblem, answer: SpatialModeAnswer | None = None
+) -> tuple[GeometryMargin, ...]: ...
+def geometry_margins(
+    problem: PlanarContactProblem | SpatialContactProblem,
+    answer: PlanarModeAnswer | SpatialModeAnswer | None = None,
 ) -> tuple[GeometryMargin, ...]:
     """Return how far points, normals and frictions would have to be off for another verdict or UNIQUE mode.
 
     Each margin is given from both sides: within one size the answer is proven, and at another size contacts
-    were found that have another answer. There are proofs for planar bodies at rest. They take about a second
-    for two contacts and several for four. There are no margins if a contact approaches.
+    were found that have another answer. There are proofs for bodies at rest, in space on at most four
+    contacts. All margins take about a second for two contacts in the plane or three in space, and several
+    for four. There are no margins if a contact approaches.
 
     Args:
-        problem: The question, in the plane. Its own uncertainty plays no part.
+        problem: The question. Its own uncertainty plays no part.
         answer: The answer to that question, if it is known. It saves a search.
 
     Raises:
-        InvalidFieldError: ``problem`` is not a problem in the plane with its answer.
+        InvalidFieldError: ``problem`` is not a problem with its answer.
+        TooLargeError: as for `contact_modes`.
     """
     if isinstance(problem, PlanarContactProblem) and not isinstance(answer, SpatialModeAnswer):
         return planar_geometry_margins(problem, answer)
+    if isinstance(problem, SpatialContactProblem) and not isinstance(answer, PlanarModeAnswer):
+        return spatial_geometry_margins(problem, answer)
     raise _not_a_problem(problem, answer)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.contact.uncertainty import ContactUncertainty
 from contact_dynamics.records import NamedInt, Record
@@ -106,6 +106,11 @@ class GeometryMargin(Record):
     changes_at: float
     verdict_beyond: ModeVerdict
     modes_beyond: tuple[str, ...]
+
+
+SOME_MODE: Final = "a body at rest always has a consistent mode, and rounding hides which"
+"""What could not be decided if no mode of a body at rest was found. Lemke's method finds one whatever the
+friction, because contact forces do no positive work on accelerations from rest (Pang and Trinkle 1996)."""
 
 
 def verdict_on(modes: Sized) -> ModeVerdict:

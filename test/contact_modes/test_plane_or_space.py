@@ -56,14 +56,14 @@ def test_one_problem_takes_every_question(problem: PlanarContactProblem | Spatia
 
 def test_a_known_answer_saves_a_search_and_changes_nothing_in_the_plane() -> None:
     """Also where contacts coincide, which the answer takes together and the margins do not."""
-    for seed in range(300):
+    for seed in range(100):
         body, velocity, contacts, wrench = rounded(draw(seed, most_contacts=4))
         contacts = [*contacts, *contacts[: seed % 3]]
         problem = PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=wrench)
         assert mode_margins(problem, contact_modes(problem)) == mode_margins(problem)
 
 
-@pytest.mark.parametrize("push", [0.0, 8.0, 12.0])
+@pytest.mark.parametrize("push", [0.0, 12.0])
 def test_a_known_answer_saves_a_search_and_changes_nothing_in_space(push: float) -> None:
     problem = dataclasses.replace(SPATIAL, force_W=[push, 0.1 * push, -19.6])
     for one, other in zip(mode_margins(problem, contact_modes(problem)), mode_margins(problem), strict=True):

@@ -6,7 +6,7 @@ Slow, obvious, and sharing nothing with the package.
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import linprog, nnls
+from scipy.optimize import linprog, lsq_linear
 
 WEIGHT = 1e3  # of "shares sum to one" against metres
 
@@ -17,7 +17,10 @@ def distance(one: np.ndarray, other: np.ndarray) -> float:
     rows = np.zeros((5, k + m))
     rows[:3, :k], rows[:3, k:] = one.T, -other.T
     rows[3, :k], rows[4, k:] = WEIGHT, WEIGHT
-    shares, _ = nnls(rows, np.array([0.0, 0.0, 0.0, WEIGHT, WEIGHT]))
+    wanted = np.array([0.0, 0.0, 0.0, WEIGHT, WEIGHT])
+    shares = lsq_linear(
+        rows, wanted, (0.0, np.inf), method="bvls", tol=1e-14
+    ).x  # SciPy 1.15's nnls is wrong at times
     s, t = shares[:k] / shares[:k].sum(), shares[k:] / shares[k:].sum()
     return float(np.linalg.norm(s @ one - t @ other))
 

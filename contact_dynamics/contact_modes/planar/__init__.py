@@ -1,1 +1,1 @@
-"""Contact modes in the plane."""
+"""This chapter finds contact modes in the plane."""

@@ -23,17 +23,13 @@ from contact_dynamics.contact_modes.planar.judgement import Judged, judge_all
 from contact_dynamics.contact_modes.planar.one_contact import single_contact_modes
 from contact_dynamics.contact_modes.planar.problem import beyond_grip, never_slipping, planar_case
 from contact_dynamics.contact_modes.planar.result import PlanarMode, PlanarModeAnswer
-from contact_dynamics.contact_modes.result import ModeVerdict, RefusedMode, verdict_on
+from contact_dynamics.contact_modes.result import SOME_MODE, ModeVerdict, RefusedMode, verdict_on
 from contact_dynamics.tolerances import LARGEST_GRIP, LARGEST_PLANAR_ARM
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.planar.enumeration import Cell
     from contact_dynamics.contact_modes.planar.problem import PlanarCase, PlanarContactProblem
 
-
-_SOME_MODE: Final = "a body at rest always has a consistent mode, and rounding hides which"
-"""Lemke's method finds one whatever the friction, because contact forces do no positive work on accelerations
-from rest (Pang and Trinkle 1996)."""
 
 _TOO_FAR: Final = (
     f"a contact is more than {LARGEST_PLANAR_ARM:g} radii of gyration away, where rounding decides"
@@ -106,7 +102,7 @@ def _judged(case: PlanarCase, accuracy: float) -> tuple[Judged, str]:
     if any(contact.friction > 1.0 and beyond_grip(contact, case.rho) for contact in case.contacts):
         return _whatever_the_grip(case, cells, accuracy, judged)
     if not judged.consistent and case.lift is None and all(row.slides == 0.0 for row in case.rows):
-        return Judged([], [], sorted(cells)), _SOME_MODE
+        return Judged([], [], sorted(cells)), SOME_MODE
     if judged.undecided:
         return judged, f"rounding decides whether forces bring about {', '.join(judged.undecided)}"
     return judged, ""

@@ -1,4 +1,4 @@
-"""The rows and friction edges of planar contacts that are known only to some uncertainty, with bounds.
+"""If planar contacts are known only to some uncertainty, this file bounds their rows and friction edges.
 
 Every bound holds for each coordinate alone, and for all contacts in the box at once. With an angle of at most
 theta between a normal and the true one, the true normal is n cos(phi) + n' sin(phi) with |phi| <= theta,
@@ -63,7 +63,8 @@ class BoundedContact(NamedTuple):
 def bounded_contacts(problem: PlanarContactProblem, box: ContactUncertainty) -> list[BoundedContact]:
     """Return the contacts of a problem with bounds that hold in a box."""
     rho = problem.body.radius_of_gyration
-    return [_bounded(contact, box, rho) for contact in problem.contacts]
+    box_of_each = box.of_each(len(problem.contacts))
+    return [_bounded(contact, *of, rho) for contact, of in zip(problem.contacts, box_of_each, strict=True)]
 
 
 def stacked(parts: list[Bounded]) -> Bounded:
@@ -75,15 +76,17 @@ def stacked(parts: list[Bounded]) -> Bounded:
     )
 
 
-def _bounded(contact: PlanarContact, box: ContactUncertainty, rho: float) -> BoundedContact:
+def _bounded(
+    contact: PlanarContact, points: float, normals: float, frictions: float, rho: float
+) -> BoundedContact:
     N, T = (np.array([row]) for row in contact_rows(contact, rho))
-    sine, less = math.sin(box.normals), 1.0 - math.cos(box.normals)
-    moved = np.array([[0.0, 0.0, box.points / rho]])
+    sine, less = math.sin(normals), 1.0 - math.cos(normals)
+    moved = np.array([[0.0, 0.0, points / rho]])
     # Turning the normal by 90 degrees makes the tangent of it, and the other way round.
     rounding = SUM_ROUNDING * (abs(N) + abs(T))
     return BoundedContact(
         Bounded(N, sine * abs(T) + less * abs(N) + moved + rounding),
         Bounded(T, sine * abs(N) + less * abs(T) + moved + rounding),
-        max(0.0, contact.friction - box.frictions),
-        contact.friction + box.frictions,
+        max(0.0, contact.friction - frictions),
+        contact.friction + frictions,
     )

@@ -19,13 +19,20 @@ they are given.
 from __future__ import annotations
 
 import math
-from decimal import Decimal
-from typing import TYPE_CHECKING, Final, NamedTuple, cast
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.contact_modes.planar.exact_vectors import (
+    combination,
+    complement,
+    decimal_vector,
+    root,
+    rounded,
+    unit,
+)
 from contact_dynamics.numerics.arithmetic import DECIMALS, within
-from contact_dynamics.numerics.vectors import AXES, Vector3, cross, dot, opposite, tangents
+from contact_dynamics.numerics.vectors import AXES, Vector3, cross, dot, opposite
 from contact_dynamics.tolerances import CLEAR_ROWS, CLEAR_ROWS_OF_MANY, SAME_ROWS, SAME_SHARP_ROWS
 
 if TYPE_CHECKING:
@@ -51,10 +58,11 @@ class Sector(NamedTuple):
     """A two-dimensional cone between two rays that are less than 180 degrees apart.
 
     Attributes:
-        start: The first ray, a unit vector. end: The last ray, a unit vector. tight: The bit set of the rows
-        that vanish on the whole sector. halved: Whether its end lies inside a face, where a wide sector was
-        cut in two halves. Then this is the
-            first half.
+        start: The first ray, a unit vector.
+        end: The last ray, a unit vector.
+        tight: The bit set of the rows that vanish on the whole sector.
+        halved: Whether its end lies inside a face, where a wide sector was cut in two halves. Then this is
+            the first half.
     """
 
     start: Vector3
@@ -111,9 +119,9 @@ class PolyhedralCone:
             self._same = SAME_ROWS if sharp is None else SAME_SHARP_ROWS
             with within(DECIMALS.sums):
                 known = [decimal_vector(row) for row in rows] if sharp is None else sharp()
-                self._build([_unit(row) for row in known])
-                self.lineality = [_rounded(line) for line in self.lineality]
-                self.rays = [_rounded(ray) for ray in self.rays]
+                self._build([unit(row) for row in known])
+                self.lineality = [rounded(line) for line in self.lineality]
+                self.rays = [rounded(ray) for ray in self.rays]
 
     def _build(self, rows: Sequence[Vector3]) -> None:
         self.lineality = [decimal_vector(axis) for axis in AXES] if self.exact else list(AXES)
@@ -197,7 +205,7 @@ class PolyhedralCone:
         start, end, tight, _ = sector
         if dot(start, end) > _ALMOST_OPPOSITE or not tight:
             return [sector]
-        middle = _rounded(
+        middle = rounded(
             cross(
                 self.rows[(tight & -tight).bit_length() - 1], decimal_vector(start) if self.exact else start
             )
@@ -212,7 +220,7 @@ class PolyhedralCone:
         second, width, normal = 0, self._same, one
         for index in range(1, len(rows)):
             across = cross(one, rows[index])
-            sine = _root(dot(across, across))
+            sine = root(dot(across, across))
             if sine > width:
                 second, width, normal = index, sine, across
                 if sine > _WIDE:
@@ -229,7 +237,7 @@ class PolyhedralCone:
                 if abs(above) > width * type(width)(_WIDE):
                     break
         if third < 0:
-            line = _unit(normal)
+            line = unit(normal)
             self.lineality = [line]
             self.rays = [cross(line, one), cross(two, line)]
             self.tight = [1, 1 << second]
@@ -239,7 +247,7 @@ class PolyhedralCone:
         if height < 0:
             second, third, two, three = third, second, three, two
         self.lineality = []
-        self.rays = [_unit(cross(a, b)) for a, b in ((two, three), (three, one), (one, two))]
+        self.rays = [unit(cross(a, b)) for a, b in ((two, three), (three, one), (one, two))]
         self.tight = [1 << second | 1 << third, 1 << third | 1, 1 | 1 << second]
         return (0, second, third)
 
@@ -309,17 +317,17 @@ class PolyhedralCone:
         Returns whether the row did this.
         """
         parts = [dot(row, line) for line in self.lineality]
-        length = _root(sum(part * part for part in parts))
+        length = root(sum(part * part for part in parts))
         if length <= self._same:
             return False
         self._check_clear(length)
-        ray = _unit(_combination(parts, self.lineality))
-        self.lineality = _complement(self.lineality, ray)
+        ray = unit(combination(parts, self.lineality))
+        self.lineality = complement(self.lineality, ray)
         rise = dot(row, ray)
         bit = 1 << index
         for i, other in enumerate(self.rays):
             drop = dot(row, other) / rise
-            self.rays[i] = _unit(
+            self.rays[i] = unit(
                 (other[0] - drop * ray[0], other[1] - drop * ray[1], other[2] - drop * ray[2])
             )
             self.tight[i] |= bit
@@ -364,7 +372,7 @@ class PolyhedralCone:
         common = self.tight[i] & self.tight[j]
         one, two = abs(heights[j]), abs(heights[i])
         a, b = self.rays[i], self.rays[j]
-        rough = _unit((one * a[0] + two * b[0], one * a[1] + two * b[1], one * a[2] + two * b[2]))
+        rough = unit((one * a[0] + two * b[0], one * a[1] + two * b[1], one * a[2] + two * b[2]))
         if self.exact:
             return rough
         if self.lineality:
@@ -392,48 +400,3 @@ def bits(mask: int) -> list[int]:
         found.append(lowest.bit_length() - 1)
         mask ^= lowest
     return found
-
-
-def _combination(parts: Sequence[float], vectors: Sequence[Vector3]) -> Vector3:
-    x = y = z = 0 * parts[0]
-    for part, vector in zip(parts, vectors, strict=True):
-        x += part * vector[0]
-        y += part * vector[1]
-        z += part * vector[2]
-    return (x, y, z)
-
-
-def _complement(basis: list[Vector3], unit: Vector3) -> list[Vector3]:
-    """Return an orthonormal basis of what is orthogonal to ``unit`` in the span of ``basis``."""
-    if len(basis) == 1:
-        return []
-    if len(basis) == 2:
-        normal = cross(basis[0], basis[1])
-        return [_unit(cross(normal, unit))]
-    x, y, z = unit
-    one, _ = tangents((float(x), float(y), float(z)))
-    if isinstance(x, float):
-        return [one, cross(unit, one)]
-    one = _unit(cross(decimal_vector(one), unit))
-    return [one, cross(unit, one)]
-
-
-def decimal_vector(vector: Vector3) -> Vector3:
-    """Return the vector in decimals. The type says floats, because the formulas here work for both."""
-    x, y, z = vector
-    return cast("Vector3", (Decimal(x), Decimal(y), Decimal(z)))
-
-
-def _rounded(vector: Vector3) -> Vector3:
-    return (float(vector[0]), float(vector[1]), float(vector[2]))
-
-
-def _root(square: float) -> float:
-    return square.sqrt() if isinstance(square, Decimal) else math.sqrt(square)
-
-
-def _unit(vector: Vector3) -> Vector3:
-    x, y, z = vector
-    square = x * x + y * y + z * z
-    size = math.sqrt(square) if type(square) is float else _root(square)
-    return (x / size, y / size, z / size)

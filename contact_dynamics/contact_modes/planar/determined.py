@@ -57,6 +57,16 @@ class _Unknown(NamedTuple):
     response: Vector4
 
 
+class _Refused(NamedTuple):
+    """A motion is not that of a mode.
+
+    Attributes:
+        by_more_than_rounding: The reason. It is None if only rounding is against the motion.
+    """
+
+    by_more_than_rounding: RefusedMode | None
+
+
 class IndependentModes:
     """The modes of one problem whose equations are independent. It solves and judges them."""
 
@@ -77,7 +87,7 @@ class IndependentModes:
     def forces(self, mode: str, letters: Letters) -> list[Vector2] | RefusedMode | None:
         """Return (f_t, f_n) of each contact that stays, or the first reason against the mode.
 
-        Returns None if the equations of the mode are not independent.
+        Returns None if the equations of the mode are not independent, or if only rounding is against it.
         """
         unknowns = self._unknowns(letters)
         if unknowns is None:
@@ -86,7 +96,8 @@ class IndependentModes:
         forces = self._judged_forces(mode, letters, unknowns, sizes)
         if isinstance(forces, RefusedMode):
             return forces
-        return self._motion_refusal(mode, letters, unknowns, sizes) or forces
+        refused = self._motion_refusal(mode, letters, unknowns, sizes)
+        return forces if refused is None else refused.by_more_than_rounding
 
     def _unknowns(self, letters: Letters) -> list[_Unknown] | None:
         if len(letters) > _MOST_EQUATIONS or self._never_slips:
@@ -150,8 +161,8 @@ class IndependentModes:
 
     def _motion_refusal(
         self, mode: str, letters: Letters, unknowns: list[_Unknown], sizes: list[float]
-    ) -> RefusedMode | None:
-        """Return the first contact that does not accelerate as its letter says."""
+    ) -> _Refused | None:
+        """Return the first contact that does not accelerate as its letter says, unless all do."""
         case = self._case
         x, y, z = case.w
         for unknown, size in zip(unknowns, sizes, strict=True):
@@ -176,22 +187,27 @@ class IndependentModes:
             if value > clear:
                 continue
             row4 = (*unit, self._offset(offset, length))
-            tolerance = 0.0 if value < -clear else self._tolerance(row4, unknowns)
-            if value <= tolerance:
+            tolerance, rounding = (0.0, 0.0) if value < -clear else self._tolerance(row4, unknowns)
+            if value <= tolerance + rounding:
+                if abs(value - tolerance) <= rounding:
+                    return _Refused(None)
                 reason = Refusal.PENETRATES if value < -tolerance and letter is None else Refusal.WRONG_MOTION
                 amount = sign * value * length / case.mass
-                return RefusedMode(mode=mode, refusal=reason, contact=row.contact, amount=amount)
+                return _Refused(RefusedMode(mode=mode, refusal=reason, contact=row.contact, amount=amount))
         return None
 
-    def _tolerance(self, row: Vector4, unknowns: list[_Unknown]) -> float:
-        """Return the force, N, up to which mass times the acceleration along a unit row counts as zero."""
+    def _tolerance(self, row: Vector4, unknowns: list[_Unknown]) -> tuple[float, float]:
+        """Return up to which force, N, mass times the acceleration along a unit row counts as zero.
+
+        The second number is the rounding of that acceleration.
+        """
         gradient = row
         terms = 1.0
         for unknown in unknowns:
             part = dot(row[:3], unknown.wrench)
             gradient = _combined(1.0, gradient, -part, unknown.response)
             terms += abs(part) * _size(unknown.response)
-        return self._load * (self._accuracy * _size(gradient) + SUM_ROUNDING * terms)
+        return self._load * self._accuracy * _size(gradient), self._load * SUM_ROUNDING * terms
 
     def _offset(self, offset: float, length: float) -> float:
         """Return the fourth number of a unit row: how the acceleration depends on the scale."""

@@ -141,15 +141,17 @@ def _sector_cells(sector: Sector, tangents: list[_Tangent]) -> Iterator[tuple[Le
     """Yield the pieces into which the tangential rows of the contacts that stay cut a sector."""
     staying = [_staying(position, tangents[position], sector) for position in bits(sector.tight)]
     stops = [0.0]
-    for crossing in sorted(contact.crossing for contact in staying):
-        if crossing - stops[-1] > SAME_ROWS:
+    places: dict[int, int] = {}  # the number of the stop at which the letter of a contact changes
+    for crossing, position in sorted((one.crossing, one.position) for one in staying if one.crossing >= 0.0):
+        if not places or crossing - stops[-1] > SAME_ROWS:
             stops.append(crossing)
+        places[position] = len(stops) - 1
     stops.append(1.0)
     points = [_between(sector, stop) for stop in stops]
     for k in range(1, len(stops)):
-        yield _letters(staying, 0.5 * (stops[k - 1] + stops[k])), [points[k - 1], points[k]]
+        yield _letters(staying, places, k - 0.5), [points[k - 1], points[k]]
         if k < len(stops) - 1:
-            yield _letters(staying, stops[k]), [points[k]]
+            yield _letters(staying, places, k), [points[k]]
     if sector.halved:
         yield tuple((one.position, one.end) for one in staying), [sector.end]
 
@@ -162,16 +164,21 @@ def _staying(position: int, tangent: _Tangent, sector: Sector) -> _Staying:
     return _Staying(position, start, end, at_start / (at_start - at_end) if crosses else -1.0)
 
 
-def _letters(staying: list[_Staying], at: float) -> Letters:
-    """Return the letters at a point inside the sector, which is a share of the way from first to last ray."""
+def _letters(staying: list[_Staying], places: dict[int, int], at: float) -> Letters:
+    """Return the letters at the stop with the number ``at``, or between two stops, where it ends in a half.
+
+    ``places`` has the number of the stop at which each letter changes that does. Numbers are compared, and
+    not the shares of the way, because two stops may be nearer to each other than rays that count as one.
+    """
     found = []
-    for position, start, end, crossing in staying:
-        if crossing < 0.0:
+    for position, start, end, _ in staying:
+        place = places.get(position)
+        if place is None:
             letter = end if start == FIXED else start
-        elif abs(at - crossing) <= SAME_ROWS:
+        elif at == place:
             letter = FIXED
         else:
-            letter = start if at < crossing else end
+            letter = start if at < place else end
         found.append((position, letter))
     return tuple(found)
 

@@ -1,4 +1,4 @@
-"""The wrenches of the edges of friction cones, for the contacts that stay in a mode.
+"""This file gives the wrenches of the edges of friction cones, for the contacts that stay in a mode.
 
 A few edges are computed in plain floats and many in arrays, whichever is faster.
 """
@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.planar.cone import MANY, decimal_vector
+from contact_dynamics.contact_modes.planar.cone import MANY
 from contact_dynamics.contact_modes.planar.enumeration import FIXED, RIGHT, Letters
+from contact_dynamics.contact_modes.planar.exact_vectors import decimal_vector
 from contact_dynamics.contact_modes.planar.problem import Lift, lifted
 from contact_dynamics.numerics.vectors import Vector3, dot, norm
 from contact_dynamics.tolerances import ROW_TOLERANCE

@@ -1,4 +1,4 @@
-"""A question about contact modes in the plane, and its case, which is the question in coordinates.
+"""A planar problem asks for contact modes in the plane. Its case is the same question in coordinates.
 
 In a case, accelerations and wrenches are vectors of one space. The radius of gyration rho is the unit of
 length for rotations. An acceleration is q = (a_x, a_y, rho alpha), and a wrench is w = (f_x, f_y, moment /
@@ -67,7 +67,7 @@ class PlanarContactProblem(Record):
             verdicts occur.
 
     Raises:
-        InvalidFieldError: a tolerance is negative.
+        InvalidFieldError: a tolerance is negative, or an uncertainty is of another number of contacts.
         TooLargeError: more than `MOST_PLANAR_CONTACTS` contacts.
     """
 
@@ -85,6 +85,7 @@ class PlanarContactProblem(Record):
         if n > MOST_PLANAR_CONTACTS:
             raise TooLargeError("contacts", f"{n} contacts", f"at most {MOST_PLANAR_CONTACTS}")
         object.__setattr__(self, "contacts", tuple(self.contacts))
+        self.uncertainty.check_count(n)
         for name in ("velocity_tolerance", "acceleration_tolerance"):
             object.__setattr__(self, name, check_not_negative(name, getattr(self, name)))
 

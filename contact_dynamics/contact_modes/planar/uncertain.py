@@ -1,4 +1,4 @@
-"""The verdicts that occur if planar contacts are known only to some uncertainty.
+"""This file finds the verdicts that occur if planar contacts are known only to some uncertainty.
 
 The true contacts are somewhere in the box of a `ContactUncertainty`. A verdict is certain if it is proven for
 every contact set in the box:
@@ -19,17 +19,22 @@ from __future__ import annotations
 import math
 import random
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
+from contact_dynamics.contact_modes.geometry_search import verdicts_within
 from contact_dynamics.contact_modes.planar.answer import planar_contact_modes
 from contact_dynamics.contact_modes.planar.everywhere import holds_everywhere
 from contact_dynamics.contact_modes.planar.excluded import no_other_mode
-from contact_dynamics.contact_modes.result import ModeVerdict, VerdictsWithin
+from contact_dynamics.contact_modes.result import ModeVerdict
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from contact_dynamics.contact_modes.planar.problem import PlanarContactProblem
     from contact_dynamics.contact_modes.planar.result import PlanarModeAnswer
+    from contact_dynamics.contact_modes.result import VerdictsWithin
     from contact_dynamics.plane.types import PlanarContact
 
 SAMPLES: Final = 64
@@ -45,19 +50,13 @@ def planar_verdicts_within(
         problem: The question, with its uncertainty.
         answer: The answer to that question, if it is known.
     """
-    box = problem.uncertainty
     if answer is None:
         answer = planar_contact_modes(problem)
-    certain = box.is_exact or is_certain(problem, answer, box)
-    samples = [] if certain else sampled(problem, box)
-    verdicts = dict.fromkeys(one.verdict for one in (answer, *samples))
-    modes = dict.fromkeys(mode.mode for one in (answer, *samples) for mode in one.modes)
-    return VerdictsWithin(
-        uncertainty=box,
-        verdicts=tuple(verdicts),
-        modes=tuple(modes),
-        certain=certain,
-        samples=len(samples),
+    return verdicts_within(
+        answer,
+        problem.uncertainty,
+        is_certain=partial(is_certain, problem, answer),
+        sampled=partial(sampled, problem),
     )
 
 
@@ -75,29 +74,31 @@ def is_certain(problem: PlanarContactProblem, answer: PlanarModeAnswer, box: Con
     return False
 
 
-def sampled(problem: PlanarContactProblem, box: ContactUncertainty) -> list[PlanarModeAnswer]:
-    """Return the answers for some contact sets in a box. The same box always gives the same sets."""
+def sampled(problem: PlanarContactProblem, box: ContactUncertainty) -> Iterator[PlanarModeAnswer]:
+    """Yield the answers for some contact sets in a box. The same box always gives the same sets."""
     chance = random.Random(0)  # noqa: S311 - a sample, no secret
-    answers = []
+    box_of_each = box.of_each(len(problem.contacts))
     for index in range(SAMPLES):
-        contacts = [_moved(contact, box, chance, corner=index % 2 == 0) for contact in problem.contacts]
-        moved = replace(problem, contacts=contacts, uncertainty=EXACT_CONTACTS)
-        answers.append(planar_contact_modes(moved))
-    return answers
+        contacts = [
+            _moved(contact, of, chance, corner=index % 2 == 0)
+            for contact, of in zip(problem.contacts, box_of_each, strict=True)
+        ]
+        yield planar_contact_modes(replace(problem, contacts=contacts, uncertainty=EXACT_CONTACTS))
 
 
 def _moved(
-    contact: PlanarContact, box: ContactUncertainty, chance: random.Random, *, corner: bool
+    contact: PlanarContact, box: tuple[float, float, float], chance: random.Random, *, corner: bool
 ) -> PlanarContact:
     def error(size: float) -> float:
         return size * (chance.choice([-1.0, 1.0]) if corner else chance.uniform(-1.0, 1.0))
 
-    turn, way, step = error(box.normals), chance.uniform(-math.pi, math.pi), abs(error(box.points))
+    points, normals, frictions = box
+    turn, way, step = error(normals), chance.uniform(-math.pi, math.pi), abs(error(points))
     (x, y), (n_x, n_y) = contact.r, contact.normal
     c, s = math.cos(turn), math.sin(turn)
     return replace(
         contact,
         r=(x + step * math.cos(way), y + step * math.sin(way)),
         normal=(c * n_x - s * n_y, s * n_x + c * n_y),
-        friction=max(0.0, contact.friction + error(box.frictions)),
+        friction=max(0.0, contact.friction + error(frictions)),
     )

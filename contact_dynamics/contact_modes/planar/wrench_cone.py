@@ -16,8 +16,9 @@ import math
 from decimal import Decimal
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from contact_dynamics.contact_modes.planar.cone import PolyhedralCone, bits, decimal_vector
+from contact_dynamics.contact_modes.planar.cone import PolyhedralCone, bits
 from contact_dynamics.contact_modes.planar.enumeration import Cell
+from contact_dynamics.contact_modes.planar.exact_vectors import decimal_vector
 from contact_dynamics.contact_modes.planar.friction_edges import friction_edges, reactions, sharp_reactions
 from contact_dynamics.contact_modes.planar.problem import PlanarCase, lifted
 from contact_dynamics.numerics.arithmetic import DECIMALS, within

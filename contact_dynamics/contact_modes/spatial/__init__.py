@@ -1,1 +1,1 @@
-"""Contact modes in space."""
+"""This chapter finds contact modes in space."""

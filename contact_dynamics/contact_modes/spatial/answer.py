@@ -9,8 +9,10 @@ border of two sectors has its force on the side between their edges.
 
 The letters are s (separates), f (sticks) and c (stays and slides); the sector or border belongs to the mode.
 The search finds all modes of the pyramids (`search`). Then friction is turned exactly against the sliding
-(`exact_friction`, `exact_letters`), and finer pyramids are tried where that has no solution. One contact at
-rest is solved exactly (`one_contact`), and round cones decide whether all contacts can stick (`round_cones`).
+(`exact_friction`, `exact_modes`). What the pyramids missed between two to four oblique contacts is found or
+refuted (`completeness`). For others, finer pyramids are tried where friction could not be turned. One contact
+at rest is solved exactly (`one_contact`), and round cones decide whether all contacts can stick
+(`round_cones`).
 A contact without friction has the letter c, whether it slides or not.
 
 `spatial.margins` says how far the applied wrench is from other modes.
@@ -22,14 +24,15 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.letters import STAYS, STICKS
-from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
-from contact_dynamics.contact_modes.spatial.exact_friction import Sliding, sharpened
-from contact_dynamics.contact_modes.spatial.exact_letters import forces_with_letters, letters_near
-from contact_dynamics.contact_modes.spatial.least_forces import least_forces
+from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
+from contact_dynamics.contact_modes.result import SOME_MODE, ModeVerdict, verdict_on
+from contact_dynamics.contact_modes.spatial.completeness import Known, completed, has_none
+from contact_dynamics.contact_modes.spatial.exact_modes import by_letters, each_once, is_exact, letters_of
 from contact_dynamics.contact_modes.spatial.mode_with_forces import are_the_same, mode_with_forces
+from contact_dynamics.contact_modes.spatial.narrowly import narrowly
 from contact_dynamics.contact_modes.spatial.one_contact import modes_of_one
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
+from contact_dynamics.contact_modes.spatial.realised import realised
 from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial.round_cones import (
     held_by_round_cones,
@@ -39,24 +42,18 @@ from contact_dynamics.contact_modes.spatial.round_cones import (
 )
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import (
-    MODE_BETTER,
     MODE_OBLIQUE,
-    MODE_RESTS,
     MODE_STRAIGHT,
-    STRICT,
+    NARROWLY,
 )
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.contact_modes.spatial.search import Found, Search
-    from contact_dynamics.validation import FloatArray
 
 
-_MOST_SOUGHT_TWICE: Final = 4
-"""The modes of no more contacts than these are sought with finer pyramids too."""
-
-_FINER: Final = 4
-"""How many times as many edges the finer pyramids have."""
+_MOST_COMPLETED: Final = 4
+"""The modes of no more contacts than these are completed, with some 1000 linear programs of 0.1 ms."""
 
 _MOST_FACETS: Final = 128
 """How many edges the finest pyramid has that is searched. Pyramids are made finer where friction could not be
@@ -70,6 +67,15 @@ _TURNED: Final = (
     "friction could not be turned against the sliding of {}, which holds with friction pyramids, and may not "
     "with Coulomb's round cones"
 )
+
+_MISSED: Final = "bounds on friction and sliding could not tell whether there are further modes {}"
+
+_UNENDED: Final = "the search for modes with friction between the edges of the pyramids did not end"
+
+
+_NARROW: Final = "rounding decides whether modes hold that hold under nearly the same load: {}"
+
+_NOT_REFUTED: Final = "no mode was found, and it could not be shown that there is none"
 
 
 class Evidence(NamedTuple):
@@ -95,18 +101,36 @@ def spatial_contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer:
             and ``sharpen`` is false.
     """
     case = spatial_case(problem)
-    found = Evidence([], "")
-    examined = 0
-    approaching: tuple[int, ...] = ()
-    if isinstance(case, SpatialCase):
-        search = search_of(case, problem.friction_facets)
-        if problem.sharpen:
-            found = evidenced(case, search, facets=problem.friction_facets)
-        else:
-            found = Evidence(found_by(case, search, sharpen=False), _DOUBT if search.doubtful else "")
-        examined = search.examined
+    if not isinstance(case, SpatialCase):
+        return _answer(problem, Evidence([], ""), approaching=case)
+    return modes_of_case(problem, case, search_of(case, problem.friction_facets))
+
+
+def modes_of_case(problem: SpatialContactProblem, case: SpatialCase, search: Search) -> SpatialModeAnswer:
+    """Return the answer about a problem none of whose contacts approaches.
+
+    Args:
+        problem: The problem.
+        case: Its case (`spatial_case`).
+        search: The search of that case with the problem's facets (`search_of`), which nobody has run yet.
+
+    Raises:
+        TooLargeError: the search takes more trials than `search.MOST_EXAMINED`.
+    """
+    if problem.sharpen:
+        found = evidenced(case, search, facets=problem.friction_facets)
     else:
-        approaching = case
+        found = Evidence(found_by(case, search, sharpen=False), _DOUBT if search.doubtful else "")
+        if not (found.modes or found.undecided or search.at_rest or has_none(search)):
+            found = found._replace(undecided=_NOT_REFUTED)
+    if not found.modes and not found.undecided and search.at_rest:
+        found = found._replace(undecided=SOME_MODE)
+    return _answer(problem, found, examined=search.examined)
+
+
+def _answer(
+    problem: SpatialContactProblem, found: Evidence, *, examined: int = 0, approaching: tuple[int, ...] = ()
+) -> SpatialModeAnswer:
     verdict = ModeVerdict.UNDECIDED if found.undecided else verdict_on(found.modes)
     return SpatialModeAnswer(
         verdict=ModeVerdict.IMPACT if approaching else verdict,
@@ -129,10 +153,50 @@ def evidenced(case: SpatialCase, search: Search, *, facets: int) -> Evidence:
         facets: The number of edges of its pyramids.
     """
     found = _sought(case, search, facets)
-    exact = [pair for pair in found.modes if _is_exact(pair[0])]
-    others = tuple(dict.fromkeys(mode.mode for mode, _ in found.modes if not _is_exact(mode)))
+    exact = [pair for pair in found.modes if is_exact(pair[0])]
+    others = tuple(dict.fromkeys(mode.mode for mode, _ in found.modes if not is_exact(mode)))
     turned = _TURNED.format(", ".join(others)) if others else ""
-    return Evidence(exact, found.undecided or turned, others)
+    letters = tuple(dict.fromkeys((*others, *found.undecided_modes)))
+    if not exact and not letters:
+        return _narrow(case, search, found)
+    return Evidence(exact, found.undecided or turned, letters)
+
+
+def _narrow(case: SpatialCase, search: Search, found: Evidence) -> Evidence:
+    """Return the modes that hold so narrowly that the search found none, or what is known of them."""
+    if not (found.undecided or search.at_rest) and has_none(search):
+        return found
+    near = narrowly(search)
+    if near.modes:
+        return Evidence(
+            [
+                (
+                    mode_with_forces(
+                        case,
+                        one.letters,
+                        one.forces,
+                        forces_unique=one.alone,
+                        motion_unique=True,
+                        slowest=NARROWLY,
+                    ),
+                    None,
+                )
+                for one in near.modes
+            ],
+            "",
+        )
+    if not near.nearby:
+        return found._replace(undecided=found.undecided or _NOT_REFUTED)
+    names = tuple(_of_all(case, letters) for letters in near.nearby)
+    return Evidence([], found.undecided or _NARROW.format(", ".join(names)), names)
+
+
+def _of_all(case: SpatialCase, letters: str) -> str:
+    """Return one letter for each contact from those of the touching contacts."""
+    every = [SEPARATES] * len(case.contacts)
+    for i, letter in zip(case.touching.tolist(), letters, strict=True):
+        every[i] = letter
+    return "".join(every)
 
 
 def _sought(case: SpatialCase, search: Search, facets: int) -> Evidence:
@@ -142,28 +206,43 @@ def _sought(case: SpatialCase, search: Search, facets: int) -> Evidence:
     slides = bool(np.any(case.sliding[case.touching]))
     if not slides and len(case.touching) == 1 and search.touching[0].friction > 0.0:
         return Evidence(_of_one_contact(case, search, kept), "")
-    refined = _refined(case, search, Evidence(kept, undecided), facets)
-    if slides:
-        return refined
-    if 2 <= len(search.touching) <= _MOST_SOUGHT_TWICE and _are_oblique(search):
-        refined = _with_those_between(case, refined, facets)
-    return _with_rest(case, search, refined)
+    if 2 <= len(search.touching) <= _MOST_COMPLETED and _are_oblique(search):
+        found = _completed(case, search, by_letters(case, search, kept))
+    else:
+        found = _refined(case, search, Evidence(kept, undecided), facets)
+    return found if slides else _with_rest(case, search, found)
 
 
 def _are_oblique(search: Search) -> bool:
+    """Return whether friction at rest acts on surfaces that lean against each other."""
     normals = np.array([one.normal for one in search.touching])
-    return bool(np.abs(normals - normals[0]).max() > MODE_OBLIQUE)
+    at_rest = any(one.frame is not None for one in search.pyramids)
+    return at_rest and bool(np.abs(normals - normals[0]).max() > MODE_OBLIQUE)
 
 
-def _with_those_between(case: SpatialCase, found: Evidence, facets: int) -> Evidence:
-    """Return the modes that were found, and those that need friction between the edges of the pyramids."""
-    finer = search_of(case, min(_FINER * facets, _MOST_FACETS))
-    try:
-        further = _by_letters(case, finer, found_by(case, finer, sharpen=True))
-    except TooLargeError:
-        return found
-    exact = [(mode, None) for mode, _ in further if mode.motion_unique and _is_exact(mode)]
-    return found._replace(modes=_each_once([*found.modes, *exact]))
+def _completed(case: SpatialCase, search: Search, found: list[tuple[SpatialMode, Found | None]]) -> Evidence:
+    """Return the modes that were found and are exact, and those that the pyramids missed."""
+    exact = [pair for pair in found if is_exact(pair[0])]
+    known = [
+        Known(
+            letters_of(mode, case, search),
+            mode.contact_forces_W[case.touching] / case.motion.scale,
+            alone=mode.motion_unique,
+        )
+        for mode, _ in exact
+    ]
+    missed = completed(search, known)
+    for one in missed.further:
+        mode = mode_with_forces(
+            case, one.letters, one.forces, forces_unique=one.alone, motion_unique=one.alone
+        )
+        exact.append((mode, None))
+    names = [_of_all(case, letters) for letters in missed.undecided]
+    undecided = _MISSED.format(", ".join(names)) if names else ""
+    if not missed.ended:
+        undecided = _UNENDED
+        names += [mode.mode for mode, _ in found if not is_exact(mode) and mode.mode not in names]
+    return Evidence(each_once(exact), undecided, tuple(names))
 
 
 def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[tuple[SpatialMode, Found | None]]:
@@ -174,24 +253,20 @@ def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[tuple[
     """
     every = search.run(grouped=sharpen)
     found: list[tuple[SpatialMode, Found | None]] = [
-        (_evidence(case, search, one, sharpen=sharpen), one) for one in every
+        (realised(case, search, one, sharpen=sharpen), one) for one in every
     ]
     if not sharpen:
         return found
-    return _each_once(sorted(found, key=lambda pair: pair[0].motion_unique))
-
-
-def _is_exact(mode: SpatialMode) -> bool:
-    return mode.misdirection <= MODE_STRAIGHT
+    return each_once(sorted(found, key=lambda pair: pair[0].motion_unique))
 
 
 def _refined(case: SpatialCase, search: Search, found: Evidence, facets: int) -> Evidence:
     """Return the modes, where modes of finer pyramids replace those whose friction could not be turned."""
-    modes = _by_letters(case, search, found.modes)
-    while not all(_is_exact(mode) for mode, _ in modes):
+    modes = by_letters(case, search, found.modes)
+    while not all(is_exact(mode) for mode, _ in modes):
         facets *= 2
-        exact = [pair for pair in modes if _is_exact(pair[0])]
-        others = [mode for mode, _ in modes if not _is_exact(mode)]
+        exact = [pair for pair in modes if is_exact(pair[0])]
+        others = [mode for mode, _ in modes if not is_exact(mode)]
         if facets > _MOST_FACETS or not all(mode.motion_unique for mode in others):
             break
         finer = search_of(case, facets)
@@ -199,42 +274,11 @@ def _refined(case: SpatialCase, search: Search, found: Evidence, facets: int) ->
             further = found_by(case, finer, sharpen=True)
         except TooLargeError:
             break
-        further = [(mode, None) for mode, _ in _by_letters(case, finer, further)]
-        modes = _each_once([*exact, *further])
+        further = [(mode, None) for mode, _ in by_letters(case, finer, further)]
+        modes = each_once([*exact, *further])
         if finer.doubtful:
             return Evidence(modes, _DOUBT)
     return Evidence(modes, found.undecided)
-
-
-def _by_letters(
-    case: SpatialCase, search: Search, found: list[tuple[SpatialMode, Found | None]]
-) -> list[tuple[SpatialMode, Found | None]]:
-    """Return the modes, where exact solutions replace those whose friction could not be turned."""
-    kept: list[tuple[SpatialMode, Found | None]] = []
-    for mode, one in found:
-        near: list[tuple[SpatialMode, Found | None]] = []
-        if not _is_exact(mode):
-            own = mode.contact_forces_W[case.touching] / case.motion.scale
-            letters = _letters_of(mode, case, search)
-            forces_unique, motion_unique = mode.forces_unique, mode.motion_unique
-            for trial in letters_near(search, letters) if motion_unique else (letters,):
-                forces = forces_with_letters(search, trial, own, shared=not forces_unique)
-                if forces is not None:
-                    found_so = one if trial == letters and not motion_unique else None
-                    exact = mode_with_forces(
-                        case, trial, forces, forces_unique=forces_unique, motion_unique=motion_unique
-                    )
-                    near.append((exact, found_so))
-        kept += near or [(mode, one)]
-    return _each_once(kept)
-
-
-def _letters_of(mode: SpatialMode, case: SpatialCase, search: Search) -> str:
-    """Return the letters of the touching contacts, where c stands for all that stay without friction."""
-    return "".join(
-        STAYS if contact.friction == 0.0 and mode.mode[i] == STICKS else mode.mode[i]
-        for i, contact in zip(case.touching.tolist(), search.touching, strict=True)
-    )
 
 
 def _of_one_contact(
@@ -282,75 +326,7 @@ def _with_rest(case: SpatialCase, search: Search, found: Evidence) -> Evidence:
             mode = mode_with_forces(
                 case, letters, own, forces_unique=unique.forces, motion_unique=unique.motion
             )
-            return Evidence([*found.modes, (mode, None)], undecided)
+            return found._replace(modes=[*found.modes, (mode, None)])
         if not held.certain:
             undecided = _AT_REST
-    return Evidence(found.modes, undecided)
-
-
-def _evidence(case: SpatialCase, search: Search, found: Found, *, sharpen: bool) -> SpatialMode:
-    """Return a mode that the search found, with accelerations and forces that realise it."""
-    count = search.edges.shape[1]
-    shares = found.program.shares(count)
-    motion_unique, low, high = found.motion
-    if not motion_unique and low is not None and high is not None:
-        shares = 0.5 * (low + high)  # this is away from the borders of the mode
-    mixture = np.random.default_rng(26).normal(size=len(search.edges))
-    forces_unique = found.program.ends(mixture @ search.edges).unique
-    own, acting = (search.edges @ shares).reshape(-1, 3), search.acting(found)
-    if sharpen and motion_unique:
-        own, acting = _sharpened(search, found, own, acting)
-    if not forces_unique:
-        own = least_forces(search.of_forces, own, acting)
-    letters = "".join(one.letter for one in found.letters)
-    if set(letters) == {STICKS}:
-        own = _rested(search, own)
-    unique = motion_unique or forces_unique
-    return mode_with_forces(case, letters, own, forces_unique=forces_unique, motion_unique=unique)
-
-
-def _rested(search: Search, forces: FloatArray) -> FloatArray:
-    """Return forces under which a body rests to rounding.
-
-    The given forces do so to the tolerance within which conditions on nearly the same contacts are merged.
-    """
-    rows = sticking(search)
-    motion = np.append(search.motion[:, -1] + search.of_forces @ forces.ravel(), 1.0)
-    if float(np.abs(rows @ motion).max()) > STRICT:  # what tells merged contacts apart was lost
-        held = held_by_round_cones(search, rows)
-        forces = forces if held.forces is None else held.forces
-
-    def left(forces: FloatArray) -> float:
-        """Return the size of the wrench that forces leave unbalanced."""
-        return float(np.linalg.norm(search.mass @ (search.motion[:, -1] + search.of_forces @ forces.ravel())))
-
-    before = left(forces)
-    if before <= MODE_RESTS * left(np.zeros_like(forces)):
-        return forces
-    better = polished(search, rows, forces)
-    return better if left(better) <= MODE_BETTER * before else forces
-
-
-def _sharpened(
-    search: Search, found: Found, forces: FloatArray, acting: list[FloatArray]
-) -> tuple[FloatArray, list[FloatArray]]:
-    """Return forces with friction exactly against the sliding, and the edges that may act.
-
-    Where friction could not be turned, they are those that were given.
-    """
-    letters = "".join(one.letter for one in found.letters)
-    if all(one.item < 0 for one in found.letters):
-        return forces, acting
-    mode = Sliding(search.touching, search.pyramids, letters, search.of_forces, search.motion[:, -1])
-    exact = sharpened(mode, forces)
-    return (forces, acting) if exact is None else (exact.forces, exact.edges)
-
-
-def _each_once(
-    found: list[tuple[SpatialMode, Found | None]],
-) -> list[tuple[SpatialMode, Found | None]]:
-    kept: list[tuple[SpatialMode, Found | None]] = []
-    for mode, one in found:
-        if not any(are_the_same(mode, other) for other, _ in kept):
-            kept.append((mode, one))
-    return kept
+    return found._replace(undecided=undecided)

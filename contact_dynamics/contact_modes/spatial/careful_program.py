@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from contact_dynamics.contact_modes.spatial.dual_simplex import Ends, Program
+from contact_dynamics.contact_modes.spatial.dual_simplex import Ends, Narrowing, Program
 from contact_dynamics.tolerances import CAREFUL_LEAST_PIVOT, CAREFUL_UNMET, ROW_TOLERANCE
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Sequence
 
     from contact_dynamics.validation import FloatArray
 
@@ -26,37 +26,20 @@ if TYPE_CHECKING:
 class CarefulProgram:
     """A set of edge forces that satisfy some conditions. It has the methods of `Program`."""
 
-    __slots__ = ("_motion", "_named", "_names", "_raised", "_solved", "_tagged", "_zeroed", "doubtful")
+    __slots__ = ("_asked", "_motion", "_named", "_names", "_solved", "doubtful")
 
-    def __init__(self, motion: FloatArray, named: FloatArray, names: Sequence[int]) -> None:
-        """Take the arguments of `Program.stated`."""
+    def __init__(
+        self, motion: FloatArray, named: FloatArray, names: Sequence[int], asked: tuple[Narrowing, ...] = ()
+    ) -> None:
+        """Take the arguments of `Program.stated`, and conditions that were added."""
         self._motion, self._named, self._names = motion, named, tuple(names)
-        self._zeroed: frozenset[int] = frozenset()
-        self._raised: dict[int, float] = {}
-        self._tagged: dict[int, tuple[FloatArray, int]] = {}
+        self._asked = asked
         self._solved: Program | None = None
         self.doubtful = False  # whether rounding may have decided, as in `Program`
 
-    def narrowed(
-        self,
-        *,
-        zeroed: Collection[int] = (),
-        raised: Collection[int] = (),
-        least: float = 0.0,
-        rows: FloatArray | None = None,
-        equalities: int = 0,
-        tag: int = -1,
-    ) -> CarefulProgram:
-        """Return a program with further conditions. The arguments are those of `Program.narrowed`."""
-        found = CarefulProgram(self._motion, self._named, self._names)
-        found._zeroed = self._zeroed.union(zeroed)
-        found._raised = self._raised | dict.fromkeys(raised, least)
-        found._tagged = self._tagged
-        if rows is not None:
-            found._tagged = {key: value for key, value in self._tagged.items() if key != tag}
-            if len(rows):
-                found._tagged[tag] = (rows, equalities)
-        return found
+    def narrowed(self, *further: Narrowing) -> CarefulProgram:
+        """Return a program with further conditions."""
+        return CarefulProgram(self._motion, self._named, self._names, (*self._asked, *further))
 
     def solve(self) -> bool:
         """Return whether some edge forces satisfy all conditions."""
@@ -91,22 +74,30 @@ class CarefulProgram:
 
     def _stated(self) -> Program | None:
         """Return the table with merged equations, or None if the equations contradict each other."""
+        zeroed: set[int] = set()
+        raised: dict[int, float] = {}
+        tagged: dict[int, tuple[FloatArray, int]] = {}
+        for further in self._asked:
+            zeroed.update(further.zeroed)
+            raised.update(dict.fromkeys(further.raised, further.least))
+            if further.rows is not None:
+                tagged[further.tag] = further.rows, further.equalities
         zero, positive = [np.zeros((0, 7))], [np.zeros((0, 7))]
         for name, row in zip(self._names, self._named, strict=True):
-            if name in self._zeroed:
+            if name in zeroed:
                 zero.append(row[None, :])
             else:
                 lowered = row.copy()
-                lowered[-1] -= self._raised.get(name, 0.0)
+                lowered[-1] -= raised.get(name, 0.0)
                 positive.append(lowered[None, :])
-        for rows, equalities in self._tagged.values():
+        for rows, equalities in tagged.values():
             zero.append(rows[:equalities])
             positive.append(rows[equalities:])
         equations = merged(np.vstack(zero))
         if equations is None:
             return None
         count = self._motion.shape[1] - 1
-        keep = [j for j in range(count) if j not in self._zeroed]
+        keep = [j for j in range(count) if j not in zeroed]
         motion = cast("FloatArray", self._motion[:, [*keep, count]].astype(np.longdouble))
         rows = np.vstack([equations, *positive])
         program = Program.stated(motion, rows, range(count, count + len(rows)))

@@ -65,10 +65,36 @@ class Ends(NamedTuple):
     high: FloatArray | None
 
 
-class Program:
-    """A set of edge forces that satisfy some conditions. Each narrower set is a new program."""
+class Narrowing(NamedTuple):
+    """Further conditions.
 
-    __slots__ = ("_columns", "_fixed", "_noise", "_rows", "_table", "doubtful")
+    Attributes:
+        zeroed: The names of variables that are zero.
+        raised: The names of variables that are at least ``least``.
+        least: The least value of the ``raised`` variables.
+        rows: (k, 7), combinations of the motion and a constant. The first ``equalities`` of them are zero,
+            and the others are not negative.
+        equalities: The number of ``rows`` that are zero.
+        tag: The name of the ``rows``, < -1. They replace earlier rows with that tag, and must imply these.
+    """
+
+    zeroed: Collection[int] = ()
+    raised: Collection[int] = ()
+    least: float = 0.0
+    rows: FloatArray | None = None
+    equalities: int = 0
+    tag: int = _DEAD
+
+
+class Program:
+    """A set of edge forces that satisfy some conditions. Each narrower set is a new program.
+
+    Attributes:
+        asked: The conditions that were added one after another.
+        doubtful: Whether rounding may have decided that nothing satisfies the conditions.
+    """
+
+    __slots__ = ("_columns", "_fixed", "_noise", "_rows", "_table", "asked", "doubtful")
 
     def __init__(
         self,
@@ -80,7 +106,8 @@ class Program:
     ) -> None:
         """Take a table whose columns are the variables that are zero, and constants. `stated` makes one."""
         self._noise = noise  # the estimated rounding of the table's entries
-        self.doubtful = False  # whether rounding may have decided that nothing satisfies the conditions
+        self.asked: tuple[Narrowing, ...] = ()
+        self.doubtful = False
         self._table = table
         self._rows = rows  # the name of each condition's variable, after the head
         self._columns = columns
@@ -107,28 +134,9 @@ class Program:
         fixed[:equalities] = 1.0
         return Program(self._table, self._rows, columns, fixed, self._noise)
 
-    def narrowed(
-        self,
-        *,
-        zeroed: Collection[int] = (),
-        raised: Collection[int] = (),
-        least: float = 0.0,
-        rows: FloatArray | None = None,
-        equalities: int = 0,
-        tag: int = _DEAD,
-    ) -> Program:
-        """Return a program with further conditions.
-
-        Args:
-            zeroed: The names of variables that are zero.
-            raised: The names of variables that are at least ``least``.
-            least: The least value of the ``raised`` variables.
-            rows: (k, 7), combinations of the motion and a constant. The first ``equalities`` of them are
-                zero, and the others are not negative.
-            equalities: The number of ``rows`` that are zero.
-            tag: The name of the ``rows``, < -1. They replace earlier rows with that tag, and must imply
-                these.
-        """
+    def narrowed(self, further: Narrowing) -> Program:
+        """Return a program with further conditions."""
+        zeroed, raised, least, rows, equalities, tag = further
         keep = [k for k, name in enumerate(self._columns) if name != _DEAD and name not in zeroed]
         columns = [self._columns[k] for k in keep]
         keep.append(len(self._columns))
@@ -155,7 +163,9 @@ class Program:
             added = np.zeros(len(rows))
             added[:equalities] = 1.0
             fixed = np.concatenate([fixed, added])
-        return Program(table, names, columns, fixed, self._noise)
+        found = Program(table, names, columns, fixed, self._noise)
+        found.asked = (*self.asked, further)
+        return found
 
     def allows_any(self, weights: FloatArray, constants: FloatArray, least: float) -> bool:
         """Return whether some edge forces satisfy all conditions and at least one of some further conditions.

@@ -176,10 +176,11 @@ def _forces(mode: Sliding, edges: list[FloatArray]) -> FloatArray | None:
     leaving = np.vstack(positive)
     leaving[:, -1] -= STRICT
     rows = np.vstack([*zero, leaving])
-    program = Program.stated(np.column_stack([of_edges / sizes, mode.free]), rows[:0], []).narrowed(
-        rows=rows, equalities=len(rows) - len(leaving), tag=-2
-    )
+    count = len(sizes)
+    table = np.column_stack([of_edges / sizes, mode.free])
+    program = Program.stated(table, rows, range(count, count + len(rows)))
+    program = program.renamed(list(range(count)), len(rows) - len(leaving))
     if not program.solve():
         return None
-    found: FloatArray = (spread @ (program.shares(len(sizes)) / sizes)).reshape(-1, 3)
+    found: FloatArray = (spread @ (program.shares(count) / sizes)).reshape(-1, 3)
     return found

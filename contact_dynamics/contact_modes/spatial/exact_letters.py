@@ -14,11 +14,12 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
+from contact_dynamics.contact_modes.spatial.only_solution import Equations
 from contact_dynamics.tolerances import (
     LETTERS_NO_FORCE,
     LETTERS_ON_CONE,
@@ -56,7 +57,7 @@ def letters_near(search: Search, letters: str) -> Iterator[str]:
 
 
 def forces_with_letters(
-    search: Search, letters: str, forces: FloatArray, *, shared: bool = False
+    search: Search, letters: str, forces: FloatArray, *, shared: bool = False, least: float = STRICT
 ) -> FloatArray | None:
     """Return forces, (n, 3), of touching contacts that have the letters, or None if none were found.
 
@@ -65,9 +66,48 @@ def forces_with_letters(
         letters: s, c or f for each touching contact.
         forces: (n, 3), close to those that are sought, in the units of the motion.
         shared: Whether contacts may share loads in many ways. Then contacts without force stay without it.
+        least: By how much strict inequalities must hold, relative to the largest acceleration.
     """
     system = _System(search, letters, forces if shared else None)
-    unknowns = system.start(forces)
+    unknowns = _solved(system, forces, shared=shared)
+    if unknowns is None:
+        return None
+    found = system.forces(unknowns)
+    return found if system.has_letters(found, least) else None
+
+
+class Solution(NamedTuple):
+    """Forces that solve the equations of some letters, which may fail their inequalities.
+
+    Attributes:
+        forces: (n, 3), in the units of the motion.
+        angles: For each contact that begins to slide, the direction of that, rad, in its pyramid's frame.
+        has_letters: Whether the inequalities hold, so that it is a mode.
+        equations: The equations there.
+    """
+
+    forces: FloatArray
+    angles: dict[int, float]
+    has_letters: bool
+    equations: Equations
+
+
+def solution_near(search: Search, letters: str, forces: FloatArray) -> Solution | None:
+    """Return the solution that Newton's method finds from some forces, (n, 3).
+
+    It is None if the method does not settle, or if the equations leave something open.
+    """
+    system = _System(search, letters, None)
+    unknowns = _solved(system, forces, shared=False)
+    if unknowns is None:
+        return None
+    found = system.forces(unknowns)
+    return Solution(found, system.angles(unknowns), system.has_letters(found), system.equations(unknowns))
+
+
+def _solved(system: _System, forces: FloatArray, *, shared: bool) -> FloatArray | None:
+    """Return the unknowns with which no equation is missed, or None if the steps do not settle."""
+    unknowns: FloatArray = system.start(forces)
     if len(unknowns) == 0:
         return None
     for _ in range(_MOST_STEPS):
@@ -79,15 +119,12 @@ def forces_with_letters(
         if not (shared or seen.all()):
             return None
         step = (right[seen].T @ ((left[:, seen].T @ missed) / spread[seen])) / sizes
-        unknowns = unknowns - step
+        unknowns -= step
         if not np.all(np.isfinite(unknowns)):
             return None
         if float(np.abs(missed).max()) <= LETTERS_SETTLED:
-            break
-    else:
-        return None
-    found = system.forces(unknowns)
-    return found if system.has_letters(found) else None
+            return unknowns
+    return None
 
 
 class _System:
@@ -105,6 +142,12 @@ class _System:
         self._frames = [None if one.frame is None else np.array(one.frame) for one in search.pyramids]
         sizes = np.ones(len(letters)) if acting is None else np.linalg.norm(acting, axis=1)
         self._acts = (sizes > LETTERS_NO_FORCE * sizes.max(initial=0.0)).tolist()
+        self._unknowns: list[tuple[int, bool]] = []  # the contact of each, and whether it is a direction
+        for i, letter in enumerate(letters):
+            if letter != SEPARATES and self._acts[i]:
+                self._unknowns += [(i, False)] * (3 if letter == STICKS else 1)
+                if letter == STAYS and self._frames[i] is not None:
+                    self._unknowns.append((i, True))
 
     def start(self, forces: FloatArray) -> FloatArray:
         """Return the unknowns that are nearest to given forces."""
@@ -157,7 +200,7 @@ class _System:
         """Return the contact forces, (n, 3)."""
         return self._forces_and_changes(unknowns)[0]
 
-    def has_letters(self, forces: FloatArray) -> bool:
+    def has_letters(self, forces: FloatArray, least: float = STRICT) -> bool:
         """Return whether contacts do under these forces what the letters say."""
         motion = self._motion(forces)
         for i, (letter, force) in enumerate(zip(self._letters, forces, strict=True)):
@@ -165,7 +208,7 @@ class _System:
             point = contact.point @ motion
             pressing = float(contact.normal @ force)
             if letter == SEPARATES:
-                if not contact.normal @ point > STRICT:
+                if not contact.normal @ point > least:
                     return False
             elif not pressing >= 0.0:
                 return False
@@ -176,10 +219,48 @@ class _System:
             elif self._frames[i] is not None:
                 friction = force - pressing * contact.normal
                 slides = point - float(contact.normal @ point) * contact.normal
-                against = -float(friction @ point) > STRICT * float(np.linalg.norm(friction))
-                if not (against if pressing > 0.0 else float(np.linalg.norm(slides)) > STRICT):
+                against = -float(friction @ point) > least * float(np.linalg.norm(friction))
+                if not (against if pressing > 0.0 else float(np.linalg.norm(slides)) > least):
                     return False
         return True
+
+    def angles(self, unknowns: FloatArray) -> dict[int, float]:
+        """Return the direction, rad, in which each contact begins to slide."""
+        return {i: float(unknowns[k]) for k, (i, is_angle) in enumerate(self._unknowns) if is_angle}
+
+    def equations(self, unknowns: FloatArray) -> Equations:
+        """Return the equations at a solution, with as many unknowns."""
+        forces, changes = self._forces_and_changes(unknowns)
+        rows, rows_turn = np.zeros((2, len(unknowns), 7))
+        changes_turn = np.zeros((6, len(unknowns)))
+        angles = []
+        for k, (i, is_angle) in enumerate(self._unknowns):
+            contact, frame = self._search.touching[i], self._frames[i]
+            if self._letters[i] == STICKS:
+                first = next(j for j, one in enumerate(self._unknowns) if one[0] == i)
+                rows[k] = contact.point[k - first]
+                continue
+            rows[k] = contact.normal @ contact.point
+            if frame is None:
+                continue
+            leaning = contact.friction * frame
+            of_contact = self._search.of_forces[:, 3 * i : 3 * i + 3]
+            changes_turn[:, k] = np.abs(of_contact @ leaning.T).sum(axis=1)
+            if is_angle:
+                angles.append(k)
+                across = np.array([-math.sin(unknowns[k]), math.cos(unknowns[k])])
+                rows[k] = across @ frame @ contact.point
+                rows_turn[k] = np.abs(frame @ contact.point).sum(axis=0)
+        return Equations(
+            unknowns=unknowns,
+            angles=angles,
+            rows=rows,
+            rows_turn=rows_turn,
+            changes=self._search.of_forces @ changes,
+            changes_turn=changes_turn,
+            motion=self._motion(forces),
+            slopes=self.at(unknowns)[1],
+        )
 
     def _motion(self, forces: FloatArray) -> FloatArray:
         return np.append(self._search.motion[:, -1] + self._search.of_forces @ forces.ravel(), 1.0)

@@ -1,4 +1,4 @@
-"""Contacting and separating modes of a body in space: lecture 26's strings, with `c` where a contact stays.
+"""Kinematics alone gives a body in space lecture 26's strings, with `c` where a contact stays.
 
 The accelerations (a, alpha) that do not penetrate form a polyhedral cone in R^6, and each mode is one of its
 faces: the contacts that stay are the rows that vanish on the face. Extreme rays span every face, so its

@@ -30,13 +30,15 @@ from contact_dynamics.rigid_body.body import mean_radius_of_gyration
 from contact_dynamics.tolerances import ALONG_BOUNDARY, BEHIND_BOUNDARY, ON_BOUNDARY, ROW_TOLERANCE
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from contact_dynamics.contact_modes.spatial.problem import SpatialCase
     from contact_dynamics.contact_modes.spatial.search import Found, Search
     from contact_dynamics.validation import FloatArray
 
 MOST_PROBES: Final = 64
-"""The search looks behind this many boundaries before the margin counts as unknown. Each takes a search for
-modes, of some 10 ms."""
+"""So many boundaries are looked behind by a search for modes, of some 10 ms each, before the margin counts as
+unknown. Most lead to a cone that is known or next to one, which takes less."""
 
 MOST_BEGINNING: Final = 4
 """The largest number of contacts that begin to slide. More of them have too many ways to go through."""
@@ -59,8 +61,13 @@ class UnionMargin(NamedTuple):
 class _Cone(NamedTuple):
     """The wrenches that bring about one way of sliding."""
 
+    ways: tuple[Way, ...]
     spans: FloatArray  # (k, 6), unit, whose positive sums they are
     sides: FloatArray  # (m, 6), unit, with which they have products >= 0
+
+    def contains(self, spans: FloatArray) -> bool:
+        """Return whether positive sums of (k, 6) unit wrenches are in the cone."""
+        return float((self.sides @ spans.T).min()) >= -ON_BOUNDARY
 
 
 class _Boundary(NamedTuple):
@@ -68,6 +75,7 @@ class _Boundary(NamedTuple):
 
     distance: float  # in the margin's metric; a lower bound until the nearest point is known
     number: int  # which decides the order of equal distances
+    ways: tuple[Way, ...]  # those of the cone
     outward: FloatArray  # (6,), unit
     spans: FloatArray  # (k, 6), whose positive sums make up the side
     nearest: FloatArray | None  # (6,), the point of the side that is nearest to the wrench
@@ -98,14 +106,13 @@ def _gone_through(union: _Union, wrench: FloatArray, stretch: FloatArray) -> Uni
     """Go outwards from a wrench, where ``stretch`` converts distances to the margin's metric."""
     unknown = UnionMargin(math.nan, np.zeros(6), None)
     numbers = itertools.count()
-    cones = union.cones_at(wrench)
-    if not cones:
+    cone = next(union.cones_at(wrench), None)
+    if cone is None:
         return unknown
-    ways, cone = cones[0]
-    seen = {ways}
     heap = _boundaries(cone, wrench, stretch, numbers)
     heapq.heapify(heap)
-    for _ in range(MOST_PROBES):
+    probes = 0
+    while probes < MOST_PROBES:
         side = _next(heap, wrench, stretch)
         if side is None or side.nearest is None:
             return UnionMargin(math.inf, np.zeros(6), None)
@@ -113,21 +120,20 @@ def _gone_through(union: _Union, wrench: FloatArray, stretch: FloatArray) -> Uni
         inner = inner / max(float(np.linalg.norm(inner)), ROW_TOLERANCE)
         way = ALONG_BOUNDARY * inner + BEHIND_BOUNDARY * side.outward
         behind = side.nearest + float(np.linalg.norm(wrench)) * way
-        cones = union.cones_at(behind)
-        if cones is None:
-            there = (side.nearest if side.distance > ROW_TOLERANCE else behind) - wrench
-            there = there * stretch / float(np.linalg.norm(there * stretch))
-            return UnionMargin(side.distance * union.unit, there, union.modes_at(behind))
-        whole = [
-            (ways, cone) for ways, cone in cones if float((cone.sides @ side.spans.T).min()) >= -ON_BOUNDARY
-        ]
-        if not whole:
-            break
-        ways, cone = whole[0]
-        if ways not in seen:
-            seen.add(ways)
-            for further in _boundaries(cone, wrench, stretch, numbers):
-                heapq.heappush(heap, further)
+        if union.is_in_known(side, behind):
+            continue
+        cone = union.next_to(side, behind)
+        if cone is None:
+            probes += 1
+            holds, cone = union.searched(side, behind)
+            if not holds:
+                there = (side.nearest if side.distance > ROW_TOLERANCE else behind) - wrench
+                there = there * stretch / float(np.linalg.norm(there * stretch))
+                return UnionMargin(side.distance * union.unit, there, union.modes_at(behind))
+            if cone is None:
+                break
+        for further in _boundaries(cone, wrench, stretch, numbers):
+            heapq.heappush(heap, further)
     return unknown
 
 
@@ -141,16 +147,51 @@ class _Union:
         self.own = np.array([1.0, 1.0, 1.0, gyration, gyration, gyration])
         self.unit = motion.mass * motion.scale  # N; wrenches are divided by it, and by the metric
         self._case, self._search, self._mode, self._facets = case, search, mode, facets
+        self._cones: dict[tuple[Way, ...], _Cone | None] = {}  # those that are known
 
-    def cones_at(self, wrench: FloatArray) -> list[tuple[tuple[Way, ...], _Cone]] | None:
-        """Return the mode's cones with inner points that contain a wrench, or None outside the mode."""
-        there = search_of(self._under(wrench), self._facets).run()
-        same = [one for one in there if "".join(of.letter for of in one.letters) == self._mode]
-        if not same:
-            return None
-        ways = [tuple(Way(of.letter, of.item) for of in one.letters) for one in same]
-        cones = [(of, self._cone(of)) for of in ways]
-        return [(of, cone) for of, cone in cones if cone is not None]
+    def cones_at(self, wrench: FloatArray) -> Iterator[_Cone | None]:
+        """Yield the mode's cones that contain a wrench, or None for one without inner points."""
+        for one in search_of(self._under(wrench), self._facets).run():
+            ways = tuple(Way(of.letter, of.item) for of in one.letters)
+            if "".join(of.letter for of in ways) == self._mode:
+                yield self._cone(ways)
+
+    def searched(self, side: _Boundary, behind: FloatArray) -> tuple[bool, _Cone | None]:
+        """Return whether a wrench behind a boundary is in the mode, and a cone beyond it if any."""
+        holds = False
+        for cone in self.cones_at(behind):
+            holds = True
+            if cone is not None and cone.contains(side.spans):
+                return True, cone
+        return holds, None
+
+    def is_in_known(self, side: _Boundary, behind: FloatArray) -> bool:
+        """Return whether a cone that is known has a boundary and what lies behind it."""
+        return any(
+            one is not None and float((one.sides @ behind).min()) >= 0.0 and one.contains(side.spans)
+            for one in self._cones.values()
+        )
+
+    def next_to(self, side: _Boundary, behind: FloatArray) -> _Cone | None:
+        """Return a cone beyond a boundary, where one contact or two slide in the next sector, or None."""
+        search = search_of(self._under(behind), self._facets)
+        for ways in self._neighbours(side.ways):
+            if ways not in self._cones and search.allows(self._mode, [of.item for of in ways]):
+                cone = self._cone(ways)
+                if cone is not None and cone.contains(side.spans):
+                    return cone
+        return None
+
+    def _neighbours(self, ways: tuple[Way, ...]) -> Iterator[tuple[Way, ...]]:
+        begins = [i for i, of in enumerate(ways) if of.item >= 0]
+        for number in (1, 2):
+            for chosen in itertools.combinations(begins, number):
+                for steps in itertools.product((1, -1), repeat=number):
+                    beside = list(ways)
+                    for i, step in zip(chosen, steps, strict=True):
+                        item = (ways[i].item + step) % (2 * len(self._search.pyramids[i].edges))
+                        beside[i] = ways[i]._replace(item=item)
+                    yield tuple(beside)
 
     def modes_at(self, wrench: FloatArray) -> tuple[str, ...]:
         """Return the letters of all modes that a wrench brings about."""
@@ -167,12 +208,14 @@ class _Union:
         return self._case._replace(motion=motion)
 
     def _cone(self, ways: tuple[Way, ...]) -> _Cone | None:
-        generators = wrench_generators(self._case, self._search, ways, self.own)
-        positive, zero = (_unit(of[:, :6]) for of in supports(generators))
-        if len(zero):
-            return None
-        rays, lines = _unit(generators.rays[:, :6]), generators.lines[:, :6]
-        return _Cone(np.vstack([rays, lines, -lines]), distinct(positive))
+        """Return the wrenches of a way of sliding, or None if they have no inner points."""
+        if ways not in self._cones:
+            generators = wrench_generators(self._case, self._search, ways, self.own)
+            positive, zero = (_unit(of[:, :6]) for of in supports(generators))
+            rays, lines = _unit(generators.rays[:, :6]), generators.lines[:, :6]
+            spans = np.vstack([rays, lines, -lines])
+            self._cones[ways] = None if len(zero) else _Cone(ways, spans, distinct(positive))
+        return self._cones[ways]
 
 
 def _next(heap: list[_Boundary], wrench: FloatArray, stretch: FloatArray) -> _Boundary | None:
@@ -194,7 +237,7 @@ def _boundaries(
     for inward in cone.sides:
         tight = cone.spans[np.abs(cone.spans @ inward) <= ON_BOUNDARY]
         distance = abs(float(inward @ wrench)) / float(np.linalg.norm(inward / stretch))
-        found.append(_Boundary(distance, next(numbers), -inward, tight, None))
+        found.append(_Boundary(distance, next(numbers), cone.ways, -inward, tight, None))
     return found
 
 

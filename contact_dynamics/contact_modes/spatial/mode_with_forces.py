@@ -17,7 +17,13 @@ if TYPE_CHECKING:
 
 
 def mode_with_forces(
-    case: SpatialCase, touching_letters: str, own: FloatArray, *, forces_unique: bool, motion_unique: bool
+    case: SpatialCase,
+    touching_letters: str,
+    own: FloatArray,
+    *,
+    forces_unique: bool,
+    motion_unique: bool,
+    slowest: float = STRICT,
 ) -> SpatialMode:
     """Return the mode that forces bring about.
 
@@ -27,8 +33,8 @@ def mode_with_forces(
         own: (n, 3), the forces of the touching contacts, in the units of the motion.
         forces_unique: Whether the forces are the only ones with this mode.
         motion_unique: Whether the accelerations are the only ones with this mode.
+        slowest: What begins to slide more slowly sticks, relative to the largest acceleration.
     """
-    """Return a mode from the letters of the touching contacts and their forces, in the motion's units."""
     motion, contacts, sliding, touching = case
     forces = np.zeros((len(contacts), 3))
     forces[touching] = own * motion.scale
@@ -41,9 +47,12 @@ def mode_with_forces(
         way = sliding[i] if np.any(sliding[i]) else across[i]
         size = float(np.linalg.norm(way))
         # Without friction one letter stands for both, and the acceleration says whether the contact slides.
-        rests = letter == STAYS and not np.any(sliding[i]) and size <= STRICT * motion.scale
+        rests = letter == STAYS and not np.any(sliding[i]) and size <= slowest * motion.scale
         letters[i] = STICKS if rests else letter
         if letters[i] == STAYS:
+            friction = forces[i] - float(forces[i] @ contacts.normals_W[i]) * contacts.normals_W[i]
+            if size <= STRICT * motion.scale and friction.any():
+                way, size = -friction, float(np.linalg.norm(friction))  # the sliding is hardly above rounding
             directions[i] = way / size
     return SpatialMode(
         mode="".join(letters),

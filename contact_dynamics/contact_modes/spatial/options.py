@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact.friction import linearised_cone
+from contact_dynamics.contact.friction import edges_in_frame
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.numerics.vectors import tangents_towards
 from contact_dynamics.tolerances import AT_SECTORS_BORDER, STRICT
@@ -94,8 +94,8 @@ def pyramid_of(
         return Pyramid(normal[None, :], None, first)
     if speed > 0.0:
         return Pyramid((normal - friction * sliding / speed)[None, :], None, first)
-    edges = linearised_cone(normal, friction, facets, towards=-free)
-    return Pyramid(edges, tangents_towards(normal, -free), first)
+    frame = tangents_towards(normal, -free)
+    return Pyramid(edges_in_frame(normal, friction, facets, frame), frame, first)
 
 
 def any_letter(pyramid: Pyramid, point: FloatArray, normal_name: int) -> Option:
@@ -130,8 +130,7 @@ def ways_of_sliding(
             sliding; None where any edge can. Then the arcs together go around the circle.
     """
     count = len(pyramid.edges)
-    angles = 2.0 * math.pi * np.arange(count) / count
-    along = np.column_stack([np.cos(angles), np.sin(angles)]) @ (np.array(pyramid.frame) @ point)
+    along = _along_edges(pyramid, point)
     # Sectors and borders alternate around the circle; no arc may be wider than a third of it.
     if acting is None:
         arcs = np.array_split(np.arange(2 * count), count if count < 6 else 4)
@@ -139,6 +138,19 @@ def ways_of_sliding(
         items = 2 * acting[0] + np.arange(2 * acting[1] - 1)
         arcs = np.array_split(items, min(len(items), math.ceil(1.5 * len(items) / count)))
     return tuple(_slides(arc.tolist(), pyramid.first, along) for arc in arcs)
+
+
+def way_of_sliding(pyramid: Pyramid, point: FloatArray, item: int) -> Option:
+    """Return the letter of a contact that slides with an item, from 0 to twice the number of its edges."""
+    return _slides([item], pyramid.first, _along_edges(pyramid, point))
+
+
+def _along_edges(pyramid: Pyramid, point: FloatArray) -> FloatArray:
+    """Return the acceleration along each edge's tangential part, (K, 7), as functions of the motion."""
+    count = len(pyramid.edges)
+    angles = 2.0 * math.pi * np.arange(count) / count
+    along: FloatArray = np.column_stack([np.cos(angles), np.sin(angles)]) @ np.array(pyramid.frame) @ point
+    return along
 
 
 def _slides(arc: list[int], first_name: int, along: FloatArray) -> Option:

@@ -14,6 +14,7 @@ import numpy as np
 
 from contact_dynamics.contact.friction import check_facets
 from contact_dynamics.contact.kinds import velocity_accelerations
+from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
 from contact_dynamics.contact_modes.spatial.search import Search, Touching
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.numerics.vectors import point_jacobians
@@ -68,10 +69,12 @@ class SpatialContactProblem(Record):
             always those of the sharpened modes.
         velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero, and so
             does an angular velocity that moves no contact relative to the centre of mass by more than that.
+        uncertainty: How well the contacts are known. If they are not known exactly, the answer says which
+            verdicts occur.
 
     Raises:
         InvalidFieldError: a wrench that is not finite, a negative tolerance, fewer than 3 facets or
-            more than 1000.
+            more than 1000. Or the uncertainty is of another number of contacts.
     """
 
     body: MassProperties
@@ -82,6 +85,7 @@ class SpatialContactProblem(Record):
     friction_facets: int = FRICTION_FACETS
     sharpen: bool = True
     velocity_tolerance: float = VELOCITY_TOLERANCE
+    uncertainty: ContactUncertainty = EXACT_CONTACTS
 
     if TYPE_CHECKING:  # what the constructor takes, beside what the fields then hold
 
@@ -96,6 +100,7 @@ class SpatialContactProblem(Record):
             friction_facets: int = FRICTION_FACETS,
             sharpen: bool = True,
             velocity_tolerance: float = VELOCITY_TOLERANCE,
+            uncertainty: ContactUncertainty = EXACT_CONTACTS,
         ) -> None: ...
 
     def __post_init__(self) -> None:
@@ -105,6 +110,7 @@ class SpatialContactProblem(Record):
         tolerance = check_not_negative("velocity_tolerance", self.velocity_tolerance)
         object.__setattr__(self, "velocity_tolerance", tolerance)
         object.__setattr__(self, "friction_facets", check_facets(self.friction_facets))
+        self.uncertainty.check_count(len(self.contacts))
 
     @property
     def wrench_W(self) -> FloatArray:

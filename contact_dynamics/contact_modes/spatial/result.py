@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from contact_dynamics.records import Record
 
 if TYPE_CHECKING:
-    from contact_dynamics.contact_modes.result import ModeVerdict
+    from contact_dynamics.contact_modes.result import ModeVerdict, VerdictsWithin
     from contact_dynamics.validation import FloatArray
 
 
@@ -57,6 +57,7 @@ class SpatialModeAnswer(Record):
         examined: The number of cases, of one letter or of a group of letters, that were tried.
         undecided: What could not be decided, and why. It is empty unless the verdict is UNDECIDED.
         undecided_modes: The letters of modes that hold with friction pyramids, and may not with round cones.
+        within: The verdicts that occur within the problem's uncertainty, or None if it has none.
     """
 
     verdict: ModeVerdict
@@ -67,3 +68,4 @@ class SpatialModeAnswer(Record):
     examined: int
     undecided: str = ""
     undecided_modes: tuple[str, ...] = ()
+    within: VerdictsWithin | None = None

@@ -13,6 +13,7 @@ virtual motion on which the load has power, and on which no contact force takes 
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -27,6 +28,7 @@ from contact_dynamics.tolerances import (
     ROUND_CONE_ON_CONE,
     ROUND_CONE_REACHED,
     ROUND_CONE_ROUNDING,
+    ROUND_CONE_WIDE,
     ROW_TOLERANCE,
     SMALLEST,
 )
@@ -41,6 +43,12 @@ _MOST_FORCE: Final = 1e3
 _MOST_EDGES: Final = 400
 """The largest number of edges that are tried. A dozen are enough, unless the load lies on the border of the
 sum."""
+
+_NOTHING: Final = np.zeros(1)
+
+
+_WIDE: Final = 10.0
+"""Coefficient of friction. The edges of a wider cone lean by more than 84 degrees from its axis."""
 
 
 class Held(NamedTuple):
@@ -64,19 +72,48 @@ def sticking(search: Search) -> FloatArray:
     return np.vstack([np.zeros((0, 7)), *rows])
 
 
-def held_by_round_cones(search: Search, rows: FloatArray, *, smooth: bool = False) -> Held:
+def held_by_round_cones(
+    search: Search, rows: FloatArray, *, smooth: bool = False, tolerance: float = ROW_TOLERANCE
+) -> Held:
     """Return forces at all touching contacts, within their round cones, that make rows of the motion vanish.
 
     Args:
         search: The case. What slides already counts as at rest.
         rows: (k, 7), of about unit length.
         smooth: Whether friction is left out.
+        tolerance: Rows that differ by less are one.
     """
-    demand = _demand(search, rows)
+    demand = _demand(search, rows, tolerance)
     if demand is None:
         return Held(None, certain=True)
     normals, frictions = _cones(search)
     return _nearest(demand, normals, 0.0 * frictions if smooth else frictions)
+
+
+def moved_by_round_cones(search: Search, axes: FloatArray, frictions: FloatArray, way: FloatArray) -> Held:
+    """Return forces that move a body in a given direction.
+
+    Args:
+        search: The case.
+        axes: (n, 3), for each touching contact the axis of the cone of its forces, with a unit normal part.
+            It is zero for a contact without force.
+        frictions: (n,), how far forces in each cone may lean from its axis.
+        way: (6,), the least motion in that direction.
+    """
+    acting = axes.any(axis=1)
+    of_forces = search.of_forces.reshape(6, -1, 3)[:, acting]
+    # The motion's further size counts as one more force.
+    sizes = np.zeros((6, 1, 3))
+    sizes[:, 0, 0] = -way / np.linalg.norm(way)
+    effects = search.mass @ np.concatenate([of_forces, sizes], axis=1).reshape(6, -1)
+    demand = _balanced(effects, search.mass @ (way - search.motion[:, -1]))
+    cones = np.vstack([axes[acting], [1.0, 0.0, 0.0]])
+    held = _nearest(demand, cones, np.append(frictions[acting], 0.0))
+    if held.forces is None:
+        return held
+    forces = np.zeros_like(axes)
+    forces[acting] = held.forces[:-1]
+    return Held(forces, certain=True)
 
 
 def wedged_by_round_cones(search: Search) -> Held:
@@ -142,16 +179,26 @@ class _Demand(NamedTuple):
     sizes: FloatArray
 
 
-def _demand(search: Search, rows: FloatArray, tolerance: float = ROW_TOLERANCE) -> _Demand | None:
+def _demand(search: Search, rows: FloatArray, tolerance: float) -> _Demand | None:
     """Return what makes rows of the motion, merged within a tolerance, vanish, or None if no forces do."""
     equations = merged(rows, tolerance)
     if equations is None:
         return None
-    n = len(search.touching)
     start = search.motion[:, -1] + equations[:, :-1].T @ equations[:, -1]
     # Where the whole motion vanishes, wrenches are compared, and not accelerations of very unequal size.
     units = search.mass if len(equations) == len(start) else equations[:, :-1]
     target, effects = -(units @ start), units @ search.of_forces
+    return _balanced(effects, target)
+
+
+def _balanced(effects: FloatArray, target: FloatArray) -> _Demand:
+    """Return a demand, in units in which all contacts together do as much in every direction.
+
+    Args:
+        effects: (k, 3 n), what unit forces do.
+        target: (k,), what they must sum to.
+    """
+    n = effects.shape[1] // 3
     load = float(np.linalg.norm(target))
     # Contacts that are nearly the same have little effect in some directions, where little is demanded. The
     # further columns give units of directions in which they have no effect at all.
@@ -173,13 +220,16 @@ def _nearest(demand: _Demand, normals: FloatArray, frictions: FloatArray) -> Hel
     """Return forces within the round cones whose images sum to the target, or are nearest to it."""
     images, target, sizes = demand
     load = float(np.linalg.norm(target))
+    wide = bool((frictions > _WIDE).any())
     owners: list[int] = []
     edges: list[FloatArray] = []
     spans, shares = np.zeros((len(target), 0)), np.zeros(0)
     rest = target
     for _ in range(_MOST_EDGES):
-        left = float(np.linalg.norm(rest))
-        if float(np.linalg.norm(sizes * rest)) <= ROUND_CONE_HELD:
+        left = math.sqrt(rest @ rest)
+        sized = sizes * rest
+        unbalanced = math.sqrt(sized @ sized)
+        if unbalanced <= ROUND_CONE_HELD:
             forces = np.zeros_like(normals)
             for i, edge, share in zip(owners, edges, shares.tolist(), strict=True):
                 forces[i] += share * edge
@@ -189,21 +239,23 @@ def _nearest(demand: _Demand, normals: FloatArray, frictions: FloatArray) -> Hel
         across = power - along[:, None] * normals
         slopes = np.sqrt((across * across).sum(axis=1))
         slopes[slopes <= ROUND_CONE_ROUNDING * np.abs(along)] = 0.0  # rounding has no direction
-        best_of_each = (
-            normals + across * np.where(slopes > 0.0, frictions / (slopes + SMALLEST), 0.0)[:, None]
-        )
+        leaning = frictions
+        if wide:  # where the remainder is inside of a cone, the force is along it, since edges hardly press
+            inside = (frictions > _WIDE) & (slopes < frictions * along)
+            leaning = np.where(inside, slopes / np.where(inside, along, 1.0), frictions)
+        best_of_each = normals + across * np.where(slopes > 0.0, leaning / (slopes + SMALLEST), 0.0)[:, None]
         effects = np.sqrt(((images @ best_of_each[:, :, None]) ** 2).sum(axis=(1, 2)))
-        cosines = (along + frictions * slopes) / np.where(effects > 0.0, effects, 1.0)
+        cosines = (along + leaning * slopes) / np.where(effects > 0.0, effects, 1.0)
         best = int(cosines.argmax()) if len(cosines) else -1
         helps = float(cosines[best]) if len(cosines) else 0.0
         if helps * _MOST_FORCE * load <= left and left > ROUND_CONE_ROUNDING * load:
-            return Held(None, certain=True)
+            return Held(None, certain=not wide or unbalanced > ROUND_CONE_WIDE)
         if helps <= ROUND_CONE_NO_HELP:
             break
         owners.append(best)
         edges.append(best_of_each[best] / effects[best])
-        spans = np.column_stack([spans, images[best] @ edges[-1]])
-        shares = _shares(spans, target, np.append(shares, 0.0))
+        spans = np.concatenate([spans, (images[best] @ edges[-1])[:, None]], axis=1)
+        shares = _shares(spans, target, np.concatenate([shares, _NOTHING]))
         if shares[-1] <= 0.0:
             break
         acting = (shares > 0.0).nonzero()[0].tolist()

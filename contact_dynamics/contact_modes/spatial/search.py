@@ -26,15 +26,22 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.letters import SEPARATES, STAYS
+from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.contact_modes.spatial.careful_program import CarefulProgram
-from contact_dynamics.contact_modes.spatial.dual_simplex import Ends, Program
-from contact_dynamics.contact_modes.spatial.options import any_letter, pyramid_of, ways_of_sliding
+from contact_dynamics.contact_modes.spatial.dual_simplex import Ends, Narrowing, Program
+from contact_dynamics.contact_modes.spatial.options import (
+    any_letter,
+    pyramid_of,
+    way_of_sliding,
+    ways_of_sliding,
+)
 from contact_dynamics.contact_modes.spatial.regions import Image, Region, flat_of, whole
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import STRICT
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from contact_dynamics.contact_modes.spatial.options import Option, Pyramid
@@ -51,10 +58,6 @@ AnyProgram = Program | CarefulProgram
 _REGION_TAG = -2
 _CONTACT_TAG = -3
 """The tag of contact 0. Each further contact's tag is one less."""
-
-
-class _DoubtError(Exception):
-    """Rounding may have decided a trial."""
 
 
 class Touching(NamedTuple):
@@ -136,6 +139,7 @@ class Search:
             facets: The number of edges of a friction pyramid.
         """
         self.touching = touching
+        self._facets = facets
         self.pyramids: list[Pyramid] = []
         first = 0
         for contact in touching:
@@ -167,6 +171,7 @@ class Search:
         named = self._normals
         names = [first + i for i in range(len(touching))]
         self.mass = mass
+        self.at_rest = at_rest
         self._power = mass @ free if at_rest and np.any(free) else None
         if self._power is not None:
             named = np.vstack([named, np.append(self._power / np.linalg.norm(self._power), 0.0)])
@@ -181,7 +186,6 @@ class Search:
         self._ways: dict[tuple[int, tuple[int, int] | None], tuple[Option, ...]] = {}
         self._found: dict[tuple[tuple[str, int], ...], Found] = {}
         self._grouped = False
-        self.careful = False  # whether the modes were sought with care, because contacts are nearly the same
         self._goal = ""  # the letters that are sought, where all are known
         self._settled: set[str] = set()  # letters that need no further mode
 
@@ -193,19 +197,45 @@ class Search:
                 motion of one of them is not unique. Otherwise each of them is found.
         """
         self._grouped = grouped
-        try:
-            self._search()
-        except _DoubtError:
-            self._found.clear()
-        if not self._found and not self.careful:
-            self.careful, self._root, self._goal = True, self._careful_root, ""
-            self._settled.clear()
+        self._search()
+        if not self._found and isinstance(self._root, Program):
+            self._root = self._careful_root
             self._search()
         return list(self._found.values())
 
     def _search(self) -> None:
-        if self._holds(self._root):
-            self._decide_who_stays(self._root, self._trials, 0)
+        root = self._solved(self._root)
+        if root is not None:
+            self._decide_who_stays(root, self._trials, 0)
+
+    def allows(self, letters: str, items: Sequence[int]) -> bool:
+        """Return whether some forces bring a mode about, given its letters and items of sliding.
+
+        A contact has the item -1 if it has none.
+        """
+        program = self._root
+        for i, (letter, item) in enumerate(zip(letters, items, strict=True)):
+            separates, stays = self._trials[i].parts
+            option = stays
+            if letter == SEPARATES:
+                option = separates
+            elif item >= 0:
+                option = way_of_sliding(self.pyramids[i], self.touching[i].point, item)
+            elif letter == STICKS:
+                (option,) = stays.parts
+            program = self._narrowed(program, i, option, staying=letter != SEPARATES)
+        return self._solved(program) is not None
+
+    def loaded(self, free: FloatArray) -> Search:
+        """Return the search for the modes of the same contacts, with other motion without their forces."""
+        return Search(
+            self.touching,
+            of_forces=self.of_forces,
+            free=free,
+            mass=self.mass,
+            at_rest=self.at_rest,
+            facets=self._facets,
+        )
 
     def acting(self, found: Found) -> list[FloatArray]:
         """Return the edges of each contact's pyramid that its letter allows to act."""
@@ -214,7 +244,22 @@ class Search:
             for p, letter in zip(self.pyramids, found.letters, strict=True)
         ]
 
-    def _holds(self, program: AnyProgram) -> bool:
+    def _solved(self, program: AnyProgram) -> AnyProgram | None:
+        """Return a program that holds some edge forces, or None if none satisfy its conditions.
+
+        Where rounding may hide them, the program is solved with care. What narrows it is solved so too.
+        """
+        self._count()
+        if program.solve():
+            return program
+        if not program.doubtful:
+            return None
+        if isinstance(program, Program):
+            return self._solved(self._careful_root.narrowed(*program.asked))
+        self.doubtful = True
+        return None
+
+    def _count(self) -> None:
         self.examined += 1
         if self.examined > MOST_EXAMINED:
             raise TooLargeError(
@@ -222,15 +267,6 @@ class Search:
                 f"{len(self.touching)} whose modes take more than {MOST_EXAMINED} trials",
                 "fewer contacts, or other friction_facets",
             )
-        return self._trusted(program, holds=program.solve())
-
-    def _trusted(self, program: AnyProgram, *, holds: bool) -> bool:
-        """Return whether a program has a solution. If that is in doubt, the search starts again with care."""
-        if program.doubtful:
-            if not self.careful:
-                raise _DoubtError
-            self.doubtful = True
-        return holds
 
     def _narrowed(
         self, program: AnyProgram, at: int, letters: Option, *, staying: bool = False
@@ -239,12 +275,14 @@ class Search:
         if staying:
             zeroed |= {self._first_normal + at}
         return program.narrowed(
-            zeroed=zeroed,
-            raised=() if letters.raised is None else (letters.raised,),
-            least=STRICT,
-            rows=letters.rows,
-            equalities=letters.equalities,
-            tag=_CONTACT_TAG - at,
+            Narrowing(
+                zeroed=zeroed,
+                raised=() if letters.raised is None else (letters.raised,),
+                least=STRICT,
+                rows=letters.rows,
+                equalities=letters.equalities,
+                tag=_CONTACT_TAG - at,
+            )
         )
 
     def _decide_who_stays(self, program: AnyProgram, trials: list[Option], at: int) -> None:
@@ -252,8 +290,8 @@ class Search:
             self._decide_common_motion(program, trials)
             return
         for part in trials[at].parts:
-            narrower = self._narrowed(program, at, part)
-            if self._holds(narrower):
+            narrower = self._solved(self._narrowed(program, at, part))
+            if narrower is not None:
                 self._decide_who_stays(narrower, [*trials[:at], part, *trials[at + 1 :]], at + 1)
 
     def _decide_common_motion(self, program: AnyProgram, trials: list[Option]) -> None:
@@ -270,7 +308,7 @@ class Search:
         staying = [i for i, letters in enumerate(trials) if letters.letter != SEPARATES]
         normals, frames = self._normals[staying, :-1], frames[:, :, :-1]
         at_rest = flat_of(normals, frames, tuple(range(len(open_ones))))
-        if self._holds(self._within(program, at_rest)):
+        if self._solved(self._within(program, at_rest)) is not None:
             self._note([letters.parts[0] if letters.parts else letters for letters in trials])
         flats = [flat_of(normals, frames, ())]
         seen = {at_rest.stuck, flats[0].stuck}
@@ -287,7 +325,8 @@ class Search:
 
     def _within(self, program: AnyProgram, flat: Flat) -> AnyProgram:
         rows = np.column_stack([flat.rows, np.zeros(len(flat.rows))])
-        return program.narrowed(rows=rows, equalities=len(rows), tag=_CONTACT_TAG - len(self.touching))
+        tag = _CONTACT_TAG - len(self.touching)
+        return program.narrowed(Narrowing(rows=rows, equalities=len(rows), tag=tag))
 
     def _decide_flat(self, program: AnyProgram, trials: list[Option], image: Image) -> bool:
         """Find the modes in which all contacts that are not decided slide.
@@ -326,8 +365,9 @@ class Search:
             return True
         acting = region.acting_edges(common.image, common.pyramids)
         silent = frozenset(common.names[~acting].tolist())
-        narrower = program.narrowed(zeroed=silent, rows=region.rows(common.image), tag=_REGION_TAG)
-        if not self._holds(narrower) or not self._dissipates(region, narrower, common):
+        further = Narrowing(zeroed=silent, rows=region.rows(common.image), tag=_REGION_TAG)
+        narrower = self._solved(program.narrowed(further))
+        if narrower is None or not self._dissipates(region, narrower, common):
             return False
         halves = region.halves(len(common.pyramids[0].edges))
         if halves is not None:
@@ -358,8 +398,16 @@ class Search:
             weights[:, own] = of_contact[:, None] / self._sizes[own]
         gains = region.rays @ common.gains
         scale = max(float(np.abs(weights).max()), float(np.abs(gains).max()))
-        holds = program.allows_any(weights / scale, gains / scale, -STRICT)
-        return self._trusted(program, holds=holds)
+        weights, gains = weights / scale, gains / scale
+        if program.allows_any(weights, gains, -STRICT):
+            return True
+        if program.doubtful and isinstance(program, Program):
+            careful = self._solved(self._careful_root.narrowed(*program.asked))
+            if careful is None or careful.allows_any(weights, gains, -STRICT):
+                return careful is not None
+            program = careful
+        self.doubtful |= program.doubtful
+        return False
 
     def _ways_of(self, at: int, acting: NDArray[np.bool_]) -> tuple[Option, ...]:
         """Return the ways of sliding of a contact against neighbouring edges, made once for each range."""
@@ -378,8 +426,8 @@ class Search:
         at = min(open_ones, key=depths.__getitem__)
         deeper = [*depths[:at], depths[at] + 1, *depths[at + 1 :]]
         for part in trials[at].parts:
-            narrower = self._narrowed(program, at, part)
-            if self._holds(narrower):
+            narrower = self._solved(self._narrowed(program, at, part))
+            if narrower is not None:
                 self._decide_letters(narrower, [*trials[:at], part, *trials[at + 1 :]], deeper)
 
     def _note(self, letters: list[Option]) -> None:
@@ -390,10 +438,11 @@ class Search:
         program = self._root
         for i, letter in enumerate(letters):
             program = self._narrowed(program, i, letter, staying=letter.letter != SEPARATES)
-        if not self._holds(program):
+        solved = self._solved(program)
+        if solved is None:
             return
         mixture = np.random.default_rng(26).normal(size=6)
-        found = Found(letters, program, program.ends(mixture @ self.motion[:, :-1]))
+        found = Found(letters, solved, solved.ends(mixture @ self.motion[:, :-1]))
         self._found[key] = found
         if self._grouped and not found.motion.unique:
             self._settled.add("".join(one.letter for one in letters))

@@ -20,7 +20,7 @@ import numpy as np
 
 from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict
-from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
+from contact_dynamics.contact_modes.spatial.answer import modes_of_case
 from contact_dynamics.contact_modes.spatial.cone import cone_of
 from contact_dynamics.contact_modes.spatial.problem import MOST_EDGES, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial.round_cones import held_by_round_cones, wedged_by_round_cones
@@ -69,7 +69,7 @@ def spatial_statics(problem: SpatialContactProblem, *, margin_length: float | No
     wedged = _decided(wedged_by_round_cones(search), "balance with each other")
     equilibrium, jammed, room = Certainty.NO, Certainty.NO, math.nan
     if _decided(held_by_round_cones(search, np.eye(6, 7)), "balance with the wrench"):
-        answer = spatial_contact_modes(at_rest)
+        answer = modes_of_case(at_rest, case, search)
         alone = answer.verdict == ModeVerdict.UNIQUE and answer.modes[0].motion_unique
         equilibrium = Certainty.CERTAIN if alone else Certainty.POSSIBLE
         smooth = held_by_round_cones(search, np.eye(6, 7), smooth=True)

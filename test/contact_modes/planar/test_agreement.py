@@ -117,7 +117,7 @@ def check_statics(
         assert resting[0].mode not in {mode.mode for mode in there.refused} or room <= NEAR * load
 
 
-@pytest.mark.parametrize("block", range(6))
+@pytest.mark.parametrize("block", range(3))
 def test_no_answer_contradicts_another(block: int) -> None:
     for seed in range(50 * block, 50 * block + 50):
         one = problem(seed)
@@ -133,6 +133,12 @@ def test_no_answer_contradicts_another(block: int) -> None:
 @pytest.mark.parametrize("seed", [10433, 11076, 11412, 11809])
 def test_what_once_was_inconsistent_at_rest(seed: int) -> None:
     """In 10433 a contact is below the centre of mass, about which the body turns. The others pinch."""
+    check_agreement(problem(seed))
+
+
+@pytest.mark.parametrize("seed", [14278, 16841, 17279, 17876])
+def test_a_refused_mode_has_no_wrenches_around_the_problems_own(seed: int) -> None:
+    """Two ways to move that were 1e-11 apart spanned a plane, or only rounding was against a mode."""
     check_agreement(problem(seed))
 
 

@@ -125,7 +125,7 @@ def test_feet_that_share_a_load_in_many_ways_have_friction_straight_against_thei
     answers = [check(turned_feet(seed)) for seed in range(30)]
     shared = [mode for one in answers for mode in one.modes if not mode.motion_unique]
     assert len(shared) > 20
-    assert sum(one.verdict == ModeVerdict.UNDECIDED for one in answers) <= 5
+    assert not any(one.verdict == ModeVerdict.UNDECIDED for one in answers)
 
 
 def test_a_box_that_just_slides_has_one_mode_although_its_feet_share_the_load() -> None:

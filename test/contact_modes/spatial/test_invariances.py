@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import SpatialContactProblem, SpatialModeAnswer, contact_modes
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from sweeps import sweep
 
-SEEDS = st.integers(0, 100_000)
+SEEDS = sweep(8, whole=60)
 INERTIA = np.diag([0.3, 0.4, 0.5])
 
 
@@ -71,8 +70,7 @@ def same_modes(one: SpatialModeAnswer, other: SpatialModeAnswer, turned: np.ndar
         assert min(np.abs(twin - expected).max() for twin in found) <= 1e-6 * (1.0 + np.abs(expected).max())
 
 
-@settings(max_examples=25, deadline=None)
-@given(seed=SEEDS)
+@pytest.mark.parametrize("seed", SEEDS)
 def test_renamed_contacts(seed: int) -> None:
     case = Case(seed)
     before = case.answer()
@@ -83,10 +81,10 @@ def test_renamed_contacts(seed: int) -> None:
     assert sorted(mode.mode for mode in after.modes) == renamed
 
 
-@settings(max_examples=25, deadline=None)
-@given(seed=SEEDS, mirrored=st.sampled_from([1.0, -1.0]))
-def test_other_axes(seed: int, mirrored: float) -> None:
+@pytest.mark.parametrize("seed", SEEDS)
+def test_other_axes(seed: int) -> None:
     # A mirror image has its torques and angular accelerations reversed, as axial vectors are.
+    mirrored = 1.0 if seed % 4 < 2 else -1.0
     case = Case(seed)
     before = case.answer(facets=8)
     turned = np.linalg.qr(np.random.default_rng(seed + 2).normal(size=(3, 3)))[0]
@@ -97,9 +95,9 @@ def test_other_axes(seed: int, mirrored: float) -> None:
     same_modes(before, case.answer(facets=8), turned, mirrored)
 
 
-@settings(max_examples=25, deadline=None)
-@given(seed=SEEDS, factor=st.sampled_from([1e-6, 1e-2, 1e4]))
-def test_other_units_of_mass(seed: int, factor: float) -> None:
+@pytest.mark.parametrize("seed", SEEDS)
+def test_other_units_of_mass(seed: int) -> None:
+    factor = (1e-6, 1e-2, 1e4)[seed % 3]
     case = Case(seed)
     before = case.answer()
     case.mass, case.inertia, case.wrench = (
@@ -116,25 +114,33 @@ def test_other_units_of_mass(seed: int, factor: float) -> None:
         )
 
 
-@settings(max_examples=25, deadline=None)
-@given(seed=SEEDS)
-def test_a_contact_that_the_body_falls_away_from_adds_its_letter(seed: int) -> None:
-    case = Case(seed)
-    before = case.answer()
-    assume(not np.any(case.v))
-    assume(all(mode.motion_unique and mode.acceleration_W[2] < -0.01 for mode in before.modes))
-    # A ceiling just over the centre of mass, from which every one of the modes falls away.
-    case.points = np.vstack([case.points, [0.0, 0.0, 1e-3]])
-    case.normals = np.vstack([case.normals, [0.0, 0.0, -1.0]])
-    case.frictions = np.append(case.frictions, 0.5)
-    after = sorted(mode.mode for mode in case.answer().modes)
-    kept = sorted(mode.mode + "s" for mode in before.modes)
-    assert [mode for mode in after if mode.endswith("s")] == kept
+def falls(answer: SpatialModeAnswer) -> bool:
+    """Whether the body falls in one way in each mode."""
+    return all(mode.motion_unique and mode.acceleration_W[2] < -0.01 for mode in answer.modes)
+
+
+@pytest.mark.parametrize("block", sweep(1, whole=18))
+def test_a_contact_that_the_body_falls_away_from_adds_its_letter(block: int) -> None:
+    fallen = 0
+    for seed in range(8 * block, 8 * block + 8):
+        case = Case(seed)
+        before = case.answer()
+        if np.any(case.v) or not falls(before):
+            continue
+        fallen += 1
+        # A ceiling just over the centre of mass, from which every one of the modes falls away.
+        case.points = np.vstack([case.points, [0.0, 0.0, 1e-3]])
+        case.normals = np.vstack([case.normals, [0.0, 0.0, -1.0]])
+        case.frictions = np.append(case.frictions, 0.5)
+        after = sorted(mode.mode for mode in case.answer().modes)
+        kept = sorted(mode.mode + "s" for mode in before.modes)
+        assert [mode for mode in after if mode.endswith("s")] == kept
+    assert fallen > 0
 
 
 @pytest.mark.parametrize("length", [1e-3, 1e3])
 def test_other_units_of_length(length: float) -> None:
-    for seed in range(8):
+    for seed in range(4):
         case = Case(seed)
         before = case.answer()
         case.points, case.inertia, case.v = length * case.points, length**2 * case.inertia, length * case.v

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -244,6 +245,40 @@ def test_margins_of_a_foot_that_begins_to_slide_beside_the_whole_map(seed: int) 
         assert margin.mode not in margin.modes_beyond
         for way in chance.normal(size=(200, 6)):
             assert depth(0.999 * margin.margin * way / np.linalg.norm(way) * metric) > -1e-9 * WEIGHT
+
+
+@pytest.mark.parametrize("seed", [1, 11])
+def test_a_box_that_begins_to_turn_while_it_slides_has_a_margin(seed: int) -> None:
+    """Its way to the boundary leads through many cones, more than a search for each of them allows."""
+    chance = np.random.default_rng(seed)
+    friction, heading = float(chance.choice([0.3, 0.5, 0.8])), chance.uniform(0.0, 2.0 * math.pi)
+    push = 9.8 * friction * chance.uniform(1.0, 1.3) * np.array([math.cos(heading), math.sin(heading)])
+    torque = chance.normal(size=3) * [0.02, 0.02, 0.1]
+    box = MassProperties(mass=1.0, I_B=np.diag([0.0043, 0.0043, 0.0053]))
+    corners = ContactSet(
+        p_WC_W=np.array([(x, y, -0.1) for x in (-0.1, 0.1) for y in (-0.1, 0.1)]),
+        normals_W=[0.0, 0.0, 1.0],
+        frictions=friction,
+    )
+    asked = SpatialContactProblem(
+        body=box,
+        state=state(),
+        contacts=corners,
+        force_W=(*push, -9.8),
+        torque_W=torque,
+        friction_facets=int(chance.choice([8, 16])),
+    )
+    (margin,) = mode_margins(asked)
+    assert 0.1 < margin.margin < 1.0
+    assert "cccc" not in margin.modes_beyond
+    rho = margin.length
+    for way in [margin.change_W / np.array([1.0, 1.0, 1.0, rho, rho, rho]), *chance.normal(size=(6, 6))]:
+        # Friction pyramids that turn with the wrench lack at most 8 % of friction, and more of the margin.
+        change = 0.8 * margin.margin * way / np.linalg.norm(way) * [1.0, 1.0, 1.0, rho, rho, rho]
+        there = contact_modes(
+            replace(asked, force_W=asked.force_W + change[:3], torque_W=asked.torque_W + change[3:])
+        )
+        assert "cccc" in [mode.mode for mode in there.modes]
 
 
 def test_what_is_not_known_of_a_mode_that_begins_to_slide_is_not_told() -> None:

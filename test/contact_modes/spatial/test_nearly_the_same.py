@@ -20,6 +20,7 @@ from contact_dynamics.contact_modes import (
 from contact_dynamics.errors import TooLargeError, UndecidedError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from oracles.equilibria_in_space import KINDS, Resting, resting, rough
+from sweeps import sweep
 
 AT_REST = BodyState(
     p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
@@ -56,7 +57,7 @@ def check_sticking(problem: SpatialContactProblem) -> None:
     assert np.abs(still[0].contact_accelerations_W).max() <= HELD * alone
 
 
-@pytest.mark.parametrize("seed", range(36))
+@pytest.mark.parametrize("seed", range(12))
 def test_a_body_at_rest_by_construction_may_stick(seed: int) -> None:
     check_sticking(problem_of(resting(seed)))
 
@@ -68,11 +69,19 @@ def test_thousands_of_bodies_at_rest_by_construction_may_stick(block: int) -> No
         check_sticking(problem_of(resting(seed)))
 
 
-@pytest.mark.parametrize("seed", range(24))
+@pytest.mark.parametrize("seed", range(8))
 def test_friction_up_to_a_million_and_arms_of_ten_thousand_radii_of_gyration(seed: int) -> None:
     case, gyration = rough(seed)
     body = MassProperties(mass=1.0, I_B=gyration**2 * np.diag([0.6, 0.8, 1.0]))
     check_sticking(problem_of(case, body))
+
+
+@pytest.mark.parametrize("seed", [42, 47, 49, 57, 60])
+def test_statics_do_not_deny_what_wide_cones_hold(seed: int) -> None:
+    case, gyration = rough(seed)
+    body = MassProperties(mass=1.0, I_B=gyration**2 * np.diag([0.6, 0.8, 1.0]))
+    with contextlib.suppress(UndecidedError):
+        assert statics(problem_of(case, body)).equilibrium != Certainty.NO
 
 
 @pytest.mark.slow
@@ -108,7 +117,7 @@ def test_two_contacts_side_by_side_far_from_the_centre(gap: float) -> None:
     )
 
 
-@pytest.mark.parametrize("seed", range(2 * len(KINDS)))
+@pytest.mark.parametrize("seed", sweep(len(KINDS), whole=4 * len(KINDS)))
 def test_questions_about_one_case_do_not_contradict_each_other(seed: int) -> None:
     problem = problem_of(resting(seed, most_friction=1.0))
     n = len(problem.contacts)

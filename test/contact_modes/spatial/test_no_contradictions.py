@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import (
@@ -31,6 +33,7 @@ AT_REST = BodyState(
 BODY = MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5]))
 FLOOR = [(x, y, -0.1) for x in (-0.1, 0.1) for y in (-0.1, 0.1)]
 HELD = 1e-9  # relative to the load: what counts as balanced
+SLIPPING = 1e-12  # relative to the load: a hundred times the rounding of an acceleration of a body that stays
 ALIKE = 1e-5  # relative to the load: two computations of one distance, from hulls of nearly the same points
 
 
@@ -71,13 +74,44 @@ def drawn(seed: int) -> Draw:
     return Draw(problem, rests=kind == 0)
 
 
+@st.composite
+def feet_under_load(draw: st.DrawFn) -> SpatialContactProblem:
+    """Draw feet on a floor that is level, or nearly so at each foot in its own way, under round loads."""
+    places = st.tuples(st.integers(-2, 2), st.integers(-2, 2))
+    feet = draw(st.lists(places, min_size=1, max_size=4, unique=True))
+    leans = st.one_of(st.just(0.0), st.integers(-12, -2).map(lambda power: 10.0**power))
+    normals = np.array([(draw(leans), draw(leans), 1.0) for _ in feet])
+    frictions = [draw(st.sampled_from([0.0, 0.25, 0.5, 1.0])) for _ in feet]
+    push, torque = draw(st.tuples(*[st.integers(-6, 6)] * 2)), draw(st.tuples(*[st.integers(-3, 3)] * 3))
+    return SpatialContactProblem(
+        body=BODY,
+        state=AT_REST,
+        contacts=ContactSet(
+            p_WC_W=[(0.1 * x, 0.1 * y, -0.1) for x, y in feet],
+            normals_W=normals / np.linalg.norm(normals, axis=1)[:, None],
+            frictions=frictions,
+        ),
+        force_W=(float(push[0]), float(push[1]), -10.0),
+        torque_W=[0.25 * part for part in torque],
+        friction_facets=4,
+    )
+
+
 def at_rest(answer: SpatialModeAnswer, problem: SpatialContactProblem) -> bool:
-    """Whether a mode has no acceleration at all."""
+    """Whether a mode has no acceleration at all. It then has one letter, because no contact moves."""
     load = float(np.abs(problem.wrench_W).max())
     return any(
-        max(np.abs(mode.acceleration_W).max(), np.abs(mode.angular_acceleration_W).max()) <= HELD * load
+        set(mode.mode) == {"f"}
+        and max(np.abs(mode.acceleration_W).max(), np.abs(mode.angular_acceleration_W).max()) <= HELD * load
         for mode in answer.modes
     )
+
+
+def slowest(answer: SpatialModeAnswer, problem: SpatialContactProblem) -> float:
+    """Return the least acceleration of all modes, relative to the load. It is infinite without modes."""
+    load = float(np.abs(problem.wrench_W).max())
+    sizes = [np.abs([mode.acceleration_W, mode.angular_acceleration_W]).max() for mode in answer.modes]
+    return float(min(sizes, default=math.inf)) / load
 
 
 def has_one_motion(problem: SpatialContactProblem) -> bool:
@@ -97,7 +131,7 @@ def check_modes_and_statics(answer: SpatialModeAnswer, held: BodyStatics, draw: 
     assert answer.verdict != ModeVerdict.INCONSISTENT or not draw.rests
     assert not (draw.rests and held.equilibrium == Certainty.NO)
     if held.equilibrium == Certainty.NO:
-        assert not at_rest(answer, problem)
+        assert slowest(answer, problem) > SLIPPING
         assert (held.jammed, math.isnan(held.stable_disturbance)) == (Certainty.NO, True)
         return
     assert at_rest(answer, problem)
@@ -119,9 +153,8 @@ def check_disturbance(held: BodyStatics, problem: SpatialContactProblem, seed: i
     assert statics(moved).equilibrium != Certainty.NO
 
 
-def check(seed: int) -> str:
+def check(draw: Draw, seed: int) -> str:
     """Check one draw, and return what was undecided."""
-    draw = drawn(seed)
     problem = draw.problem
     n = len(problem.contacts)
     answer = contact_modes(problem)
@@ -155,16 +188,51 @@ def check(seed: int) -> str:
     return ""
 
 
-@pytest.mark.parametrize("block", range(4))
+@pytest.mark.parametrize("block", range(2))
 def test_answers_do_not_contradict_each_other(block: int) -> None:
-    undecided = [check(seed) for seed in range(3 * block, 3 * block + 3)]
+    undecided = [check(drawn(seed), seed) for seed in range(3 * block, 3 * block + 3)]
     assert undecided.count("") >= 1
+
+
+@settings(max_examples=6)
+@given(feet_under_load())
+def test_answers_about_feet_do_not_contradict_each_other(problem: SpatialContactProblem) -> None:
+    check(Draw(problem, rests=False), seed=0)
+
+
+@pytest.mark.slow
+@settings(max_examples=300)
+@given(feet_under_load())
+def test_hundreds_of_answers_about_feet_do_not_contradict_each_other(problem: SpatialContactProblem) -> None:
+    check(Draw(problem, rests=False), seed=0)
+
+
+def test_a_box_slips_by_what_friction_does_not_hold() -> None:
+    """The push is larger than friction by 2.6e-9 of it. The box slides, and rounds to 1e-15 of the push."""
+    problem = drawn(586).problem
+    excess = math.hypot(*problem.force_W[:2]) - 5.0
+    answer = contact_modes(problem)
+    assert [mode.mode for mode in answer.modes] == ["cccc"]
+    assert statics(problem).equilibrium == Certainty.NO
+    assert np.linalg.norm(answer.modes[0].acceleration_W) == pytest.approx(
+        excess / BODY.mass, rel=0.0, abs=1e-14
+    )
+
+
+@pytest.mark.parametrize("seed", [18, 189, 708])
+def test_a_body_rests_on_contacts_that_are_nearly_one(seed: int) -> None:
+    """Its forces left 1e-9 to 5e-7 of the load, where other forces in the cones leave rounding.
+
+    The contacts are a micrometre apart, or those of draw 708 four nanometres.
+    """
+    problem = drawn(seed).problem
+    assert at_rest(contact_modes(problem), problem)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("block", range(60))
 def test_hundreds_of_answers_do_not_contradict_each_other(block: int) -> None:
-    undecided = [check(seed) for seed in range(20 * block, 20 * block + 20)]
+    undecided = [check(drawn(seed), seed) for seed in range(20 * block, 20 * block + 20)]
     assert undecided.count("") >= 10
 
 

@@ -1,0 +1,90 @@
+"""Forces that realise a mode which the search found, exactly where they can be exact.
+
+Friction is turned exactly against the sliding (`exact_friction`). A body that stays rests to rounding. The
+least of many forces are given (`least_forces`).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.contact_modes.letters import STICKS
+from contact_dynamics.contact_modes.spatial.exact_friction import Sliding, sharpened
+from contact_dynamics.contact_modes.spatial.least_forces import least_forces
+from contact_dynamics.contact_modes.spatial.mode_with_forces import mode_with_forces
+from contact_dynamics.contact_modes.spatial.round_cones import held_by_round_cones, polished, sticking
+from contact_dynamics.tolerances import MODE_BETTER, MODE_RESTS, ROUND_CONE_APART, ROW_TOLERANCE, STRICT
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact_modes.spatial.problem import SpatialCase
+    from contact_dynamics.contact_modes.spatial.result import SpatialMode
+    from contact_dynamics.contact_modes.spatial.search import Found, Search
+    from contact_dynamics.validation import FloatArray
+
+
+def realised(case: SpatialCase, search: Search, found: Found, *, sharpen: bool) -> SpatialMode:
+    """Return a mode that the search found, with accelerations and forces that realise it."""
+    count = search.edges.shape[1]
+    shares = found.program.shares(count)
+    motion_unique, low, high = found.motion
+    if not motion_unique and low is not None and high is not None:
+        shares = 0.5 * (low + high)  # this is away from the borders of the mode
+    mixture = np.random.default_rng(26).normal(size=len(search.edges))
+    forces_unique = found.program.ends(mixture @ search.edges).unique
+    own, acting = (search.edges @ shares).reshape(-1, 3), search.acting(found)
+    if sharpen and motion_unique:
+        own, acting = _sharpened(search, found, own, acting)
+    if not forces_unique:
+        own = least_forces(search.of_forces, own, acting)
+    letters = "".join(one.letter for one in found.letters)
+    if set(letters) == {STICKS}:
+        own = _rested(search, own)
+    unique = motion_unique or forces_unique
+    return mode_with_forces(case, letters, own, forces_unique=forces_unique, motion_unique=unique)
+
+
+def _rested(search: Search, forces: FloatArray) -> FloatArray:
+    """Return forces under which a body rests to rounding.
+
+    The given forces do so to the tolerance within which conditions on nearly the same contacts are merged.
+    """
+    rows = sticking(search)
+    motion = np.append(search.motion[:, -1] + search.of_forces @ forces.ravel(), 1.0)
+    if float(np.abs(rows @ motion).max()) > STRICT:  # what tells merged contacts apart was lost
+        held = held_by_round_cones(search, rows)
+        forces = forces if held.forces is None else held.forces
+
+    def left(forces: FloatArray) -> float:
+        """Return the size of the wrench that forces leave unbalanced."""
+        return float(np.linalg.norm(search.mass @ (search.motion[:, -1] + search.of_forces @ forces.ravel())))
+
+    enough = MODE_RESTS * left(np.zeros_like(forces))
+    if left(forces) <= enough:
+        return forces
+    better = polished(search, rows, forces)
+    best = better if left(better) <= MODE_BETTER * left(forces) else forces
+    for tolerance in (ROW_TOLERANCE, ROUND_CONE_APART):
+        if left(best) <= enough:
+            break
+        # The merged conditions hold, and forces elsewhere in the cones meet all of them.
+        held = held_by_round_cones(search, rows, tolerance=tolerance)
+        if held.forces is not None and left(held.forces) <= MODE_BETTER * left(best):
+            best = held.forces
+    return best
+
+
+def _sharpened(
+    search: Search, found: Found, forces: FloatArray, acting: list[FloatArray]
+) -> tuple[FloatArray, list[FloatArray]]:
+    """Return forces with friction exactly against the sliding, and the edges that may act.
+
+    Where friction could not be turned, they are those that were given.
+    """
+    letters = "".join(one.letter for one in found.letters)
+    if all(one.item < 0 for one in found.letters):
+        return forces, acting
+    mode = Sliding(search.touching, search.pyramids, letters, search.of_forces, search.motion[:, -1])
+    exact = sharpened(mode, forces)
+    return (forces, acting) if exact is None else (exact.forces, exact.edges)

@@ -1,0 +1,186 @@
+"""Forces with which contacts that share a load in many ways begin to slide together, with round cones.
+
+In a given direction of the common motion, each contact's friction has a known direction. Then the sizes of
+the forces and of the motion solve a linear problem with numbers that are not negative. Its remainder depends
+on the direction, which Newton's method turns until nothing remains. The sizes follow the direction in each
+step (variable projection, Golub and Pereyra, The Differentiation of Pseudo-Inverses and Nonlinear Least
+Squares Problems Whose Variables Separate, 1973).
+
+A body that turns about a foot that sticks can do so in two directions only. There round cones decide whether
+forces move it so (`round_cones`), and a refusal is certain.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
+from contact_dynamics.contact_modes.spatial.round_cones import Held, moved_by_round_cones
+from contact_dynamics.numerics.linear_spaces import seen_and_unseen
+from contact_dynamics.numerics.nonnegative_least_squares import nearest_combination
+from contact_dynamics.tolerances import FEASIBLE, LETTERS_REGULAR, ROW_TOLERANCE, SLOWEST_SHARED, STRICT
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from contact_dynamics.contact_modes.spatial.search import Search
+    from contact_dynamics.validation import FloatArray
+
+_MOST_STEPS: Final = 12
+"""The largest number of steps from one direction. From directions that lead to a solution, some five are
+enough."""
+
+_LONGEST_STEP: Final = 0.3
+"""rad. This is a little less than a sector of the usual pyramid."""
+
+_BENT: Final = 0.1
+"""rad. Directions are also tried that are turned by about this. In a mode with other letters one of the
+contacts may stick, and its friction has no direction."""
+
+
+def sliding_together(search: Search, letters: str, motions: Sequence[FloatArray]) -> Held:
+    """Return forces with the letters, to `FEASIBLE`, or whether it is certain that there are none.
+
+    Args:
+        search: The case, of a body at rest.
+        letters: s, c or f for each touching contact.
+        motions: Motions, (6,), in directions near to which the body may slide.
+    """
+    if any(contact.point[:, -1].any() or contact.sliding.any() for contact in search.touching):
+        return Held(None, certain=False)
+    problem = _problem(search, letters)
+    if len(problem.motions) == 1:
+        ways = [_one_way(search, letters, problem, sign) for sign in (1.0, -1.0)]
+        found = next((held for held in ways if held.forces is not None), None)
+        return found or Held(None, certain=all(held.certain for held in ways))
+    for start in problem.directions(motions):
+        for slowest in SLOWEST_SHARED:
+            forces = _turned(problem, start, slowest)
+            if forces is not None:
+                return Held(forces, certain=True)
+    return Held(None, certain=False)
+
+
+def _one_way(search: Search, letters: str, problem: _Problem, sign: float) -> Held:
+    """Return forces that move a body forward or backward, where it can move in one direction only."""
+    axes, frictions = np.zeros((len(letters), 3)), np.zeros(len(letters))
+    motion = np.append(sign * problem.motions[0], 0.0)
+    for i, (letter, contact, pyramid) in enumerate(
+        zip(letters, search.touching, search.pyramids, strict=True)
+    ):
+        if letter == STICKS:
+            axes[i], frictions[i] = contact.normal, contact.friction
+        elif letter == STAYS:
+            across = np.zeros(3)
+            if pyramid.frame is not None:
+                way = contact.point @ motion
+                speed = float(np.linalg.norm(way))
+                if speed <= ROW_TOLERANCE:  # it turns about this foot too
+                    return Held(None, certain=False)
+                across = way / speed
+            axes[i] = contact.normal - contact.friction * across
+    return moved_by_round_cones(search, axes, frictions, STRICT * motion[:-1])
+
+
+class _Problem(NamedTuple):
+    """What forces and motions with some letters consist of.
+
+    Attributes:
+        normals: (m, 3 n), the normal forces of the contacts that begin to slide.
+        tangents: (m, 2, 3 n), their unit frictions, times the coefficient.
+        others: (k, 3 n), the edges of the other contacts' forces.
+        motions: (p, 6), the motions with the letters, but for the sliding.
+        slides: (m, 2, p), the tangential accelerations that these cause.
+        of_forces: (6, 3 n), the motion that unit forces cause.
+        free: (6,), the motion without forces.
+    """
+
+    normals: FloatArray
+    tangents: FloatArray
+    others: FloatArray
+    motions: FloatArray
+    slides: FloatArray
+    of_forces: FloatArray
+    free: FloatArray
+
+    def directions(self, motions: Sequence[FloatArray]) -> Iterator[FloatArray]:
+        """Yield unit directions near those of some motions."""
+        chance = np.random.default_rng(26)
+        found = [self.motions @ motion for motion in motions]
+        units = [one / np.linalg.norm(one) for one in found if np.linalg.norm(one) > 0.0]
+        yield from units
+        for unit in units:
+            yield unit + _BENT * chance.normal(size=unit.shape)
+
+
+def _problem(search: Search, letters: str) -> _Problem:
+    size = 3 * len(letters)
+    normals, tangents, others, slides = [], [], [np.zeros((0, size))], []
+    still = [np.zeros((0, 6))]
+    for i, (letter, contact, pyramid) in enumerate(
+        zip(letters, search.touching, search.pyramids, strict=True)
+    ):
+        if letter == SEPARATES:
+            continue
+        still.append(contact.point[:, :6] if letter == STICKS else (contact.normal @ contact.point)[None, :6])
+        spread = np.zeros((3, size))
+        spread[:, 3 * i : 3 * i + 3] = np.eye(3)
+        if letter == STAYS and pyramid.frame is not None:
+            frame = np.array(pyramid.frame)
+            normals.append(contact.normal @ spread)
+            tangents.append(contact.friction * frame @ spread)
+            slides.append(frame @ contact.point[:, :6])
+        else:
+            others.append(pyramid.edges @ spread)
+    free_motions = seen_and_unseen(np.vstack(still))[1]
+    return _Problem(
+        normals=np.array(normals).reshape(-1, size),
+        tangents=np.array(tangents).reshape(-1, 2, size),
+        others=np.vstack(others),
+        motions=free_motions,
+        slides=np.array(slides).reshape(-1, 2, 6) @ free_motions.T,
+        of_forces=search.of_forces,
+        free=search.motion[:, -1],
+    )
+
+
+def _turned(problem: _Problem, direction: FloatArray, slowest: float) -> FloatArray | None:
+    """Return forces, (n, 3), with which the body slides in a direction near the given one, or None.
+
+    Args:
+        problem: The problem.
+        direction: (p,), of the common motion.
+        slowest: The least size of the motion.
+    """
+    for _ in range(_MOST_STEPS):
+        direction = direction / np.linalg.norm(direction)
+        ways = problem.slides @ direction
+        speeds = np.linalg.norm(ways, axis=1)
+        if not speeds.min(initial=1.0) * slowest > STRICT:
+            return None
+        ways /= speeds[:, None]
+        edges = np.vstack([problem.normals - np.einsum("ij,ijk->ik", ways, problem.tangents), problem.others])
+        motion = problem.motions.T @ direction
+        spans = np.column_stack([problem.of_forces @ edges.T, -motion])
+        found = nearest_combination(spans, slowest * motion - problem.free)
+        if found is None:
+            return None
+        shares = found[0]
+        missed = problem.free - slowest * motion + spans @ shares
+        if found[1] <= FEASIBLE:
+            forces: FloatArray = (shares[:-1] @ edges).reshape(-1, 3)
+            return forces
+        turns = (
+            problem.slides - ways[:, :, None] * np.einsum("ij,ijk->ik", ways, problem.slides)[:, None]
+        ) / (speeds[:, None, None])
+        pressing = shares[: len(ways)]
+        turned = np.einsum("i,ijk,ijp->kp", pressing, problem.tangents, turns)
+        slopes = -problem.of_forces @ turned - (shares[-1] + slowest) * problem.motions.T
+        acting = np.asarray(np.linalg.qr(spans[:, shares > 0.0])[0])
+        slopes -= acting @ (acting.T @ slopes)
+        step = -np.linalg.lstsq(slopes, missed, rcond=LETTERS_REGULAR)[0]
+        length = float(np.linalg.norm(step))
+        direction = direction + step * min(1.0, _LONGEST_STEP / length if length > 0.0 else 1.0)
+    return None
