@@ -1,4 +1,4 @@
-"""Impact (Mason, lecture 27): what a body's velocity is after it strikes.
+"""An impact (Mason, lecture 27) changes a body's velocity. These chapters say what it is afterwards.
 
 `law` has the laws of restitution and the outcomes. `energy` judges what these laws do to energy. `planar` and
 `spatial` treat one contact (`one_contact`) and many cases at once (`batch`), and each has a file for what its

@@ -1,4 +1,4 @@
-"""The impact of an uncertain state: its mean, its covariance and the probability of each outcome.
+"""The impact of an uncertain state has a mean, a covariance and a probability of each outcome.
 
 An impact is not smooth in the state, because sliding may stop or turn. So nothing is linearised. States are
 drawn from the normal distribution in opposite pairs. A linear law would keep the mean and the covariance of

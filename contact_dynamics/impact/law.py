@@ -1,4 +1,4 @@
-"""The restitution laws, what sets them apart, and what can happen during an impact (Mason, lecture 27).
+"""This file names the restitution laws and what can happen during an impact (Mason, lecture 27).
 
 Compression collects an amount, and restitution returns a share of it. `RestitutionRule` says for each law
 which amount this is and where restitution ends. It serves paths in space, which are not known in advance. In
@@ -207,9 +207,13 @@ class PathEvent(NamedInt):
     """What a vertex of the impulse path stands for."""
 
     START = 0
+    """The contact begins: the impulse is zero."""
     SLIDING_STOPS = 1
+    """The contact stops sliding. It sticks from here on, or slides on in another direction."""
     COMPRESSION_ENDS = 2
+    """The contact does not approach any more."""
     RESTITUTION_ENDS = 3
+    """The contact separates: the impulse is complete."""
     SAMPLE = 4
     """A point on a curved part of the path, which only paths in space have."""
 

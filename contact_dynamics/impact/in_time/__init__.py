@@ -1,1 +1,1 @@
-"""Strikes one after another in time, with free flight between them."""
+"""These files follow strikes one after another in time, with free flight between them."""

@@ -1,4 +1,4 @@
-"""The next contacts of a body, found from its shape and the world, or among points that the caller gives.
+"""This file finds the next contacts of a body from its shape and the world, or among points that are given.
 
 Both ways return a `Landing`. They recognise a corner, a ball or a given point when it comes back. On a rim,
 each point is a contact of its own.

@@ -1,4 +1,4 @@
-"""The result of a landing over several strikes, with the time of each and why the sequence ends."""
+"""The result of a landing over several strikes says when each was, and why the sequence ends."""
 
 from __future__ import annotations
 

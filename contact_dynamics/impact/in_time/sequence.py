@@ -1,4 +1,4 @@
-"""A landing in time: corners that strike some milliseconds apart, with free flight between the strikes.
+"""A landing takes time: corners strike some milliseconds apart, with free flight between the strikes.
 
 In recordings of real bodies, contacts that look simultaneous are mostly not. One corner strikes, the body
 flies on, and another corner strikes. Each strike is Routh's impact at one contact (`impact.spatial`). Each

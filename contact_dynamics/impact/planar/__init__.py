@@ -1,1 +1,1 @@
-"""Impact in the plane."""
+"""This chapter resolves impacts in the plane."""

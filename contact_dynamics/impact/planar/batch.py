@@ -1,4 +1,4 @@
-"""Many planar impacts at once.
+"""This file resolves many planar impacts at once.
 
 The operations of `routh` and `one_contact` are repeated in the same order on arrays. Every number equals that
 of the single call to the last bit, because both round all these operations correctly: sums, products,

@@ -1,4 +1,4 @@
-"""Impact of one planar body at one contact with the fixed world (Mason, lecture 27).
+"""A planar body strikes the fixed world at one contact (Mason, lecture 27).
 
 The model is Routh's analysis in impulse space (`routh`), with Poisson's, Newton's or the energetic law of
 restitution. Bodies are rigid, the impact takes no time, friction is Coulomb's with one coefficient, and only

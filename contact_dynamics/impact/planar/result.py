@@ -1,4 +1,4 @@
-"""The result of an impact at one planar contact: the velocities afterwards, and the impulse path."""
+"""The result of an impact at one planar contact has the velocities afterwards and the impulse path."""
 
 from __future__ import annotations
 

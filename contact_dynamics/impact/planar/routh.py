@@ -1,4 +1,4 @@
-"""Routh's construction of a planar impact in impulse space, in closed form (Mason, lecture 27; Routh 1860).
+"""Routh's construction follows a planar impact through impulse space in closed form (lecture 27; Routh 1860).
 
 The model has one contact with Coulomb friction. Positions do not change during the impact. The normal
 impulse p grows from 0 and plays the part of time. The contact's velocity is affine in the impulse (lecture

@@ -1,4 +1,4 @@
-"""Impact of two moving planar bodies, as one problem in their relative velocity.
+"""Two planar bodies strike each other. Their relative velocity makes this one problem.
 
 The impulses on the two bodies are opposite. So the contact's relative velocity responds with the sum of the
 two inverse inertias, and the laws for one body and the fixed world apply unchanged (Routh 1860; Stronge 2000,

@@ -1,1 +1,1 @@
-"""Impacts at several contacts at once, of one body or of several."""
+"""One body or several strike at several contacts at once."""

@@ -1,4 +1,4 @@
-"""The impact of contacts that jam: none approaches, and yet no mode is consistent (lecture 26's last remark).
+"""Contacts can jam: none approaches, and yet no mode is consistent (lecture 26's last remark).
 
 The applied wrench then cannot act for any time, however short, without an impulse. So it acts for a short
 time h, after which contact impulses p_i keep the body out of the world, and h goes to zero,

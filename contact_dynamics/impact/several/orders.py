@@ -1,4 +1,4 @@
-"""Several contacts of one body at once. No single law is accepted for them, so laws have names here.
+"""One body strikes at several contacts at once. No single law is accepted for this, so laws have names.
 
 * SEQUENTIAL (Routh 1860; Ivanov 1995; Smith et al. 2012) applies the law for one contact to one contact after
   the other, until none approaches. The contact that approaches fastest comes first. Where contacts tie, the

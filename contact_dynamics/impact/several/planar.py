@@ -1,4 +1,4 @@
-"""Several contacts of one planar body at once, under the laws of `orders`.
+"""One planar body strikes at several contacts at once, under the laws of `orders`.
 
 The plane is put into space, where the body gets equal moments about all axes. Such a body moves in the plane
 as the planar one does, so the laws are the same and are written once.

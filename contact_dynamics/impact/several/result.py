@@ -1,4 +1,8 @@
-"""The result of an impact at several contacts, of one body or of several, and the names of the laws."""
+"""The result of an impact at several contacts, of one body or of several, and the names of the laws.
+
+`SeveralImpact` and `BodiesImpact` have all fields in common but one, the state or the states. They are two
+types, so that a caller with one body does not take it out of a tuple.
+"""
 
 from __future__ import annotations
 

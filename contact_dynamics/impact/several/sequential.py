@@ -1,4 +1,4 @@
-"""Several contacts between several bodies, and between them and the fixed world, at once.
+"""Several bodies strike each other and the fixed world at several contacts at once.
 
 The laws are those of one body (`orders`). SEQUENTIAL strikes one contact after the other, each as the impact
 of the two bodies that meet there (`impact.spatial`). SIMULTANEOUS solves one complementarity problem over all

@@ -1,4 +1,4 @@
-"""Impulses at several contacts at once, by complementarity of impulses and velocities.
+"""This file finds impulses at several contacts at once, which complement the velocities that they lead to.
 
 In compression, or in the whole impact under Newton's law, every contact with the velocity v after and v0
 before obeys

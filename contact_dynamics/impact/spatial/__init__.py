@@ -1,1 +1,1 @@
-"""Impact in space."""
+"""This chapter resolves impacts in space."""

@@ -1,4 +1,4 @@
-"""Many impacts in space at once, from arrays to arrays, with the numbers of `one_contact` to the last bit.
+"""This file resolves many impacts in space at once, with the numbers of `one_contact` to the last bit.
 
 Contacts slide in lock-step (`batch_paths`). As in `one_contact`, there are closed forms where the direction
 is invariant: for spheres, central impacts, planar problems and contacts without friction. The vertices of the
@@ -162,6 +162,7 @@ def spatial_impacts(
     others: StrikingBodies | None = None,
     restitution_laws: ArrayLike = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
+    skip_separating: bool = False,
 ) -> SpatialImpacts:
     """Return what N impacts in space do. Each answer is that of `spatial_impact` or `spatial_pair_impact`.
 
@@ -173,10 +174,12 @@ def spatial_impacts(
         others: The bodies that they strike, or None if they strike the fixed world.
         restitution_laws: (N,) or one, values of RestitutionLaw.
         velocity_tolerance: m/s, >= 0. A normal or tangential velocity of a contact within it counts as zero.
+        skip_separating: Whether a contact that separates is answered instead of refused. Its outcome is then
+            NO_IMPULSE, and its velocities stay what they are.
 
     Raises:
-        SeparatingContactError: a contact's normal velocity is above the tolerance; the message names the
-            first.
+        SeparatingContactError: a contact's normal velocity is above the tolerance, and ``skip_separating`` is
+            false; the message names the first.
         InvalidFieldError: a number is not allowed; the message names the field and the first row.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
@@ -200,7 +203,9 @@ def spatial_impacts(
             for first in range(0, len(cases), _CHUNK):
                 chunk = cases[first : first + _CHUNK]
                 rows = {name: x[chunk] if len(x) > 1 else x for name, x in fields.items()}
-                outcomes[chunk], components = _strike(rows, chunk, law, tolerance)
+                outcomes[chunk], components = _strike(
+                    rows, chunk, law, tolerance, skip_separating=skip_separating
+                )
                 for result, component in zip(results, components, strict=True):
                     result[chunk] = component
     triples = [results[i : i + 3].T for i in range(0, len(results), 3)]
@@ -219,7 +224,12 @@ def spatial_impacts(
 
 
 def _strike(
-    rows: dict[str, FloatArray], cases: NDArray[np.intp], law: RestitutionLaw, tolerance: float
+    rows: dict[str, FloatArray],
+    cases: NDArray[np.intp],
+    law: RestitutionLaw,
+    tolerance: float,
+    *,
+    skip_separating: bool,
 ) -> tuple[NDArray[np.int64], list[FloatArray]]:
     """Return the outcomes of `spatial_impact` for some ``cases``, and the answers component by component."""
     count = len(cases)
@@ -228,7 +238,9 @@ def _strike(
     velocity = velocity_at_contact(first, second)
     axes = contact_axes(first, second, _columns(rows["normals_W"], count))
     u1, u2, v_n = axes.components(velocity)
-    for i in np.flatnonzero(~(v_n <= tolerance))[:1]:
+    apart = v_n > tolerance
+    refused = np.isnan(v_n) if skip_separating else ~(v_n <= tolerance)
+    for i in np.flatnonzero(refused)[:1]:
         raise SeparatingContactError(
             f"contact normal velocity of case {cases[i]}",
             f"v_n = {v_n[i]:.9g} m/s",
@@ -236,14 +248,17 @@ def _strike(
         )
     still = np.sqrt(u1 * u1 + u2 * u2) <= tolerance
     rests = v_n >= -tolerance
-    u1[still] = u2[still] = 0.0
+    parting = (u1[apart], u2[apart], v_n[apart])
+    u1[still | apart] = u2[still | apart] = 0.0
     v_n[rests] = 0.0
     counted = zip(velocity, axes.in_world((u1, u2, v_n)), strict=True)
-    velocity = tuple(np.where(still | rests, without, whole) for whole, without in counted)
+    velocity = tuple(np.where((still | rests) & ~apart, without, whole) for whole, without in counted)
     mu = np.minimum(np.broadcast_to(rows["frictions"], count), LARGEST_FRICTION)
     e = np.broadcast_to(rows["restitutions"], count)
     sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, mu)
     paths = trace_all(sliding, (u1, u2), v_n, restitution=e, law=law)
+    for component, kept in zip((*paths.u, paths.v_n), parting, strict=True):
+        component[apart] = kept
     impulse = axes.in_world(paths.impulse)
     parts = [
         *pushed(first, impulse),

@@ -1,4 +1,4 @@
-"""The impulse paths of many contacts in space at once, which do the work of `path`, `stop` and `restitution`.
+"""This file follows many contacts' impulse paths at once, as `path`, `stop` and `restitution` do for one.
 
 Each contact is a lane. All lanes that still slide take their next stretch together. Lanes drop out when they
 have stopped or their impact is over. Within a stretch, branches become selections of lanes. The arithmetic is

@@ -1,4 +1,4 @@
-"""Impact in space of one body at one contact with the fixed world, or with a second moving body.
+"""A body in space strikes the fixed world, or a second moving body, at one contact.
 
 The model is that of the plane (`impact.planar`): bodies are rigid, the impact has no duration, friction is
 Coulomb's, and only the contact's force acts. In space the sliding direction swerves while the impulse grows.

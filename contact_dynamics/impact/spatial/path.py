@@ -1,4 +1,4 @@
-"""The impulse path of one contact in space, from the first touch to the end of restitution.
+"""This file follows the impulse path of one contact in space, from the first touch to the end of restitution.
 
 The contact first slides. It swerves (`taylor`), or slides straight if its direction is invariant. After a
 stop it sticks, or it leaves in the one admissible direction (`sliding_law`). Its path is straight in both

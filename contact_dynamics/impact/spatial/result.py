@@ -1,4 +1,4 @@
-"""The result of an impact at one contact in space: the state afterwards, and the impulse path."""
+"""The result of an impact at one contact in space has the state afterwards and the impulse path."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A stretch of a swerving impulse path as power series, by Taylor's method.
+"""Taylor's method gives a stretch of a swerving impulse path as power series.
 
 With a parameter s that runs as ds = |law's scale| dp/|u|, the sliding equations (`sliding_law`) lose their
 singularity at the stop. Their coefficients are then of size 1. Apart from the scale, which divides each,

@@ -246,7 +246,14 @@ def assert_agrees(
         assert ours.impact.state.w_WB_W == pytest.approx(theirs.w, abs=speed / 0.02)
 
 
-@pytest.mark.parametrize(("seed", "e"), [(0, 0.3), (1, 0.5), (2, 0.7), (3, 0.9), (5, 1.0)])
+SEEDS_AND_RESTITUTIONS = [
+    (0, 0.3),
+    (1, 0.5),
+    *(pytest.param(seed, e, marks=pytest.mark.slow) for seed, e in ((2, 0.7), (3, 0.9), (5, 1.0))),
+]
+
+
+@pytest.mark.parametrize(("seed", "e"), SEEDS_AND_RESTITUTIONS)
 def test_brute_force_in_small_steps_comes_to_the_same_strikes(seed: int, e: float) -> None:
     """Without friction, the stepped flight errs by about 1e-12 at 50 us, and each strike multiplies that."""
     body, state = random_toss(seed)
@@ -256,7 +263,7 @@ def test_brute_force_in_small_steps_comes_to_the_same_strikes(seed: int, e: floa
     assert_agrees(sequence, expected, seconds=1e-8, speed=1e-6)
 
 
-@pytest.mark.parametrize("seed", [9, 11])
+@pytest.mark.parametrize("seed", [pytest.param(9, marks=pytest.mark.slow), 11])
 def test_brute_force_with_friction(seed: int) -> None:
     """The stepped impulse is of first order: its 1000 increments leave some 1e-3 of the speeds."""
     body, state = random_toss(seed)

@@ -240,3 +240,27 @@ def test_a_separating_row_is_named() -> None:
     bodies = StrikingBodies(**{**GOOD_BODIES, "v_WB_W": [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]]})  # type: ignore[arg-type]
     with pytest.raises(SeparatingContactError, match="case 1"):
         spatial_impacts(bodies, **GOOD_CONTACTS)  # type: ignore[arg-type]
+
+
+def test_separating_rows_can_be_left_as_they_are() -> None:
+    """The other rows get their answers, and those that separate keep their velocities to the last bit."""
+    velocities = [[0.3, 0.0, -1.0], [0.1, 0.2, 1.0], [0.0, 0.0, -2.0]]
+    answers = spatial_impacts(
+        StrikingBodies(**{**GOOD_BODIES, "v_WB_W": velocities}),  # type: ignore[arg-type]
+        normals_W=[0.0, 0.0, 1.0],
+        frictions=0.2,
+        restitutions=0.5,
+        skip_separating=True,
+    )
+    alone = spatial_impacts(
+        StrikingBodies(**{**GOOD_BODIES, "v_WB_W": [velocities[0], velocities[2]]}),  # type: ignore[arg-type]
+        normals_W=[0.0, 0.0, 1.0],
+        frictions=0.2,
+        restitutions=0.5,
+    )
+    assert answers.outcomes[1] == ImpactOutcome.NO_IMPULSE
+    assert answers.v_WB_W[1].tolist() == velocities[1]
+    assert answers.impulses_W[1].tolist() == [0.0, 0.0, 0.0]
+    assert answers.velocities_after_W[1].tolist() == velocities[1]
+    assert np.array_equal(answers.v_WB_W[[0, 2]], alone.v_WB_W)
+    assert np.array_equal(answers.outcomes[[0, 2]], alone.outcomes)

@@ -152,11 +152,11 @@ def test_agrees_with_increments_in_every_outcome_class(
     answer = solve(problem, law)
     size = float(np.linalg.norm(answer.impulse_W))
     errors = [
-        np.linalg.norm(increments(problem, law, size / n) - answer.impulse_W) / size for n in (200, 800)
+        np.linalg.norm(increments(problem, law, size / n) - answer.impulse_W) / size for n in (100, 400)
     ]
     # First order: an error of a few increments, which falls with them.
-    assert errors[0] < 5.0 / 200
-    assert errors[1] < 5.0 / 800
+    assert errors[0] < 5.0 / 100
+    assert errors[1] < 5.0 / 400
 
 
 def increments(problem: dict[str, object], law: RestitutionLaw, increment: float) -> np.ndarray:
@@ -305,7 +305,7 @@ def test_eccentric_rod_drop_without_friction() -> None:
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(seed=st.integers(0, 2**32))
 def test_planar_problems_have_planar_answers(law: RestitutionLaw, seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -347,7 +347,7 @@ def test_planar_problems_have_planar_answers(law: RestitutionLaw, seed: int) -> 
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(seed=st.integers(0, 2**32))
 def test_planes_along_the_axes_have_planar_answers_to_rounding(law: RestitutionLaw, seed: int) -> None:
     """Where no turn rounds the plane away, the whole path is the planar one, vertex by vertex."""
@@ -381,7 +381,7 @@ def test_planes_along_the_axes_have_planar_answers_to_rounding(law: RestitutionL
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(seed=st.integers(0, 2**32))
 def test_admissible(law: RestitutionLaw, seed: int) -> None:
     problem = random_problem(seed)
@@ -406,7 +406,7 @@ def test_admissible(law: RestitutionLaw, seed: int) -> None:
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 2**32))
 def test_laws_mean_what_they_say(law: RestitutionLaw, seed: int) -> None:
     problem = random_problem(seed)
@@ -428,7 +428,7 @@ def test_laws_mean_what_they_say(law: RestitutionLaw, seed: int) -> None:
     assert at_end @ normal == pytest.approx(0.0, abs=1e-10 * float(np.linalg.norm(at_end) + 1.0))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 2**32), mirror=st.booleans())
 def test_turned_and_mirrored_problems_have_turned_and_mirrored_answers(seed: int, mirror: bool) -> None:  # noqa: FBT001
     problem = random_problem(seed)
@@ -460,7 +460,7 @@ def test_turned_and_mirrored_problems_have_turned_and_mirrored_answers(seed: int
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 2**32))
 def test_mirrored_problems_have_mirrored_answers_to_the_last_bit(law: RestitutionLaw, seed: int) -> None:
     """In a coordinate plane, since only signs change."""
