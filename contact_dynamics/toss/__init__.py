@@ -1,0 +1,49 @@
+"""Whole tosses: the motion of a body from a state in flight to rest, in one call.
+
+`one_toss` is the call, and follows other ways where mechanics does not decide. `following` goes from event to
+event: flights in closed form, strikes (`strike`), contact phases (`phase`), and rest. `course` keeps what
+happens, and `result` has what is returned.
+
+- `solid` has the body and the flats in plain floats, and the points that touch.
+- `mode_choice` says which contact mode follows. It tries the one that goes on, corrects it, seeks pushes in
+  friction cones (`cone_forces`), and asks `contact_modes` where there may be several modes.
+- `forces` has the accelerations in a mode of `held` contacts, `flush` those of a body that slides on a face,
+  and `phase` integrates them (`phase_step`) until the mode ends (`phase_ends`). `holding` keeps contacts
+  where they are.
+
+What is not known exactly (`uncertainty`) is sampled: `sampled` is the call, and `distribution` has what it
+returns. `strikes_of_many` has the next strikes of all samples at once, and `law_spread` what the law of
+impact leaves open.
+"""
+
+from contact_dynamics.toss.distribution import TossDistribution
+from contact_dynamics.toss.one_toss import toss
+from contact_dynamics.toss.result import (
+    Toss,
+    TossEnd,
+    TossEnergy,
+    TossEvent,
+    TossEventKind,
+    Undecided,
+    UndecidedReason,
+)
+from contact_dynamics.toss.sampled import sampled_toss
+from contact_dynamics.toss.uncertainty import TossUncertainty
+
+__all__ = [
+    "Toss",
+    "TossDistribution",
+    "TossEnd",
+    "TossEnergy",
+    "TossEvent",
+    "TossEventKind",
+    "TossUncertainty",
+    "Undecided",
+    "UndecidedReason",
+    "sampled_toss",
+    "toss",
+]
+
+
+def __dir__() -> list[str]:
+    return __all__

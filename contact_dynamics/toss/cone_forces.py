@@ -1,0 +1,157 @@
+"""Pushes at several contacts that keep a body out of the world, with round friction cones.
+
+The same problem appears twice. Contact forces change accelerations, and impulses without restitution change
+velocities. With the motion b of the contacts without any push, and the response D, the pushes f obey
+
+    m = b + D f,    0 <= f_n,  m_n >= 0, one of the two zero,    |f_t| <= mu f_n,
+
+and f_t is against m_t with mu f_n where m_t is not zero. A contact that slides already has friction in a
+known direction. The method is block Gauss-Seidel: the problem of one contact is solved exactly, in turn,
+until no push changes (Moreau 1988). It does not find all solutions; `contact_modes` does.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm
+from contact_dynamics.tolerances import CONE_SWEEPS_CONVERGED, FORCE_ROUNDING
+from contact_dynamics.toss.solid import times
+
+if TYPE_CHECKING:
+    from contact_dynamics.toss.solid import Matrix3
+
+MOST_SWEEPS: Final = 400
+"""Sweeps over all contacts after which the problem counts as not solved. Four corners need some fifty."""
+
+_MOST_TURNS: Final = 60
+"""Steps towards the direction in which one contact slides."""
+
+
+class Site(NamedTuple):
+    """A contact in one such problem, in contact axes: two tangents and the normal.
+
+    Attributes:
+        arm: m, world axes, from the centre of mass.
+        axes: The two tangents and the normal, unit, world axes.
+        friction: Coulomb's mu.
+        motion: The contact's velocity or acceleration without any push, contact axes.
+        sliding: The unit direction in which it slides already, by the two tangents, or None.
+    """
+
+    arm: Vector3
+    axes: Matrix3
+    friction: float
+    motion: Vector3
+    sliding: tuple[float, float] | None
+
+
+def cone_forces(
+    per_mass: float, inverse: Matrix3, sites: list[Site]
+) -> tuple[list[Vector3], list[Vector3]] | None:
+    """Return the pushes and the contacts' motions with them, in contact axes, or None if none were found.
+
+    Args:
+        per_mass: 1/kg.
+        inverse: (3, 3), 1/(kg m^2), the inverse inertia in world axes.
+        sites: The contacts.
+    """
+    n = len(sites)
+    moments = [tuple(cross(site.arm, axis) for axis in site.axes) for site in sites]
+    turnings = [tuple(times(inverse, moment) for moment in row) for row in moments]
+    response = [
+        [
+            tuple(
+                tuple(
+                    per_mass * dot(sites[i].axes[a], sites[j].axes[b]) + dot(moments[i][a], turnings[j][b])
+                    for b in range(3)
+                )
+                for a in range(3)
+            )
+            for j in range(n)
+        ]
+        for i in range(n)
+    ]
+    pushes: list[Vector3] = [(0.0, 0.0, 0.0)] * n
+    motions: list[Vector3] = [site.motion for site in sites]
+    scale = max(map(norm, motions), default=0.0)
+    if scale == 0.0:
+        return pushes, motions
+    for _ in range(MOST_SWEEPS):
+        change = 0.0
+        for i, site in enumerate(sites):
+            own = response[i][i]
+            back = times(own, pushes[i])  # type: ignore[arg-type]  # rows of three
+            m = motions[i]
+            alone = (m[0] - back[0], m[1] - back[1], m[2] - back[2])
+            push = _one(own, alone, site)  # type: ignore[arg-type]
+            old = pushes[i]
+            step = (push[0] - old[0], push[1] - old[1], push[2] - old[2])
+            if step == (0.0, 0.0, 0.0):
+                continue
+            pushes[i] = push
+            for j in range(n):
+                x, y, z = times(response[j][i], step)  # type: ignore[arg-type]
+                u, v, w = motions[j]
+                motions[j] = (u + x, v + y, w + z)
+                if j == i:
+                    change = max(change, abs(x), abs(y), abs(z))
+        if change <= CONE_SWEEPS_CONVERGED * scale:
+            kept_out = min(motion[2] for motion in motions) >= -FORCE_ROUNDING * scale
+            return (pushes, motions) if kept_out else None
+    return None
+
+
+def _one(own: Matrix3, m: Vector3, site: Site) -> Vector3:
+    """Return the push of one contact that has the motion ``m`` without it."""
+    if m[2] >= 0.0:
+        return (0.0, 0.0, 0.0)
+    mu = site.friction
+    (a, b, c), (_, d, e), (_, _, f) = own
+    if site.sliding is not None:
+        x, y = site.sliding
+        rate = f - mu * (c * x + e * y)
+        p = -m[2] / rate if rate > 0.0 else 0.0
+        return (-mu * p * x, -mu * p * y, p)
+    # Does it stick?  The block is symmetric and positive definite.
+    A, B, C = d * f - e * e, c * e - b * f, b * e - c * d
+    D, E, F = a * f - c * c, b * c - a * e, a * d - b * b
+    det = a * A + b * B + c * C
+    x = -(A * m[0] + B * m[1] + C * m[2]) / det
+    y = -(B * m[0] + D * m[1] + E * m[2]) / det
+    z = -(C * m[0] + E * m[1] + F * m[2]) / det
+    if z > 0.0 and math.hypot(x, y) <= mu * z:
+        return (x, y, z)
+    return _sliding(own, m, mu, (x, y))
+
+
+def _sliding(own: Matrix3, m: Vector3, mu: float, hold: tuple[float, float]) -> Vector3:
+    """Return the push of one contact that friction does not hold: a direction that its motion keeps.
+
+    The direction d solves: the tangential motion with the push p (n - mu d) is along d. Newton's steps on the
+    angle start from the motion against the force that would hold it.
+    """
+    (a, b, c), (_, d, e), (_, _, f) = own
+    angle = math.atan2(-hold[1], -hold[0]) if hold != (0.0, 0.0) else math.atan2(m[1], m[0])
+    p = x = y = 0.0
+    for _ in range(_MOST_TURNS):
+        x, y = math.cos(angle), math.sin(angle)
+        rate = f - mu * (c * x + e * y)
+        if rate <= 0.0:
+            return (0.0, 0.0, 0.0)
+        p = -m[2] / rate
+        u = m[0] + p * (c - mu * (a * x + b * y))
+        v = m[1] + p * (e - mu * (b * x + d * y))
+        turn = math.atan2(x * v - y * u, x * u + y * v)
+        if abs(turn) <= CONE_SWEEPS_CONVERGED:
+            break
+        # The derivative of u, v and of p by the angle.
+        p_turn = p * mu * (e * x - c * y) / rate
+        u_turn = p_turn * (c - mu * (a * x + b * y)) + p * mu * (a * y - b * x)
+        v_turn = p_turn * (e - mu * (b * x + d * y)) + p * mu * (b * y - d * x)
+        size = u * u + v * v
+        slope = (u * v_turn - v * u_turn) / size - 1.0 if size > 0.0 else -1.0
+        step = -turn / slope if slope < 0.0 else turn
+        angle += max(-1.0, min(1.0, step))
+    return (-mu * p * x, -mu * p * y, p)

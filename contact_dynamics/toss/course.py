@@ -1,0 +1,148 @@
+"""What is known of a toss as it goes on: where it is, what happened, and what is told of it at the end."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.constants import ns_after
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE
+from contact_dynamics.toss.mode_choice import points_of, state_of
+from contact_dynamics.toss.result import (
+    Piece,
+    Toss,
+    TossEnd,
+    TossEnergy,
+    TossEvent,
+    TossEventKind,
+    Undecided,
+    UndecidedReason,
+)
+from contact_dynamics.toss.solid import (
+    energy_of,
+    heights_and_rates,
+    kinetic_energy_of,
+    numbers_of,
+    rows_at,
+    transposed_times,
+)
+
+if TYPE_CHECKING:
+    from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
+    from contact_dynamics.numerics.vectors import Vector3
+    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.toss.solid import Numbers, Solid, Touch
+
+
+class Noted(NamedTuple):
+    """An event, as `TossEvent` tells it, with the contacts and the 13 numbers of the state after it."""
+
+    seconds: float
+    kind: TossEventKind
+    touching: list[Touch]
+    impulse: Vector3
+    outcome: ImpactOutcome | None
+    mode: str
+    y: Numbers
+
+
+class Course:
+    """A toss as far as it has come.
+
+    Attributes:
+        solid: The body and the flats.
+        now: s after the first state's stamp.
+        y: The state now.
+        pieces: The flights and steps up to now.
+        events: What happened up to now.
+        lost_in_strikes: J, what strikes have taken.
+        lost_in_contact: J, what sliding has taken.
+        resting: The contacts that the body rests on, if it does.
+    """
+
+    def __init__(self, solid: Solid, state: BodyState, ways: tuple[int, ...]) -> None:
+        self.solid = solid
+        self.now, self.y = 0.0, numbers_of(state)
+        self.pieces: list[Piece] = []
+        self.events: list[Noted] = []
+        self.lost_in_strikes = self.lost_in_contact = 0.0
+        self.resting: list[Touch] = []
+        self._undecided: list[Undecided] = []
+        self._ways = ways
+        self._began_ns = state.stamp_ns
+        self._first = energy_of(self.solid, self.y)
+
+    def told(self, end: TossEnd, law: RestitutionLaw) -> Toss:
+        """Return what there is to tell of a toss that ends so."""
+        energy = TossEnergy(
+            first=self._first - energy_of(self.solid, self.y) + kinetic_energy_of(self.solid, self.y),
+            lost_in_strikes=self.lost_in_strikes,
+            lost_in_contact=self.lost_in_contact,
+            left=kinetic_energy_of(self.solid, self.y),
+        )
+        return Toss(
+            restitution_law=law,
+            end=end,
+            seconds=self.now,
+            state=self.present(),
+            events=tuple(map(self._told_event, self.events)),
+            resting_corners=tuple(sorted(corner for _, corner in self.resting)),
+            resting_normal_B=np.array(self.resting_normal_B()),
+            energy=energy,
+            undecided=tuple(self._undecided),
+            pieces=tuple(self.pieces),
+            starts=np.array([piece.start for piece in self.pieces]),
+            began_ns=self._began_ns,
+        )
+
+    def resting_normal_B(self) -> Vector3:
+        """Return the normal of the flat on which the body rests, body axes, or zero if it moves."""
+        if not self.resting:
+            return (0.0, 0.0, 0.0)
+        return transposed_times(rows_at(self.y), self.solid.flats[self.resting[0][0]].normal)
+
+    def touching_now(self, leaving: float) -> list[Touch]:
+        """Return the contacts that touch and do not leave faster than ``leaving``, m/s."""
+        listed = heights_and_rates(self.solid, self.y)
+        return [touch for height, rate, touch in listed if height <= DISTANCE_TOLERANCE and rate <= leaving]
+
+    def way(self, reason: UndecidedReason, options: int) -> int:
+        """Return which way is taken at a point that mechanics does not decide, and tell of it."""
+        k = len(self._undecided)
+        taken = self._ways[k] if k < len(self._ways) else 0
+        self._undecided.append(Undecided(seconds=self.now, reason=reason, options=options, taken=taken))
+        return taken
+
+    def note(
+        self,
+        kind: TossEventKind,
+        touching: list[Touch],
+        *,
+        impulse: Vector3 = (0.0, 0.0, 0.0),
+        outcome: ImpactOutcome | None = None,
+        mode: str = "",
+    ) -> None:
+        """Tell of an event at contacts that touch now."""
+        self.events.append(Noted(self.now, kind, touching, impulse, outcome, mode, self.y))
+
+    def present(self) -> BodyState:
+        """Return the state now, with its stamp."""
+        return self._state(self.now, self.y)
+
+    def _state(self, seconds: float, y: Numbers) -> BodyState:
+        return state_of(y, ns_after(self._began_ns, seconds))
+
+    def _told_event(self, noted: Noted) -> TossEvent:
+        touching, y = noted.touching, noted.y
+        return TossEvent(
+            seconds=noted.seconds,
+            kind=noted.kind,
+            surfaces=tuple(self.solid.flats[surface].name for surface, _ in touching),
+            corners=tuple(corner for _, corner in touching),
+            p_WC_W=points_of(self.solid, y, touching),
+            impulse_W=np.array(noted.impulse),
+            outcome=noted.outcome,
+            mode=noted.mode,
+            state=self._state(noted.seconds, y),
+        )

@@ -1,0 +1,220 @@
+"""What can happen in a toss that is not known exactly: a tree of the next strikes, regions, and rest.
+
+A region is an ellipsoid about the mean of samples, by their covariance. Half of the samples, or nine tenths,
+are within it. These sizes are counted among the samples, so that they hold for any distribution of theirs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.records import NamedInt, Record
+from contact_dynamics.rotations.many import rotation_vectors, turned
+from contact_dynamics.tolerances import EXACT_SHARE
+from contact_dynamics.validation import FloatArray
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+LEVELS: Final = (0.5, 0.9)
+"""Probabilities of the regions."""
+
+QUANTILES: Final = (0.05, 0.25, 0.5, 0.75, 0.95)
+"""Quantiles of time and place of rest."""
+
+FEWEST: Final = 20
+"""Samples of a branch that has regions. Of fewer, nine tenths are no more than two from all."""
+
+_MEAN_ROUNDS: Final = 4
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Region(Record):
+    """Where samples of a quantity with k numbers lie.
+
+    Attributes:
+        mean: (k,), their mean.
+        covariance: (k, k), their covariance.
+        radii: (2,), the distances from the mean, in standard deviations by the covariance, within which half
+            and nine tenths of them are.
+    """
+
+    mean: FloatArray
+    covariance: FloatArray
+    radii: FloatArray
+
+    def distances(self, values: ArrayLike) -> FloatArray:
+        """Return how far values, (n, k), are from the mean, in standard deviations, (n,)."""
+        off = np.atleast_2d(np.asarray(values, dtype=np.float64)) - self.mean
+        return _distances(off, self.covariance)
+
+    def holds(self, values: ArrayLike) -> NDArray[np.bool_]:
+        """Return whether values, (n, k), are in the regions of 50 and 90 %, (n, 2)."""
+        held: NDArray[np.bool_] = self.distances(values)[:, None] <= self.radii
+        return held
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class EventRegions(Record):
+    """When and where a strike happens, and with which velocities the body leaves it.
+
+    Attributes:
+        probability: Share of all samples that have it. The regions are those of these samples.
+        seconds: s after the first state's stamp (k = 1).
+        position: m, of the centre of mass, world (k = 3).
+        q_WB: (4,), the mean attitude.
+        turn: rad, rotation vectors from the mean attitude, world axes (k = 3).
+        velocity: m/s, of the centre of mass after the strike, world axes (k = 3).
+        spin: rad/s, after the strike, world axes (k = 3).
+    """
+
+    probability: float
+    seconds: Region
+    position: Region
+    q_WB: FloatArray
+    turn: Region
+    velocity: Region
+    spin: Region
+
+
+class BranchKind(NamedInt):
+    """What happens on a branch."""
+
+    STRIKES = 0
+    """A corner strikes."""
+    STAYS = 1
+    """The contact of the strike before rebounds too little to be followed, and stays."""
+    FLIES = 2
+    """The body meets nothing until the horizon."""
+    ENDS = 3
+    """There is no further strike: the body rests, or slides and rolls until the horizon."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Branch(Record):
+    """A branch of the tree of what can happen next.
+
+    Attributes:
+        parent: The index of the branch that it follows, or -1.
+        strike: Which strike it is about, from 1.
+        kind: What happens.
+        surface: The name of the surface that is struck, or nothing.
+        corner: The index of the corner that strikes, or -1.
+        probability: Share of all samples that came this way.
+        regions: Those of its samples; None where nothing strikes, or with fewer than `FEWEST` samples.
+    """
+
+    parent: int
+    strike: int
+    kind: BranchKind
+    surface: str
+    corner: int
+    probability: float
+    regions: EventRegions | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class RestSpread(Record):
+    """When and where samples rest. The places are not calibrated: recorded cubes stop earlier (docs/toss.md).
+
+    Attributes:
+        seconds: (5,), s, the `QUANTILES` of the time of rest.
+        positions: (5, 3), m, those of each coordinate of the centre of mass.
+        position: Where the centre of mass rests, m (k = 3).
+    """
+
+    seconds: FloatArray
+    positions: FloatArray
+    position: Region
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Ghosts(Record):
+    """Poses of some samples, for pictures.
+
+    Attributes:
+        samples: (m,), the number of each one's sample.
+        strikes: (m,), the number of the strike from 1, or 0 for rest.
+        p_WB_W: (m, 3), m, centres of mass.
+        q_WB: (m, 4), unit quaternions.
+        v_WB_W: (m, 3), m/s, after the strike.
+        w_WB_W: (m, 3), rad/s, after the strike.
+    """
+
+    samples: NDArray[np.int64]
+    strikes: NDArray[np.int64]
+    p_WB_W: FloatArray
+    q_WB: FloatArray
+    v_WB_W: FloatArray
+    w_WB_W: FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class TossDistribution(Record):
+    """What can happen in a toss.
+
+    Attributes:
+        samples: How many samples it is made of.
+        strikes: The next strikes, whichever corner has them, as far as any sample has them.
+        branches: The tree. Branches stand after those that they follow, and the probable ones first.
+        face_normals_B: (f, 3), unit, the normals of the surface below, body axes, one for each face on which
+            samples rest, the probable ones first.
+        face_probabilities: (f,), shares of all samples. What is missing to one did not come to rest.
+        rest: When and where samples rest; None if none does, or if they were not followed so far.
+        ghosts: Poses of the first samples.
+    """
+
+    samples: int
+    strikes: tuple[EventRegions, ...]
+    branches: tuple[Branch, ...]
+    face_normals_B: FloatArray
+    face_probabilities: FloatArray
+    rest: RestSpread | None
+    ghosts: Ghosts
+
+
+def region_of(values: FloatArray) -> Region:
+    """Return the region of samples, (n, k)."""
+    mean = values.mean(axis=0)
+    off = values - mean
+    covariance = off.T @ off / max(len(values) - 1, 1)
+    distances = _distances(off, covariance)
+    return Region(mean=mean, covariance=covariance, radii=np.quantile(distances, LEVELS))
+
+
+def regions_of(
+    share: float, seconds: FloatArray, *, p: FloatArray, q: FloatArray, v: FloatArray, w: FloatArray
+) -> EventRegions:
+    """Return the regions of strikes: times (n,), poses and velocities after them, a row each."""
+    mean = q[0]
+    for _ in range(_MEAN_ROUNDS):
+        mean = turned(mean[None], rotation_vectors(q, mean).mean(axis=0)[None])[0]
+    return EventRegions(
+        probability=share,
+        seconds=region_of(seconds[:, None]),
+        position=region_of(p),
+        q_WB=mean,
+        turn=region_of(rotation_vectors(q, mean)),
+        velocity=region_of(v),
+        spin=region_of(w),
+    )
+
+
+def rest_of(seconds: FloatArray, p: FloatArray) -> RestSpread:
+    """Return when, (n,), and where, (n, 3), samples rest."""
+    return RestSpread(
+        seconds=np.quantile(seconds, QUANTILES),
+        positions=np.quantile(p, QUANTILES, axis=0),
+        position=region_of(p),
+    )
+
+
+def _distances(off: FloatArray, covariance: FloatArray) -> FloatArray:
+    values, axes = np.linalg.eigh(covariance)
+    least = max(float(values[-1]) * EXACT_SHARE, np.finfo(float).tiny)
+    across: FloatArray = off @ axes / np.sqrt(np.maximum(values, least))
+    distances: FloatArray = np.sqrt(np.einsum("ij,ij->i", across, across))
+    return distances

@@ -1,0 +1,304 @@
+"""Follows one toss from event to event: flights, strikes, contact phases, jams, and rest."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+import numpy as np
+
+from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
+from contact_dynamics.impact.several.result import SeveralVerdict
+from contact_dynamics.impact.several.settling import settling_impact
+from contact_dynamics.landing.plane_arrival import Descent
+from contact_dynamics.landing.search_work import SearchWork
+from contact_dynamics.numerics.vectors import norm
+from contact_dynamics.tolerances import (
+    LIFT_OFF_PAUSE,
+    RESTING_ACCELERATION,
+    STILL_TOUCHING,
+    STRIKES,
+)
+from contact_dynamics.toss.course import Course
+from contact_dynamics.toss.forces import pushed_by_contacts
+from contact_dynamics.toss.holding import held_in_place
+from contact_dynamics.toss.mode_choice import choose_mode, contacts_of, state_of
+from contact_dynamics.toss.phase import phase
+from contact_dynamics.toss.phase_ends import PhaseEnd
+from contact_dynamics.toss.result import FlightPiece, Toss, TossEnd, TossEventKind, UndecidedReason
+from contact_dynamics.toss.solid import energy_of, kinetic_energy_of, numbers_of
+from contact_dynamics.toss.strike import approaches, low_rebounds_ended, routh, strike
+from contact_dynamics.tumbling import Precision, free_motion
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.shapes.convex import ConvexShape
+    from contact_dynamics.toss.mode_choice import Mode
+    from contact_dynamics.toss.solid import Numbers, Solid, Touch
+
+Kick: TypeAlias = "Callable[[Solid, Numbers, Numbers, Touch], Numbers]"
+"""Takes the body, the states before and after a strike, and the contact, and returns another state after."""
+
+_ROUNDS: Final = 4
+"""Searches for a mode, relative to the bound on events, after which a toss ends unfinished."""
+
+_SLOWER: Final = 0.25
+"""The kinetic energy at which rest is tried again, relative to that at which the body did not rest."""
+
+
+class Following:
+    """What all tosses of one question share.
+
+    Attributes:
+        solid: The body and the flats.
+        properties: Mass and inertia, as flights take them.
+        shape: The shape, as flights take it.
+        law: What the coefficients of restitution mean.
+        horizon: s, how far a toss is followed.
+        most_events: How many events are followed.
+        error: The error that one step of a contact phase may have (`phase.phase`).
+        kick: What changes velocities after the strike of a single contact, or None.
+        planes: The flats, as flights take them.
+    """
+
+    def __init__(
+        self,
+        solid: Solid,
+        properties: MassProperties,
+        shape: ConvexShape,
+        law: RestitutionLaw,
+        *,
+        horizon: float,
+        most_events: int,
+        error: float,
+        kick: Kick | None = None,
+    ) -> None:
+        self.solid, self.properties, self.shape = solid, properties, shape
+        self.law, self.horizon = law, horizon
+        self.most_events, self.error = most_events, error
+        self.kick = kick
+        self.planes = [(np.array(flat.normal), flat.level) for flat in solid.flats]
+
+    def run(self, state: BodyState, ways: tuple[int, ...]) -> Toss:
+        """Return the toss that takes the given ways at its first undecided points, and way 0 after that."""
+        course, end = self.follow(state, ways)
+        return course.told(end, self.law)
+
+    def follow(self, state: BodyState, ways: tuple[int, ...]) -> tuple[Course, TossEnd]:
+        """Return the same as it is known here, which samples need alone, and why it ends."""
+        course = _Run(self, state, ways)
+        return course, course.go()
+
+
+class _Run(Course):
+    """One toss, as far as it has come, and how it goes on."""
+
+    def __init__(self, runs: Following, state: BodyState, ways: tuple[int, ...]) -> None:
+        super().__init__(runs.solid, state, ways)
+        self.runs = runs
+        self.work = SearchWork()
+        self.slow = math.inf  # J, rest is tried where the kinetic energy is below this
+
+    def go(self) -> TossEnd:
+        """Follow the motion, and return why it ends."""
+        touching = self.touching_now(STRIKES)
+        for _ in range(_ROUNDS * self.runs.most_events):
+            if len(self.events) >= self.runs.most_events:
+                return TossEnd.MOST_EVENTS
+            if self.now >= self.runs.horizon:
+                return TossEnd.HORIZON
+            if touching and min(approaches(self.solid, self.y, touching)) < -STRIKES:
+                touching = self._strike(touching)
+            elif touching:
+                if self._rests(touching):
+                    return TossEnd.RESTS
+                modes = self._modes(touching)
+                if not modes:
+                    if not self._jam(touching):
+                        return TossEnd.UNDECIDED
+                    touching = self.touching_now(STILL_TOUCHING)
+                elif modes[0]:
+                    touching = self._follow(modes[0])
+                else:
+                    self.note(TossEventKind.LIFTS_OFF, touching)
+                    touching = self._fly(LIFT_OFF_PAUSE)
+            else:
+                touching = self._fly(0.0)
+        return TossEnd.MOST_EVENTS
+
+    # Flights
+
+    def _fly(self, pause: float) -> list[Touch]:
+        """Fly on to the next contact or the horizon, and return what touches then.
+
+        A body whose contacts have just left without speed flies for a pause before arrivals are looked for.
+        """
+        state = self.present()
+        motion = free_motion(
+            self.runs.properties, state, gravity_W=np.array(self.solid.gravity), precision=Precision.DOUBLE
+        )
+        self.pieces.append(FlightPiece(self.now, motion))
+        self._forget_instant()
+        left = self.runs.horizon - self.now
+        begun = motion
+        if pause > 0.0:
+            begun = free_motion(
+                self.runs.properties,
+                motion.state_at(pause),
+                gravity_W=np.array(self.solid.gravity),
+                precision=Precision.DOUBLE,
+            )
+        first = left
+        for normal, level in self.runs.planes:
+            found = Descent(begun, self.runs.shape, level * normal, normal).run(
+                max(first - pause, 0.0), self.work
+            )
+            if found is not None:
+                first = min(first, pause + found.seconds)
+        sample = motion.sample(first)
+        self.y = [*sample.p_WB_W, *sample.q_WB, *sample.v_WB_W, *sample.w_WB_W]
+        self.now += first
+        return self.touching_now(STILL_TOUCHING) if first < left else []
+
+    def _forget_instant(self) -> None:
+        """Drop pieces of no length, so that a time belongs to one piece."""
+        if len(self.pieces) > 1 and self.pieces[-2].start == self.pieces[-1].start:
+            del self.pieces[-2]
+
+    # Strikes
+
+    def _strike(self, touching: list[Touch]) -> list[Touch]:
+        rates = approaches(self.solid, self.y, touching)
+        striking = [
+            touch for rate, touch in sorted(zip(rates, touching, strict=True)) if rate < -self._fast()
+        ]
+        first = None
+        if len(striking) > 1:
+            first = striking[self.way(UndecidedReason.STRIKE_TOGETHER, len(striking))]
+        y, before = self.y, energy_of(self.solid, self.y)
+        strikes = strike(self.solid, self.y, touching, self.runs.law, first=first)
+        self.y, staying = strikes.y, strikes.staying
+        kick = self.runs.kick
+        if kick is not None and len(touching) == 1 and not strikes.settled:
+            self.y = kick(self.solid, y, self.y, touching[0])
+            staying = self.touching_now(STILL_TOUCHING)
+        for one in strikes.struck:
+            kind = TossEventKind.SETTLES if one.outcome is None else TossEventKind.STRIKES
+            self.note(kind, [one.touch], impulse=one.impulse, outcome=one.outcome)
+        if not strikes.settled:
+            staying = self._end_low_rebounds(touching, staying, before)
+        self.lost_in_strikes += before - energy_of(self.solid, self.y)
+        self.slow = math.inf
+        return staying
+
+    def _end_low_rebounds(self, touching: list[Touch], staying: list[Touch], energy: float) -> list[Touch]:
+        """Keep contacts that rebound too low to be followed, and return those that stay.
+
+        The friction that came with rebounds is given back. If that took more energy than there was before the
+        strikes, J, the rebounds are followed after all.
+        """
+        ended = low_rebounds_ended(self.solid, self.y, touching)
+        if ended is None or energy_of(self.solid, ended.y) > energy:
+            return staying
+        change = [
+            self.solid.mass * (after - now) for after, now in zip(ended.y[7:10], self.y[7:10], strict=True)
+        ]
+        self.y = ended.y
+        self.note(TossEventKind.SETTLES, ended.staying, impulse=(change[0], change[1], change[2]))
+        return ended.staying
+
+    def _fast(self) -> float:
+        """Return the approach, m/s, from which the order of contacts that strike together matters."""
+        return math.sqrt(2.0 * self.solid.settling * norm(self.solid.gravity)) + STRIKES
+
+    def _jam(self, touching: list[Touch]) -> bool:
+        """Settle contacts without a consistent mode by an impact, and return whether that was possible."""
+        solid = self.solid
+        before = energy_of(solid, self.y)
+        if len(touching) == 1:
+            self.y, one = routh(solid, self.y, touching[0], self.runs.law)
+            self.lost_in_strikes += before - energy_of(solid, self.y)
+            self.note(TossEventKind.JAMS, touching, impulse=one.impulse, outcome=one.outcome)
+            return one.outcome != ImpactOutcome.NO_IMPULSE
+        contacts = contacts_of(solid, self.y, touching)
+        impact = settling_impact(
+            self.runs.properties,
+            state_of(self.y),
+            replace(contacts, body_curvatures=None),
+            is_settled=lambda state: bool(choose_mode(solid, numbers_of(state), touching).modes),
+            force_W=solid.mass * np.array(solid.gravity),
+        )
+        if impact.verdict != SeveralVerdict.RESOLVED:
+            return False
+        self.y = [*self.y[:7], *impact.state.v_WB_W.tolist(), *impact.state.w_WB_W.tolist()]
+        self.lost_in_strikes += before - energy_of(solid, self.y)
+        x, y, z = impact.impulses_W.sum(axis=0).tolist()
+        self.note(TossEventKind.JAMS, touching, impulse=(x, y, z))
+        return True
+
+    # Contact
+
+    def _modes(self, touching: list[Touch]) -> list[Mode]:
+        """Return the consistent modes, the one that is taken first."""
+        modes = choose_mode(self.solid, self.y, touching).modes
+        if len(modes) > 1:
+            way = self.way(UndecidedReason.SEVERAL_MODES, len(modes))
+            return [modes[way]]
+        return modes
+
+    def _follow(self, mode: Mode) -> list[Touch]:
+        """Go on in a mode to its end, and return what touches then."""
+        self.note(
+            TossEventKind.NEW_MODE,
+            [one.touch for one in mode],
+            mode="".join("c" if one.slides else "f" for one in mode),
+        )
+        before = energy_of(self.solid, self.y)
+        went = phase(
+            self.solid,
+            self.y,
+            mode,
+            start=self.now,
+            until=self.runs.horizon,
+            slow=min(self.slow, self._slow([one.touch for one in mode])),
+            error=self.runs.error,
+        )
+        self.pieces += went.steps
+        self.now, self.y = went.seconds, went.y
+        self.lost_in_contact += before - energy_of(self.solid, self.y)
+        held = [one.touch for one in mode]
+        if went.end == PhaseEnd.COMES_DOWN:
+            return held + [touch for touch in self.touching_now(STILL_TOUCHING) if touch not in held]
+        if went.end == PhaseEnd.SLOW:
+            return held + [touch for touch in self.touching_now(math.inf) if touch not in held]
+        return held
+
+    def _slow(self, touching: list[Touch]) -> float:
+        """Return the kinetic energy, J, with which a body rises or slides by `settling` at most."""
+        grip = min((self.solid.flats[touch[0]].friction for touch in touching), default=0.0)
+        return self.solid.mass * norm(self.solid.gravity) * self.solid.settling * min(grip, 1.0)
+
+    def _rests(self, touching: list[Touch]) -> bool:
+        """Return whether the body has come to rest. Then its velocities are zero from now on."""
+        energy = kinetic_energy_of(self.solid, self.y)
+        if energy > min(self._slow(touching), self.slow):
+            return False
+        touching = self.touching_now(math.inf)
+        still = [*self.y[:7], *[0.0] * 6]
+        modes = choose_mode(self.solid, still, touching).modes
+        if len(modes) != 1:
+            return False
+        rates = pushed_by_contacts(self.solid, still, modes[0]).rates[7:]
+        fastest = max(map(abs, rates[:3])) + self.solid.reach * max(map(abs, rates[3:]))
+        if fastest > RESTING_ACCELERATION * norm(self.solid.gravity):
+            self.slow = _SLOWER * energy
+            return False
+        self.lost_in_contact += energy
+        placed = held_in_place(self.solid, still, modes[0])
+        self.lost_in_contact += energy_of(self.solid, still) - energy_of(self.solid, placed)
+        self.y, self.resting = placed, [one.touch for one in modes[0]]
+        self.note(TossEventKind.RESTS, self.resting)
+        return True

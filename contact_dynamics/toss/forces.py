@@ -1,0 +1,196 @@
+"""The accelerations of a body whose contact mode is known, and the contact forces that cause them.
+
+Each held contact sticks or slides. A contact that sticks has no acceleration, which is three equations for
+the three parts of its force. A contact that slides has no normal acceleration, which is one equation for its
+normal force. Its friction is mu times that, against the sliding (lecture 26). If the forces are not the only
+ones with the mode, as under four corners, the least ones are taken.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.numerics.vectors import Vector3, cross, dot, normalised
+from contact_dynamics.tolerances import SAME_FORCES
+from contact_dynamics.toss.flush import flush_sliding, is_flush
+from contact_dynamics.toss.held import sliding_direction
+from contact_dynamics.toss.solid import arm_of, pose_of, times, transposed_times, velocity_of
+
+if TYPE_CHECKING:
+    from contact_dynamics.toss.held import Held
+    from contact_dynamics.toss.solid import Numbers, Pose, Solid, Touch
+
+
+class Pushed(NamedTuple):
+    """A body under contact forces.
+
+    Attributes:
+        rates: The rates of the 13 numbers of the state.
+        forces: N, world axes, the force on the body at each held contact.
+    """
+
+    rates: Numbers
+    forces: list[Vector3]
+
+
+class Free(NamedTuple):
+    """The accelerations of a body that nothing touches.
+
+    Attributes:
+        pose: Pose and velocities.
+        a: m/s^2, of the centre of mass.
+        alpha: rad/s^2.
+    """
+
+    pose: Pose
+    a: Vector3
+    alpha: Vector3
+
+    def at(self, solid: Solid, touch: Touch, arm: Vector3) -> Vector3:
+        """Return the acceleration, m/s^2, of the body's point at an arm; a ball's point rolls meanwhile."""
+        r, n = solid.rounding, solid.flats[touch[0]].normal
+        corner = (arm[0] + r * n[0], arm[1] + r * n[1], arm[2] + r * n[2])
+        turning, inwards = cross(self.alpha, arm), cross(self.pose.w, cross(self.pose.w, corner))
+        a = self.a
+        return (
+            a[0] + turning[0] + inwards[0],
+            a[1] + turning[1] + inwards[1],
+            a[2] + turning[2] + inwards[2],
+        )
+
+
+def free_accelerations(solid: Solid, y: Numbers) -> Free:
+    """Return the accelerations in free flight (Euler's equations; lecture 25)."""
+    pose = pose_of(solid, y)
+    w_B = transposed_times(pose.rows, pose.w)
+    torque_B = cross(times(solid.inertia, w_B), w_B)
+    return Free(pose, solid.gravity, times(pose.rows, times(solid.inverse, torque_B)))
+
+
+def pushed_by_contacts(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> Pushed:
+    """Return the rates of the state and the forces at the held contacts."""
+    if is_flush(mode):
+        sliding = flush_sliding(solid, y, mode)
+        if sliding is not None:
+            return Pushed(_rates(y, sliding[0], sliding[1]), sliding[2])
+    free = free_accelerations(solid, y)
+    pose = free.pose
+    # Each equation has a direction with its moment about the centre of mass, and each unknown has a force
+    # with the angular acceleration that it causes.
+    equations: list[tuple[Vector3, Vector3]] = []
+    unknowns: list[tuple[int, Vector3, Vector3]] = []
+    wanted: list[float] = []
+    for i, (touch, slides, towards, begins) in enumerate(mode):
+        flat = solid.flats[touch[0]]
+        n = flat.normal
+        arm = arm_of(solid, pose, touch)
+        acceleration = free.at(solid, touch, arm)
+        if slides:
+            d = towards if begins else sliding_direction(velocity_of(pose, arm), n, towards)
+            mu = flat.friction
+            force = (n[0] - mu * d[0], n[1] - mu * d[1], n[2] - mu * d[2])
+            unknowns.append((i, force, times(pose.inverse, cross(arm, force))))
+            equations.append((n, cross(arm, n)))
+            wanted.append(-dot(n, acceleration))
+        else:
+            for axis in (*flat.tangents, n):
+                moment = cross(arm, axis)
+                unknowns.append((i, axis, times(pose.inverse, moment)))
+                equations.append((axis, moment))
+                wanted.append(-dot(axis, acceleration))
+    per_mass = 1.0 / solid.mass
+    matrix = [
+        [per_mass * dot(axis, force) + dot(moment, turning) for _, force, turning in unknowns]
+        for axis, moment in equations
+    ]
+    sizes = least_solution(matrix, wanted)
+    a_x, a_y, a_z = free.a
+    t_x, t_y, t_z = free.alpha
+    forces = [(0.0, 0.0, 0.0)] * len(mode)
+    for size, (i, (x, yy, z), (u, v, w)) in zip(sizes, unknowns, strict=True):
+        f = forces[i]
+        forces[i] = (f[0] + size * x, f[1] + size * yy, f[2] + size * z)
+        share = size * per_mass
+        a_x, a_y, a_z = a_x + share * x, a_y + share * yy, a_z + share * z
+        t_x, t_y, t_z = t_x + size * u, t_y + size * v, t_z + size * w
+    if len(mode) == 2 and not (mode[0].slides or mode[1].slides) and mode[0].touch[0] == mode[1].touch[0]:
+        forces = _shared_along_edge(solid, pose, mode, forces)
+    return Pushed(_rates(y, (a_x, a_y, a_z), (t_x, t_y, t_z)), forces)
+
+
+def _shared_along_edge(
+    solid: Solid, pose: Pose, mode: tuple[Held, ...], forces: list[Vector3]
+) -> list[Vector3]:
+    """Return forces with the same motion, where two contacts that stick share what acts along their edge.
+
+    How much of it each of the two takes is open. Each takes what its friction can still hold, so that the
+    edge sticks as long as any sharing lets it.
+    """
+    flat = solid.flats[mode[0].touch[0]]
+    first, second = (arm_of(solid, pose, one.touch) for one in mode)
+    edge = normalised((second[0] - first[0], second[1] - first[1], second[2] - first[2]))
+    along = [dot(force, edge) for force in forces]
+    left = []
+    for force, part in zip(forces, along, strict=True):
+        pressing = dot(force, flat.normal)
+        across = dot(force, force) - pressing * pressing - part * part
+        left.append(math.sqrt(max((flat.friction * pressing) ** 2 - across, 0.0)) if pressing > 0.0 else 0.0)
+    total, room = along[0] + along[1], left[0] + left[1]
+    if room == 0.0:
+        return forces
+    shared = []
+    for force, part, space in zip(forces, along, left, strict=True):
+        more = total * space / room - part
+        shared.append((force[0] + more * edge[0], force[1] + more * edge[1], force[2] + more * edge[2]))
+    return shared
+
+
+def _rates(y: Numbers, a: Vector3, alpha: Vector3) -> Numbers:
+    """Return the rates of the 13 numbers."""
+    q_x, q_y, q_z, q_w = y[3], y[4], y[5], y[6]
+    w_x, w_y, w_z = y[10], y[11], y[12]
+    return [
+        y[7],
+        y[8],
+        y[9],
+        0.5 * (w_x * q_w + w_y * q_z - w_z * q_y),
+        0.5 * (w_y * q_w + w_z * q_x - w_x * q_z),
+        0.5 * (w_z * q_w + w_x * q_y - w_y * q_x),
+        -0.5 * (w_x * q_x + w_y * q_y + w_z * q_z),
+        *a,
+        *alpha,
+    ]
+
+
+def least_solution(matrix: list[list[float]], wanted: list[float]) -> list[float]:
+    """Return the unknowns of the equations, the least ones if there are many."""
+    n = len(wanted)
+    if n == 0:
+        return []
+    if n == 1:
+        ((a,),) = matrix
+        return [wanted[0] / a if a != 0.0 else math.inf]
+    if n == 2:
+        (a, b), (c, d) = matrix
+        det = a * d - b * c
+        if abs(det) > SAME_FORCES * (abs(a) + abs(b)) * (abs(c) + abs(d)):
+            x, y = wanted
+            return [(d * x - b * y) / det, (a * y - c * x) / det]
+    if n == 3:
+        (a, b, c), (d, e, f), (g, h, i) = matrix
+        x, y, z = wanted
+        A, B, C = e * i - f * h, f * g - d * i, d * h - e * g
+        det = a * A + b * B + c * C
+        if abs(det) > SAME_FORCES * (abs(a) + abs(b) + abs(c)) ** 3:
+            D, E, F = c * h - b * i, a * i - c * g, b * g - a * h
+            G, H, K = b * f - c * e, c * d - a * f, a * e - b * d
+            return [
+                (A * x + D * y + G * z) / det,
+                (B * x + E * y + H * z) / det,
+                (C * x + F * y + K * z) / det,
+            ]
+    sizes: list[float] = np.linalg.lstsq(np.array(matrix), np.array(wanted), rcond=SAME_FORCES)[0].tolist()
+    return sizes

@@ -1,0 +1,312 @@
+"""Which contact mode follows, at a body whose contacts touch and do not approach (lecture 26).
+
+The mode that goes on is tried first: contacts that slide slide on, contacts at rest stick. If mechanics
+refuses it, the forces of one consistent mode are sought (`cone_forces`), and the mode is read off them. Where
+friction at a contact could by itself lift the body or press it down, whatever the sliding (Painleve), there
+may be several modes or none, and all of them are sought (`contact_modes`). So they are where all contacts
+slide and their forces need not be the only ones (`several_forces`). Where some stick, several contacts can
+have several modes without that, if friction is strong. These are not looked for.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import combinations
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.curvature import alike
+from contact_dynamics.contact_modes.letters import SEPARATES, STICKS
+from contact_dynamics.contact_modes.result import ModeVerdict
+from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
+from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
+from contact_dynamics.numerics.vectors import cross, dot, norm, normalised, opposite, without
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.tolerances import BEGINNING_ROUNDING, FORCE_ROUNDING, SAME_FORCES, SLIDING_STOPPED
+from contact_dynamics.toss.cone_forces import Site, cone_forces
+from contact_dynamics.toss.forces import Free, free_accelerations, pushed_by_contacts
+from contact_dynamics.toss.held import Held, sliding_direction
+from contact_dynamics.toss.solid import arm_of, pose_of, times, velocity_of
+
+if TYPE_CHECKING:
+    from contact_dynamics.numerics.vectors import Vector3
+    from contact_dynamics.toss.forces import Pushed
+    from contact_dynamics.toss.solid import Numbers, Solid, Touch
+    from contact_dynamics.validation import FloatArray
+
+Mode = tuple[Held, ...]
+
+_MOST_CORRECTIONS: Final = 30
+"""Rounds of corrections of a guessed mode. One to three are usual, and ten where a corner begins to slide."""
+
+
+class Choice(NamedTuple):
+    """The modes that are consistent.
+
+    Attributes:
+        verdict: On the contact set.
+        modes: The held contacts of each mode; a contact that separates is in none. The first goes on.
+    """
+
+    verdict: ModeVerdict
+    modes: list[Mode]
+
+
+def choose_mode(solid: Solid, y: Numbers, touching: list[Touch]) -> Choice:
+    """Return the modes that are consistent at touching contacts that do not approach."""
+    if not touching:
+        return Choice(ModeVerdict.UNIQUE, [()])
+    free = free_accelerations(solid, y)
+    sites, guess, paradox = [], [], False
+    choice = Choice(ModeVerdict.UNDECIDED, [])
+    for touch in touching:
+        flat, arm = solid.flats[touch[0]], arm_of(solid, free.pose, touch)
+        n, (t1, t2) = flat.normal, flat.tangents
+        velocity, acceleration = velocity_of(free.pose, arm), free.at(solid, touch, arm)
+        along = dot(velocity, t1), dot(velocity, t2)
+        speed = math.hypot(*along)
+        slides = speed > SLIDING_STOPPED
+        d = sliding_direction(velocity, n, n) if slides else (0.0, 0.0, 0.0)
+        guess.append(Held(touch, slides, d))
+        motion = (dot(acceleration, t1), dot(acceleration, t2), dot(acceleration, n))
+        sliding = (along[0] / speed, along[1] / speed) if slides else None
+        sites.append(Site(arm, (t1, t2, n), flat.friction, motion, sliding))
+        turning = times(free.pose.inverse, cross(arm, n))
+        normal = 1.0 / solid.mass + dot(cross(arm, n), turning)
+        coupling = cross(turning, arm)
+        coupled = dot(coupling, t1), dot(coupling, t2)
+        across = math.hypot(*coupled)
+        if sliding is not None:
+            across = coupled[0] * sliding[0] + coupled[1] * sliding[1]
+        paradox = paradox or flat.friction * across >= normal
+    if paradox or (
+        len(guess) > 1 and all(one.slides for one in guess) and several_forces(solid, free, guess)
+    ):
+        paradox = True
+        choice = _all_modes(solid, y, touching)
+        if len(choice.modes) > 1:
+            # The mode that goes on comes first.
+            going_on = [(one.touch, one.slides) for one in guess]
+            choice.modes.sort(key=lambda mode: [(one.touch, one.slides) for one in mode] != going_on)
+            return choice
+    mode = corrected(solid, y, tuple(guess), free)
+    if mode is not None:
+        return Choice(ModeVerdict.UNIQUE, [mode])
+    found = cone_forces(1.0 / solid.mass, free.pose.inverse, sites)
+    if found is None:
+        return choice if paradox else _all_modes(solid, y, touching)
+    return Choice(ModeVerdict.UNIQUE, [_read_off(solid, y, guess, sites, pushes=found[0], motions=found[1])])
+
+
+def several_forces(solid: Solid, free: Free, sliding: list[Held]) -> bool:
+    """Return whether contacts that all slide may have several forces that mechanics allows, or none.
+
+    Normal forces f >= 0 and normal accelerations b + M f >= 0, of which one is zero at each contact, are
+    unique for any b where all principal minors of M are positive (Cottle, Pang and Stone, The Linear
+    Complementarity Problem, 3.3.7). Those of two and three contacts are looked at here, those of one by the
+    caller. Flush contacts have minors of zero, which change forces, but hardly the motion.
+    """
+    per_mass, inverse = 1.0 / solid.mass, free.pose.inverse
+    moments, forces = [], []
+    for one in sliding:
+        flat, arm = solid.flats[one.touch[0]], arm_of(solid, free.pose, one.touch)
+        n, d, mu = flat.normal, one.towards, flat.friction
+        force = (n[0] - mu * d[0], n[1] - mu * d[1], n[2] - mu * d[2])
+        moments.append((n, cross(arm, n)))
+        forces.append((force, times(inverse, cross(arm, force))))
+    M = [
+        [per_mass * dot(n, force) + dot(moment, turning) for force, turning in forces]
+        for n, moment in moments
+    ]
+    sizes = [sum(map(abs, row)) for row in M]
+    for i, j in combinations(range(len(M)), 2):
+        if M[i][i] * M[j][j] - M[i][j] * M[j][i] < -SAME_FORCES * sizes[i] * sizes[j]:
+            return True
+    for i, j, k in combinations(range(len(M)), 3):
+        volume = dot(
+            (M[i][i], M[i][j], M[i][k]),
+            cross((M[j][i], M[j][j], M[j][k]), (M[k][i], M[k][j], M[k][k])),
+        )
+        if volume < -SAME_FORCES * sizes[i] * sizes[j] * sizes[k]:
+            return True
+    return False
+
+
+def _beginning(touch: Touch, towards: Vector3) -> Held:
+    return Held(touch=touch, slides=True, towards=towards, begins=True)
+
+
+def corrected(solid: Solid, y: Numbers, guess: Mode, free: Free) -> Mode | None:
+    """Return a consistent mode near a guess, or None if corrections do not lead to one.
+
+    In each round, a contact that pulls separates, one that approaches is held again, one that friction does
+    not hold slides against its friction, and one that begins to slide does so along its acceleration, or
+    sticks where that is against its sliding.
+    """
+    starts = {one.touch: one for one in guess}
+    held = {one.touch: one for one in guess}
+    for _ in range(_MOST_CORRECTIONS):
+        mode = tuple(held.values())
+        pushed = pushed_by_contacts(solid, y, mode)
+        rates = pushed.rates
+        moved = Free(free.pose, (rates[7], rates[8], rates[9]), (rates[10], rates[11], rates[12]))
+        forces = dict(zip(held, pushed.forces, strict=True))
+        corrections = [
+            _correction(solid, first, held.get(touch), forces.get(touch), moved)
+            for touch, first in starts.items()
+        ]
+        after = {one.touch: one for one in corrections if one is not None}
+        if after == held:
+            return mode
+        held = after
+    return None
+
+
+def _correction(
+    solid: Solid, first: Held, one: Held | None, force: Vector3 | None, moved: Free
+) -> Held | None:
+    """Return how a contact is held in the next round of corrections, or None if it separates.
+
+    Args:
+        solid: The body and the flats.
+        first: How the contact was held at first: whether it slides already.
+        one: How the contact is held, or None if it separates.
+        force: N, the force there, or None.
+        moved: The accelerations.
+    """
+    flat = solid.flats[first.touch[0]]
+    n = flat.normal
+    least = -FORCE_ROUNDING * solid.mass * (1.0 + norm(solid.gravity))
+    slowest = BEGINNING_ROUNDING * (1.0 + norm(solid.gravity))
+    acceleration = moved.at(solid, first.touch, arm_of(solid, moved.pose, first.touch))
+    if one is None or force is None:
+        return first if dot(n, acceleration) < -slowest else None
+    pressing = dot(force, n)
+    if pressing < least:
+        return None
+    if not one.slides:
+        across = without(force, n)
+        holds = flat.friction * pressing - norm(across) >= least
+        return one if holds else _beginning(one.touch, opposite(normalised(across)))
+    if not first.slides:
+        begins = without(acceleration, n)
+        if dot(begins, one.towards) < -slowest:
+            return first
+        if norm(cross(begins, one.towards)) > slowest:
+            return _beginning(one.touch, normalised(begins))
+    return one
+
+
+def _holds(solid: Solid, mode: Mode, pushed: Pushed) -> bool:
+    """Return whether all contacts press, and friction holds those that stick."""
+    least = -FORCE_ROUNDING * solid.mass * (1.0 + norm(solid.gravity))
+    for one, force in zip(mode, pushed.forces, strict=True):
+        flat = solid.flats[one.touch[0]]
+        pressing = dot(force, flat.normal)
+        if pressing < least:
+            return False
+        across = math.sqrt(max(dot(force, force) - pressing * pressing, 0.0))
+        if not one.slides and flat.friction * pressing - across < least:
+            return False
+    return True
+
+
+def _read_off(
+    solid: Solid,
+    y: Numbers,
+    guess: list[Held],
+    sites: list[Site],
+    *,
+    pushes: list[Vector3],
+    motions: list[Vector3],
+) -> Mode:
+    """Return the mode of pushes and motions that solve the contacts' problem."""
+    size = max(norm(site.motion) for site in sites)
+    most = max(norm(push) for push in pushes)
+    idle: list[Held] = []
+    held: list[Held] = []
+    for one, site, push, motion in zip(guess, sites, pushes, motions, strict=True):
+        pressing = push[2] > FORCE_ROUNDING * most
+        if not pressing and motion[2] > FORCE_ROUNDING * size:
+            continue
+        kept = one
+        speed = math.hypot(motion[0], motion[1])
+        if not one.slides and speed > FORCE_ROUNDING * size:
+            t1, t2, _ = site.axes
+            u, v = motion[0] / speed, motion[1] / speed
+            d = (u * t1[0] + v * t2[0], u * t1[1] + v * t2[1], u * t1[2] + v * t2[2])
+            kept = _beginning(one.touch, d)
+        (held if pressing else idle).append(kept)
+    everything = tuple(held + idle)
+    if idle and _holds(solid, everything, pushed_by_contacts(solid, y, everything)):
+        return everything
+    return tuple(held)
+
+
+def _all_modes(solid: Solid, y: Numbers, touching: list[Touch]) -> Choice:
+    """Return all modes that are consistent (`contact_modes`), or none."""
+    answer = spatial_contact_modes(
+        SpatialContactProblem(
+            body=properties_of(solid),
+            state=state_of(y),
+            contacts=contacts_of(solid, y, touching),
+            force_W=solid.mass * np.array(solid.gravity),
+            velocity_tolerance=SLIDING_STOPPED,
+        )
+    )
+    pose = pose_of(solid, y)
+    modes = []
+    for one in answer.modes:
+        mode = []
+        for k, touch in enumerate(touching):
+            letter = one.mode[k]
+            if letter == SEPARATES:
+                continue
+            velocity = velocity_of(pose, arm_of(solid, pose, touch))
+            n = solid.flats[touch[0]].normal
+            x, yy, z = one.tangential_directions_W[k].tolist()
+            direction = (x, yy, z)
+            v_n = dot(velocity, n)
+            speed = math.sqrt(max(dot(velocity, velocity) - v_n * v_n, 0.0))
+            if speed > SLIDING_STOPPED:
+                direction = sliding_direction(velocity, n, n)
+            slides = letter != STICKS and direction != (0.0, 0.0, 0.0)
+            begins = slides and speed <= SLIDING_STOPPED
+            mode.append(Held(touch, slides, direction if slides else (0.0, 0.0, 0.0), begins))
+        modes.append(tuple(mode))
+    return Choice(answer.verdict, modes)
+
+
+def properties_of(solid: Solid) -> MassProperties:
+    """Return mass and inertia as questions take them."""
+    return MassProperties(mass=solid.mass, I_B=solid.inertia)
+
+
+def state_of(y: Numbers, stamp_ns: int = 0) -> BodyState:
+    """Return 13 numbers, whose quaternion is nearly unit, as a state."""
+    q = np.array(y[3:7])
+    q /= math.sqrt(float(q @ q))
+    return BodyState(p_WB_W=y[:3], q_WB=q, v_WB_W=y[7:10], w_WB_W=y[10:], stamp_ns=stamp_ns)
+
+
+def points_of(solid: Solid, y: Numbers, touching: list[Touch]) -> FloatArray:
+    """Return where contacts are, (n, 3), m, world."""
+    pose = pose_of(solid, y)
+    arms = [arm_of(solid, pose, touch) for touch in touching]
+    points: FloatArray = np.array(arms) + np.array(pose.position)
+    return points
+
+
+def contacts_of(solid: Solid, y: Numbers, touching: list[Touch]) -> ContactSet:
+    """Return touching contacts as questions take them."""
+    flats = [solid.flats[touch[0]] for touch in touching]
+    return ContactSet(
+        p_WC_W=points_of(solid, y, touching),
+        normals_W=np.array([flat.normal for flat in flats]),
+        frictions=np.array([flat.friction for flat in flats]),
+        restitutions=np.array([flat.restitution for flat in flats]),
+        surfaces=[flat.name for flat in flats],
+        body_curvatures=alike(len(touching), 1.0 / solid.rounding) if solid.rounding > 0.0 else None,
+    )

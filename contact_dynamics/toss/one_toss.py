@@ -1,0 +1,99 @@
+"""A whole toss: free flight, strikes, contact phases and rest, one after the other.
+
+Flights are in closed form and end at the first contact, found to rounding (`landing`). Strikes follow Routh's
+impact (`strike`). A body whose contacts stay goes on in a contact mode (`mode_choice`), which is integrated
+until it ends (`phase`). The toss is over where the kinetic energy has fallen so low that the body could rise
+or slide by `SETTLING_HEIGHT` at most, and friction and contacts hold it there.
+
+Where mechanics does not decide (several modes, contacts that strike at one instant), one way is taken and the
+point is told. The other ways are followed as tosses of their own, up to a bound.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.tolerances import PHASE_ERROR
+from contact_dynamics.toss.following import Following
+from contact_dynamics.toss.solid import solid_of
+from contact_dynamics.validation import check_choice, check_positive, check_whole
+
+if TYPE_CHECKING:
+    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.toss.result import Toss
+    from contact_dynamics.world import Body, World
+
+HORIZON: Final = 10.0
+"""s. A body that is tossed by hand rests within two."""
+
+MOST_EVENTS: Final = 2000
+"""Events after which a toss ends unfinished. A toss of a box takes ten to fifty."""
+
+MOST_ALTERNATIVES: Final = 8
+"""Other ways that are followed, if no other number is asked for."""
+
+
+def toss(
+    body: Body,
+    state: BodyState,
+    world: World,
+    *,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
+    horizon: float = HORIZON,
+    most_events: int = MOST_EVENTS,
+    most_alternatives: int = MOST_ALTERNATIVES,
+    error: float = PHASE_ERROR,
+) -> Toss:
+    """Return the motion of a body from a state, in flight or in contact, until it rests.
+
+    Args:
+        body: Mass properties and shape: corners, which may be rounded.
+        state: Pose and velocities.
+        world: Surfaces, which are flats, and gravity.
+        restitution_law: What the coefficients of restitution mean.
+        horizon: s, > 0. How far the motion is followed.
+        most_events: How many events to follow at most, >= 1.
+        most_alternatives: How many other ways to follow at most, >= 0, where mechanics does not decide.
+        error: m, m/s, > 0. The error that one step of a contact phase may have. Angles count with the body's
+            reach.
+
+    Raises:
+        NoContactError: the body has no shape that could touch anything.
+        NotSupportedError: the shape has rims, or a surface is an obstacle.
+        InvalidFieldError: a number is not allowed.
+        TooLargeError: a flight takes too many steps of the search for its end.
+    """
+    check_choice("restitution_law", restitution_law, RestitutionLaw)
+    solid = solid_of(body, world)
+    runs = Following(
+        solid,
+        body.mass_properties,
+        body.shape,
+        restitution_law,
+        horizon=check_positive("horizon", horizon),
+        most_events=check_whole("most_events", most_events, 1),
+        error=check_positive("error", error),
+    )
+    most = check_whole("most_alternatives", most_alternatives, 0)
+    main = runs.run(state, ())
+    waiting = deque(_other_ways(main, 0))
+    others: list[Toss] = []
+    while waiting and len(others) < most:
+        ways = waiting.popleft()
+        other = runs.run(state, ways)
+        others.append(other)
+        waiting.extend(_other_ways(other, len(ways)))
+    return replace(main, alternatives=tuple(others), all_followed=not waiting)
+
+
+def _other_ways(one: Toss, decided: int) -> list[tuple[int, ...]]:
+    """Return the ways that leave a toss at one of its undecided points, after those that were set."""
+    taken = tuple(point.taken for point in one.undecided)
+    return [
+        (*taken[:k], other)
+        for k in range(decided, len(taken))
+        for other in range(1, one.undecided[k].options)
+    ]

@@ -1,0 +1,201 @@
+"""The motion of a body in one contact mode, integrated until the mode ends.
+
+The mode says which contacts stick and which slide, and so what the accelerations are (`forces`). They are
+integrated in adaptive steps (`phase_step`). The mode ends where a force leaves its cone or another corner
+comes down (`phase_ends`), or where sliding stops. Steps towards the end of sliding end before it, because
+friction jumps there, and each of them leaves a tenth of the speed.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.numerics.vectors import cross, dot, norm
+from contact_dynamics.tolerances import (
+    BEGUN_TO_SLIDE,
+    FORCE_ROUNDING,
+    PHASE_ERROR,
+    PHASE_LEAST_STEP,
+    SAMPLED_PHASE_ERROR,
+    SLIDING_STOPPED,
+)
+from contact_dynamics.toss.forces import Pushed, free_accelerations, pushed_by_contacts
+from contact_dynamics.toss.held import Held, sliding_direction
+from contact_dynamics.toss.holding import held_in_place
+from contact_dynamics.toss.mode_choice import corrected
+from contact_dynamics.toss.phase_ends import PhaseEnd, first_end, low_corners, watched_corners
+from contact_dynamics.toss.phase_step import INTERPOLANT, PhaseStep, one_step, scales_of, within
+from contact_dynamics.toss.solid import (
+    arm_of,
+    heights_and_rates,
+    kinetic_energy_of,
+    pose_of,
+    velocity_of,
+)
+
+if TYPE_CHECKING:
+    from contact_dynamics.toss.solid import Numbers, Pose, Solid, Touch
+
+MOST_PHASE_STEPS: Final = 20_000
+"""Steps after which a phase ends unfinished. A tenth of a second of sliding or tipping takes some twenty."""
+
+LARGEST_STEP: Final = 0.2
+"""s. A step is no longer than this where no other corner comes down."""
+
+SHORT_STEP: Final = 0.02
+"""s. A step may be this long where another corner would come down earlier, by its present speed. A corner
+that comes down and leaves again within it is not seen."""
+
+FIRST_STEP: Final = 0.02
+"""s. The first step at `SAMPLED_PHASE_ERROR`, shorter for smaller errors as the order of the steps says."""
+
+_TOWARDS_STOP: Final = 0.9
+
+
+class Phase(NamedTuple):
+    """The motion in one contact mode.
+
+    Attributes:
+        end: Why it ends.
+        seconds: s, when it ends.
+        y: The state then.
+        steps: The steps of the integrator.
+    """
+
+    end: PhaseEnd
+    seconds: float
+    y: Numbers
+    steps: list[PhaseStep]
+
+
+def phase(
+    solid: Solid,
+    y: Numbers,
+    mode: tuple[Held, ...],
+    *,
+    start: float,
+    until: float,
+    slow: float = 0.0,
+    error: float = PHASE_ERROR,
+) -> Phase:
+    """Return the motion in a mode, from a state to the end of the mode.
+
+    Args:
+        solid: The body and the flats.
+        y: The state.
+        mode: The contacts that stick and slide.
+        start: s, the time of the state.
+        until: s, the time at which to end at the latest.
+        slow: J, > 0. The phase ends where the kinetic energy falls below it. If it is 0, it never does.
+        error: m, m/s, and radians times the body's reach: the error that a step may have.
+    """
+    held = {one.touch for one in mode}
+    scales = scales_of(solid)
+    least_force = -FORCE_ROUNDING * solid.mass * (1.0 + math.hypot(*solid.gravity))
+    y = held_in_place(solid, y, mode)
+    now, step, steps = start, FIRST_STEP * (error / SAMPLED_PHASE_ERROR) ** 0.2, []
+    pushed = pushed_by_contacts(solid, y, mode)
+    low = low_corners(solid, y, held)
+    watched = watched_corners(solid, held, low)
+    before_stop, _ = _sliding(solid, y, pushed, mode)
+    fast = kinetic_energy_of(solid, y) > slow
+    for _ in range(MOST_PHASE_STEPS):
+        longest = _before_arrival(solid, y, held)
+        step = min(step, longest, until - now, before_stop)
+        trial, size, stages, after = one_step(solid, y, pushed, mode, span=step, scales=scales, error=error)
+        if size > 1.0 and step > PHASE_LEAST_STEP:
+            step *= max(0.2, 0.9 * size**-0.2)
+            continue
+        done = PhaseStep(now, step, np.array(y), stages.T @ INTERPOLANT, step)
+        found = first_end(
+            solid, done, mode, after=after, trial=trial, watched=watched, least_force=least_force
+        )
+        if found is not None:
+            reason, x = found
+            span = x * step
+            steps.append(done._replace(span=span))
+            return Phase(reason, now + span, held_in_place(solid, within(done, x).tolist(), mode), steps)
+        steps.append(done)
+        now += step
+        y = held_in_place(solid, trial, mode)
+        turned = _turned(solid, y, mode)
+        pushed = after if turned == mode else pushed_by_contacts(solid, y, turned)
+        mode = turned
+        before_stop, stopped = _sliding(solid, y, pushed, mode)
+        if stopped:
+            still = tuple(one._replace(slides=one.slides and one.touch not in stopped) for one in mode)
+            return Phase(PhaseEnd.SLIDING_STOPS, now, held_in_place(solid, y, still), steps)
+        if now >= until:
+            return Phase(PhaseEnd.TIME, now, y, steps)
+        energy = kinetic_energy_of(solid, y)
+        if fast and energy <= slow:
+            return Phase(PhaseEnd.SLOW, now, y, steps)
+        fast = fast or energy > slow
+        if low:
+            still_low = low_corners(solid, y, held)
+            low = {touch: height for touch, height in low.items() if touch in still_low}
+            watched = watched_corners(solid, held, low)
+        step *= min(5.0, 0.9 * size**-0.2) if size > 0.0 else 5.0
+    return Phase(PhaseEnd.STEPS, now, y, steps)
+
+
+def _before_arrival(solid: Solid, y: Numbers, held: set[Touch]) -> float:
+    """Return a step, s, in which no other corner can come down and leave again unseen."""
+    longest = LARGEST_STEP
+    for height, rate, touch in heights_and_rates(solid, y):
+        if touch not in held and rate < 0.0:
+            longest = min(longest, max(-height / rate, SHORT_STEP))
+    return longest
+
+
+def _sliding(solid: Solid, y: Numbers, pushed: Pushed, mode: tuple[Held, ...]) -> tuple[float, set[Touch]]:
+    """Return the longest step, s, before which no contact stops sliding, and those that have stopped."""
+    longest, stopped = math.inf, set()
+    pose = pose_of(solid, y)
+    for one in mode:
+        if one.slides and not one.begins:
+            speed, rate = _speed_and_rate(solid, pose, pushed, one)
+            if rate < 0.0:
+                longest = min(longest, _TOWARDS_STOP * speed / -rate)
+                if speed <= SLIDING_STOPPED:
+                    stopped.add(one.touch)
+    return max(longest, PHASE_LEAST_STEP), stopped
+
+
+def _turned(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> tuple[Held, ...]:
+    """Return the mode with the directions in which contacts that have just begun to slide slide by now."""
+    if not any(one.begins for one in mode):
+        return mode
+    free = free_accelerations(solid, y)
+    found = corrected(solid, y, tuple(Held(one.touch) if one.begins else one for one in mode), free)
+    new = {} if found is None else {one.touch: one for one in found}
+    turned = []
+    for one in mode:
+        kept = one
+        if one.begins:
+            velocity = velocity_of(free.pose, arm_of(solid, free.pose, one.touch))
+            other = new.get(one.touch, one)
+            slow = norm(velocity) < BEGUN_TO_SLIDE
+            kept = other if slow and other.slides else one._replace(begins=False)
+        turned.append(kept)
+    return tuple(turned)
+
+
+def _speed_and_rate(solid: Solid, pose: Pose, pushed: Pushed, one: Held) -> tuple[float, float]:
+    """Return the sliding speed of a contact, m/s, and its rate, m/s^2."""
+    arm, n = arm_of(solid, pose, one.touch), solid.flats[one.touch[0]].normal
+    velocity = velocity_of(pose, arm)
+    d = sliding_direction(velocity, n, one.towards)
+    r, w, rates = solid.rounding, pose.w, pushed.rates
+    corner = (arm[0] + r * n[0], arm[1] + r * n[1], arm[2] + r * n[2])
+    turning = cross((rates[10], rates[11], rates[12]), arm)
+    inwards = cross(w, cross(w, corner))
+    acceleration = (
+        rates[7] + turning[0] + inwards[0],
+        rates[8] + turning[1] + inwards[1],
+        rates[9] + turning[2] + inwards[2],
+    )
+    return dot(velocity, d), dot(acceleration, d)

@@ -1,0 +1,227 @@
+"""A whole toss: the motion from a state in flight to rest, its events, and what is undecided about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from contact_dynamics.constants import ns_after
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
+from contact_dynamics.records import NamedInt, Record
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rotations.many import make_continuous
+from contact_dynamics.toss.phase_step import PhaseStep
+from contact_dynamics.tumbling import FreeMotion, Trajectory
+from contact_dynamics.validation import FloatArray, check_array
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+
+class TossEventKind(NamedInt):
+    """What happens at an event of a toss."""
+
+    STRIKES = 0
+    """A contact strikes and rebounds, or stays without rebound."""
+    SETTLES = 1
+    """The rebounds at a contact have become too low to be followed. The contact stays from then on."""
+    NEW_MODE = 2
+    """The contacts that touch go on in a contact mode, sticking, rolling or sliding."""
+    LIFTS_OFF = 3
+    """The last contact leaves, and the body flies."""
+    JAMS = 4
+    """No contact mode was consistent, and an impact without approach settled that (lectures 26 and 27)."""
+    RESTS = 5
+    """The body has come to rest."""
+
+
+class TossEnd(NamedInt):
+    """Why a toss has no further event."""
+
+    RESTS = 0
+    """The body rests."""
+    HORIZON = 1
+    """The time that was asked for is over, and the body still moves."""
+    MOST_EVENTS = 2
+    """The bound on the number of events was reached."""
+    UNDECIDED = 3
+    """No contact mode was found to be consistent, and no impact settled that."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class TossEvent(Record):
+    """One event of a toss.
+
+    Attributes:
+        seconds: s after the stamp of the state that the toss began with.
+        kind: What happens.
+        surfaces: The surfaces of the contacts that it happens at.
+        corners: The indices of the corners of the body's shape that touch there, as many as surfaces.
+        p_WC_W: (n, 3), m, where these contacts are, world.
+        impulse_W: (3,), N s, the impulse on the body, world axes. It is zero where nothing strikes.
+        outcome: What a striking contact did, or None.
+        mode: A letter for each contact: f sticks or rolls, c slides. It is empty where no mode follows.
+        state: The state after everything that happens at that time.
+    """
+
+    seconds: float
+    kind: TossEventKind
+    surfaces: tuple[str, ...]
+    corners: tuple[int, ...]
+    p_WC_W: FloatArray
+    impulse_W: FloatArray
+    outcome: ImpactOutcome | None
+    mode: str
+    state: BodyState
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class TossEnergy(Record):
+    """Where the energy of a toss goes, J. Energy is kinetic energy and that in uniform gravity together.
+
+    Attributes:
+        first: The energy at the beginning, above that of the last state.
+        lost_in_strikes: What strikes take. It is negative if a law of restitution creates energy.
+        lost_in_contact: What friction takes between strikes, at contacts that slide.
+        left: What the last state has, which is its kinetic energy.
+    """
+
+    first: float
+    lost_in_strikes: float
+    lost_in_contact: float
+    left: float
+
+
+class UndecidedReason(NamedInt):
+    """Why mechanics does not decide how a toss goes on."""
+
+    STRIKE_TOGETHER = 0
+    """Several contacts approach at one instant, and their order is open."""
+    SEVERAL_MODES = 1
+    """Several contact modes are consistent."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Undecided(Record):
+    """A point of a toss at which mechanics does not decide.
+
+    Attributes:
+        seconds: s after the first state's stamp.
+        reason: What is open.
+        options: How many ways there are to go on, >= 2.
+        taken: Which way this toss took, from 0. Way 0 strikes the fastest approach first, or takes the first
+            mode.
+    """
+
+    seconds: float
+    reason: UndecidedReason
+    options: int
+    taken: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FlightPiece:
+    """A free flight.
+
+    Attributes:
+        start: s, when it begins.
+        motion: The motion, from the state at that time.
+    """
+
+    start: float
+    motion: FreeMotion
+
+
+Piece: TypeAlias = "FlightPiece | PhaseStep"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Toss(Record):
+    """The motion of a body from a state to rest.
+
+    Attributes:
+        restitution_law: The law of each strike.
+        end: Why there is no further event.
+        seconds: s after the first state's stamp, the time of rest, or how far the motion is known.
+        state: The state then. At rest its velocities are zero.
+        events: The events in the order of time. Strikes of one instant are in the order of resolution.
+        resting_corners: The indices of the corners on which the body rests, sorted; empty if it moves.
+        resting_normal_B: (3,), unit, the normal of the surface on which it rests, body axes, or zero. So a
+            box rests on the face whose outward normal is opposite.
+        energy: Where the energy goes.
+        undecided: The points at which mechanics does not decide, and which way was taken there.
+        alternatives: Tosses that took other ways there, up to the bound that was asked for.
+        all_followed: Whether ``alternatives`` has all other ways.
+        pieces: The flights and the steps of contact phases, in the order of time.
+        starts: (n,), s, when each of them begins.
+        began_ns: ns, the stamp of the state that the toss began with.
+    """
+
+    restitution_law: RestitutionLaw
+    end: TossEnd
+    seconds: float
+    state: BodyState
+    events: tuple[TossEvent, ...]
+    resting_corners: tuple[int, ...]
+    resting_normal_B: FloatArray
+    energy: TossEnergy
+    undecided: tuple[Undecided, ...]
+    alternatives: tuple[Toss, ...] = ()
+    all_followed: bool = True
+    pieces: tuple[Piece, ...] = field(repr=False)
+    starts: FloatArray = field(repr=False)
+    began_ns: int = field(repr=False)
+
+    @property
+    def strikes(self) -> tuple[TossEvent, ...]:
+        """Return the events with an impulse."""
+        kinds = (TossEventKind.STRIKES, TossEventKind.SETTLES, TossEventKind.JAMS)
+        return tuple(event for event in self.events if event.kind in kinds)
+
+    def at(self, seconds: ArrayLike) -> Trajectory:
+        """Return the motion at times (n,), s after the first state's stamp, in any order.
+
+        At the time of a strike it is the state after the strike. At rest the body stays.
+
+        Raises:
+            InvalidFieldError: a time is negative or not finite, or is after the end of a toss that does not
+                rest.
+        """
+        times = check_array("seconds", seconds, (None,))
+        last = float("inf") if self.end == TossEnd.RESTS else self.seconds
+        for i, time in enumerate(times.tolist()):
+            if not 0.0 <= time <= last:
+                raise InvalidFieldError(f"seconds[{i}]", time, f"a time from 0 to {last:g} s")
+        rows = np.empty((len(times), 13))
+        rested = times >= self.seconds
+        final = self.state
+        rows[rested] = np.concatenate([final.p_WB_W, final.q_WB, final.v_WB_W, final.w_WB_W])
+        which = np.searchsorted(self.starts, times, side="right") - 1
+        for k in np.unique(which[~rested]).tolist():
+            mine = np.flatnonzero((which == k) & ~rested)
+            piece = self.pieces[k]
+            if isinstance(piece, FlightPiece):
+                flown = piece.motion.at(times[mine] - piece.start)
+                rows[mine] = np.column_stack([flown.p_WB_W, flown.q_WB, flown.v_WB_W, flown.w_WB_W])
+            else:
+                rows[mine] = [piece.at(time) for time in times[mine].tolist()]
+        q = rows[:, 3:7] / np.linalg.norm(rows[:, 3:7], axis=1, keepdims=True)
+        if len(q):
+            make_continuous(q, q[0])
+        return Trajectory(
+            seconds=times, p_WB_W=rows[:, :3], q_WB=q, v_WB_W=rows[:, 7:10], w_WB_W=rows[:, 10:]
+        )
+
+    def state_at(self, seconds: float) -> BodyState:
+        """Return the state at one time, s after the first state's stamp. It raises the errors of `at`."""
+        row = self.at([seconds])
+        return BodyState(
+            p_WB_W=row.p_WB_W[0],
+            q_WB=row.q_WB[0],
+            v_WB_W=row.v_WB_W[0],
+            w_WB_W=row.w_WB_W[0],
+            stamp_ns=ns_after(self.began_ns, seconds),
+        )

@@ -1,0 +1,222 @@
+"""Strikes at the contacts of one instant: Routh's impact at each, and the end of many small rebounds.
+
+The contact that approaches fastest is struck first, by Routh's impact at one contact (`impact.spatial`), and
+so on until none approaches, which is the sequential law (`impact.several`). The order is a choice, and
+another contact may be asked to come first.
+
+Rebounds shrink by a ratio, and infinitely many of them end in finite time (Zeno). A contact whose rebound
+would not be higher than the solid's `settling` stays from then on. The impulses that it would have had in all
+rebounds together are those of a contact that stays, so the body is off by heights of that size.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
+from contact_dynamics.impact.spatial.path import trace
+from contact_dynamics.impact.spatial.response import contact_axes, pushed, responding
+from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
+from contact_dynamics.numerics.vectors import cross, dot, norm
+from contact_dynamics.tolerances import STILL_TOUCHING, STRIKES
+from contact_dynamics.toss.cone_forces import Site, cone_forces
+from contact_dynamics.toss.forces import pushed_by_contacts
+from contact_dynamics.toss.held import Held
+from contact_dynamics.toss.holding import held_in_place, without_rebounds
+from contact_dynamics.toss.mode_choice import choose_mode
+from contact_dynamics.toss.solid import arm_of, pose_of, times, velocity_of
+
+if TYPE_CHECKING:
+    from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
+    from contact_dynamics.numerics.vectors import Vector3
+    from contact_dynamics.toss.solid import Numbers, Solid, Touch
+
+MOST_STRIKES_AT_ONCE: Final = 500
+"""Strikes of one instant after which the contacts count as not settled by them."""
+
+
+class Struck(NamedTuple):
+    """One strike.
+
+    Attributes:
+        touch: The contact.
+        impulse: N s, on the body, world axes.
+        outcome: What the contact did, or None if it was settled without restitution, together with others.
+    """
+
+    touch: Touch
+    impulse: Vector3
+    outcome: ImpactOutcome | None
+
+
+class Strikes(NamedTuple):
+    """The strikes of one instant.
+
+    Attributes:
+        y: The state after them.
+        struck: Each strike.
+        staying: The contacts that neither leave nor approach.
+        settled: Whether rebounds came to their end.
+    """
+
+    y: Numbers
+    struck: list[Struck]
+    staying: list[Touch]
+    settled: bool
+
+
+def approaches(solid: Solid, y: Numbers, touching: list[Touch]) -> list[float]:
+    """Return the normal velocities, m/s, of contacts, negative if they approach."""
+    pose = pose_of(solid, y)
+    return [
+        dot(velocity_of(pose, arm_of(solid, pose, touch)), solid.flats[touch[0]].normal) for touch in touching
+    ]
+
+
+def strike(
+    solid: Solid, y: Numbers, touching: list[Touch], law: RestitutionLaw, *, first: Touch | None = None
+) -> Strikes:
+    """Return the state after all strikes of contacts that touch at one instant.
+
+    Args:
+        solid: The body and the flats.
+        y: The state before.
+        touching: All contacts that touch, approaching or not.
+        law: What the coefficients of restitution mean.
+        first: The contact that is struck first, or None if it is the one that approaches fastest.
+    """
+    struck: list[Struck] = []
+    for _ in range(MOST_STRIKES_AT_ONCE):
+        rates = approaches(solid, y, touching)
+        fastest = min(rates)
+        if fastest >= -STRIKES:
+            break
+        settled = _settled(solid, y, touching, rates)
+        if settled is not None:
+            return Strikes(settled.y, struck + settled.struck, settled.staying, settled=True)
+        which = touching[rates.index(fastest)] if first is None else first
+        first = None
+        y, one = routh(solid, y, which, law)
+        struck.append(one)
+    rates = approaches(solid, y, touching)
+    staying = [touch for touch, rate in zip(touching, rates, strict=True) if rate <= STILL_TOUCHING]
+    return Strikes(y, struck, staying, settled=False)
+
+
+def low_rebounds_ended(solid: Solid, y: Numbers, touching: list[Touch]) -> Strikes | None:
+    """Return the state in which contacts that rebound too low to be followed stay, or None if there are none.
+
+    No contact approaches. One stays if what presses it in brings it back before it has risen by the solid's
+    `settling`. Its impulse is that by which it loses its rebound.
+    """
+    rates = approaches(solid, y, touching)
+    fast = math.sqrt(2.0 * solid.settling * norm(solid.gravity))
+    if min(rates) < -STRIKES or not any(STILL_TOUCHING < rate <= fast for rate in rates):
+        return None
+    found = _settled(solid, y, touching, rates)
+    if found is None:
+        return None
+    low = [
+        touch
+        for touch, rate in zip(touching, rates, strict=True)
+        if rate > STILL_TOUCHING and touch in found.staying
+    ]
+    return found._replace(y=without_rebounds(solid, y, found.staying)) if low else None
+
+
+def routh(solid: Solid, y: Numbers, touch: Touch, law: RestitutionLaw) -> tuple[Numbers, Struck]:
+    """Return the state after the impact at one contact, which approaches or jams (lecture 27)."""
+    pose, flat = pose_of(solid, y), solid.flats[touch[0]]
+    body = responding(solid.mass, solid.inertia, y[3:7], arm_of(solid, pose, touch), pose.v, pose.w)
+    axes = contact_axes(body, None, flat.normal)
+    u1, u2, v_n = axes.components(velocity_of(pose, body.r))
+    if math.hypot(u1, u2) <= STRIKES:
+        u1 = u2 = 0.0
+    if v_n >= -STRIKES:  # it jams, without approach
+        v_n = 0.0
+    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, min(flat.friction, LARGEST_FRICTION))
+    path = trace(sliding, (u1, u2), v_n, restitution=flat.restitution, law=law)
+    impulse = axes.in_world(path.impulse)
+    v, w = pushed(body, impulse)
+    return [*y[:7], *v, *w], Struck(touch, impulse, path.outcome)
+
+
+def _settled(solid: Solid, y: Numbers, touching: list[Touch], rates: list[float]) -> Strikes | None:
+    """Return the state in which all slow rebounds have ended, or None if a contact still rebounds."""
+    gravity = norm(solid.gravity)
+    fast = 2.0 * solid.settling * gravity
+    for rate in rates:
+        if rate < 0.0 and rate * rate > fast:
+            return None
+    pose = pose_of(solid, y)
+    sites = []
+    for touch in touching:
+        flat, arm = solid.flats[touch[0]], arm_of(solid, pose, touch)
+        velocity = velocity_of(pose, arm)
+        axes = (*flat.tangents, flat.normal)
+        motion = (dot(velocity, axes[0]), dot(velocity, axes[1]), dot(velocity, axes[2]))
+        sites.append(Site(arm, axes, flat.friction, motion, None))
+    found = cone_forces(1.0 / solid.mass, pose.inverse, sites)
+    if found is None:
+        return None
+    pushes, motions = found
+    after = list(y)
+    struck = []
+    for touch, site, push in zip(touching, sites, pushes, strict=True):
+        x, yy, z = (sum(push[k] * site.axes[k][i] for k in range(3)) for i in range(3))
+        impulse = (x, yy, z)
+        turning = times(pose.inverse, cross(site.arm, impulse))
+        for k in range(3):
+            after[7 + k] += impulse[k] / solid.mass
+            after[10 + k] += turning[k]
+        if push[2] > 0.0:
+            struck.append(Struck(touch, impulse, None))
+    slow = [
+        Held(touch, math.hypot(*motion[:2]) ** 2 > fast * solid.flats[touch[0]].friction)
+        for touch, motion in zip(touching, motions, strict=True)
+        if motion[2] * motion[2] <= fast
+    ]
+    stopped = held_in_place(solid, after, tuple(slow))
+    staying = _pressed(solid, stopped, [one.touch for one in slow], touching, before=rates, motions=motions)
+    if staying is None:
+        return None
+    kept = tuple(one for one in slow if one.touch in staying)
+    after = held_in_place(solid, after, kept)
+    return Strikes(after, struck, staying, settled=True)
+
+
+def _pressed(
+    solid: Solid,
+    y: Numbers,
+    slow: list[Touch],
+    touching: list[Touch],
+    *,
+    before: list[float],
+    motions: list[Vector3],
+) -> list[Touch] | None:
+    """Return which slow contacts stay, or None if a contact that was struck presses too little to settle.
+
+    A contact that stays gives up what is left of its normal velocity. It may, if it is pressed in so much
+    that it would not rise by the solid's `settling` before it comes back.
+    """
+    choice = choose_mode(solid, y, slow)
+    if not choice.modes:
+        return None
+    mode = choice.modes[0]
+    forces = dict(zip((one.touch for one in mode), pushed_by_contacts(solid, y, mode).forces, strict=True))
+    pose = pose_of(solid, y)
+    staying = []
+    for touch, rate, motion in zip(touching, before, motions, strict=True):
+        flat, arm = solid.flats[touch[0]], arm_of(solid, pose, touch)
+        rebound = max(motion[2], -flat.restitution * rate)
+        moment = cross(arm, flat.normal)
+        pull = 0.0
+        if touch in forces:
+            response = 1.0 / solid.mass + dot(moment, times(pose.inverse, moment))
+            pull = response * max(dot(forces[touch], flat.normal), 0.0)
+        if motion[2] <= STILL_TOUCHING or rebound * rebound <= 2.0 * solid.settling * pull:
+            staying.append(touch)
+        elif rate < -STRIKES:
+            return None
+    return staying

@@ -1,0 +1,178 @@
+"""What is not known exactly about a toss, and samples of it.
+
+A state has a covariance, and so have parameters: what a calibration tells of friction, restitution, mass
+centre and inertia. The law of impact has a spread of its own, by which velocities after strikes differ from
+what it says. Each sample is a body, a world and a state that all this allows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.records import Record
+from contact_dynamics.rotations.many import matrices_of, products, quaternions_of
+from contact_dynamics.validation import FloatArray, check_array, check_not_negative
+from contact_dynamics.validation_batches import check_covariance
+
+if TYPE_CHECKING:
+    from numpy.random import Generator
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.world import Body, World
+
+MOST_PARAMETERS: Final = 100
+"""So many parameters may be uncertain. A request's list is bounded, and nobody has 48 uncertain surfaces."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class TossUncertainty(Record):
+    """How uncertain parameters and the law of impact are.
+
+    Attributes:
+        covariance: (2 s + 4, 2 s + 4), of the parameters with s surfaces, in this order: the
+            friction of each surface, the restitution of each, the mass centre x, y, z in body axes (m), and
+            the inertia as a relative change of all its entries. Without rows all of them are exact.
+        velocity: m/s, >= 0, the law's own spread of each component of a velocity after a strike. It is the
+            standard deviation of normal residuals with the same median (`law_spread`).
+        spin: rad/s, >= 0, the same of an angular velocity.
+        height: m, >= 0, standard deviation of how far each corner is from where the shape has it, along its
+            ray from the mass centre. It makes the time of a strike uncertain.
+
+    Raises:
+        InvalidFieldError: the matrix is not a covariance, or a number is negative or not finite.
+        TooLargeError: the matrix has more than `MOST_PARAMETERS` rows.
+    """
+
+    covariance: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
+    velocity: float = 0.0
+    spin: float = 0.0
+    height: float = 0.0
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            covariance: ArrayLike = ...,
+            velocity: float = ...,
+            spin: float = ...,
+            height: float = ...,
+        ) -> None:
+            """Take whatever NumPy makes arrays of."""
+
+    def __post_init__(self) -> None:
+        """Check all fields."""
+        rows = check_array("covariance", self.covariance, (None, None))
+        if len(rows) > MOST_PARAMETERS:
+            raise TooLargeError("covariance", len(rows), f"at most {MOST_PARAMETERS}")
+        matrix = check_covariance("covariance", rows, len(rows)) if len(rows) else rows
+        object.__setattr__(self, "covariance", matrix)
+        for name in ("velocity", "spin", "height"):
+            object.__setattr__(self, name, check_not_negative(name, getattr(self, name)))
+
+
+EXACT: Final = TossUncertainty()
+"""Parameters and law are exact."""
+
+
+class Samples(NamedTuple):
+    """Bodies, worlds and states, one of each a row.
+
+    Attributes:
+        p_WB_W: (n, 3), m, centres of mass.
+        q_WB: (n, 4), unit quaternions x, y, z, w.
+        v_WB_W: (n, 3), m/s.
+        w_WB_W: (n, 3), rad/s.
+        inertias_B: (n, 3, 3), kg m^2.
+        corners_B: (n, k, 3), m, from each sample's mass centre.
+        frictions: (n, s), of each surface.
+        restitutions: (n, s), of each surface.
+    """
+
+    p_WB_W: FloatArray
+    q_WB: FloatArray
+    v_WB_W: FloatArray
+    w_WB_W: FloatArray
+    inertias_B: FloatArray
+    corners_B: FloatArray
+    frictions: FloatArray
+    restitutions: FloatArray
+
+
+def draw(
+    body: Body,
+    state: BodyState,
+    world: World,
+    *,
+    covariance: FloatArray | None,
+    uncertainty: TossUncertainty,
+    count: int,
+    chance: Generator,
+) -> Samples:
+    """Return samples of normal distributions. Frictions and restitutions stay where they are possible.
+
+    Args:
+        body: The body with its best parameters. Its shape is a hull of corners.
+        state: The best state.
+        world: Surfaces, which are flats.
+        covariance: (12, 12), of the state, in the order of `questions.UncertainState`, or None if the state
+            is exact.
+        uncertainty: How uncertain the parameters are.
+        count: How many samples to draw.
+        chance: Where they are drawn from.
+
+    Raises:
+        InvalidFieldError: the parameters' covariance has another size than the world's surfaces ask for.
+    """
+    flats = [surface for surface in world.surfaces if hasattr(surface, "friction")]
+    s = len(flats)
+    size = len(uncertainty.covariance)
+    if size not in {0, 2 * s + 4}:
+        allowed = f"{2 * s + 4} rows, two for each of {s} surfaces and four more, or none"
+        raise InvalidFieldError("covariance", f"{size} rows", allowed)
+    off = _normal(uncertainty.covariance, count, chance) if size else np.zeros((count, 2 * s + 4))
+    moved = _normal(covariance, count, chance) if covariance is not None else np.zeros((count, 12))
+    q = products(quaternions_of(moved[:, 3:6]), np.broadcast_to(state.q_WB, (count, 4)))
+    centre = off[:, 2 * s : 2 * s + 3]
+    shift = np.einsum("nij,nj->ni", matrices_of(q), centre)
+    w = state.w_WB_W + moved[:, 9:]
+    return Samples(
+        p_WB_W=state.p_WB_W + moved[:, :3] + shift,
+        q_WB=q,
+        v_WB_W=state.v_WB_W + moved[:, 6:9] + np.cross(w, shift),
+        w_WB_W=w,
+        inertias_B=body.mass_properties.I_B * np.exp(off[:, -1])[:, None, None],
+        corners_B=_corners(body, uncertainty.height, count, chance) - centre[:, None, :],
+        frictions=np.maximum(np.array([flat.friction for flat in flats]) + off[:, :s], 0.0),
+        restitutions=np.clip(np.array([flat.restitution for flat in flats]) + off[:, s : 2 * s], 0.0, 1.0),
+    )
+
+
+def _corners(body: Body, height: float, count: int, chance: Generator) -> FloatArray:
+    """Return corners, (n, k, 3), m, each moved on its ray from the mass centre."""
+    vertices = body.shape.vertices
+    lengths = np.linalg.norm(vertices, axis=1)
+    rays = np.divide(vertices, lengths[:, None], out=np.zeros_like(vertices), where=lengths[:, None] > 0.0)
+    moved: FloatArray = vertices + height * chance.standard_normal((count, len(vertices), 1)) * rays
+    return moved
+
+
+def _normal(covariance: FloatArray, count: int, chance: Generator) -> FloatArray:
+    """Return normal numbers, (n, k), of a covariance, which may be singular."""
+    scaled, sizes = _scaled(covariance)
+    values, axes = np.linalg.eigh(scaled)
+    drawn: FloatArray = chance.standard_normal((count, len(sizes))) * np.sqrt(np.maximum(values, 0.0))
+    numbers: FloatArray = (drawn @ axes.T) * sizes
+    return numbers
+
+
+def _scaled(covariance: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return a covariance in units of its standard deviations, and these. What is exact has zero."""
+    sizes = np.sqrt(np.maximum(covariance.diagonal(), 0.0))
+    units = np.where(sizes > 0.0, sizes, 1.0)
+    return covariance / np.outer(units, units), sizes
