@@ -1,0 +1,7 @@
+"""From recorded states to parameters: what a body and its surfaces are, with how well the data say it."""
+
+from contact_dynamics.calibration.calibrate import calibrate, calibrate_observed
+from contact_dynamics.calibration.free import Free
+from contact_dynamics.calibration.result import Calibration, Estimate
+
+__all__ = ["Calibration", "Estimate", "Free", "calibrate", "calibrate_observed"]

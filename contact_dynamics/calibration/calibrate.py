@@ -1,0 +1,281 @@
+"""From measured motions to parameters: the library's call, which `contact-dynamics calibrate` makes too."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.calibration.estimation import Data, Fitting
+from contact_dynamics.calibration.first_flights import RATIO_STEP, gravity_and_center, ratios_of_moments
+from contact_dynamics.calibration.free import STANDARD, Free
+from contact_dynamics.calibration.heights import at_rests, at_strikes
+from contact_dynamics.calibration.jumps import jump_covariances, jumps
+from contact_dynamics.calibration.model import Model
+from contact_dynamics.calibration.observed import observe, surfaces_of
+from contact_dynamics.calibration.paths import Paths
+from contact_dynamics.calibration.problems import bent_surfaces, check_that_it_flies, problems_of, warnings_of
+from contact_dynamics.calibration.result import Calibration, Estimate, MeasuredGravity, Outlier
+from contact_dynamics.calibration.strikes import strikes_of
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.rigid_body.body import MassProperties
+from contact_dynamics.shapes.convex import ConvexShape
+from contact_dynamics.world import Body, Surface
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from contact_dynamics.calibration.estimation import Estimation
+    from contact_dynamics.calibration.first_flights import Gravity
+    from contact_dynamics.calibration.observed import Observed
+    from contact_dynamics.evaluation.motion import MeasuredMotion
+    from contact_dynamics.validation import FloatArray
+
+DIRECTION_SHARE: Final = 0.2
+"""Least component, in standard units, with which a parameter takes part in an undetermined direction."""
+
+
+def calibrate(
+    motions: Sequence[MeasuredMotion],
+    *,
+    names: Sequence[str] = (),
+    free: Sequence[Free] = STANDARD,
+    with_paths: bool = True,
+    tell: Callable[[str, int, int], None] | None = None,
+) -> Calibration:
+    """Return what measured motions of one body say of its parameters and of those of the surfaces.
+
+    Args:
+        motions: Measured states of one body in one world.
+        names: How the motions are named in the result; the default is their numbers.
+        free: What may change. The rest keeps its configured value.
+        with_paths: Whether the second way, by whole trajectories, is gone too. It takes most of the time.
+        tell: Is told what is done, how much of it, and how much there is.
+
+    Raises:
+        InvalidFieldError: there is no motion, they are of several bodies, or the body never flies.
+        NotSupportedError: the body's shape has no corners.
+    """
+    if not motions:
+        raise InvalidFieldError("motions", "none", "one at least")
+    bodies = sorted({motion.body.name for motion in motions})
+    if len(bodies) > 1:
+        raise InvalidFieldError("motions", f"states of {', '.join(bodies)}", "those of one body")
+    model = Model(motions[0].body, surfaces_of(motions[0]))
+    observed: list[Observed] = []
+    for number, motion in enumerate(motions):
+        if tell is not None:
+            tell("finding events", number, len(motions))
+        observed += observe(names[number] if names else f"motion {number}", motion)
+    return calibrate_observed(model, observed, free=free, with_paths=with_paths, tell=tell)
+
+
+def calibrate_observed(
+    model: Model,
+    observed: Sequence[Observed],
+    *,
+    free: Sequence[Free] = STANDARD,
+    with_paths: bool = True,
+    tell: Callable[[str, int, int], None] | None = None,
+) -> Calibration:
+    """Return what tosses say whose events have been found. Arguments and errors are those of `calibrate`."""
+    check_that_it_flies(observed)
+    data = _data(model, observed, free)
+    fitting = Fitting(model, data, free)
+    covariances = jump_covariances(model, model.configured, data.strikes, data.gravity)
+    if tell is not None:
+        tell("fitting velocities at strikes", 0, 2)
+    first = fitting.estimate(lambda x, spread: fitting.whitened_jumps(x, spread, covariances))
+    second = None
+    if with_paths and len(data.strikes):
+        if tell is not None:
+            tell("fitting trajectories through strikes", 1, 2)
+        paths = Paths(fitting, observed)
+        second = fitting.estimate(paths.groups_at, spread=first.spread, start=first.fit.parameters)
+    estimates, covariance, by_paths_covariance = _estimates(fitting, first, second)
+    described = model.describe(first.values)
+    gravity = _gravity(data.gravity, first.values[:3]) if Free.GRAVITY in free else None
+    left = jumps(model, first.values[None], data.strikes, data.gravity)[0]
+    return Calibration(
+        body=_body(model, first.values),
+        surfaces=_surfaces(model, first.values),
+        gravity_W=observed[0].motion.gravity_W if gravity is None else gravity.mean_W,
+        estimates=estimates,
+        covariance=covariance,
+        by_paths_covariance=by_paths_covariance,
+        undetermined=_undetermined(fitting, first),
+        gravity=gravity,
+        spread=first.spread,
+        residuals=left,
+        residual_stds=np.sqrt(np.einsum("nii->ni", covariances)),
+        strike_recordings=data.strikes.recordings,
+        observed=tuple(observed),
+        outliers=_outliers(data, observed, first),
+        warnings=tuple(
+            warnings_of(
+                estimates, clusters=first.fit.clusters, by_cluster=first.fit.by_cluster, free=len(estimates)
+            )
+        ),
+        problems=(
+            *problems_of(observed, data, gravity, left, model.half_size),
+            *bent_surfaces(data, described, [s.name for s in model.surfaces], model.half_size),
+        ),
+        clusters=first.fit.clusters,
+        by_cluster=first.fit.by_cluster,
+    )
+
+
+def _data(model: Model, observed: Sequence[Observed], free: Sequence[Free]) -> Data:
+    gravity, center = gravity_and_center(observed, gravity_is_free=Free.GRAVITY in free)
+    with_ratios = Free.INERTIA_RATIOS in free
+    strikes = strikes_of(observed, with_ratios=with_ratios)
+    ratios = None
+    if with_ratios:
+        at = [(0.0, 0.0), (-RATIO_STEP, 0.0), (RATIO_STEP, 0.0), (0.0, -RATIO_STEP), (0.0, RATIO_STEP)]
+        inertias = []
+        for pair in at:
+            values = model.configured.copy()
+            values[4:6] = pair
+            inertias.append(model.describe(values).I_B)
+        ratios = ratios_of_moments(observed, inertias)
+    described = model.describe(model.configured)
+    return Data(
+        clusters=len(observed),
+        strikes=strikes,
+        gravity=gravity,
+        center=center,
+        ratios=ratios,
+        struck=at_strikes(strikes),
+        resting=at_rests(observed, described, model.half_size),
+    )
+
+
+def _estimates(
+    fitting: Fitting, first: Estimation, second: Estimation | None
+) -> tuple[tuple[Estimate, ...], FloatArray, FloatArray | None]:
+    """Return the estimates as they are reported, and the covariances of both ways."""
+    model, fit = fitting.model, first.fit
+    vague = np.abs(fit.undetermined).max(axis=0, initial=0.0) > DIRECTION_SHARE
+    scale, estimates = [], []
+    for k, number in enumerate(fitting.at):
+        parameter = model.parameters[number]
+        shift = (
+            float(model.body.p_FB_F["xyz".index(parameter.name[-1])])
+            if parameter.group is Free.CENTER_OF_MASS
+            else 0.0
+        )
+
+        def shown(value: float, parameter: object = parameter, shift: float = shift) -> float:
+            return math.exp(value) if getattr(parameter, "is_factor", False) else value + shift
+
+        value = shown(float(first.values[number]))
+        scale.append(float(fitting.steps[k]) * (value if parameter.is_factor else 1.0))
+        there, spread_there, apart = math.nan, math.nan, math.nan
+        if second is not None:
+            there = shown(float(second.values[number]))
+            spread_there = scale[k] * math.sqrt(second.fit.covariance[k, k])
+            moved = fit.influences[:, k] - second.fit.influences[:, k]
+            apart = scale[k] * math.sqrt(float(moved @ moved))
+        estimates.append(
+            Estimate(
+                name=parameter.name,
+                unit=parameter.unit,
+                configured=shown(parameter.configured),
+                value=value,
+                std=math.nan if vague[k] else scale[k] * math.sqrt(fit.covariance[k, k]),
+                by_paths=there,
+                by_paths_std=spread_there,
+                difference_std=apart,
+                determined=not vague[k],
+                at_bound=bool(fit.at_bound[k]),
+            )
+        )
+    scales = np.array(scale) * ~vague
+    units = np.outer(scales, scales)
+    return tuple(estimates), fit.covariance * units, None if second is None else second.fit.covariance * units
+
+
+def _undetermined(fitting: Fitting, found: Estimation) -> tuple[str, ...]:
+    """Return the undetermined directions in words, each as what may change together."""
+    texts = []
+    for direction in found.fit.undetermined:
+        largest = float(np.abs(direction).max())
+        parts = [
+            f"{fitting.model.parameters[number].name} {share * step / largest:+.2g}"
+            + (f" {unit}" if (unit := fitting.model.parameters[number].unit) else "")
+            for number, share, step in zip(fitting.at, direction, fitting.steps, strict=True)
+            if abs(share) > DIRECTION_SHARE * largest
+        ]
+        texts.append(" together with ".join(parts))
+    return tuple(texts)
+
+
+def _gravity(gravity: Gravity, center: FloatArray) -> MeasuredGravity | None:
+    known = ~np.isnan(gravity.std)
+    count = int(known.sum())
+    if count == 0:
+        return None
+    each = gravity.of(center)[known]
+    mean = np.median(each, axis=0)
+    sizes = np.linalg.norm(each, axis=1)
+    size = float(np.median(sizes))
+    # the median's error is 1.25 times the mean's, and 1.4826 times the median deviation is the standard one
+    errors = 1.25 * 1.4826 / math.sqrt(count)
+    cosines = each @ mean / (sizes * np.linalg.norm(mean))
+    return MeasuredGravity(
+        mean_W=mean,
+        mean_std=errors * float(np.median(np.abs(each - mean))),
+        size=size,
+        size_std=errors * float(np.median(np.abs(sizes - size))),
+        tilt=float(np.median(np.arccos(np.clip(cosines, -1.0, 1.0)))),
+        expected_tilt=1.18 * float(np.median(gravity.std[known])) / size,
+        count=count,
+    )
+
+
+def _body(model: Model, values: FloatArray) -> Body:
+    described, body = model.describe(values), model.body
+    return Body(
+        name=body.name,
+        mass_properties=MassProperties(mass=body.mass_properties.mass, I_B=described.I_B),
+        p_FB_F=body.p_FB_F + described.center,
+        shape=ConvexShape(vertices=described.corners - described.center, rounding=described.rounding),
+    )
+
+
+def _surfaces(model: Model, values: FloatArray) -> tuple[Surface, ...]:
+    described = model.describe(values)
+    return tuple(
+        Surface(
+            name=surface.name,
+            p_WS_W=described.points[k],
+            normal_W=described.normals[k],
+            friction=float(described.frictions[k]),
+            restitution=float(described.restitutions[k]),
+        )
+        for k, surface in enumerate(model.surfaces)
+    )
+
+
+def _outliers(data: Data, observed: Sequence[Observed], found: Estimation) -> tuple[Outlier, ...]:
+    """Return what was left out, the farthest first."""
+    from contact_dynamics.numerics.clustered_fit import REJECTED
+
+    rows = {
+        "velocities after strikes": (data.strikes.recordings, data.strikes.times),
+        "heights at strikes": (data.strikes.recordings, data.strikes.times),
+        "heights at rest": (data.resting.recordings, None),
+        "first flights": (data.center.recordings, None),
+        "turns of first flights": (data.center.recordings, None),
+    }
+    outliers = {}
+    for kind, sizes in zip(found.kinds, found.fit.sizes, strict=True):
+        recordings, times = rows[kind]
+        for row in np.flatnonzero(sizes > REJECTED):
+            name = observed[recordings[row]].name
+            time = math.nan if times is None else float(times[row])
+            outliers[kind, name, time if times is not None else 0.0] = Outlier(
+                recording=name, kind=kind, time=time, size=float(sizes[row])
+            )
+    return tuple(sorted(outliers.values(), key=lambda each: -each.size))

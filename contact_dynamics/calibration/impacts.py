@@ -1,0 +1,77 @@
+"""What the law of impact says of many strikes at once, for one or several descriptions of body and surfaces.
+
+One batch answers all of them. A derivative takes a dozen variations of each strike, and a large batch costs
+a tenth of small ones for each.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.impact.spatial.batch import StrikingBodies, spatial_impacts
+from contact_dynamics.rotations.many import matrices_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.calibration.first_flights import IntArray
+    from contact_dynamics.calibration.model import Described
+    from contact_dynamics.validation import FloatArray
+
+
+def velocities_after(
+    described: Sequence[Described],
+    mass: float,
+    *,
+    q_WB: FloatArray,
+    velocities_W: FloatArray,
+    spins_W: FloatArray,
+    corners: IntArray,
+    surfaces: IntArray,
+) -> FloatArray:
+    """Return the velocities after k variations of n strikes, (k, n, 6), m/s and rad/s.
+
+    They are those of the true mass centre. The law is Poisson's. A corner that moves away from its surface
+    is left as it is.
+
+    Args:
+        described: Body and surfaces of each variation, k of them, or one for all.
+        mass: kg.
+        q_WB: (k, n, 4) or (1, n, 4), attitudes at the strikes.
+        velocities_W: (k, n, 3) or (1, n, 3), m/s, of the true mass centre before.
+        spins_W: (k, n, 3) or (1, n, 3), rad/s, before.
+        corners: (n,), numbers of the corners that strike.
+        surfaces: (n,), numbers of the surfaces that are struck.
+    """
+    count = len(corners)
+    variations = max(len(described), len(q_WB), len(velocities_W), len(spins_W))
+    if count == 0:
+        return np.zeros((variations, 0, 6))
+    whole = (variations, count)
+    arms = np.array([d.corners[corners] - d.center for d in described])
+    normals = np.array([d.normals[surfaces] for d in described])
+    rounding = np.array([d.rounding for d in described])[:, None, None]
+    turns = matrices_of(q_WB.reshape(-1, 4)).reshape(-1, count, 3, 3)
+    answer = spatial_impacts(
+        StrikingBodies(
+            masses=mass,
+            inertias_B=_rows(np.array([d.I_B for d in described])[:, None], whole),
+            q_WB=_rows(q_WB, whole),
+            v_WB_W=_rows(velocities_W, whole),
+            w_WB_W=_rows(spins_W, whole),
+            r_W=_rows(np.einsum("...ij,...j->...i", turns, arms) - rounding * normals, whole),
+        ),
+        normals_W=_rows(normals, whole),
+        frictions=_rows(np.array([d.frictions[surfaces] for d in described]), whole),
+        restitutions=_rows(np.array([d.restitutions[surfaces] for d in described]), whole),
+        skip_separating=True,
+    )
+    return np.hstack([answer.v_WB_W, answer.w_WB_W]).reshape(*whole, 6)
+
+
+def _rows(values: FloatArray, whole: tuple[int, int]) -> FloatArray:
+    """Return values of variations and strikes, (k or 1, n or 1, ...), as rows, (k n, ...)."""
+    rows: FloatArray = np.broadcast_to(values, (*whole, *values.shape[2:])).reshape(-1, *values.shape[2:])
+    return rows

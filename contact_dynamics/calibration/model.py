@@ -1,0 +1,289 @@
+"""The parameters as one vector, and the body and surfaces that such a vector describes.
+
+All lengths are in body axes B at the *configured* centre of mass, so that poses need no conversion while the
+centre moves. Moments of inertia are about the true centre of mass. They change as E I E, with E diagonal, so
+that every vector describes an inertia that is positive.
+
+A rounded corner keeps its outer faces: the corner of the inner polyhedron, over which the ball rolls, is
+where the planes of its faces meet when each is moved inwards by the radius.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.calibration.free import Free
+from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.numerics.convex_hull import hull_of
+from contact_dynamics.numerics.vectors import tangents_near_x
+from contact_dynamics.records import Record
+from contact_dynamics.rotations.many import matrices_of, quaternions_of
+from contact_dynamics.tolerances import SAME_FACE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import Body, Surface
+
+PLAUSIBLE_SHARE: Final = 0.2
+"""Share of the shape's half size that an offset may plausibly have: the standard unit of lengths."""
+
+PLAUSIBLE_COEFFICIENT: Final = 0.5
+"""The standard unit of friction and restitution."""
+
+PLAUSIBLE_LOGARITHM: Final = 0.3
+"""The standard unit of factors: a third more or less."""
+
+PLAUSIBLE_ANGLE: Final = 0.2
+"""rad. The standard unit of turns and tilts."""
+
+LARGEST_RATIO: Final = 1.0
+"""Logarithm. No ratio of moments is looked for farther off."""
+
+SMALLEST_RATIO: Final = 0.02
+"""Logarithm. A body so near to being flat keeps its ratios."""
+
+AXES: Final = ("x", "y", "z")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Parameter(Record):
+    """One number that may be free.
+
+    Attributes:
+        name: As reports have it, such as ``friction.floor``.
+        group: The group with which it is left free.
+        configured: Its value before, in ``unit``; factors are logarithms.
+        step: The standard unit: the size of what is plausible.
+        lower: Least value.
+        upper: Largest value.
+        unit: m, rad, or empty.
+        is_factor: Whether the number is the logarithm of a factor.
+    """
+
+    name: str
+    group: Free
+    configured: float
+    step: float
+    lower: float = -math.inf
+    upper: float = math.inf
+    unit: str = ""
+    is_factor: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Described(Record):
+    """What a vector of parameters says of body and surfaces. Row s belongs to surface s.
+
+    Attributes:
+        center: (3,), m, the true centre of mass, in B.
+        I_B: (3, 3), kg m^2, about it.
+        corners: (k, 3), m, of the inner polyhedron, in B.
+        rounding: m, radius of the ball that rolls over it.
+        frictions: (s,). restitutions: (s,). points: (s, 3), m, of the surfaces, world. normals: (s, 3), unit.
+    """
+
+    center: FloatArray
+    I_B: FloatArray
+    corners: FloatArray
+    rounding: float
+    frictions: FloatArray
+    restitutions: FloatArray
+    points: FloatArray
+    normals: FloatArray
+
+
+class Model:
+    """The parameters of one body on some surfaces."""
+
+    def __init__(self, body: Body, surfaces: Sequence[Surface]) -> None:
+        """Name the parameters.
+
+        Raises:
+            NotSupportedError: the body's shape is empty, or has rims.
+        """
+        if body.shape.is_empty or body.shape.rims:
+            raise NotSupportedError(
+                f"body {body.name!r}: found {'rims of a round shape' if body.shape.rims else 'no shape'}, "
+                "a calibration needs corners: a box or vertices, with rounding or without, or a sphere"
+            )
+        self.body = body
+        self.surfaces = tuple(surfaces)
+        self.vertices = body.shape.vertices
+        self.middle = self.vertices.mean(axis=0)
+        self.half_size = (
+            float(np.linalg.norm(self.vertices - self.middle, axis=1).max()) + body.shape.rounding
+        )
+        self.parameters = tuple(self._named())
+        self.configured = np.array([parameter.configured for parameter in self.parameters])
+        self.steps = np.array([parameter.step for parameter in self.parameters])
+        self._at = {parameter.name: i for i, parameter in enumerate(self.parameters)}
+
+    def _named(self) -> list[Parameter]:
+        length = PLAUSIBLE_SHARE * self.half_size
+        found = [
+            Parameter(
+                name=f"center_of_mass.{axis}",
+                group=Free.CENTER_OF_MASS,
+                configured=0.0,
+                step=length,
+                unit="m",
+            )
+            for axis in AXES
+        ]
+        found.append(_factor("inertia", Free.INERTIA))
+        most = _largest_ratio(self.body.mass_properties.I_B)
+        found += [
+            _factor(f"inertia_ratio.{axis}", Free.INERTIA_RATIOS, lower=-most, upper=most)
+            for axis in AXES[1:]
+        ]
+        found.append(
+            Parameter(
+                name="rounding",
+                group=Free.ROUNDING,
+                configured=self.body.shape.rounding,
+                step=length,
+                lower=0.0,
+                upper=0.9 * self.half_size,
+                unit="m",
+            )
+        )
+        found.append(_factor("size", Free.SIZE))
+        found += [
+            Parameter(
+                name=f"shape_position.{axis}",
+                group=Free.SHAPE_POSITION,
+                configured=0.0,
+                step=length,
+                unit="m",
+            )
+            for axis in AXES
+        ]
+        found += [
+            Parameter(
+                name=f"shape_orientation.{axis}",
+                group=Free.SHAPE_ORIENTATION,
+                configured=0.0,
+                step=PLAUSIBLE_ANGLE,
+                unit="rad",
+            )
+            for axis in AXES
+        ]
+        for surface in self.surfaces:
+            found += _of_surface(surface, length)
+        return found
+
+    def chosen(self, free: Sequence[Free]) -> FloatArray:
+        """Return the numbers, (f,), of the parameters of some groups."""
+        return np.array([i for i, p in enumerate(self.parameters) if p.group in free], dtype=int)
+
+    @cached_property
+    def _inwards(self) -> FloatArray:
+        """For each corner, (k, 3), where it goes for each metre of rounding."""
+        if len(self.vertices) < 4 or np.linalg.matrix_rank(self.vertices - self.middle) < 3:
+            return np.zeros_like(self.vertices)
+        planes = np.unique(np.round(hull_of("vertices", self.vertices).equations, 9), axis=0)
+        moves = []
+        for corner in self.vertices:
+            at = np.abs(planes[:, :3] @ corner + planes[:, 3]) < SAME_FACE * self.half_size
+            moves.append(np.linalg.lstsq(planes[at, :3], -np.ones(int(at.sum())), rcond=None)[0])
+        return np.array(moves)
+
+    def describe(self, values: FloatArray) -> Described:
+        """Return what a vector of all parameters, (p,), says."""
+        ratios = np.array([0.0, *values[4:6]])
+        E = np.diag(np.exp(0.5 * (values[3] + ratios)))
+        rounding = float(values[6])
+        grown = rounding - self.body.shape.rounding
+        corners = self.middle + math.exp(values[7]) * (self.vertices - self.middle) + grown * self._inwards
+        turn = matrices_of(quaternions_of(values[None, 11:14]))[0]
+        corners = self.middle + (corners - self.middle) @ turn.T + values[8:11]
+        per_surface = values[14:].reshape(-1, 5)
+        normals, points = [], []
+        for surface, (_, _, height, tilt_u, tilt_v) in zip(self.surfaces, per_surface, strict=True):
+            u, v = tangents_near_x(surface.normal_W)
+            normal = surface.normal_W + tilt_u * u + tilt_v * v
+            normals.append(normal / np.linalg.norm(normal))
+            points.append(surface.p_WS_W + height * surface.normal_W)
+        return Described(
+            center=values[:3],
+            I_B=E @ self.body.mass_properties.I_B @ E,
+            corners=corners,
+            rounding=rounding,
+            frictions=per_surface[:, 0],
+            restitutions=per_surface[:, 1],
+            points=np.array(points).reshape(-1, 3),
+            normals=np.array(normals).reshape(-1, 3),
+        )
+
+
+def _factor(name: str, group: Free, *, lower: float = -math.inf, upper: float = math.inf) -> Parameter:
+    return Parameter(
+        name=name,
+        group=group,
+        configured=0.0,
+        step=PLAUSIBLE_LOGARITHM,
+        lower=lower,
+        upper=upper,
+        is_factor=True,
+    )
+
+
+def _largest_ratio(I_B: FloatArray) -> float:
+    """Return the largest logarithm that both ratios of moments may have, up or down, so that a body has them.
+
+    No moment may exceed the sum of the other two.
+    """
+    most = LARGEST_RATIO
+    signs = ((-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0))
+    while most > SMALLEST_RATIO:
+        changes = [np.diag(np.exp(0.5 * most * np.array([0.0, *sign]))) for sign in signs]
+        moments = np.linalg.eigvalsh([E @ I_B @ E for E in changes])
+        if (moments[:, 0] + moments[:, 1] > moments[:, 2]).all():
+            return most
+        most *= 0.8
+    return 0.0
+
+
+def _of_surface(surface: Surface, length: float) -> list[Parameter]:
+    """Return the five parameters of a surface in the order in which `Model.describe` reads them."""
+    return [
+        Parameter(
+            name=f"friction.{surface.name}",
+            group=Free.FRICTION,
+            configured=surface.friction,
+            step=PLAUSIBLE_COEFFICIENT,
+            lower=0.0,
+        ),
+        Parameter(
+            name=f"restitution.{surface.name}",
+            group=Free.RESTITUTION,
+            configured=surface.restitution,
+            step=PLAUSIBLE_COEFFICIENT,
+            lower=0.0,
+            upper=1.0,
+        ),
+        Parameter(
+            name=f"surface_height.{surface.name}",
+            group=Free.SURFACE_HEIGHT,
+            configured=0.0,
+            step=length,
+            unit="m",
+        ),
+        *(
+            Parameter(
+                name=f"surface_tilt.{surface.name}.{axis}",
+                group=Free.SURFACE_TILT,
+                configured=0.0,
+                step=PLAUSIBLE_ANGLE,
+                unit="rad",
+            )
+            for axis in ("u", "v")
+        ),
+    ]

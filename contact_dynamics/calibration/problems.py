@@ -1,0 +1,233 @@
+"""What is wrong with the data, or doubtful in the result, in plain sentences."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.calibration.result import CONTRADICTED, DISAGREE
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.tolerances import LEAST_STEP_OF_SURFACE, SMALLEST
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.calibration.estimation import Data
+    from contact_dynamics.calibration.model import Described
+    from contact_dynamics.calibration.observed import Observed
+    from contact_dynamics.calibration.result import Estimate, MeasuredGravity
+    from contact_dynamics.validation import FloatArray
+
+OFF: Final = 0.3
+"""Half sizes. If the median striking corner is farther from its surface, frames are mislabelled."""
+
+SCATTERED: Final = 0.15
+"""Half sizes. The same, if the heights of striking corners scatter more than this about their median."""
+
+FEWEST_COMPARED: Final = 3
+"""Strikes from which medians say something."""
+
+UNEXPLAINED: Final = 0.3
+"""Share of a strike's change of spin. If more of it is unexplained in the median, other corners struck."""
+
+_MISLABELLED: Final = (
+    "The body's published frame, its quaternion's order or the surface is probably mislabelled."
+)
+
+WRONG_TURN: Final = 0.17
+"""rad, ten degrees. Gravity that is farther from the configured direction belongs to other axes."""
+
+WRONG_SIZE: Final = 0.15
+"""Share. Gravity that is farther from the configured size comes from wrong units or a wrong clock."""
+
+PLACES: Final = 10
+"""Least number of places at which heights are compared, to tell whether a surface is flat."""
+
+BENT: Final = 15.0
+"""F ratio of three bending terms. Of 15 normal heights on a plane, one set in several thousand exceeds it."""
+
+
+def check_that_it_flies(observed: Sequence[Observed]) -> None:
+    """Refuse recordings in which the body never flies.
+
+    Raises:
+        InvalidFieldError: there is no flight in any of them, or no recording at all.
+    """
+    if not any(each.flights for each in observed):
+        seconds = sum(float(each.motion.times[-1] - each.motion.times[0]) for each in observed)
+        raise InvalidFieldError(
+            "recordings",
+            f"{len(observed)} stretches of states, {seconds:.1f} s, in which the body never flies",
+            "tosses: flights of 0.05 s and more that end in strikes of a corner. If the body does fly in "
+            "them, gravity, the world's axes or the unit of the stamps are not what the configuration says",
+        )
+
+
+def problems_of(
+    observed: Sequence[Observed],
+    data: Data,
+    gravity: MeasuredGravity | None,
+    left: FloatArray,
+    half_size: float,
+) -> list[str]:
+    """Return what prevents an answer.
+
+    ``left`` is the predicted velocities after the strikes less the measured ones, (n, 6), m/s and rad/s.
+    """
+    found = []
+    strikes, several = len(data.strikes), sum(each.several for each in observed)
+    flights = sum(len(each.flights) for each in observed)
+    if strikes == 0:
+        found.append(
+            f"No strike of a single corner was found in {len(observed)} tosses with {flights} flights; "
+            f"{several} strikes were of several corners at once. Friction, restitution and inertia are not "
+            "determined."
+        )
+    elif strikes == 1:
+        found.append(
+            "One strike alone was found. Its six velocities do not tell friction, restitution, mass centre "
+            "and inertia apart, and nothing shows how well the law holds. Record ten tosses or more."
+        )
+    found += _axes(gravity, observed)
+    if strikes >= FEWEST_COMPARED:
+        found += _corners(data, observed, left, half_size)
+    return found
+
+
+def _axes(gravity: MeasuredGravity | None, observed: Sequence[Observed]) -> list[str]:
+    found = []
+    if gravity is not None:
+        configured = observed[0].motion.gravity_W
+        size = float(np.linalg.norm(configured))
+        cosine = float(gravity.mean_W @ configured) / (size * float(np.linalg.norm(gravity.mean_W)))
+        turn = math.acos(min(1.0, max(-1.0, cosine)))
+        if turn > WRONG_TURN:
+            found.append(
+                f"In flight the body falls {math.degrees(turn):.0f} degrees off the configured gravity. "
+                "The world's axes are probably mislabelled."
+            )
+        if abs(gravity.size / size - 1.0) > WRONG_SIZE:
+            found.append(
+                f"In flight the body falls at {gravity.size:.2f} m/s^2, configured are {size:.2f} m/s^2. The "
+                "unit of lengths or stamps is probably another one."
+            )
+    return found
+
+
+def _corners(data: Data, observed: Sequence[Observed], left: FloatArray, half_size: float) -> list[str]:
+    heights = np.array([strike.height for each in observed for strike in each.strikes])
+    middle = float(np.median(heights))
+    scatter = float(np.median(np.abs(heights - middle)))
+    if abs(middle) > OFF * half_size or scatter > SCATTERED * half_size:
+        return [
+            (
+                f"At the strikes, the corner that should touch is {1e3 * middle:.0f} mm above its surface in "
+                f"the median, and half of them are more than {1e3 * scatter:.0f} mm from that. {_MISLABELLED}"
+            )
+        ]
+    changes = data.strikes.after.spins_W - data.strikes.before.spins_W
+    missed = float(np.median(np.linalg.norm(left[:, 3:], axis=1)))
+    change = float(np.median(np.linalg.norm(changes, axis=1)))
+    if missed > UNEXPLAINED * change:
+        return [
+            (
+                f"Strikes change the spin by {change:.1f} rad/s in the median, and impulses at the corners "
+                f"that touch leave {missed:.1f} rad/s of it unexplained. {_MISLABELLED}"
+            )
+        ]
+    return []
+
+
+def bent_surfaces(data: Data, described: Described, names: Sequence[str], half_size: float) -> list[str]:
+    """Return which surfaces are not flat, by the heights of what touched them at different places."""
+    found = []
+    for surface, name in enumerate(names):
+        rows = []
+        for touch in (data.resting, data.struck):
+            mine = touch.surfaces == surface
+            heights = touch.heights(described)
+            moments = {tuple(place) for place in touch.p_W[mine].tolist()}
+            rows.append(
+                np.array(
+                    [
+                        (*place[:3], float(heights[mine & (touch.p_W == place).all(axis=1)].mean()))
+                        for place in sorted(moments)
+                    ]
+                ).reshape(-1, 4)
+            )
+        for places, what in zip(rows, ("rest", "strikes"), strict=True):
+            text = _bent(places, described.normals[surface], half_size)
+            if text:
+                found.append(f"Surface {name!r} is not flat: {text}, as bodies at {what} show.")
+                break
+    return found
+
+
+def _bent(places: FloatArray, normal: FloatArray, half_size: float) -> str:
+    """Return how heights bend over places, (n, 4) with the height last; empty where a plane will do."""
+    if len(places) < PLACES:
+        return ""
+    across = np.linalg.svd(normal[None])[2][1:]
+    u, v = across @ (places[:, :3] - places[:, :3].mean(axis=0)).T
+    plane = np.column_stack([np.ones_like(u), u, v])
+    bent = np.column_stack([plane, u * u, u * v, v * v])
+    left = [
+        places[:, 3] - design @ np.linalg.lstsq(design, places[:, 3], rcond=None)[0]
+        for design in (plane, bent)
+    ]
+    squares = [float(each @ each) for each in left]
+    ratio = (squares[0] - squares[1]) / 3.0 / max(squares[1] / (len(places) - 6), SMALLEST)
+    swing = float(np.ptp(left[0] - left[1]))
+    if ratio > BENT and swing > LEAST_STEP_OF_SURFACE * half_size:
+        return f"heights bend by {1e3 * swing:.1f} mm over {1e3 * max(np.ptp(u), np.ptp(v)):.0f} mm"
+    return ""
+
+
+def disagreement_limit(count: int, clusters: int) -> float:
+    """Return the standard deviations beyond which the ways disagree in one of ``count`` parameters.
+
+    One parameter of six is two standard deviations off in a quarter of all calibrations, though nothing is
+    wrong. So the limit grows with their number (Sidak), and it grows where few tosses tell the deviation.
+    """
+    from scipy.stats import t
+
+    each = 1.0 - (1.0 - DISAGREE) ** (1.0 / max(count, 1))
+    return float(t.isf(0.5 * each, max(clusters - 1, 1)))
+
+
+def warnings_of(estimates: Sequence[Estimate], *, clusters: int, by_cluster: bool, free: int) -> list[str]:
+    """Return what is doubtful in the estimates."""
+    found = []
+    for each in estimates:
+        if each.contradiction > CONTRADICTED:
+            unit = f" {each.unit}" if each.unit else ""
+            found.append(
+                f"{each.name}: configured is {each.configured:.5g}{unit}, the data say {each.value:.5g} +- "
+                f"{each.std:.2g}{unit}, which is {each.contradiction:.0f} standard deviations away."
+            )
+    limit = disagreement_limit(sum(each.difference_std > 0.0 for each in estimates), clusters)
+    apart = [each for each in estimates if each.disagreement > limit]
+    if apart:
+        listed = ", ".join(
+            f"{each.name} ({each.value:.4g} and {each.by_paths:.4g}, {each.disagreement:.1f} sigma)"
+            for each in apart
+        )
+        found.append(
+            f"The two ways disagree in {listed}. By chance alone, one of them would be beyond {limit:.1f} "
+            "sigma once in 22 calibrations. Velocities at strikes and trajectories through them weigh the "
+            "flights differently, so the model fails there: free more parameters, such as rounding or "
+            "inertia_ratios, or look at the outliers."
+        )
+    if clusters and not by_cluster:
+        found.append(
+            f"{clusters} tosses are too few to see the scatter between them with {free} free parameters. The "
+            "errors given assume that the law's spread is as estimated, and are probably too small."
+        )
+    found += [
+        f"{each.name} lies at the end of what is possible, {each.value:.4g}."
+        for each in estimates
+        if each.at_bound
+    ]
+    return found

@@ -1,0 +1,143 @@
+"""A calibration in words and numbers: for the terminal, and as plain data for JSON."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from contact_dynamics.constants import STANDARD_GRAVITY_W
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from contact_dynamics.calibration.result import Calibration, Estimate
+
+CORRELATED: Final = 0.7
+"""Correlations that are told."""
+
+MOST_OUTLIERS: Final = 10
+"""Outliers that are listed on the terminal. The JSON has all."""
+
+
+def report(found: Calibration) -> str:
+    """Return what a calibration found, in lines for the terminal."""
+    return "\n".join(
+        [*_used(found), "", *_parameters(found), *_gravity(found), *_fit(found), *_doubts(found)]
+    )
+
+
+def _used(found: Calibration) -> Iterator[str]:
+    strikes = sum(len(each.strikes) for each in found.observed)
+    yield f"Body {found.body.name!r} on {', '.join(surface.name for surface in found.surfaces) or 'nothing'}"
+    yield (
+        f"{len(found.observed)} tosses: {sum(len(each.flights) for each in found.observed)} flights, "
+        f"{sum(each.first is not None for each in found.observed)} first flights long enough, {strikes} "
+        f"strikes of a single corner, "
+        f"{sum(each.several for each in found.observed)} of several corners (not used), "
+        f"{sum(each.rest is not None for each in found.observed)} rests"
+    )
+
+
+def _parameters(found: Calibration) -> Iterator[str]:
+    yield f"{'':28} {'configured':>11} {'estimate':>11} {'std':>9}   {'by trajectories':>22}"
+    for each in found.estimates:
+        yield _row(each)
+    correlations = found.correlations
+    for i, first in enumerate(found.estimates):
+        for j in range(i):
+            if abs(correlations[i, j]) > CORRELATED:
+                yield f"  {first.name} and {found.estimates[j].name} correlate by {correlations[i, j]:+.2f}"
+
+
+def _row(each: Estimate) -> str:
+    text = f"{each.name:28} {each.configured:11.5g} "
+    if not each.determined:
+        return text + "not determined"
+    text += f"{each.value:11.5g} {each.std:9.2g}"
+    if not math.isnan(each.by_paths):
+        text += f"   {each.by_paths:11.5g} {each.by_paths_std:9.2g}   ({each.disagreement:.1f} sigma apart)"
+    return f"{text} {each.unit}".rstrip()
+
+
+def _gravity(found: Calibration) -> Iterator[str]:
+    gravity = found.gravity
+    if gravity is None:
+        return
+    yield ""
+    components = ", ".join(f"{x:.3f}" for x in gravity.mean_W)
+    yield (
+        f"Gravity: ({components}) +- {gravity.mean_std:.2g} m/s^2, "
+        f"of size {gravity.size:.4g} +- {gravity.size_std:.2g}"
+    )
+    yield (
+        f"  It differs from toss to toss by {math.degrees(gravity.tilt):.2f} degrees; noise would make it "
+        f"{math.degrees(gravity.expected_tilt):.2f}."
+    )
+    product = gravity.size / float(np.linalg.norm(STANDARD_GRAVITY_W))
+    yield (
+        f"  If gravity is the standard one, length scale x clock rate squared is {product:.4f} +- "
+        f"{gravity.size_std / gravity.size * product:.2g}. Motion does not tell the two apart."
+    )
+
+
+def _fit(found: Calibration) -> Iterator[str]:
+    if len(found.residuals) == 0:
+        return
+    yield ""
+    for part, kind, unit in ((slice(0, 3), "velocity", "m/s"), (slice(3, 6), "spin", "rad/s")):
+        left = np.linalg.norm(found.residuals[:, part], axis=1)
+        noise = float(np.median(np.linalg.norm(found.residual_stds[:, part], axis=1)))
+        own = getattr(found.spread, kind)
+        yield (
+            f"Residual {kind} after strikes: median {np.median(left):.3g} {unit}, mean {left.mean():.3g}; "
+            f"noise of measurement {noise:.2g}, the law's own spread {own:.2g} for each component"
+        )
+
+
+def _doubts(found: Calibration) -> Iterator[str]:
+    groups = (
+        ("The data do not determine", found.undetermined),
+        ("Warning", found.warnings),
+        ("Problem", found.problems),
+    )
+    for title, texts in groups:
+        for text in texts:
+            yield f"{title}: {text}"
+    for each in found.outliers[:MOST_OUTLIERS]:
+        when = "" if math.isnan(each.time) else f" at {each.time:.3f} s"
+        yield f"Left out: {each.recording}{when}, {each.kind}, {each.size:.1f} standard deviations off"
+    if len(found.outliers) > MOST_OUTLIERS:
+        yield f"Left out: {len(found.outliers) - MOST_OUTLIERS} more"
+
+
+def content_of(found: Calibration) -> dict[str, Any]:
+    """Return everything but the motions as plain data that JSON takes. What is not known is ``nan``."""
+    return {
+        "body": found.body.to_dict(),
+        "surfaces": [surface.to_dict() for surface in found.surfaces],
+        "gravity_W": found.gravity_W.tolist(),
+        "estimates": [
+            {**each.to_dict(), "contradiction": each.contradiction, "disagreement": each.disagreement}
+            for each in found.estimates
+        ],
+        "covariance": found.covariance.tolist(),
+        "by_paths_covariance": None
+        if found.by_paths_covariance is None
+        else found.by_paths_covariance.tolist(),
+        "undetermined": list(found.undetermined),
+        "gravity": None if found.gravity is None else found.gravity.to_dict(),
+        "spread": found.spread.to_dict(),
+        "strikes": [
+            {"toss": found.observed[number].name, "residual": left.tolist(), "std": std.tolist()}
+            for number, left, std in zip(
+                found.strike_recordings, found.residuals, found.residual_stds, strict=True
+            )
+        ],
+        "outliers": [each.to_dict() for each in found.outliers],
+        "warnings": list(found.warnings),
+        "problems": list(found.problems),
+        "clusters": found.clusters,
+        "by_cluster": found.by_cluster,
+    }

@@ -1,0 +1,199 @@
+"""What a calibration found: estimates with covariance, what they rest on, and what is doubtful."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.records import Record
+
+if TYPE_CHECKING:
+    from contact_dynamics.calibration.estimation import Spread
+    from contact_dynamics.calibration.first_flights import IntArray
+    from contact_dynamics.calibration.observed import Observed
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import Body, Surface
+
+CONTRADICTED: Final = 3.0
+"""Standard deviations. A configured value that is farther from the estimate is contradicted."""
+
+DISAGREE: Final = 0.0455
+"""Probability with which chance alone makes the two ways disagree in any parameter: that of a normal number
+beyond two standard deviations."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Estimate(Record):
+    """One parameter.
+
+    Attributes:
+        name: Such as ``friction.floor`` or ``center_of_mass.x``.
+        unit: m, rad, m/s^2, or empty. Factors have none.
+        configured: The value before.
+        value: The estimate from velocities before and after strikes.
+        std: Its standard deviation, by the scatter between tosses; NaN where the data say too little.
+        by_paths: The estimate from whole trajectories through strikes; NaN if that was not asked for.
+        by_paths_std: Its standard deviation.
+        difference_std: Standard deviation of the difference of both estimates, which come from the same data.
+        determined: Whether the data say anything of it. If not, the value is what was configured.
+        at_bound: Whether it lies at the end of what is possible, such as friction 0.
+    """
+
+    name: str
+    unit: str
+    configured: float
+    value: float
+    std: float
+    by_paths: float = math.nan
+    by_paths_std: float = math.nan
+    difference_std: float = math.nan
+    determined: bool = True
+    at_bound: bool = False
+
+    @property
+    def contradiction(self) -> float:
+        """Return by how many standard deviations the configured value is off; 0 where nothing is known."""
+        if not self.determined or self.at_bound or not self.std > 0.0:
+            return 0.0
+        return abs(self.value - self.configured) / self.std
+
+    @property
+    def disagreement(self) -> float:
+        """Return by how many standard deviations both ways differ; 0 where only one was asked for."""
+        if math.isnan(self.by_paths) or not self.difference_std > 0.0:
+            return 0.0
+        return abs(self.value - self.by_paths) / self.difference_std
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Outlier(Record):
+    """An observation that was left out.
+
+    Attributes:
+        recording: Name of the toss.
+        kind: What was observed, such as "velocities after strikes".
+        time: s, when it happened, on the recording's clock; NaN for what has no one time.
+        size: How large its residuals are, in standard deviations.
+    """
+
+    recording: str
+    kind: str
+    time: float
+    size: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class MeasuredGravity(Record):
+    """Gravity as first flights show it.
+
+    Attributes:
+        mean_W: (3,), m/s^2, mean over the tosses, world axes.
+        mean_std: m/s^2, standard deviation of a component of the mean, by the scatter between tosses.
+        size: m/s^2, mean size.
+        size_std: m/s^2, its standard deviation.
+        tilt: rad, median angle between a toss's gravity and the mean.
+        expected_tilt: rad, the same as the noise of positions alone would make it.
+        count: Number of tosses whose first flight tells gravity.
+    """
+
+    mean_W: FloatArray
+    mean_std: float
+    size: float
+    size_std: float
+    tilt: float
+    expected_tilt: float
+    count: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Calibration(Record):
+    """What was found.
+
+    Attributes:
+        body: The body as calibrated. Its mass is what was configured: no motion tells it.
+        surfaces: The surfaces as calibrated.
+        gravity_W: (3,), m/s^2, as calibrated, or as configured where it is not free.
+        estimates: The free parameters.
+        covariance: (f, f), of the estimates' values, in their order and units.
+        by_paths_covariance: (f, f), of the second way's values, in the same units, or None if only the first
+            was asked for.
+        undetermined: Directions in parameter space that the data do not determine, in words.
+        gravity: Gravity as measured, or None without first flights.
+        spread: How far residuals scatter beyond the noise of measurement.
+        residuals: (n, 6), m/s and rad/s, predicted less measured velocities after each strike.
+        residual_stds: (n, 6), the standard deviations that they should have by the noise of measurement.
+        strike_recordings: (n,), number of each strike's toss.
+        observed: The tosses and what was found in them.
+        outliers: What was left out.
+        warnings: What is doubtful, in sentences.
+        problems: What prevents an answer, in sentences.
+        clusters: Number of tosses that the estimates rest on.
+        by_cluster: Whether errors are those by the scatter between tosses.
+    """
+
+    body: Body
+    surfaces: tuple[Surface, ...]
+    gravity_W: FloatArray
+    estimates: tuple[Estimate, ...]
+    covariance: FloatArray
+    by_paths_covariance: FloatArray | None
+    undetermined: tuple[str, ...]
+    gravity: MeasuredGravity | None
+    spread: Spread
+    residuals: FloatArray
+    residual_stds: FloatArray
+    strike_recordings: IntArray
+    observed: tuple[Observed, ...] = field(repr=False)
+    outliers: tuple[Outlier, ...]
+    warnings: tuple[str, ...]
+    problems: tuple[str, ...]
+    clusters: int
+    by_cluster: bool
+
+    def estimate(self, name: str) -> Estimate:
+        """Return the estimate of that name, or raise `KeyError`."""
+        for each in self.estimates:
+            if each.name == name:
+                return each
+        raise KeyError(name)
+
+    @property
+    def correlations(self) -> FloatArray:
+        """Return the correlations of the estimates, (f, f); NaN where one is not determined."""
+        stds = np.sqrt(self.covariance.diagonal())
+        with np.errstate(invalid="ignore", divide="ignore"):
+            correlations: FloatArray = self.covariance / np.outer(stds, stds)
+        return correlations
+
+    def region(self, probability: float) -> float:
+        """Return the squared distance, by the covariance, within which the truth lies with a probability.
+
+        With G tosses and r determined parameters this is r F(r, G - 1), since the size of the covariance is
+        itself estimated from G tosses. Where it is not, it is chi squared's.
+        """
+        from scipy.stats import chi2, f
+
+        known = int(np.sum(self.covariance.diagonal() > 0.0))
+        if not self.by_cluster:
+            return float(chi2.ppf(probability, known))
+        return float(known * f.ppf(probability, known, self.clusters - 1))
+
+    def distance(self, truth: FloatArray) -> float:
+        """Return the squared distance of other values, (f,), from the estimates, by the covariance."""
+        return _distance(np.array([each.value for each in self.estimates]) - truth, self.covariance)
+
+    def by_paths_distance(self, truth: FloatArray) -> float:
+        """Return the same for the estimates of the second way; infinite if only the first was asked for."""
+        if self.by_paths_covariance is None:
+            return math.inf
+        return _distance(
+            np.array([each.by_paths for each in self.estimates]) - truth, self.by_paths_covariance
+        )
+
+
+def _distance(off: FloatArray, covariance: FloatArray) -> float:
+    known = covariance.diagonal() > 0.0
+    return float(off[known] @ np.linalg.solve(covariance[np.ix_(known, known)], off[known]))

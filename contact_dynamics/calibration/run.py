@@ -1,0 +1,108 @@
+"""`contact-dynamics calibrate`: recordings are read and calibrated, and the result is printed and written."""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import TYPE_CHECKING, Final
+
+from contact_dynamics.calibration.arguments import calibrate_parser
+from contact_dynamics.calibration.calibrate import calibrate
+from contact_dynamics.calibration.plots import write_plots
+from contact_dynamics.calibration.report import content_of, report
+from contact_dynamics.calibration.server_parameters import server_parameters
+from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
+from contact_dynamics.evaluation.sources import find_sources
+from contact_dynamics.replay.progress import Progress
+
+if TYPE_CHECKING:
+    import argparse
+
+    from contact_dynamics.calibration.result import Calibration
+    from contact_dynamics.evaluation.motion import MeasuredMotion
+
+SOMETHING_OPEN: Final = 1
+"""Exit code: the data leave something open, or a recording could not be read."""
+
+NOTHING: Final = 2
+"""Exit code: nothing could be calibrated, or an argument is wrong."""
+
+
+def main(arguments: list[str]) -> int:
+    """Calibrate; return the exit code."""
+    parser = calibrate_parser()
+    given = parser.parse_args(arguments)
+    if not given.recordings:  # here, so that a mistyped option is named first
+        parser.error("found no RECORDING, needed is one at least")
+    try:
+        return _calibrate(given)
+    except (ContactDynamicsError, OSError) as error:
+        print(f"contact-dynamics calibrate: {error}", file=sys.stderr)
+        return NOTHING
+
+
+def _calibrate(given: argparse.Namespace) -> int:
+    for path in (given.yaml, given.json, given.rerun):  # before the long work
+        if path is not None:
+            with path.open("ab"):
+                pass
+    motions, names, refused = _motions(given)
+    for name, reason in refused:
+        print(f"not read: {name}: {reason}", file=sys.stderr)
+    progress = Progress("calibrating", end=len(motions))
+    try:
+        found = calibrate(
+            motions,
+            names=names,
+            free=given.free,
+            with_paths=not given.no_trajectories,
+            tell=lambda what, done, of: progress.tell(min(done, len(motions)), f"{what}, {done} of {of}"),
+        )
+    finally:
+        progress.end()
+    print(report(found), flush=True)
+    _write(given, found)
+    return SOMETHING_OPEN if refused or found.problems or found.undetermined else 0
+
+
+def _motions(
+    given: argparse.Namespace,
+) -> tuple[list[MeasuredMotion], list[str], list[tuple[str, str]]]:
+    """Return the motions of one body, the names of their recordings, and what could not be read."""
+    sources, refused = find_sources(given.recordings)
+    motions: list[MeasuredMotion] = []
+    names: list[str] = []
+    for source in sources:
+        try:
+            recording = source.read(config=given.config)
+        except (ContactDynamicsError, OSError) as error:
+            refused.append((source.name, str(error)))
+            continue
+        for motion in recording.motions:
+            if given.body in {"", motion.body.name}:
+                motions.append(motion)
+                names.append(source.name.rpartition("/")[2])
+    bodies = sorted({motion.body.name for motion in motions})
+    if len(bodies) > 1:
+        raise InvalidFieldError("--body", "nothing, with several bodies", f"one of {', '.join(bodies)}")
+    if not motions:
+        reasons = "; ".join(f"{name}: {reason}" for name, reason in refused)
+        what = f"states of body {given.body!r}" if given.body else "states of a body"
+        raise InvalidFieldError("RECORDING", f"none of {len(sources)} with {what} {reasons}", "one at least")
+    return motions, names, refused
+
+
+def _write(given: argparse.Namespace, found: Calibration) -> None:
+    if given.yaml is not None:
+        given.yaml.write_text(server_parameters(found), encoding="utf-8")
+        print(f"written: {given.yaml}")
+    if given.json is not None:
+        given.json.write_text(json.dumps(content_of(found), indent=1), encoding="utf-8")
+        print(f"written: {given.json}")
+    if given.plots is not None:
+        for path in write_plots(given.plots, found):
+            print(f"drawn: {path}")
+    if given.rerun is not None:
+        from contact_dynamics.calibration.picture import write_picture  # imports rerun
+
+        print(f"drawn: {given.rerun} with {write_picture(given.rerun, found)} strikes")

@@ -1,0 +1,177 @@
+"""The strikes of many recordings as arrays, with velocities as functions of mass centre, gravity and inertia.
+
+The flight on each side of a strike is fitted over its last or first part. The velocity of the mass centre is
+linear in the centre's offset and in gravity, so its slopes are kept. The angular velocity depends on the
+ratios of moments alone, and nearly linearly; its slopes are numerical, where the ratios are free.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from contact_dynamics.calibration.first_flights import RATIO_STEP
+from contact_dynamics.measured.flight_fit import fit_flight
+from contact_dynamics.records import Record
+from contact_dynamics.rigid_body.body import MassProperties
+from contact_dynamics.rotations.many import matrices_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.calibration.first_flights import IntArray
+    from contact_dynamics.calibration.observed import Observed
+    from contact_dynamics.evaluation.motion import MeasuredMotion
+    from contact_dynamics.measured.flight_fit import MeasuredState
+    from contact_dynamics.validation import FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Side(Record):
+    """The flights on one side of n strikes, at the times of the strikes.
+
+    Attributes:
+        velocities_W: (n, 3), m/s, of the configured mass centre without gravity and offset.
+        by_center: (n, 3, 3), 1/s, how they change with the centre's offset in body axes.
+        by_gravity: (n,), s, how they change with gravity.
+        spins_W: (n, 3), rad/s.
+        by_ratio: (n, 3, 2), rad/s, how these change with the logarithms of both ratios of moments.
+        velocity_stds: (n,), m/s. spin_stds: (n, 3), rad/s.
+        factors: (n, 2), by how much residuals of positions and orientations exceed the stated noise, >= 1.
+    """
+
+    velocities_W: FloatArray
+    by_center: FloatArray
+    by_gravity: FloatArray
+    spins_W: FloatArray
+    by_ratio: FloatArray
+    velocity_stds: FloatArray
+    spin_stds: FloatArray
+    factors: FloatArray
+
+    def velocities(self, center: FloatArray, gravity_W: FloatArray) -> FloatArray:
+        """Return the mass centres' velocities, (n, 3), for an offset, (3,), and gravity of each strike."""
+        found: FloatArray = self.velocities_W + self.by_center @ center + self.by_gravity[:, None] * gravity_W
+        return found
+
+    def spins(self, ratios: FloatArray) -> FloatArray:
+        """Return the angular velocities, (n, 3), for changes of both ratios' logarithms."""
+        spins: FloatArray = self.spins_W + self.by_ratio @ ratios
+        return spins
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Strikes(Record):
+    """All strikes of all recordings.
+
+    Attributes:
+        recordings: (n,), numbers of the recordings. surfaces: (n,), numbers of the surfaces. corners: (n,),
+        numbers of the corners. times: (n,), s. q_WB: (n, 4), attitudes. p_W: (n, 3), m, places of the
+        configured mass centre. place_stds: (n,), m, of a coordinate.
+        before: The flights before. after: The flights after.
+    """
+
+    recordings: IntArray
+    surfaces: IntArray
+    corners: IntArray
+    times: FloatArray
+    q_WB: FloatArray
+    p_W: FloatArray
+    place_stds: FloatArray
+    before: Side
+    after: Side
+
+    def __len__(self) -> int:
+        """Return the number of strikes."""
+        return len(self.times)
+
+
+def strikes_of(observed: Sequence[Observed], *, with_ratios: bool) -> Strikes:
+    """Return the strikes of all recordings, in their order."""
+    found = [(number, each, strike) for number, each in enumerate(observed) for strike in each.strikes]
+    states = [(strike.meeting.before, strike.meeting.after) for _, _, strike in found]
+    sides = [
+        _side(
+            [
+                _fitted(
+                    each.motion, strike.after if later else strike.before, strike.meeting.time, with_ratios
+                )
+                for _, each, strike in found
+            ]
+        )
+        for later in (False, True)
+    ]
+    places = [0.5 * (before.state.p_WB_W + after.state.p_WB_W) for before, after in states]
+    return Strikes(
+        recordings=np.array([number for number, _, _ in found], dtype=int),
+        surfaces=np.array([strike.surface for _, _, strike in found], dtype=int),
+        corners=np.array([strike.corner for _, _, strike in found], dtype=int),
+        times=np.array([strike.meeting.time for _, _, strike in found]),
+        q_WB=np.array([before.state.q_WB for before, _ in states]).reshape(-1, 4),
+        p_W=np.array(places).reshape(-1, 3),
+        place_stds=np.array([_place_std(*both) for both in states]),
+        before=sides[0],
+        after=sides[1],
+    )
+
+
+def _place_std(before: MeasuredState, after: MeasuredState) -> float:
+    return 0.5 * float(np.hypot(before.position_std, after.position_std))
+
+
+def _fitted(motion: MeasuredMotion, frames: slice, time: float, with_ratios: bool) -> tuple[Any, ...]:  # noqa: FBT001
+    """Return a row of each field of a `Side`."""
+    since = motion.times[frames] - time
+    slope = np.linalg.pinv(np.column_stack([np.ones_like(since), since]))[1]
+    R = matrices_of(motion.q_WB[frames])
+    reference = int(np.argmin(np.abs(since))) + frames.start
+    found = fit_flight(motion, frames, reference=reference).at(time)
+    by_ratio = np.zeros((3, 2))
+    if with_ratios:
+        for k in range(2):
+            spins = [
+                fit_flight(_with_ratio(motion, k, sign * RATIO_STEP), frames, reference=reference).at(time)
+                for sign in (-1.0, 1.0)
+            ]
+            change = spins[1].state.w_WB_W - spins[0].state.w_WB_W
+            by_ratio[:, k] = change / (2.0 * RATIO_STEP)
+    unit = float(np.linalg.norm(slope))  # a velocity has this noise where positions have 1
+    factors = [
+        found.velocity_std / (unit * motion.position_noise),
+        float(np.median(found.angular_velocity_std)) / (unit * motion.orientation_noise),
+    ]
+    return (
+        slope @ motion.p_WB_W[frames],
+        np.einsum("n,nij->ij", slope, R),
+        -0.5 * float(slope @ np.square(since)),
+        found.state.w_WB_W,
+        by_ratio,
+        found.velocity_std,
+        found.angular_velocity_std,
+        np.maximum(factors, 1.0),
+    )
+
+
+def _side(rows: Sequence[tuple[Any, ...]]) -> Side:
+    shapes = ((3,), (3, 3), (), (3,), (3, 2), (), (3,), (2,))
+    columns = [np.array([row[k] for row in rows]).reshape(-1, *shape) for k, shape in enumerate(shapes)]
+    return Side(
+        velocities_W=columns[0],
+        by_center=columns[1],
+        by_gravity=columns[2],
+        spins_W=columns[3],
+        by_ratio=columns[4],
+        velocity_stds=columns[5],
+        spin_stds=columns[6],
+        factors=columns[7],
+    )
+
+
+def _with_ratio(motion: MeasuredMotion, ratio: int, logarithm: float) -> MeasuredMotion:
+    """Return the motion of a body one of whose ratios of moments is another."""
+    E = np.diag(np.exp(0.5 * logarithm * np.eye(3)[ratio + 1]))
+    properties = motion.body.mass_properties
+    changed = MassProperties(mass=properties.mass, I_B=E @ properties.I_B @ E)
+    return replace(motion, body=replace(motion.body, mass_properties=changed))

@@ -1,0 +1,39 @@
+"""What a calibration leaves uncertain about tosses, as samples of them take it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.toss import TossUncertainty
+
+if TYPE_CHECKING:
+    from contact_dynamics.calibration.result import Calibration
+
+
+def toss_uncertainty(found: Calibration) -> TossUncertainty:
+    """Return the covariance of what a toss depends on, and the spreads, of calibrated parameters.
+
+    What was not free, or not determined, counts as exact.
+    """
+    names = [
+        *(f"friction.{surface.name}" for surface in found.surfaces),
+        *(f"restitution.{surface.name}" for surface in found.surfaces),
+        *(f"center_of_mass.{axis}" for axis in "xyz"),
+        "inertia",
+    ]
+    at = {estimate.name: k for k, estimate in enumerate(found.estimates)}
+    covariance = np.zeros((len(names), len(names)))
+    known = [i for i, name in enumerate(names) if name in at]
+    columns = [at[names[i]] for i in known]
+    # The inertia's factor becomes a relative change of the calibrated inertia.
+    units = [
+        found.estimates[k].value if names[i] == "inertia" else 1.0
+        for i, k in zip(known, columns, strict=True)
+    ]
+    covariance[np.ix_(known, known)] = found.covariance[np.ix_(columns, columns)] / np.outer(units, units)
+    spread = found.spread
+    return TossUncertainty(
+        covariance=covariance, velocity=spread.velocity, spin=spread.spin, height=spread.strike_height
+    )

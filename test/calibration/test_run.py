@@ -1,0 +1,126 @@
+"""`contact-dynamics calibrate` from files to files, and its parameters as the server reads them."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from calibration.made_tosses import Truth, made_tosses
+from contact_dynamics.calibration import Calibration, calibrate
+from contact_dynamics.calibration.arguments import calibrate_parser
+from contact_dynamics.calibration.plots import write_plots
+from contact_dynamics.calibration.report import content_of, report
+from contact_dynamics.calibration.run import NOTHING, SOMETHING_OPEN, main
+from contact_dynamics.calibration.server_parameters import server_parameters
+from contact_dynamics.measured.read_toss import DEFAULT_RECORDING
+from contact_dynamics.nodes.parameter_file import ParameterFile
+from contact_dynamics.nodes.parameters import read_server_parameters
+
+needs_yaml = pytest.mark.skipif(
+    importlib.util.find_spec("yaml") is None, reason="PyYAML of requirements/test.txt is not installed"
+)
+
+
+@needs_yaml
+def test_the_server_takes_the_parameters_as_they_are(found: Calibration, tmp_path: Path) -> None:
+    """Read by the server's own reading, they describe the calibrated body and surface to the last bit."""
+    path = tmp_path / "calibrated.yaml"
+    path.write_text(server_parameters(found), encoding="utf-8")
+    world = read_server_parameters(ParameterFile(path)).world
+    body = world.body("brick")
+    assert body.p_FB_F.tolist() == found.body.p_FB_F.tolist()
+    assert body.mass_properties.I_B.tolist() == found.body.mass_properties.I_B.tolist()
+    # the corners go through the body's frame and back, which rounds
+    assert body.shape.vertices == pytest.approx(found.body.shape.vertices, abs=1e-15)
+    assert world.gravity_W.tolist() == found.gravity_W.tolist()
+    floor = world.surfaces[0]
+    assert (floor.name, floor.friction, floor.restitution) == (
+        "floor",
+        found.surfaces[0].friction,
+        found.surfaces[0].restitution,
+    )
+
+
+def test_the_report_says_what_was_used_found_and_contradicted(found: Calibration) -> None:
+    text = report(found)
+    assert f"first flights long enough, {len(found.residuals)} strikes of a single corner" in text
+    assert "length scale x clock rate squared is 0.9" in text
+    assert "Warning: restitution.floor: configured is 0.4" in text
+
+
+def test_the_content_is_plain_json_without_nan(found: Calibration) -> None:
+    content = json.loads(json.dumps(content_of(found), allow_nan=False))
+    assert [each["name"] for each in content["estimates"]] == [each.name for each in found.estimates]
+    assert np.allclose(content["covariance"], found.covariance)
+    assert len(content["strikes"]) == len(found.residuals) > 5
+
+
+def test_what_was_not_asked_for_is_nan_or_null_in_the_content() -> None:
+    alone = calibrate(made_tosses(Truth(), 2, 0), with_paths=False)
+    content = json.loads(json.dumps(content_of(alone), allow_nan=False))
+    assert content["estimates"][0]["by_paths"] == "nan"
+    assert content["by_paths_covariance"] is None
+
+
+def test_pictures_are_drawn(found: Calibration, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    written = write_plots(tmp_path, found)
+    assert [path.name for path in written] == ["residuals.png", "estimates.png"]
+    assert all(path.read_bytes().startswith(b"\x89PNG") for path in written)
+
+
+@needs_yaml
+def test_the_verb_reads_the_packages_toss_and_writes_what_it_was_asked_for(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    yaml, content = tmp_path / "server.yaml", tmp_path / "found.json"
+    arguments = [str(DEFAULT_RECORDING), "--no-trajectories", "--yaml", str(yaml), "--json", str(content)]
+    assert main(arguments) in {0, 1}
+    assert "Body 'brick' on" in capsys.readouterr().out
+    assert read_server_parameters(ParameterFile(yaml)).world.body("brick").name == "brick"
+    assert json.loads(content.read_text(encoding="utf-8"))["body"]["name"] == "brick"
+
+
+def some_rows(tmp_path: Path, rows: slice) -> str:
+    """The package's toss with some of its 480 states, as a file."""
+    lines = DEFAULT_RECORDING.read_text(encoding="utf-8").splitlines(keepends=True)
+    path = tmp_path / "part.csv"
+    path.write_text("".join([*lines[:-480], *lines[-480:][rows]]), encoding="utf-8")
+    return str(path)
+
+
+def test_a_recording_in_which_the_body_never_flies_is_refused_with_what_may_be_wrong(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([some_rows(tmp_path, slice(400, 480))]) == NOTHING
+    said = capsys.readouterr().err
+    assert "the body never flies" in said
+    assert "the unit of the stamps" in said
+
+
+def test_a_recording_without_strikes_says_what_is_not_determined(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([some_rows(tmp_path, slice(0, 90))]) == SOMETHING_OPEN
+    said = capsys.readouterr().out
+    assert "Problem: No strike of a single corner was found in 1 tosses with 1 flights" in said
+    assert "The data do not determine: friction.floor" in said
+
+
+def test_a_path_that_is_none_is_told_and_ends_with_2(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([str(tmp_path / "missing.mcap")]) == NOTHING
+    assert "/missing." in capsys.readouterr().err  # a long path is cut off
+
+
+def test_an_unknown_parameter_is_refused_with_those_that_are_known(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    with pytest.raises(SystemExit):
+        calibrate_parser().parse_args(["log", "--free", "friction,mass"])
+    assert "found 'mass', allowed is friction, restitution" in capsys.readouterr().err
