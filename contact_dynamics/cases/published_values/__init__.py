@@ -1,0 +1,1 @@
+"""Numbers that others published, as data: one file for each source, which says where each number was read."""

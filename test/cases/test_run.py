@@ -1,0 +1,52 @@
+"""`contact-dynamics cases`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from contact_dynamics.cases import run
+from contact_dynamics.cases.every_case import CASES
+from contact_dynamics.cases.report import shown
+
+
+def test_it_prints_the_exact_answer_and_ours(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run.main(["--without-mujoco", "bounce", "free_fall"]) == 0
+    printed = capsys.readouterr().out
+    assert "0.75                 0.75           0.75      not asked  exact" in printed
+    assert "3 of 3 answers are exact within their tolerances" in printed
+
+
+def test_an_answer_that_is_not_exact_is_told(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wrong = replace(CASES["free_fall"], exact=lambda seconds: -4.9 * seconds**2)
+    monkeypatch.setitem(run.CASES, "free_fall", wrong)
+    assert run.main(["--without-mujoco", "free_fall"]) == run.NOT_EXACT
+    printed = capsys.readouterr().out
+    assert "WRONG" in printed
+    assert "0 of 1 answers are exact" in printed
+
+
+def test_the_list_asks_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run.main(["--list"]) == 0
+    printed = capsys.readouterr().out.splitlines()
+    assert len(printed) == len(CASES)
+    assert printed[0].startswith("creeping_capsule ")
+
+
+def test_an_unknown_name_is_refused_with_those_that_there_are(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        run.main(["ladders"])
+    assert ended.value.code == 2
+    told = capsys.readouterr().err
+    assert "found ladders, allowed are creeping_capsule" in told
+
+
+@pytest.mark.parametrize(
+    ("value", "tolerance", "text"),
+    [(-4e-16, 1e-14, "0"), (1.0964e-8, 1e-14, "1.0964e-08"), (2.5, 0.0, "2.5")],
+)
+def test_rounding_is_not_shown(value: float, tolerance: float, text: str) -> None:
+    assert shown(value, tolerance) == text
