@@ -1,26 +1,30 @@
 """Questions as Python objects: what is asked, what is known when it is asked, and what the answer says.
 
-State a `TumblingQuestion`, an `ImpactQuestion` or a `ContactModeQuestion`, and `ask` it (`asking`). A
-service's request becomes one of these, and its answer becomes the response. A notebook, a test or a log asks
-the same question without ROS.
+State a `TumblingQuestion`, an `ImpactQuestion`, a `ContactModeQuestion` or a `TossQuestion`, and `ask` it
+(`asking`). A service's request becomes one of these, and its answer becomes the response. A notebook, a test
+or a log asks the same question without ROS.
 
 Each kind has a file with its question, its answer and a function ``answer``. `tumbling` says where a free
 body will be (lectures 24, 25). `impact` says which velocities follow (lecture 27). Its question is in
 `impact_question`, and `which_impact` finds the contacts that it means. `contact_modes` says which contacts
-separate, slide or stay (lecture 26).
+separate, slide or stay (lecture 26), and its question is in `contact_mode_question`. `toss` says where all
+that ends.
 
-The kinds share these files: `knowledge` (the world, defaults, and in a `state_store` what was published),
+The kinds share these files: `knowledge` (the world, defaults, and in a `state_store` what was published, with
+its `arrivals`),
 `subject` (which body, in which state, which may be an `uncertain_state`), `sample_times` (when), `touching`
 (which contacts), `extent` (how large numbers may be) and `problem` (in a plane or in space).
 Answers describe every impact in the same way (`resolved_impact`). They give modes of a plane in world axes
 (`lifted_modes`), and `planar_view` leads back.
-`settled_impact` has the impact that follows an inconsistency. `many` asks about many states at once.
+`settled_impact` has the impact that follows an inconsistency. `many` asks about many states at once, and
+`many_contact_modes` about many wrenches or sets of contacts.
 
 `effort` tells whether a question is quick, and `workers` are processes that answer those that are not.
 """
 
 from contact_dynamics.questions.asking import ask
-from contact_dynamics.questions.contact_modes import ContactModeAnswer, ContactModeQuestion
+from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
+from contact_dynamics.questions.contact_modes import ContactModeAnswer
 from contact_dynamics.questions.impact import ImpactAnswer, StruckBody
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
 from contact_dynamics.questions.knowledge import Defaults, Knowledge
@@ -38,6 +42,7 @@ from contact_dynamics.questions.sample_times import (
 from contact_dynamics.questions.settled_impact import SettledImpact
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.subject import FitQuality, PublishedState
+from contact_dynamics.questions.toss import TossAnswer, TossPath, TossQuestion, TossSampling
 from contact_dynamics.questions.tumbling import TumblingAnswer, TumblingQuestion
 from contact_dynamics.questions.uncertain_state import UncertainState
 
@@ -62,6 +67,10 @@ __all__ = [
     "SettledImpact",
     "StateStore",
     "StruckBody",
+    "TossAnswer",
+    "TossPath",
+    "TossQuestion",
+    "TossSampling",
     "TumblingAnswer",
     "TumblingQuestion",
     "UncertainState",

@@ -5,15 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, overload
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.questions import contact_modes, impact, tumbling
-from contact_dynamics.questions.contact_modes import ContactModeQuestion
+from contact_dynamics.questions import contact_modes, impact, toss, tumbling
+from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
 from contact_dynamics.questions.impact_question import ImpactQuestion
+from contact_dynamics.questions.toss import TossQuestion
 from contact_dynamics.questions.tumbling import TumblingQuestion
 
 if TYPE_CHECKING:
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.questions.impact import ImpactAnswer
     from contact_dynamics.questions.knowledge import Knowledge
+    from contact_dynamics.questions.toss import TossAnswer
     from contact_dynamics.questions.tumbling import TumblingAnswer
 
 
@@ -23,9 +25,12 @@ def ask(question: TumblingQuestion, knowledge: Knowledge | None = None) -> Tumbl
 def ask(question: ImpactQuestion, knowledge: Knowledge | None = None) -> ImpactAnswer: ...
 @overload
 def ask(question: ContactModeQuestion, knowledge: Knowledge | None = None) -> ContactModeAnswer: ...
+@overload
+def ask(question: TossQuestion, knowledge: Knowledge | None = None) -> TossAnswer: ...
 def ask(
-    question: TumblingQuestion | ImpactQuestion | ContactModeQuestion, knowledge: Knowledge | None = None
-) -> TumblingAnswer | ImpactAnswer | ContactModeAnswer:
+    question: TumblingQuestion | ImpactQuestion | ContactModeQuestion | TossQuestion,
+    knowledge: Knowledge | None = None,
+) -> TumblingAnswer | ImpactAnswer | ContactModeAnswer | TossAnswer:
     """Answer a question, as the service of its kind does.
 
     Args:
@@ -43,5 +48,7 @@ def ask(
         return impact.answer(question, knowledge)
     if isinstance(question, ContactModeQuestion):
         return contact_modes.answer(question, knowledge)
-    allowed = "a TumblingQuestion, an ImpactQuestion or a ContactModeQuestion"
+    if isinstance(question, TossQuestion):
+        return toss.answer(question, knowledge)
+    allowed = "a TumblingQuestion, an ImpactQuestion, a ContactModeQuestion or a TossQuestion"
     raise InvalidFieldError("question", type(question).__name__, allowed)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -12,13 +12,16 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.velocities import spatial_contact_velocities
 from contact_dynamics.contact_modes import (
     BodyStatics,
+    GeometryMargin,
     ModeVerdict,
     PlanarContactProblem,
     RefusedMode,
     SpatialMode,
     SpatialModeMargin,
     SpatialWrenchSet,
+    VerdictsWithin,
     contact_modes,
+    geometry_margins,
     mode_margins,
     refused_modes,
     spatial_kinematic_modes,
@@ -28,11 +31,12 @@ from contact_dynamics.contact_modes import (
 from contact_dynamics.contact_modes.planar.problem import MOST_PLANAR_CONTACTS
 from contact_dynamics.contact_modes.spatial.problem import FRICTION_FACETS
 from contact_dynamics.contact_modes.spatial.wrench_sets import WRENCH_FACETS
-from contact_dynamics.errors import InvalidFieldError, OutOfPlaneError, TooLargeError
+from contact_dynamics.errors import OutOfPlaneError, TooLargeError
 from contact_dynamics.plane.lifting import check_mirrored, mirror_partners
 from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
 from contact_dynamics.questions.extent import check_contacts, check_extent, check_margin_length, check_wrench
-from contact_dynamics.questions.knowledge import Knowledge, check_optional, or_default
+from contact_dynamics.questions.knowledge import Knowledge, or_default
 from contact_dynamics.questions.lifted_modes import (
     lifted_margin,
     lifted_mode,
@@ -46,110 +50,22 @@ from contact_dynamics.questions.settled_impact import (
     settled_in_plane,
     settled_in_space,
 )
-from contact_dynamics.questions.subject import NEWEST, StateSource, subject_of
+from contact_dynamics.questions.subject import subject_of
 from contact_dynamics.questions.touching import contacts_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.validation import FloatArray, check_array, check_choice, check_positive
-from contact_dynamics.world import Body
+from contact_dynamics.validation import FloatArray
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
     from contact_dynamics.plane.projection import PlanarProblem
 
-MOST_FRICTION_FACETS: Final = 32
-"""A friction pyramid may have at most this many edges. With 32 it holds 99.5 % of the round cone."""
+MOST_UNCERTAIN_CONTACTS: Final = 16
+"""A question about uncertain contacts may have at most this many. It takes dozens of samples, each of which
+takes some 50 ms for so many."""
 
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ContactModeQuestion(Record):
-    """Which contacts separate, slide or stay, under an applied wrench?
-
-    Attributes:
-        body: The body, or the name of one of the known world.
-        state: Its state, or a reference to a published one.
-        contacts: The contacts. If it is None, they are found from the body's shape and the known world's
-            surfaces.
-        force_W: (3,), N, applied besides gravity and contact forces, world axes.
-        torque_W: (3,), N m, applied about the centre of mass, world axes.
-        gravity_W: (3,), m/s^2, world axes. If it is None, the known world's gravity acts.
-        problem: Whether to solve the problem in a plane of motion, in space, or in whichever suits.
-        plane: The plane of motion. If it is None, the best fitting plane is found.
-        out_of_plane_tolerance: m/s, >= 0. Motion out of the plane up to this counts as planar. None means the
-            default.
-        velocity_tolerance: m/s, >= 0. A slower contact counts as at rest. None means the default.
-        distance_tolerance: m, >= 0. A body with a smaller gap touches. None means the default.
-        friction_facets: Number of edges, 3 to 32, of the pyramid that stands for a friction cone at rest in
-            space. None means 8 edges in the modes and 4 in the wrench sets.
-        margin_length: m, > 0. A torque divided by this length compares with a force in margins and statics.
-            If it is None, the radius of gyration serves.
-        want_margins: Whether the answer says how far the wrench is from another mode.
-        want_wrenches: Whether the answer has the applied wrenches of every kinematically possible mode.
-        want_statics: Whether the static questions are answered too.
-        want_impact: Whether the impact is resolved that settles an inconsistency or an approach.
-
-    Raises:
-        InvalidFieldError: a number is out of its range or not finite, or the problem is not a `Problem`.
-    """
-
-    body: Body | str
-    state: StateSource = NEWEST
-    contacts: ContactSet | None = None
-    force_W: FloatArray = field(default_factory=lambda: np.zeros(3))
-    torque_W: FloatArray = field(default_factory=lambda: np.zeros(3))
-    gravity_W: FloatArray | None = None
-    problem: Problem = Problem.AUTOMATIC
-    plane: PlaneOfMotion | None = None
-    out_of_plane_tolerance: float | None = None
-    velocity_tolerance: float | None = None
-    distance_tolerance: float | None = None
-    friction_facets: int | None = None
-    margin_length: float | None = None
-    want_margins: bool = False
-    want_wrenches: bool = False
-    want_statics: bool = False
-    want_impact: bool = False
-
-    if TYPE_CHECKING:
-
-        def __init__(
-            self,
-            *,
-            body: Body | str,
-            state: StateSource = ...,
-            contacts: ContactSet | None = ...,
-            force_W: ArrayLike = ...,
-            torque_W: ArrayLike = ...,
-            gravity_W: ArrayLike | None = ...,
-            problem: Problem = ...,
-            plane: PlaneOfMotion | None = ...,
-            out_of_plane_tolerance: float | None = ...,
-            velocity_tolerance: float | None = ...,
-            distance_tolerance: float | None = ...,
-            friction_facets: int | None = ...,
-            margin_length: float | None = ...,
-            want_margins: bool = ...,
-            want_wrenches: bool = ...,
-            want_statics: bool = ...,
-            want_impact: bool = ...,
-        ) -> None:
-            """Take whatever NumPy makes arrays of."""
-
-    def __post_init__(self) -> None:
-        """Check the vectors, the numbers and the choice of the problem."""
-        check_choice("problem", self.problem, Problem)
-        object.__setattr__(self, "force_W", check_array("force_W", self.force_W, (3,)))
-        object.__setattr__(self, "torque_W", check_array("torque_W", self.torque_W, (3,)))
-        if self.gravity_W is not None:
-            object.__setattr__(self, "gravity_W", check_array("gravity_W", self.gravity_W, (3,)))
-        for name in ("out_of_plane_tolerance", "velocity_tolerance", "distance_tolerance"):
-            object.__setattr__(self, name, check_optional(name, getattr(self, name)))
-        if self.margin_length is not None:
-            object.__setattr__(self, "margin_length", check_positive("margin_length", self.margin_length))
-        if self.friction_facets is not None and not 3 <= self.friction_facets <= MOST_FRICTION_FACETS:
-            allowed = f"none, or a whole number from 3 to {MOST_FRICTION_FACETS}"
-            raise InvalidFieldError("friction_facets", self.friction_facets, allowed)
+_UNCERTAIN: Final = (
+    "contacts: found points or normals that may be off, which are in a plane only if their errors are"
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -177,6 +93,9 @@ class ContactModeAnswer(Record):
         kinematic_modes: Every kinematically possible mode. In space these are strings of s and c alone.
         wrench_sets: The applied wrenches of each mode, or None if they were not asked for.
         statics: What holds the body at rest, or None if that was not asked for.
+        undecided_modes: Modes that may be consistent besides those that are listed, or not.
+        within: The verdicts that occur within the uncertainty of the contacts, or None if it has none.
+        geometry_margins: How far the contacts are from another answer, or None if that was not asked for.
         settled: The impact that settles the case, and the modes after it. It is None if it was not asked for
             or is not needed.
         problem: PLANAR or SPATIAL.
@@ -216,6 +135,9 @@ class ContactModeAnswer(Record):
     friction_facets: int
     wrench_facets: int
     undecided: str = ""
+    undecided_modes: tuple[str, ...] = ()
+    within: VerdictsWithin | None = None
+    geometry_margins: tuple[GeometryMargin, ...] | None = None
 
 
 def answer(question: ContactModeQuestion, knowledge: Knowledge | None = None) -> ContactModeAnswer:
@@ -241,6 +163,11 @@ def _case(question: ContactModeQuestion, knowledge: Knowledge) -> ModeCase:
     if len(contacts) > MOST_PLANAR_CONTACTS:
         raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MOST_PLANAR_CONTACTS}")
     check_contacts(contacts)
+    question.uncertainty.check_count(len(contacts))
+    is_hard = question.want_geometry_margins or not question.uncertainty.is_exact
+    if is_hard and len(contacts) > MOST_UNCERTAIN_CONTACTS:
+        allowed = f"at most {MOST_UNCERTAIN_CONTACTS} that are uncertain"
+        raise TooLargeError("contacts", f"{len(contacts)} contacts", allowed)
     check_margin_length(question.margin_length)
     gravity_W = world.gravity_W if question.gravity_W is None else question.gravity_W
     force_W = question.force_W + subject.body.mass_properties.mass * gravity_W
@@ -265,6 +192,11 @@ def _in_plane(
     """
     if question.problem is Problem.SPATIAL:
         return None, ""
+    box = question.uncertainty
+    if question.problem is Problem.AUTOMATIC and (
+        question.want_geometry_margins or np.any(box.points) or np.any(box.normals)
+    ):
+        return None, _UNCERTAIN
     state, contacts = case.subject.state, case.contacts
     try:
         problem = planar_problem_of(
@@ -298,6 +230,7 @@ def _planar_answer(
         contacts=problem.contacts,
         wrench=problem.wrench,
         velocity_tolerance=case.velocity_tolerance,
+        uncertainty=question.uncertainty,
     )
     found = contact_modes(asked)
     margins, sets, at_rest, settled = None, None, None, None
@@ -326,6 +259,9 @@ def _planar_answer(
         statics=at_rest,
         settled=settled,
         undecided=found.undecided,
+        undecided_modes=found.undecided_modes,
+        within=found.within,
+        geometry_margins=geometry_margins(asked, found) if question.want_geometry_margins else None,
         problem=Problem.PLANAR,
         plane=plane,
         out_of_plane=problem.out_of_plane,
@@ -340,7 +276,7 @@ def _planar_answer(
 
 def _spatial_answer(question: ContactModeQuestion, case: ModeCase, reason: str) -> ContactModeAnswer:
     subject, state, contacts = case.subject, case.subject.state, case.contacts
-    asked = case.in_space
+    asked = replace(case.in_space, uncertainty=question.uncertainty)
     found = contact_modes(asked)
     margins, sets, at_rest, settled = None, None, None, None
     refused: tuple[RefusedMode, ...] = ()
@@ -362,6 +298,9 @@ def _spatial_answer(question: ContactModeQuestion, case: ModeCase, reason: str) 
         contacts=contacts,
         verdict=found.verdict,
         undecided=found.undecided,
+        undecided_modes=found.undecided_modes,
+        within=found.within,
+        geometry_margins=geometry_margins(asked, found) if question.want_geometry_margins else None,
         modes=found.modes,
         margins=margins,
         approaching=found.approaching,

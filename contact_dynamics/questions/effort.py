@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING, Final
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH
-from contact_dynamics.questions.contact_modes import ContactModeQuestion
+from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
 from contact_dynamics.questions.impact_question import ImpactQuestion
 from contact_dynamics.questions.many import ManyImpactsQuestion, ManyTumblingsQuestion
+from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.sample_times import UntilContact, UntilPlane
 from contact_dynamics.questions.subject import PublishedState, subject_of
@@ -35,11 +36,18 @@ MOST_QUICK_CONTACTS: Final = 4
 MOST_QUICK_IMPACTS: Final = 100
 """Impacts of a quick batch. So many take some 30 ms, and in larger batches each takes less."""
 
+MOST_QUICK_CANDIDATES: Final = 10
+"""Candidates of a quick question about contact modes. Each takes about a millisecond."""
+
 MOST_QUICK_CORNERS: Final = 64
 """Corners and rims of a shape, times the surfaces of the world, in a quick search for contacts."""
 
 MOST_QUICK_TURNS: Final = 20.0
 """Turns of the body in a quick search for a contact, which takes a millisecond a turn close to a surface."""
+
+MOST_QUICK_FITTED: Final = 400
+"""States that a quick fit takes. A fit of so many takes 5 ms; to read them from their messages takes longer,
+but this process must do that for a worker, too."""
 
 _CORNERS_OF_A_RIM: Final = 8  # in which the base of a cylinder touches
 
@@ -55,14 +63,16 @@ def is_quick(question: object, knowledge: Knowledge) -> bool:
             return _are_quick_modes(question, knowledge)
     except ContactDynamicsError:
         return True
-    if isinstance(question, ManyImpactsQuestion):
-        return len(question.states) <= MOST_QUICK_IMPACTS
-    return isinstance(question, ManyTumblingsQuestion)  # 10 000 of them take 30 ms
+    if isinstance(question, ManyContactModesQuestion):
+        return len(question) <= MOST_QUICK_CANDIDATES and is_quick(question.asked, knowledge)
+    few = isinstance(question, ManyImpactsQuestion) and len(question.states) <= MOST_QUICK_IMPACTS
+    return few or isinstance(question, ManyTumblingsQuestion)  # 10 000 of them take 30 ms
 
 
 def excerpt(question: object, knowledge: Knowledge) -> Knowledge:
     """Return what another process must know to answer a question as this one would now."""
     wanted = []
+    question = question.asked if isinstance(question, ManyContactModesQuestion) else question
     for about, source_name in (("body", "state"), ("other", "other_state")):
         body, source = getattr(question, about, None), getattr(question, source_name, None)
         name = body if isinstance(body, str) else getattr(body, "name", "")
@@ -79,9 +89,9 @@ def _same(now_ns: int | None) -> int | None:
 
 def _is_quick_flight(question: TumblingQuestion, knowledge: Knowledge) -> bool:
     sampling = question.sampling
-    if question.wrench is not NO_WRENCH or question.drag is not NO_DRAG or _is_fit(question.state):
+    if question.wrench is not NO_WRENCH or question.drag is not NO_DRAG:
         return False
-    if question.want_covariance:
+    if question.want_covariance or not _is_quick_fit(question.body, question.state, knowledge):
         return False
     if not isinstance(sampling, UntilContact | UntilPlane):
         return True
@@ -90,12 +100,11 @@ def _is_quick_flight(question: TumblingQuestion, knowledge: Knowledge) -> bool:
 
 
 def _is_quick_impact(question: ImpactQuestion, knowledge: Knowledge) -> bool:
-    if (
-        question.want_orders
-        or question.want_covariance
-        or _is_fit(question.state)
-        or _is_fit(question.other_state)
-    ):
+    if question.want_orders or question.want_covariance:
+        return False
+    if not _is_quick_fit(question.body, question.state, knowledge):
+        return False
+    if question.other is not None and not _is_quick_fit(question.other, question.other_state, knowledge):
         return False
     if not isinstance(question.several_contacts_law, SeveralContactsLaw):
         return False
@@ -106,9 +115,15 @@ def _is_quick_impact(question: ImpactQuestion, knowledge: Knowledge) -> bool:
 
 
 def _are_quick_modes(question: ContactModeQuestion, knowledge: Knowledge) -> bool:
+    if question.want_geometry_margins or not question.uncertainty.is_exact:
+        return False
     few = _are_few(question.contacts, question.body, knowledge)
     extra = question.want_margins or question.want_wrenches or question.want_statics or question.want_impact
-    return few and not (extra and question.problem is not Problem.PLANAR) and not _is_fit(question.state)
+    return (
+        few
+        and not (extra and question.problem is not Problem.PLANAR)
+        and _is_quick_fit(question.body, question.state, knowledge)
+    )
 
 
 def _are_few(contacts: ContactSet | None, body: Body | str, knowledge: Knowledge) -> bool:
@@ -131,5 +146,9 @@ def _corners(body: Body | str, knowledge: Knowledge) -> int:
     return (len(shape.vertices) + _CORNERS_OF_A_RIM * len(shape.rims)) * len(knowledge.world.surfaces)
 
 
-def _is_fit(source: StateSource) -> bool:
-    return isinstance(source, PublishedState) and source.fit_window > 0.0
+def _is_quick_fit(body: Body | str, source: StateSource, knowledge: Knowledge) -> bool:
+    """Tell whether a state is no fit, or one to few states."""
+    if not isinstance(source, PublishedState) or not source.fit_window > 0.0:
+        return True
+    name = body if isinstance(body, str) else body.name
+    return knowledge.states.count(name, source.stamp_ns, source.fit_window) <= MOST_QUICK_FITTED

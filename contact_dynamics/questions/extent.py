@@ -1,4 +1,4 @@
-"""Limits on the numbers of a question about contacts, so that no sum or product of them overflows."""
+"""This file limits the numbers of a question about contacts, so that no sum or product of them overflows."""
 
 from __future__ import annotations
 
@@ -59,7 +59,12 @@ def check_extent(body: MassProperties, state: BodyState) -> None:
         ("linear_velocity", state.v_WB_W),
         ("angular_velocity", state.w_WB_W),
     ):
-        _check_vector(name, vector)
+        check_vector(name, vector)
+    check_mass(body)
+
+
+def check_mass(body: MassProperties) -> None:
+    """Refuse a mass or a moment of inertia that is too large or too small, and name it."""
     moments = body.I_B.diagonal().tolist()
     for name, value in (("mass", body.mass), *(("inertia", moment) for moment in moments)):
         if not 1.0 / MOST_INERTIA <= value <= MOST_INERTIA:
@@ -67,14 +72,23 @@ def check_extent(body: MassProperties, state: BodyState) -> None:
             raise InvalidFieldError(name, f"{value:g}", allowed)
 
 
+def check_place(name: str, points: FloatArray) -> None:
+    """Refuse a point or points, in m, that are too far away, by that name."""
+    largest = float(np.abs(points).max(initial=0.0))
+    if not largest <= MOST_IN_CONTACT:
+        raise InvalidFieldError(name, f"{largest:g} m", f"at most {MOST_IN_CONTACT:g} m")
+
+
+def check_friction(name: str, friction: float) -> None:
+    """Refuse a coefficient of friction that is too large, by that name."""
+    if friction > MOST_FRICTION:
+        raise InvalidFieldError(name, f"{friction:g}", f"at most {MOST_FRICTION:g}")
+
+
 def check_contacts(contacts: ContactSet) -> None:
     """Refuse contacts that are too far away, and name the first."""
-    largest = float(np.abs(contacts.p_WC_W).max(initial=0.0))
-    if not largest <= MOST_IN_CONTACT:
-        raise InvalidFieldError("contacts.positions", f"{largest:g} m", f"at most {MOST_IN_CONTACT:g} m")
-    roughest = float(contacts.frictions.max(initial=0.0))
-    if roughest > MOST_FRICTION:
-        raise InvalidFieldError("contacts.frictions", f"{roughest:g}", f"at most {MOST_FRICTION:g}")
+    check_place("contacts.positions", contacts.p_WC_W)
+    check_friction("contacts.frictions", float(contacts.frictions.max(initial=0.0)))
 
 
 def check_margin_length(length: float | None) -> None:
@@ -86,11 +100,12 @@ def check_margin_length(length: float | None) -> None:
 
 def check_wrench(force_W: FloatArray, torque_W: FloatArray) -> None:
     """Refuse a force or a torque, (3,), that is too large, and name it."""
-    _check_vector("force", force_W)
-    _check_vector("torque", torque_W)
+    check_vector("force", force_W)
+    check_vector("torque", torque_W)
 
 
-def _check_vector(name: str, vector: FloatArray) -> None:
+def check_vector(name: str, vector: FloatArray) -> None:
+    """Refuse a vector, (3,), with a number that is too large, by that name."""
     largest = max(map(abs, vector.tolist()))
     if not largest <= MOST_IN_CONTACT:
         raise InvalidFieldError(name, f"{largest:g}", f"numbers of at most {MOST_IN_CONTACT:g} for contacts")

@@ -1,7 +1,7 @@
-"""Questions about many states of one body at once, such as the candidates among which a planner chooses.
+"""These questions are about many states of one body, such as the candidates among which a planner chooses.
 
 They go through the batches of the physics, which take a small part of the time of as many single questions:
-`tumbling.states_of_many` and `impact.spatial_impacts`. There is no batch for contact modes.
+`tumbling.states_of_many` and `impact.spatial_impacts`. `many_contact_modes` is for contact modes.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class ManyStates(Record):
 
     def __post_init__(self) -> None:
         """Check the arrays."""
-        count = len(np.asarray(self.p_WB_W))
+        count = len(check_array("p_WB_W", self.p_WB_W, (None, 3)))
         if count > MOST_STATES:
             raise TooLargeError("states", f"{count} states", f"at most {MOST_STATES}")
         for name, width in (("p_WB_W", 3), ("q_WB", 4), ("v_WB_W", 3), ("w_WB_W", 3)):

@@ -1,4 +1,4 @@
-"""The choice between a plane of motion and space, and the projection of a question onto its plane."""
+"""This file chooses between a plane of motion and space, and projects a question onto its plane."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One form for every impact in an answer, whichever law resolved it and at however many contacts.
+"""Every impact in an answer has one form, whichever law resolved it and at however many contacts.
 
 The impact chapter has separate results for one contact and for several, in the plane and in space, for one
 body and for two. An answer gives all of them in one form, in world axes.

@@ -1,4 +1,4 @@
-"""The times at which a trajectory is asked for, and what ends it."""
+"""This file finds the times at which a trajectory is asked for, and what ends it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from contact_dynamics.motion.integrated import ForcedMotion
 from contact_dynamics.questions.knowledge import check_optional, or_default
 from contact_dynamics.questions.touching import check_has_shape
 from contact_dynamics.records import NamedInt, Record
-from contact_dynamics.validation import FloatArray, check_array, check_positive, check_unit
+from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_positive, check_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -149,7 +149,8 @@ class UntilPlane(AtRate):
         duration: s, >= 0, how far to go. None means the default horizon.
 
     Raises:
-        InvalidFieldError: a number is out of its range or not finite, or the normal is not unit.
+        InvalidFieldError: a number is out of its range, not finite or beyond `LARGEST_NUMBER`, or the normal
+            is not unit.
     """
 
     plane_point: FloatArray
@@ -172,8 +173,9 @@ class UntilPlane(AtRate):
     def __post_init__(self) -> None:
         """Check all five."""
         AtRate.__post_init__(self)
-        object.__setattr__(self, "body_point", check_array("body_point", self.body_point, (3,)))
-        object.__setattr__(self, "plane_point", check_array("plane_point", self.plane_point, (3,)))
+        for name in ("body_point", "plane_point"):
+            point = check_magnitude(name, check_array(name, getattr(self, name), (3,)))
+            object.__setattr__(self, name, point)
         object.__setattr__(self, "plane_normal", check_unit("plane_normal", self.plane_normal, 3))
 
 

@@ -7,10 +7,13 @@ needs it, and most never are. So a thousand states a second cost little more tha
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
+from collections import defaultdict
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from contact_dynamics.constants import to_ns, to_seconds
 from contact_dynamics.errors import InvalidFieldError, NoStateError, StaleStateError
+from contact_dynamics.questions.arrivals import Arrivals
 from contact_dynamics.questions.uncertain_state import UncertainState
 from contact_dynamics.rigid_body.body import BodyState
 
@@ -28,6 +31,9 @@ differ by far less."""
 
 MOST_STATES: Final = 20_000
 """States of one body that are kept, where nothing else is said: 20 s at 1 kHz, some 20 MB of Odometry."""
+
+CLOCK_SET_BACK: Final = "the clock was set back"
+"""Why all states are forgotten, live and where a log is replayed."""
 
 
 class StateStore:
@@ -49,12 +55,11 @@ class StateStore:
             future_tolerance: s. A state whose stamp is farther ahead of the clock is refused.
             most_states: how many of a body are kept, however fast they come. The oldest go first.
         """
-        self._history = history
-        self._history_ns = to_ns(history)
-        self._timeout_ns = to_ns(timeout)
-        self._future_tolerance_ns = to_ns(future_tolerance)
-        self._most_states = most_states
+        self.change_limits(
+            history=history, timeout=timeout, future_tolerance=future_tolerance, most_states=most_states
+        )
         self._tracks: dict[str, _Track] = {}
+        self._arrivals: defaultdict[str, Arrivals] = defaultdict(Arrivals)
 
     def add(self, body_name: str, state: KnownState, *, now_ns: int | None = None) -> None:
         """Keep a state. ``now_ns`` is the present time, ns. Without it, any stamp is accepted.
@@ -75,15 +80,36 @@ class StateStore:
         """
         self._keep(body_name, stamp_ns, read, now_ns)
 
-    def clear(self) -> None:
+    def change_limits(
+        self, *, history: float, timeout: float, future_tolerance: float, most_states: int = MOST_STATES
+    ) -> None:
+        """Keep and refuse states by other limits from now on; see `StateStore`."""
+        self._history = history
+        self._history_ns = to_ns(history)
+        self._timeout_ns = to_ns(timeout)
+        self._future_tolerance_ns = to_ns(future_tolerance)
+        self._most_states = most_states
+
+    def refuse(self, body_name: str, reason: object, *, was_kept: bool = False) -> None:
+        """Note, for whoever asks and finds none, that a state is not kept, or was kept and cannot be read."""
+        self._arrivals[body_name].refuse(reason, was_kept=was_kept)
+
+    def forget(self, body_name: str, reason: str) -> None:
+        """Forget the states of a body; the reason says, after "when", what happened."""
+        track = self._tracks.pop(body_name, None)
+        if track is not None and track.stamps:
+            self._arrivals[body_name].throw_away(reason)
+
+    def clear(self, reason: str) -> None:
         """Forget all states, as when the clock is set back and their stamps become times to come."""
-        self._tracks.clear()
+        for body_name in list(self._tracks):
+            self.forget(body_name, reason)
 
     def newest(self, body_name: str, *, now_ns: int | None = None) -> KnownState:
         """Return the newest state. Without the present time, ns, it may be of any age.
 
         Raises:
-            NoStateError: none was published yet.
+            NoStateError: none was published yet, or none that came is kept; the message says why.
             StaleStateError: it is older than the timeout.
         """
         if now_ns is not None:
@@ -91,7 +117,7 @@ class StateStore:
         track = self._tracks.get(body_name, _Track())
         state = track.last(len(track.stamps))
         if state is None:
-            message = f"state of {body_name!r}: none was published yet"
+            message = f"state of {body_name!r}: {self._arrivals.get(body_name, Arrivals())}"
             raise NoStateError(message)
         return state if now_ns is None else self._fresh(body_name, state, now_ns)
 
@@ -110,7 +136,7 @@ class StateStore:
         The one after it is None if the state has that stamp itself, or is the newest.
 
         Raises:
-            NoStateError: every state that is kept has a later stamp.
+            NoStateError: every state that is kept has a later stamp, or none is kept.
             StaleStateError: the stamp is between two states that are further apart than the timeout, or after
                 the newest, and that is older than the timeout at the present time, ``now_ns``.
         """
@@ -119,7 +145,8 @@ class StateStore:
         track = self._tracks.get(body_name, _Track())
         earlier = track.last(bisect_right(track.stamps, stamp_ns))
         if earlier is None:
-            kept = f"the oldest kept has {track.stamps[0]} ns" if track.stamps else "none was published yet"
+            arrivals = self._arrivals.get(body_name, Arrivals())
+            kept = f"the oldest kept has {track.stamps[0]} ns" if track.stamps else str(arrivals)
             message = f"state of {body_name!r} at {stamp_ns} ns: {kept}"
             raise NoStateError(message)
         if earlier.stamp_ns == stamp_ns:
@@ -136,6 +163,16 @@ class StateStore:
             )
             raise StaleStateError(message)
         return earlier, later
+
+    def count(self, body_name: str, stamp_ns: int | None, seconds: float) -> int:
+        """Return how many states there are in the ``seconds`` up to a stamp, or the newest; none is read."""
+        stamps = self._tracks.get(body_name, _Track()).stamps
+        if not stamps:
+            return 0
+        last_ns = stamps[-1] if stamp_ns is None else stamp_ns
+        return bisect_right(stamps, last_ns) - bisect_left(
+            stamps, last_ns - to_ns(min(seconds, self._history))
+        )
 
     def excerpt(self, wanted: Iterable[tuple[str, int | None, float]]) -> StateStore:
         """Return a store that answers as this one does about bodies at a stamp and some time before it.
@@ -159,6 +196,7 @@ class StateStore:
                 last_ns = newest.stamp_ns if stamp_ns is None else stamp_ns
                 for state in track.around(last_ns - to_ns(min(seconds, self._history)), last_ns):
                     part.add(body_name, state)
+            part._arrivals[body_name] = replace(self._arrivals.get(body_name, Arrivals()))
         return part
 
     def _keep(self, body_name: str, stamp_ns: int, state: KnownState | ReadState, now_ns: int | None) -> None:
@@ -171,6 +209,7 @@ class StateStore:
                     f"at most {to_seconds(self._future_tolerance_ns):g} s (future_tolerance)",
                 )
             self._forget_future(body_name, now_ns)
+        self._arrivals[body_name].came += 1
         track = self._tracks.get(body_name)
         if track is None:
             track = self._tracks[body_name] = _Track()
@@ -183,6 +222,7 @@ class StateStore:
         latest = now_ns + self._future_tolerance_ns
         if track and track.stamps and track.stamps[-1] > latest:
             track.forget_after(latest)
+            self._arrivals[body_name].throw_away("the clock turned out to be behind their stamps")
 
     def _fresh(self, body_name: str, state: KnownState, asked_ns: int) -> KnownState:
         age_ns = asked_ns - state.stamp_ns

@@ -126,10 +126,15 @@ def subject_of(
         newest = Subject(body=body, state=state_of(known[-1]), covariance=_covariance(known[-1]))
         return _moved(newest, later, source.stamp_ns, knowledge)
     states = [state_of(each) for each in known]
-    if fit is None:
-        best = fit_free_motion(body.mass_properties, states, gravity_W=knowledge.world.gravity_W)
-    else:
-        best = fit(body.mass_properties, states)
+    try:
+        if fit is None:
+            best = fit_free_motion(body.mass_properties, states, gravity_W=knowledge.world.gravity_W)
+        else:
+            best = fit(body.mass_properties, states)
+    except InvalidFieldError as error:
+        if error.field != "states":
+            raise
+        raise type(error)("fit_window", error.found, error.allowed) from None  # the question's name for them
     quality = FitQuality(
         count=best.count,
         position_residual=best.position_residual,

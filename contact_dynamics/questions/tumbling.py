@@ -32,7 +32,7 @@ from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import FreeMotion, Trajectory, free_motion
 from contact_dynamics.tumbling.flips import Flips, next_flips
 from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves, poinsot, rolling_curves
-from contact_dynamics.validation import FloatArray, check_array
+from contact_dynamics.validation import FloatArray, check_array, check_whole
 from contact_dynamics.world import Body
 
 if TYPE_CHECKING:
@@ -105,8 +105,10 @@ class TumblingQuestion(Record):
         """Check gravity and the number of points."""
         if self.gravity_W is not None:
             object.__setattr__(self, "gravity_W", check_array("gravity_W", self.gravity_W, (3,)))
-        if self.curve_points > MOST_CURVE_POINTS:
-            raise TooLargeError("curve_points", self.curve_points, f"at most {MOST_CURVE_POINTS}")
+        points = check_whole("curve_points", self.curve_points, 0)
+        if points > MOST_CURVE_POINTS:
+            raise TooLargeError("curve_points", points, f"at most {MOST_CURVE_POINTS}")
+        object.__setattr__(self, "curve_points", points)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

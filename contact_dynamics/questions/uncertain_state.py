@@ -1,4 +1,4 @@
-"""A state with its covariance, as a question says it or as it was published."""
+"""A question or a published message may give a state with its covariance."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Processes that answer questions, each within a time and a memory that are stated.
+"""These processes answer questions, each within a time and a memory that are stated.
 
 A question goes to a worker together with all that is known about it. A worker that is not ready when the time
 is over is killed and replaced. It runs at a lower priority than the process that serves, ends when that one
@@ -17,6 +17,7 @@ import threading
 import time
 import traceback
 from dataclasses import dataclass
+from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypeVar
 
@@ -64,21 +65,27 @@ class WorkerFault(Exception):  # noqa: N818  it is no error of a question
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Job:
     work: tuple[Callable[..., object], object, Knowledge]
+    seconds: float  # that it may take
     until: float  # s, monotonic
     done: Callable[..., object]
 
 
 class Workers:
-    """A few processes that answer questions, and threads that wait for them."""
+    """A few processes that answer questions, and threads that wait for them.
+
+    Attributes:
+        limits: What they may take. A change counts for the questions that are asked later; the number of
+            processes and their memory stay as they were.
+    """
 
     def __init__(self, limits: WorkerLimits) -> None:
         """Start the processes. They need a second to be ready, and questions wait for that."""
-        self._limits = limits
+        self.limits = limits
         self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
         self._lock = threading.Lock()
         self._open = 0  # jobs that are not done yet
         self._closing = False
-        self._workers = [_Worker(limits) for _ in range(limits.count)]
+        self._workers = [_Worker(limits.memory) for _ in range(limits.count)]
         self._threads = [
             threading.Thread(target=self._run, args=(worker,), name="contact_dynamics worker", daemon=True)
             for worker in self._workers
@@ -110,14 +117,20 @@ class Workers:
         Raises:
             BusyError: as many questions as may wait are waiting.
         """
-        most = self._limits.count + self._limits.most_waiting
+        most = len(self._workers) + self.limits.most_waiting
         with self._lock:
             if self._open >= most:
-                message = f"{most} questions that take long are being answered or wait, which is the most"
+                message = (
+                    f"{most} questions that take long are being answered or wait, which is the most (workers "
+                    "and most_waiting)"
+                )
                 raise BusyError(message)
             self._open += 1
-        until = time.monotonic() + self._limits.deadline
-        self._jobs.put(_Job(work=(answer, question, knowledge), until=until, done=done))
+        seconds = self.limits.deadline
+        job = _Job(
+            work=(answer, question, knowledge), seconds=seconds, until=time.monotonic() + seconds, done=done
+        )
+        self._jobs.put(job)
 
     def close(self) -> None:
         """Kill all workers, whatever they do. Questions that wait get no answer."""
@@ -130,6 +143,10 @@ class Workers:
             thread.join(_SPARE_S)
 
     def _run(self, worker: _Worker) -> None:
+        # Ctrl-C reaches all processes of a terminal. Those that this thread starts inherit what it blocks, so
+        # that they do not end with a traceback while they still import. They end with this process.
+        resource_tracker.ensure_running()  # first, since its start unblocks the signal again
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         worker.start()
         while not self._closing and (job := self._jobs.get()) is not None:
             outcome = worker.outcome(job)
@@ -145,8 +162,8 @@ class Workers:
 class _Worker:
     """A process, and the pipe to it."""
 
-    def __init__(self, limits: WorkerLimits) -> None:
-        self._limits = limits
+    def __init__(self, memory: int) -> None:
+        self._memory = memory  # MB
         self._context = multiprocessing.get_context("forkserver")
         self._context.set_forkserver_preload(list(_NEEDED))
         self._process: BaseProcess | None = None
@@ -155,10 +172,15 @@ class _Worker:
         self._pipe, self._its_end = self._context.Pipe()
 
     def start(self) -> None:
-        arguments = (self._its_end, self._limits.memory * _MEGABYTE, self._limits.deadline + _SPARE_S)
+        arguments = (self._its_end, self._memory * _MEGABYTE)
         process = self._context.Process(target=_answer_questions, args=arguments, daemon=True)
-        process.start()
-        self._its_end.close()
+        try:
+            process.start()
+        except (EOFError, OSError):  # the machine has no room for it, or what starts it was killed
+            self._process, self._is_killed = None, True
+            return
+        finally:
+            self._its_end.close()
         self._process = process
         if self._is_closed:
             process.kill()
@@ -175,12 +197,10 @@ class _Worker:
     def outcome(self, job: _Job) -> object:
         """Return the answer to a job, or the exception that it ends with. The process may be killed then."""
         try:
-            self._pipe.send(job.work)
+            self._pipe.send((*job.work, job.seconds + _SPARE_S))
             if self._pipe.poll(max(0.0, job.until - time.monotonic())):
                 return self._pipe.recv()
-            message = (
-                f"no answer within {self._limits.deadline:g} s, which is the time that an answer may take"
-            )
+            message = f"no answer within {job.seconds:g} s, which is all that one may take (answer_deadline)"
             outcome: Exception = TookTooLongError(message)
         except (EOFError, OSError):
             outcome = WorkerFault("the process that computed the answer ended")
@@ -198,16 +218,15 @@ class _Worker:
             self.start()
 
 
-def _answer_questions(pipe: Connection, memory: int, seconds: float) -> None:
+def _answer_questions(pipe: Connection, memory: int) -> None:
     """Answer one question after another: what a worker does."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all processes of a terminal
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
     os.nice(_NICER)
     limit = _address_space() + memory
     resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
     while True:
         try:
-            answer, question, knowledge = pipe.recv()
+            answer, question, knowledge, seconds = pipe.recv()
         except (EOFError, OSError):  # who asks is gone
             return
         signal.setitimer(signal.ITIMER_REAL, seconds)
@@ -217,8 +236,9 @@ def _answer_questions(pipe: Connection, memory: int, seconds: float) -> None:
         except ContactDynamicsError as error:
             outcome = error
         except MemoryError:
-            found = f"one that needs more than {memory // _MEGABYTE} MB"
-            outcome = TooLargeError("question", found, "one that needs less")
+            most = f"{memory // _MEGABYTE} MB"
+            allowed = f"one that needs at most {most} (worker_memory)"
+            outcome = TooLargeError("question", f"one that needs more than {most}", allowed)
         except Exception:  # noqa: BLE001  told by who asked
             outcome = WorkerFault(traceback.format_exc())
         with contextlib.suppress(OSError):

@@ -27,6 +27,7 @@ from contact_dynamics.questions import (
     UntilContact,
     UntilPlane,
 )
+from contact_dynamics.questions.many import ManyImpactsQuestion, ManyStates, ManyTumblingsQuestion
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import ConvexShape
 from contact_dynamics.shapes.obstacle import Obstacle
@@ -207,6 +208,49 @@ def impact_questions(draw: st.DrawFn) -> ImpactQuestion:
         out_of_plane_tolerance=draw(optional_sizes),
         velocity_tolerance=draw(optional_sizes),
         distance_tolerance=draw(optional_sizes),
+    )
+
+
+@st.composite
+def rows(draw: st.DrawFn, count: int, one: st.SearchStrategy[Any]) -> np.ndarray:
+    """One for each state, or one for all."""
+    return np.array([draw(one) for _ in range(draw(st.sampled_from([count, count, 1])))])
+
+
+@st.composite
+def many_states(draw: st.DrawFn) -> ManyStates:
+    states = draw(st.lists(body_states(), min_size=1, max_size=4))
+    return ManyStates(
+        p_WB_W=[each.p_WB_W for each in states],
+        q_WB=[each.q_WB for each in states],
+        v_WB_W=[each.v_WB_W for each in states],
+        w_WB_W=[each.w_WB_W for each in states],
+    )
+
+
+@st.composite
+def many_tumblings_questions(draw: st.DrawFn) -> ManyTumblingsQuestion:
+    states = draw(many_states())
+    return ManyTumblingsQuestion(
+        body=draw(asked_bodies()),
+        states=states,
+        seconds=draw(rows(len(states), numbers())),
+        gravity_W=draw(gravities),
+    )
+
+
+@st.composite
+def many_impacts_questions(draw: st.DrawFn) -> ManyImpactsQuestion:
+    states = draw(many_states())
+    return ManyImpactsQuestion(
+        body=draw(asked_bodies()),
+        states=states,
+        p_WC_W=[draw(vectors()) for _ in range(len(states))],
+        normals_W=draw(rows(len(states), units())),
+        frictions=draw(rows(len(states), sizes)),
+        restitutions=draw(rows(len(states), st.floats(0.0, 1.0))),
+        restitution_law=draw(st.sampled_from(RestitutionLaw)),
+        velocity_tolerance=draw(optional_sizes),
     )
 
 

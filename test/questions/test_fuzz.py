@@ -12,10 +12,22 @@ from hypothesis import strategies as st
 
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.questions import ask
+from contact_dynamics.questions.many import (
+    ManyImpactsQuestion,
+    ManyTumblingsQuestion,
+    answer_impacts,
+    answer_tumblings,
+)
 from questions import fuzzed
 
 KNOWLEDGE = fuzzed.knowledge()
-KINDS = (fuzzed.tumbling_questions, fuzzed.impact_questions, fuzzed.contact_mode_questions)
+KINDS = (
+    fuzzed.tumbling_questions,
+    fuzzed.impact_questions,
+    fuzzed.contact_mode_questions,
+    fuzzed.many_tumblings_questions,
+    fuzzed.many_impacts_questions,
+)
 CASES = 10_000
 
 
@@ -35,7 +47,12 @@ def check_answered(question: Any) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # numbers that overflow are not hidden in an answer
         with contextlib.suppress(ContactDynamicsError):
-            ask(question, KNOWLEDGE)
+            if isinstance(question, ManyTumblingsQuestion):
+                answer_tumblings(question, KNOWLEDGE)
+            elif isinstance(question, ManyImpactsQuestion):
+                answer_impacts(question, KNOWLEDGE)
+            else:
+                ask(question, KNOWLEDGE)
 
 
 HASTE = settings(

@@ -24,6 +24,14 @@ from contact_dynamics.questions import AtRate, AtStamps, AtTimes, UntilContact, 
             lambda: UntilPlane(plane_point=[0, 0, 0], plane_normal=[0, 0, 2], body_point=[0, 0, 0]),
             r"plane_normal: found \[0.0, 0.0, 2.0\] of norm 2",
         ),
+        (
+            lambda: UntilPlane(plane_point=[0, 0, 0], plane_normal=[0, 0, 1], body_point=[-1e160, 0, 0]),
+            r"body_point: found 1e\+160, allowed is numbers of at most 1e\+60",
+        ),
+        (
+            lambda: UntilPlane(plane_point=[0, 0, 1e61], plane_normal=[0, 0, 1], body_point=[0, 0, 0]),
+            r"plane_point: found 1e\+61, allowed is numbers of at most 1e\+60",
+        ),
     ],
 )
 def test_times_without_sense_are_refused(make: Callable[[], object], words: str) -> None:

@@ -70,9 +70,9 @@ def test_the_states_around_a_stamp_are_those_that_can_be_read() -> None:
 
 def test_of_a_body_whose_states_all_cannot_be_read_none_is_known() -> None:
     store = store_of(Reads(), [1, 2], broken=frozenset({1, 2}))
-    with pytest.raises(NoStateError, match="none was published yet"):
+    with pytest.raises(NoStateError, match="none of 2 that came is kept; they could not be read"):
         store.newest("ball")
-    with pytest.raises(NoStateError, match="none was published yet"):
+    with pytest.raises(NoStateError, match="none of 2 that came is kept; they could not be read"):
         store.around("ball", 5)
 
 
@@ -82,3 +82,35 @@ def test_no_more_are_kept_than_stated_and_the_oldest_go_first() -> None:
     for stamp_ns in (5, 1, 4, 2, 3):
         store.add_unread("ball", stamp_ns, reads.of(stamp_ns))
     assert [each.stamp_ns for each in store.window("ball", store.newest("ball"), 1.0)] == [3, 4, 5]
+
+
+def missing(store: StateStore) -> str:
+    with pytest.raises(NoStateError) as caught:
+        store.newest("ball")
+    with pytest.raises(NoStateError) as in_a_worker:
+        store.excerpt([("ball", None, 1.0)]).newest("ball")
+    assert str(in_a_worker.value) == str(caught.value)
+    return str(caught.value).removeprefix("state of 'ball': ")
+
+
+def test_who_finds_no_state_is_told_how_many_came_and_what_became_of_them() -> None:
+    store = StateStore(history=1.0, timeout=1.0)
+    assert missing(store) == "none was published yet"
+    store.clear("the clock was set back")
+    assert missing(store) == "none was published yet"
+    store.refuse("ball", "stamp: found 5 s, allowed is less")
+    store.refuse("ball", "mass: found -1, allowed is a number > 0")
+    refused = "none of 2 that came is kept; the last was refused: mass: found -1, allowed is a number > 0"
+    assert missing(store) == refused
+    store.clear("the clock was set back")  # which changes nothing where none is kept
+    assert missing(store) == refused
+    for stamp_ns in (1, 2, 3):
+        store.add("ball", state(stamp_ns))
+    store.clear("the clock was set back")
+    assert missing(store) == "none of 5 that came is kept; they were thrown away when the clock was set back"
+    store.add("ball", state(9_000_000_000))
+    store.add("other", state(1), now_ns=1)
+    with pytest.raises(
+        NoStateError, match=r"none of 6 .* when the clock turned out to be behind their stamps"
+    ):
+        store.newest("ball", now_ns=1)

@@ -24,7 +24,7 @@ from contact_dynamics.questions import (
     ask,
     tumbling,
 )
-from contact_dynamics.questions.effort import excerpt, is_quick
+from contact_dynamics.questions.effort import MOST_QUICK_FITTED, excerpt, is_quick
 from contact_dynamics.questions.workers import WorkerFault, WorkerLimits, Workers
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import box
@@ -92,6 +92,7 @@ def test_an_error_arrives_as_it_was(workers: Workers) -> None:
 def test_a_question_that_needs_much_memory_is_refused(workers: Workers) -> None:
     refused = outcome(workers, operator.mul, b"x", 2_000_000_000)
     assert isinstance(refused, TooLargeError)
+    assert "(worker_memory)" in str(refused)
     assert "300 MB" in str(refused)
 
 
@@ -126,6 +127,16 @@ def test_when_all_work_and_the_queue_is_full_a_question_is_refused_at_once() -> 
     assert time.monotonic() - begun < 10.0  # it takes milliseconds, and the powers would take years
 
 
+def at_rest(stamp_ns: int) -> BodyState:
+    return BodyState(
+        p_WB_W=(0.0, 0.0, 1.0),
+        q_WB=(0.0, 0.0, 0.0, 1.0),
+        v_WB_W=np.zeros(3),
+        w_WB_W=np.zeros(3),
+        stamp_ns=stamp_ns,
+    )
+
+
 def test_what_counts_as_quick() -> None:
     known = brick_world()
     falling = TumblingQuestion(body="brick", sampling=UntilContact())
@@ -135,5 +146,12 @@ def test_what_counts_as_quick() -> None:
         p_WB_W=(0.0, 0.0, 1.0), q_WB=(0.0, 0.0, 0.0, 1.0), v_WB_W=np.zeros(3), w_WB_W=(1e9, 1e8, 1e8)
     )
     assert not is_quick(TumblingQuestion(body="brick", state=spinning, sampling=UntilContact()), known)
-    assert not is_quick(TumblingQuestion(body="brick", state=PublishedState(fit_window=0.1)), known)
+    known = Knowledge(world=known.world)
+    fit = TumblingQuestion(body="brick", state=PublishedState(fit_window=1.0))
+    assert is_quick(fit, known)  # it is refused at once, since no state was published
+    for number in range(MOST_QUICK_FITTED + 1):
+        assert is_quick(fit, known)
+        known.states.add("brick", at_rest(stamp_ns=1_000_000 * number))
+    assert not is_quick(fit, known)
+    assert is_quick(TumblingQuestion(body="brick", state=PublishedState(fit_window=0.1)), known)
     assert not is_quick("a question of another kind", known)

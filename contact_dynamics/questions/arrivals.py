@@ -1,0 +1,33 @@
+"""What became of the states of a body that came, where a question finds none of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(slots=True, kw_only=True)
+class Arrivals:
+    """The states of one body since the beginning, kept or not.
+
+    Attributes:
+        came: How many came.
+        fate: What happened to those that are not kept, or to the last of them, in words.
+    """
+
+    came: int = 0
+    fate: str = "they could not be read"
+
+    def __str__(self) -> str:
+        """Return in words why there is no state."""
+        if not self.came:
+            return "none was published yet"
+        return f"none of {self.came} that came is kept; {self.fate}"
+
+    def refuse(self, reason: object, *, was_kept: bool) -> None:
+        """Note a state that came and was not kept, or that was counted and kept, and cannot be read."""
+        self.came += not was_kept
+        self.fate = f"the last was refused: {reason}"
+
+    def throw_away(self, reason: str) -> None:
+        """Note that states that were kept are not any more."""
+        self.fate = f"they were thrown away when {reason}"

@@ -1,0 +1,204 @@
+"""One question about contact modes for many candidates at once: applied wrenches, or sets of contacts.
+
+Body, state and contacts are looked up once. Each candidate then has the answer of a single question, to the
+last bit: modes have no faster batch, since candidates differ in which modes there are to try.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact_dynamics.contact.uncertainty import EXACT_CONTACTS
+from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, TooLargeError
+from contact_dynamics.questions import contact_modes
+from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
+from contact_dynamics.questions.knowledge import Knowledge, or_default
+from contact_dynamics.questions.subject import subject_of
+from contact_dynamics.questions.touching import contacts_of
+from contact_dynamics.records import Record
+from contact_dynamics.validation import FloatArray, check_array
+from contact_dynamics.validation_batches import check_rows
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.questions.contact_modes import ContactModeAnswer
+    from contact_dynamics.rigid_body.body import BodyState
+
+MOST_CANDIDATES: Final = 1000
+"""Most candidates in one question. In the plane so many take about a second, with four contacts."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ManyContactModesQuestion(Record):
+    """Which contact modes follow for each of many candidates?
+
+    There are as many sets of contacts as wrenches, or one of either for all of the other.
+
+    Attributes:
+        asked: What is the same for all candidates. Its contacts are those of all sets, one after the other.
+            Its wrench is not used, and of what it wants only the margins are worked out.
+        forces_W: (n, 3), N, applied besides gravity and contact forces, world axes.
+        torques_W: (n, 3), N m, applied about the centre of mass, world axes.
+        contact_counts: How many contacts each set has. Without any, all contacts are one set.
+
+    Raises:
+        InvalidFieldError: the arrays have different lengths, or a number is not finite.
+        TooLargeError: more than `MOST_CANDIDATES` candidates.
+    """
+
+    asked: ContactModeQuestion
+    forces_W: FloatArray
+    torques_W: FloatArray
+    contact_counts: tuple[int, ...] = ()
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            asked: ContactModeQuestion,
+            forces_W: ArrayLike,
+            torques_W: ArrayLike,
+            contact_counts: Sequence[int] = (),
+        ) -> None:
+            """Take whatever NumPy makes arrays of."""
+
+    def __post_init__(self) -> None:
+        """Check the arrays, and repeat what holds for all."""
+        forces = check_rows("forces", self.forces_W, (3,))
+        counts = _counts(self.contact_counts)
+        most = max(len(forces), len(counts))
+        if most > MOST_CANDIDATES:
+            raise TooLargeError("forces", f"{most} candidates", f"at most {MOST_CANDIDATES}")
+        torques = check_array("torques", self.torques_W, (len(forces), 3))
+        if counts:
+            given = 0 if self.asked.contacts is None else len(self.asked.contacts)
+            if min(counts) < 1 or sum(counts) != given:
+                allowed = f"numbers >= 1 whose sum is {given}, the number of explicit contacts"
+                raise InvalidFieldError("contact_counts", counts, allowed)
+        if len(counts) > 1:
+            if len(forces) not in {1, len(counts)}:
+                allowed = f"{len(counts)}, one for each set of contacts, or one for all"
+                raise InvalidFieldError("forces", f"{len(forces)} rows", allowed)
+            forces, torques = (np.broadcast_to(rows, (most, 3)).copy() for rows in (forces, torques))
+        object.__setattr__(self, "forces_W", forces)
+        object.__setattr__(self, "torques_W", torques)
+        object.__setattr__(self, "contact_counts", counts)
+
+    def __len__(self) -> int:
+        """Return how many candidates there are."""
+        return len(self.forces_W)
+
+
+def _counts(value: Sequence[int]) -> tuple[int, ...]:
+    try:
+        given = tuple(value)
+    except TypeError:
+        raise InvalidFieldError("contact_counts", value, "a list of whole numbers") from None
+    if any(isinstance(count, bool) or not isinstance(count, (int, np.integer)) for count in given):
+        raise InvalidFieldError("contact_counts", value, "a list of whole numbers")
+    return tuple(int(count) for count in given)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ManyContactModesAnswer(Record):
+    """The consistent modes of each candidate. Those of all candidates follow one after the other.
+
+    Attributes:
+        body_name: The body's name, which may be empty.
+        p_FB_F: (3,), m, its centre of mass in its published frame F.
+        state: The state that all candidates share.
+        contacts: The contacts of all sets, one after the other.
+        contact_counts: How many contacts each set has.
+        verdicts: (n,), values of `ModeVerdict`.
+        problems: (n,), values of `Problem`: in the plane or in space.
+        mode_counts: (n,), the number of consistent modes of each candidate.
+        modes: The m modes, as strings with one letter for each contact.
+        accelerations_W: (m, 3), m/s^2, of the centre of mass.
+        angular_accelerations_W: (m, 3), rad/s^2.
+        margins: (m,), N, how far each mode's wrench is from another mode, or None if not asked for.
+    """
+
+    body_name: str
+    p_FB_F: FloatArray
+    state: BodyState
+    contacts: ContactSet
+    contact_counts: tuple[int, ...]
+    verdicts: NDArray[np.int64]
+    problems: NDArray[np.int64]
+    mode_counts: NDArray[np.int64]
+    modes: tuple[str, ...]
+    accelerations_W: FloatArray
+    angular_accelerations_W: FloatArray
+    margins: FloatArray | None
+
+
+def answer(question: ManyContactModesQuestion, knowledge: Knowledge | None = None) -> ManyContactModesAnswer:
+    """Answer a question about many candidates.
+
+    Raises:
+        ContactDynamicsError: a body or its state is not known, nothing touches, or a candidate is not
+            allowed. The message names the candidate.
+    """
+    known = Knowledge() if knowledge is None else knowledge
+    asked = question.asked
+    subject = subject_of(asked.body, asked.state, known)
+    tolerance = or_default(asked.distance_tolerance, known.defaults.distance_tolerance)
+    contacts = contacts_of(asked.contacts, subject, known.world, distance_tolerance=tolerance)
+    counts = question.contact_counts or (len(contacts),)
+    ends = np.cumsum(counts).tolist()
+    sets = [
+        contacts if len(counts) == 1 else contacts.subset(range(end - count, end))
+        for count, end in zip(counts, ends, strict=True)
+    ]
+    shared = replace(
+        asked,
+        body=subject.body,
+        state=subject.state,
+        want_wrenches=False,
+        want_statics=False,
+        want_impact=False,
+        uncertainty=EXACT_CONTACTS,
+        want_geometry_margins=False,
+    )
+    found = [_candidate(i, question, shared, sets[i % len(sets)], known) for i in range(len(question))]
+    modes = [mode for each in found for mode in each.modes]
+    margins = [margin.margin for each in found for margin in each.margins or ()]
+    return ManyContactModesAnswer(
+        body_name=subject.body.name,
+        p_FB_F=subject.body.p_FB_F,
+        state=subject.state,
+        contacts=contacts,
+        contact_counts=counts,
+        verdicts=np.array([each.verdict for each in found], dtype=np.int64),
+        problems=np.array([each.problem for each in found], dtype=np.int64),
+        mode_counts=np.array([len(each.modes) for each in found], dtype=np.int64),
+        modes=tuple(mode.mode for mode in modes),
+        accelerations_W=np.array([mode.acceleration_W for mode in modes]).reshape(-1, 3),
+        angular_accelerations_W=np.array([mode.angular_acceleration_W for mode in modes]).reshape(-1, 3),
+        margins=np.array(margins, dtype=np.float64) if asked.want_margins else None,
+    )
+
+
+def _candidate(
+    i: int,
+    question: ManyContactModesQuestion,
+    shared: ContactModeQuestion,
+    contacts: ContactSet,
+    known: Knowledge,
+) -> ContactModeAnswer:
+    try:
+        force, torque = question.forces_W[i], question.torques_W[i]
+        return contact_modes.answer(replace(shared, contacts=contacts, force_W=force, torque_W=torque), known)
+    except InvalidFieldError as error:
+        raise type(error)(f"candidate {i}: {error.field}", error.found, error.allowed) from None
+    except ContactDynamicsError as error:
+        raise type(error)(f"candidate {i}: {error}") from None

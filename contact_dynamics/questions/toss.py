@@ -1,0 +1,231 @@
+"""Where does a tossed body come to rest, and what happens on the way? All lectures in one motion (`toss`)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from contact_dynamics.errors import TooLargeError
+from contact_dynamics.impact import RestitutionLaw
+from contact_dynamics.questions.extent import check_extent
+from contact_dynamics.questions.knowledge import Knowledge, or_default
+from contact_dynamics.questions.sample_times import MOST_SAMPLES as MOST_TIMES
+from contact_dynamics.questions.subject import NEWEST, FitQuality, StateSource, subject_of
+from contact_dynamics.records import Record
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.toss import (
+    Toss,
+    TossDistribution,
+    TossEnd,
+    TossEnergy,
+    TossEvent,
+    TossUncertainty,
+    Undecided,
+    sampled_toss,
+    toss,
+)
+from contact_dynamics.toss.one_toss import HORIZON, MOST_ALTERNATIVES
+from contact_dynamics.toss.sampled import MOST_SAMPLES, MOST_STRIKES
+from contact_dynamics.toss.uncertainty import EXACT
+from contact_dynamics.tumbling import Trajectory
+from contact_dynamics.validation import FloatArray, check_choice, check_positive, check_whole
+from contact_dynamics.world import Body
+
+STRIKES = 2
+"""How many next strikes the tree has, if no other number is asked for."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class TossSampling(Record):
+    """Samples of what is not known exactly.
+
+    Attributes:
+        count: How many, 1 to `toss.sampled.MOST_SAMPLES`.
+        strikes: How many next strikes the tree has, 1 to `toss.sampled.MOST_STRIKES`. None means `STRIKES`.
+        to_rest: Whether samples are followed to rest, which takes each of them a hundred
+            times as long, or longer.
+        seed: Samples are drawn from it, >= 0.
+        uncertainty: How uncertain parameters and law of impact are. The state has a covariance of its own.
+
+    Raises:
+        TooLargeError: more samples are asked for.
+        InvalidFieldError: another number is out of its range.
+    """
+
+    count: int
+    strikes: int | None = None
+    to_rest: bool = False
+    seed: int = 0
+    uncertainty: TossUncertainty = EXACT
+
+    def __post_init__(self) -> None:
+        """Check the numbers."""
+        if self.count > MOST_SAMPLES:
+            raise TooLargeError("samples", self.count, f"at most {MOST_SAMPLES}")
+        check_whole("samples", self.count, 1)
+        if self.strikes is not None:
+            check_whole("strikes", self.strikes, 1, MOST_STRIKES)
+        check_whole("seed", self.seed, 0, 2**32 - 1)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class TossQuestion(Record):
+    """Where does a tossed body come to rest, and what happens on the way?
+
+    Attributes:
+        body: The body, or the name of one of the known world. Its shape has corners, which may be rounded.
+        state: Its state, with or without a covariance, or a reference to a published one.
+        restitution_law: What the coefficients of restitution mean.
+        horizon: s, > 0. How far the motion is followed. None means `toss.one_toss.HORIZON`.
+        rate: Hz, > 0. Samples of the trajectory a second. None means the default.
+        most_alternatives: How many other ways are followed where mechanics does not decide. None means
+            `toss.one_toss.MOST_ALTERNATIVES`.
+        sampling: What to sample for a distribution, or None for none.
+
+    Raises:
+        InvalidFieldError: a number is out of its range, or the law is not a member of its enumeration.
+    """
+
+    body: Body | str
+    state: StateSource = NEWEST
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON
+    horizon: float | None = None
+    rate: float | None = None
+    most_alternatives: int | None = None
+    sampling: TossSampling | None = None
+
+    def __post_init__(self) -> None:
+        """Check the numbers and the law."""
+        check_choice("restitution_law", self.restitution_law, RestitutionLaw)
+        for name in ("horizon", "rate"):
+            value = getattr(self, name)
+            object.__setattr__(self, name, None if value is None else check_positive(name, value))
+        if self.most_alternatives is not None:
+            check_whole("most_alternatives", self.most_alternatives, 0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class TossPath(Record):
+    """One way in which a toss can go.
+
+    Attributes:
+        end: Why there is no further event.
+        seconds: s after the state's stamp, the time of rest, or how far the motion is known.
+        trajectory: The motion at the rate asked for. Its last sample is at ``seconds``.
+        events: The events in the order of time.
+        resting_corners: The indices of the corners on which the body rests, sorted; empty if it moves.
+        resting_normal_B: (3,), unit, the normal of the surface below, body axes, or zero if it moves.
+        energy: Where the energy goes.
+        undecided: The points at which mechanics does not decide, and which way was taken there.
+    """
+
+    end: TossEnd
+    seconds: float
+    trajectory: Trajectory
+    events: tuple[TossEvent, ...]
+    resting_corners: tuple[int, ...]
+    resting_normal_B: FloatArray
+    energy: TossEnergy
+    undecided: tuple[Undecided, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class TossAnswer(Record):
+    """Where the body comes to rest, and what happens on the way.
+
+    Attributes:
+        body_name: The body's name, which may be empty.
+        p_FB_F: (3,), m, its centre of mass in its published frame F.
+        state: The question's state. Times count from its stamp.
+        fit: How well the motion fits the published states that the state was found from, or None without a
+            fit.
+        toss: The toss.
+        alternatives: The ways in which it could go as well, where mechanics does not decide.
+        all_followed: Whether ``alternatives`` has all other ways.
+        distribution: What can happen if state, parameters and impacts are not known exactly, or None if no
+            samples were asked for.
+    """
+
+    body_name: str
+    p_FB_F: FloatArray
+    state: BodyState
+    fit: FitQuality | None
+    toss: TossPath
+    alternatives: tuple[TossPath, ...]
+    all_followed: bool
+    distribution: TossDistribution | None
+
+    @property
+    def paths(self) -> tuple[TossPath, ...]:
+        """Return the toss and its alternatives."""
+        return (self.toss, *self.alternatives)
+
+
+def answer(question: TossQuestion, knowledge: Knowledge | None = None) -> TossAnswer:
+    """Answer a question about a toss. Without ``knowledge`` no body is known by name, and no surface.
+
+    Raises:
+        ContactDynamicsError: something is asked for that is not known, not allowed or not supported. The
+            message names it.
+    """
+    known = Knowledge() if knowledge is None else knowledge
+    subject = subject_of(question.body, question.state, known)
+    body, state = subject.body, subject.state
+    check_extent(body.mass_properties, state)
+    horizon = or_default(question.horizon, HORIZON)
+    rate = or_default(question.rate, known.defaults.rate)
+    most = question.most_alternatives
+    sampling, distribution = question.sampling, None
+    if sampling is not None:
+        distribution = sampled_toss(
+            body,
+            state,
+            known.world,
+            covariance=subject.covariance,
+            uncertainty=sampling.uncertainty,
+            count=sampling.count,
+            strikes=STRIKES if sampling.strikes is None else sampling.strikes,
+            to_rest=sampling.to_rest,
+            seed=sampling.seed,
+            law=question.restitution_law,
+            horizon=horizon,
+        )
+    went = toss(
+        body,
+        state,
+        known.world,
+        restitution_law=question.restitution_law,
+        horizon=horizon,
+        most_alternatives=MOST_ALTERNATIVES if most is None else most,
+    )
+    return TossAnswer(
+        body_name=body.name,
+        p_FB_F=body.p_FB_F,
+        state=state,
+        fit=subject.fit,
+        toss=_path(went, rate),
+        alternatives=tuple(_path(other, rate) for other in went.alternatives),
+        all_followed=went.all_followed,
+        distribution=distribution,
+    )
+
+
+def _path(went: Toss, rate: float) -> TossPath:
+    """Return a toss as it is told, with the motion at a rate, Hz."""
+    count = went.seconds * rate
+    if count > MOST_TIMES - 1:
+        found = f"{count:.9g} samples until {went.seconds:.3g} s"
+        raise TooLargeError("rate", found, f"at most {MOST_TIMES}")
+    times = np.append(np.arange(math.ceil(count - 1e-9)) / rate, went.seconds)  # without a last one twice
+    return TossPath(
+        end=went.end,
+        seconds=went.seconds,
+        trajectory=went.at(times),
+        events=went.events,
+        resting_corners=went.resting_corners,
+        resting_normal_B=went.resting_normal_B,
+        energy=went.energy,
+        undecided=went.undecided,
+    )

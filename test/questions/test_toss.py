@@ -1,0 +1,101 @@
+"""Questions about whole tosses: the answer is the toss itself, and what is not allowed is named."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, TooLargeError
+from contact_dynamics.questions import Knowledge, TossQuestion, TossSampling, UncertainState, ask
+from contact_dynamics.rigid_body import inertia
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.shapes import box
+from contact_dynamics.toss import TossEnd, TossEventKind, TossUncertainty, toss
+from contact_dynamics.world import Body, Surface, World
+
+SIZE = (0.1, 0.1, 0.1)
+CUBE = Body(
+    name="cube", mass_properties=inertia.box(size=SIZE, mass=0.37).mass_properties, shape=box(size=SIZE)
+)
+FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.2, restitution=0.15)
+KNOWN = Knowledge(world=World(bodies=(CUBE,), surfaces=(FLOOR,)))
+THROWN = BodyState(
+    p_WB_W=[0, 0, 0.2],
+    q_WB=[0.3, 0.2, 0.1, 0.9273618495],
+    v_WB_W=[0.5, 0.3, 0.5],
+    w_WB_W=[2, -4, 1],
+    stamp_ns=7_000_000_000,
+)
+UNCERTAIN = UncertainState(state=THROWN, covariance=1e-4 * np.eye(12))
+
+
+def test_the_answer_is_the_toss() -> None:
+    answer = ask(TossQuestion(body="cube", state=THROWN, rate=50.0), KNOWN)
+    went = toss(CUBE, THROWN, KNOWN.world)
+    assert answer.toss.end == TossEnd.RESTS
+    assert answer.toss.seconds == went.seconds
+    assert len(answer.alternatives) == len(went.alternatives)
+    assert answer.distribution is None
+    times = answer.toss.trajectory.seconds
+    assert times[0] == 0.0
+    np.testing.assert_allclose(np.diff(times[:-1]), 0.02, rtol=1e-9)
+    assert times[-1] == went.seconds
+    assert 0.0 < times[-1] - times[-2] <= 0.02
+    np.testing.assert_array_equal(answer.toss.trajectory.p_WB_W[-1], went.state.p_WB_W)
+    assert answer.toss.events[-1].kind == TossEventKind.RESTS
+
+
+def test_what_is_left_out_is_as_the_library_has_it() -> None:
+    """Ten seconds of horizon; the default rate; eight other ways."""
+    short = ask(TossQuestion(body="cube", state=THROWN, horizon=0.1, most_alternatives=0), KNOWN)
+    assert (short.toss.end, short.toss.seconds) == (TossEnd.HORIZON, 0.1)
+    assert len(short.toss.trajectory.seconds) == 0.1 * KNOWN.defaults.rate + 1
+    assert short.alternatives == ()
+
+
+def test_a_distribution_comes_with_samples() -> None:
+    sampling = TossSampling(count=30, uncertainty=TossUncertainty(velocity=0.02, spin=0.3))
+    answer = ask(TossQuestion(body="cube", state=UNCERTAIN, sampling=sampling, most_alternatives=0), KNOWN)
+    told = answer.distribution
+    assert told is not None
+    assert told.samples == 30
+    assert max(branch.strike for branch in told.branches) == 2
+    assert told.rest is None
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: TossQuestion(body="cube", horizon=0.0), "horizon: found 0"),
+        (lambda: TossQuestion(body="cube", rate=float("nan")), "rate: found nan"),
+        (lambda: TossQuestion(body="cube", most_alternatives=-1), "most_alternatives: found -1"),
+        (lambda: TossSampling(count=0), "samples: found 0"),
+        (lambda: TossSampling(count=2001), "samples: found 2001, allowed is at most 2000"),
+        (lambda: TossSampling(count=1, strikes=11), "strikes: found 11"),
+        (lambda: TossSampling(count=1, seed=-1), "seed: found -1"),
+        (lambda: TossUncertainty(velocity=-1.0), "velocity: found -1"),
+        (
+            lambda: TossUncertainty(covariance=np.zeros((101, 101))),
+            "covariance: found 101, allowed is at most 100",
+        ),
+        (lambda: TossUncertainty(covariance=-np.eye(6)), "covariance: found variances"),
+        (lambda: TossUncertainty(covariance=np.zeros((5, 6))), "covariance: found"),
+    ],
+)
+def test_what_is_not_allowed_is_named(make: Callable[[], object], message: str) -> None:
+    with pytest.raises(ContactDynamicsError, match=message):
+        make()
+
+
+def test_a_covariance_of_another_world_is_refused() -> None:
+    """Six parameters belong to one surface; two surfaces have eight."""
+    sampling = TossSampling(count=1, uncertainty=TossUncertainty(covariance=np.eye(8)))
+    with pytest.raises(InvalidFieldError, match="covariance: found 8 rows, allowed is 6 rows"):
+        ask(TossQuestion(body="cube", state=THROWN, sampling=sampling), KNOWN)
+
+
+def test_a_trajectory_of_too_many_samples_is_refused() -> None:
+    with pytest.raises(TooLargeError, match=r"rate: found .* samples"):
+        ask(TossQuestion(body="cube", state=THROWN, rate=1e6, most_alternatives=0), KNOWN)
