@@ -22,9 +22,10 @@ from contact_dynamics.questions.many import (
 from contact_dynamics.rigid_body.published_frame import centers_of_mass, origins_of_published_frame
 from contact_dynamics_interfaces.msg import BodyStates
 from contact_dynamics_interfaces.srv import PredictImpactBatch, PredictTumblingBatch
+from msg_adapters.asked_subject import asked_body
 from msg_adapters.body_state import center_of_mass
 from msg_adapters.contacts import flat
-from msg_adapters.questions import asked_body, asked_gravity, asked_restitution_law, optional
+from msg_adapters.questions import asked_gravity, asked_restitution_law, optional
 from msg_adapters.requests import asked_inertia, asked_optional, write_gravity
 
 if TYPE_CHECKING:
@@ -47,16 +48,16 @@ def body_states_from_msg(msg: BodyStates, *, p_FB_F: FloatArray) -> ManyStates:
     Raises:
         InvalidFieldError: the arrays have different lengths, or a number is not finite.
     """
-    q_WB = _rows("states.orientations", msg.orientations, 4)
-    origins = _rows("states.positions", msg.positions, 3)
+    q_WB = flat_rows("states.orientations", msg.orientations, 4)
+    origins = flat_rows("states.positions", msg.positions, 3)
     if len(q_WB) != len(origins):
         raise InvalidFieldError("states.orientations", f"{len(q_WB)} rows", f"{len(origins)} as positions")
     try:
         return ManyStates(
             p_WB_W=centers_of_mass(origins, q_WB, p_FB_F),
             q_WB=q_WB,
-            v_WB_W=_rows("states.linear_velocities", msg.linear_velocities, 3),
-            w_WB_W=_rows("states.angular_velocities", msg.angular_velocities, 3),
+            v_WB_W=flat_rows("states.linear_velocities", msg.linear_velocities, 3),
+            w_WB_W=flat_rows("states.angular_velocities", msg.angular_velocities, 3),
         )
     except InvalidFieldError as error:
         name, bracket, row = error.field.partition("[")
@@ -137,8 +138,8 @@ def impacts_question_from_msg(
     return ManyImpactsQuestion(
         body=body,
         states=body_states_from_msg(request.states, p_FB_F=body.p_FB_F),
-        p_WC_W=_rows("contact_positions", request.contact_positions, 3),
-        normals_W=_rows("contact_normals", request.contact_normals, 3),
+        p_WC_W=flat_rows("contact_positions", request.contact_positions, 3),
+        normals_W=flat_rows("contact_normals", request.contact_normals, 3),
         frictions=np.array(request.frictions),
         restitutions=np.array(request.restitutions),
         restitution_law=asked_restitution_law(request.restitution_law),
@@ -189,7 +190,7 @@ def impacts_answer_from_msg(msg: PredictImpactBatch.Response, *, world: World) -
         outcomes=np.where(separates, int(ImpactOutcome.NO_IMPULSE), told),
         separates=separates,
         states=body_states_from_msg(msg.states_after, p_FB_F=p_FB_F),
-        impulses_W=_rows("impulses", msg.impulses, 3),
+        impulses_W=flat_rows("impulses", msg.impulses, 3),
     )
 
 
@@ -204,7 +205,8 @@ def _write_body(
     return found
 
 
-def _rows(field: str, numbers: Sequence[float], width: int) -> FloatArray:
+def flat_rows(field: str, numbers: Sequence[float], width: int) -> FloatArray:
+    """Return the numbers of a flat field as rows, or raise `InvalidFieldError` if they do not come out."""
     if len(numbers) % width:
         raise InvalidFieldError(field, f"{len(numbers)} numbers", f"rows of {width}")
     return np.array(numbers, dtype=np.float64).reshape(-1, width)

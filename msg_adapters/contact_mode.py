@@ -21,6 +21,12 @@ from contact_dynamics_interfaces.srv import PredictContactMode
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg, flat, rows
 from msg_adapters.geometry import vector_from_msg, vector_to_msg
+from msg_adapters.geometry_margins import (
+    geometry_margin_from_msg,
+    geometry_margin_to_msg,
+    within_from_msg,
+    write_within,
+)
 from msg_adapters.impact import resolved_impact_from_msg, resolved_impact_to_msg
 
 if TYPE_CHECKING:
@@ -64,6 +70,9 @@ def contact_mode_answer_to_msg(
     msg.distance_tolerance = answer.distance_tolerance
     msg.friction_facets = answer.friction_facets
     msg.wrench_facets = answer.wrench_facets
+    msg.undecided_modes = list(answer.undecided_modes)
+    write_within(answer.within, msg)
+    msg.geometry_margins = [geometry_margin_to_msg(margin) for margin in answer.geometry_margins or ()]
     return msg
 
 
@@ -104,6 +113,9 @@ def contact_mode_answer_from_msg(msg: PredictContactMode.Response, *, world: Wor
         friction_facets=msg.friction_facets,
         wrench_facets=msg.wrench_facets,
         undecided=msg.message,
+        undecided_modes=tuple(msg.undecided_modes),
+        within=within_from_msg(msg),
+        geometry_margins=tuple(geometry_margin_from_msg(margin) for margin in msg.geometry_margins) or None,
     )
 
 

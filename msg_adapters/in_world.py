@@ -1,4 +1,4 @@
-"""States in a frame that stands still in the world, to states in the world frame."""
+"""Turns states in a frame that stands still in the world into states in the world frame."""
 
 from __future__ import annotations
 

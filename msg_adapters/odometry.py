@@ -54,6 +54,8 @@ def body_state_from_odometry(msg: Odometry, *, world_frame: str, p_FB_F: FloatAr
 
 
 def _read(msg: Odometry, settings: SourceSettings) -> KnownState:
+    if msg.child_frame_id:  # many publishers leave it out
+        check_frame("child_frame_id", msg.child_frame_id, settings.body_frame)
     frame = msg.header.frame_id
     state = body_state_from_odometry(msg, world_frame=frame, p_FB_F=settings.p_FB_F)
     covariance = of_pose_and_twist(
@@ -67,7 +69,9 @@ def _readers(settings: SourceSettings) -> Sequence[Reader]:
     return (lambda msg: _read(msg, settings),)
 
 
-ODOMETRY: Final = StateAdapter(type_names=("nav_msgs/msg/Odometry",), readers=_readers, is_whole=True)
+ODOMETRY: Final = StateAdapter(
+    type_names=("nav_msgs/msg/Odometry",), readers=_readers, is_whole=True, is_of_one_body=True
+)
 
 
 def odometry_from_body_state(

@@ -1,4 +1,4 @@
-"""Two topics whose messages of one stamp make a state together."""
+"""Joins two topics whose messages of one stamp make a state together."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`geometry_msgs/PoseStamped` and `PoseWithCovarianceStamped` alone to states, with velocities from poses."""
+"""Converts poses alone, with covariance or without, to states. The velocities come from the poses."""
 
 from __future__ import annotations
 
@@ -79,7 +79,9 @@ def _with_covariance(settings: SourceSettings) -> Sequence[Reader]:
     return (_Poses(settings).with_covariance,)
 
 
-POSE: Final = StateAdapter(type_names=("geometry_msgs/msg/PoseStamped",), readers=_plain)
+POSE: Final = StateAdapter(type_names=("geometry_msgs/msg/PoseStamped",), readers=_plain, is_of_one_body=True)
 POSE_WITH_COVARIANCE: Final = StateAdapter(
-    type_names=("geometry_msgs/msg/PoseWithCovarianceStamped",), readers=_with_covariance
+    type_names=("geometry_msgs/msg/PoseWithCovarianceStamped",),
+    readers=_with_covariance,
+    is_of_one_body=True,
 )

@@ -1,4 +1,4 @@
-"""Poses alone to states: the velocities are found from the poses of a short window.
+"""Converts poses alone to states: the velocities are found from the poses of a short window.
 
 The filter is `motion.velocity_estimate`: a quadratic is fitted to each coordinate over the window, and its
 slope at the newest pose is the velocity. Its delay is zero while the acceleration is constant, as in flight.

@@ -115,7 +115,9 @@ def _readers_with_covariance(settings: SourceSettings) -> Sequence[Reader]:
 
 
 POSE_TWIST: Final = StateAdapter(
-    type_names=("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/TwistStamped"), readers=_readers
+    type_names=("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/TwistStamped"),
+    readers=_readers,
+    is_of_one_body=True,
 )
 POSE_TWIST_WITH_COVARIANCE: Final = StateAdapter(
     type_names=(
@@ -123,6 +125,7 @@ POSE_TWIST_WITH_COVARIANCE: Final = StateAdapter(
         "geometry_msgs/msg/TwistWithCovarianceStamped",
     ),
     readers=_readers_with_covariance,
+    is_of_one_body=True,
 )
 
 

@@ -1,4 +1,4 @@
-"""Covariances of poses and twists, (6, 6) each as ROS publishes them, to that of a body's state.
+"""Converts covariances of poses and twists, (6, 6) each as ROS publishes them, to that of a body's state.
 
 ROS's order is x y z, then the rotations about the fixed axes x y z of the header's frame. A twist's is that
 of its linear and angular velocity, in the axes that the twist is in. A covariance of zeros, or one whose

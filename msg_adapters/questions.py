@@ -1,4 +1,7 @@
-"""Converts requests of the three services to questions. No other file reads a request.
+"""Converts requests about tumbling, impacts and contact modes to questions.
+
+Its neighbours `batches`, `contact_mode_batch` and `toss` read the requests of the other services with its
+parts.
 
 A number that a question leaves out is an empty list in a request. Fields without meaning for a question, such
 as a horizon if the contacts are given, are not read.
@@ -6,51 +9,46 @@ as a horizon if the contacts are given, are not read.
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.in_time.sequence import MOST_STRIKES, STRIKE_WINDOW
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions.contact_modes import ContactModeQuestion
+from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.sample_times import AtRate, AtStamps, AtTimes, UntilContact, UntilPlane
-from contact_dynamics.questions.subject import NEWEST, PublishedState, changed_body
 from contact_dynamics.questions.tumbling import TumblingQuestion
-from contact_dynamics.validation import check_not_negative
-from contact_dynamics.world import Body
-from msg_adapters.body_state import known_state_from_msg
+from msg_adapters.asked_subject import asked_other, asked_subject
 from msg_adapters.contacts import contacts_from_msg
-from msg_adapters.geometry import mass_properties_from_msg, vector_from_msg
-from msg_adapters.stamps import stamp_ns_from_msg
+from msg_adapters.geometry import vector_from_msg
+from msg_adapters.geometry_margins import uncertainty_from_msg
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from builtin_interfaces.msg import Time
-    from geometry_msgs.msg import Inertia, Vector3
+    from geometry_msgs.msg import Vector3
 
     from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.numerics.vectors import Vector3 as Vector
     from contact_dynamics.questions.sample_times import Sampling
-    from contact_dynamics.questions.subject import StateSource
-    from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import World
-    from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
     from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
-    from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+    from contact_dynamics_interfaces.srv import (
+        PredictContactMode,
+        PredictContactModeBatch,
+        PredictImpact,
+        PredictTumbling,
+    )
 
-_LONGEST_NAME: Final = 256
-_REMEMBERED: Final = 16  # described bodies that are kept, since a client sends an inertia with every request
 
-_NO_GRAVITY: Final = np.zeros(3)
+_NOTHING: Final = np.zeros(3)
 _WRENCH_FIELDS: Final = {
     "force": "applied_wrench.force",
     "torque": "applied_wrench.torque",
@@ -61,19 +59,6 @@ _WRENCH_FIELDS: Final = {
 
 T = TypeVar("T", bound=InvalidFieldError)
 Number = TypeVar("Number", int, float)
-
-
-class _SubjectRequest(Protocol):
-    """The fields about the body, which the requests of all services have."""
-
-    STATE_NEWEST: int
-    STATE_EXPLICIT: int
-    STATE_AT_STAMP: int
-    body_name: str
-    inertia: Inertia
-    state_source: int
-    stamp: Time
-    state: BodyStateMsg
 
 
 class _ContactRequest(Protocol):
@@ -108,7 +93,7 @@ def tumbling_question_from_msg(
         ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
     """
     gravity_W, wrench, drag = asked_gravity(request), _wrench(request), _drag(request)
-    body, state = _subject(request, world, world_frame, fit_window=request.fit_window)
+    body, state = asked_subject(request, world, world_frame, fit_window=request.fit_window)
     return TumblingQuestion(
         body=body,
         state=state,
@@ -136,8 +121,8 @@ def impact_question_from_msg(
     """
     problem = _problem(request.problem)
     is_planar = problem is Problem.PLANAR
-    body, state = _subject(request, world, world_frame, fit_window=request.fit_window)
-    other, other_state = _other(request, world, world_frame)
+    body, state = asked_subject(request, world, world_frame, fit_window=request.fit_window)
+    other, other_state = asked_other(request, world, world_frame)
     contacts = _contacts(request)
     return ImpactQuestion(
         body=body,
@@ -171,113 +156,80 @@ def contact_mode_question_from_msg(
     Raises:
         ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
     """
-    problem = _problem(request.problem)
-    may_be_planar = problem is not Problem.SPATIAL
-    body, state = _subject(request, world, world_frame)
-    contacts = _contacts(request)
-    compares_torques = request.want_margins or request.want_statics
     try:
-        return ContactModeQuestion(
-            body=body,
-            state=state,
-            contacts=contacts,
+        return asked_contact_modes(
+            request,
+            world,
+            world_frame,
+            compares_torques=request.want_margins or request.want_statics,
             force_W=vector_from_msg(request.applied_wrench.force),
             torque_W=vector_from_msg(request.applied_wrench.torque),
-            gravity_W=asked_gravity(request),
-            problem=problem,
-            plane=_plane(request.plane_normal) if may_be_planar else None,
-            out_of_plane_tolerance=_out_of_plane_tolerance(request) if may_be_planar else None,
-            velocity_tolerance=optional("velocity_tolerance", request.velocity_tolerance),
-            distance_tolerance=optional("distance_tolerance", request.distance_tolerance),
-            friction_facets=optional("friction_facets", request.friction_facets),
-            margin_length=optional("margin_length", request.margin_length) if compares_torques else None,
-            want_margins=request.want_margins,
             want_wrenches=request.want_wrenches,
             want_statics=request.want_statics,
             want_impact=request.want_impact,
+            uncertainty=uncertainty_from_msg(request),
+            want_geometry_margins=request.want_geometry_margins,
         )
     except InvalidFieldError as error:
         raise _renamed(error, _WRENCH_FIELDS) from None
 
 
-def _subject(
-    request: _SubjectRequest, world: World, world_frame: str, *, fit_window: float = 0.0
-) -> tuple[Body, StateSource]:
-    """Return the body that a request names or describes, and where its state comes from."""
-    stamp_ns = _stamp_ns(request)
-    is_explicit = request.state_source == request.STATE_EXPLICIT
-    if is_explicit and check_not_negative("fit_window", fit_window) > 0.0:
-        raise InvalidFieldError(
-            "fit_window", fit_window, "0 for an explicit state: published states are fitted"
-        )
-    body = asked_body(request.body_name, request.inertia, world)
-    if is_explicit:
-        return body, known_state_from_msg(request.state, world_frame=world_frame, p_FB_F=body.p_FB_F)
-    return body, _published(stamp_ns, fit_window)
+def asked_contact_modes(
+    request: PredictContactMode.Request | PredictContactModeBatch.Request,
+    world: World,
+    world_frame: str,
+    *,
+    compares_torques: bool,
+    force_W: FloatArray = _NOTHING,
+    torque_W: FloatArray = _NOTHING,
+    want_wrenches: bool = False,
+    want_statics: bool = False,
+    want_impact: bool = False,
+    uncertainty: ContactUncertainty = EXACT_CONTACTS,
+    want_geometry_margins: bool = False,
+) -> ContactModeQuestion:
+    """Return the question of what requests about one candidate and about many have in common.
 
-
-def _other(request: PredictImpact.Request, world: World, world_frame: str) -> tuple[Body | None, StateSource]:
-    """Return the second body of an impact, or None if the world is struck, and where its state comes from."""
-    explicit = request.other_state[0] if request.other_state else None
-    if not request.other_body_name and explicit is None and not _is_described(request.other_inertia):
-        return None, NEWEST
-    body = asked_body(request.other_body_name, request.other_inertia, world)
-    if explicit is None:
-        return body, _published(_stamp_ns(request))
-    return body, known_state_from_msg(explicit, world_frame=world_frame, p_FB_F=body.p_FB_F)
-
-
-def asked_body(name: str, inertia: Inertia, world: World) -> Body:
-    """Return the body that a request names or describes.
+    Args:
+        request: The request.
+        world: The bodies that it can name.
+        world_frame: The frame that an explicit state must be in.
+        compares_torques: Whether its margin_length matters.
+        force_W: The question's own, as what follows.
+        torque_W: As the question's.
+        want_wrenches: As the question's.
+        want_statics: As the question's.
+        want_impact: As the question's.
+        uncertainty: As the question's.
+        want_geometry_margins: As the question's.
 
     Raises:
-        ContactDynamicsError: the name is not known or too long, or the numbers are no body's.
+        ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
     """
-    if len(name) > _LONGEST_NAME:
-        raise TooLargeError("body_name", f"{len(name)} characters", f"at most {_LONGEST_NAME}")
-    is_described = _is_described(inertia)
-    if not name and not is_described:
-        raise InvalidFieldError("body_name", name, "the name of a configured body, or an inertia of mass > 0")
-    # The body is looked up here, because an explicit state is that of the body's published frame.
-    known = world.body(name) if name else None
-    if known is not None and not is_described:
-        return known
-    mass_properties, p_FB_F = mass_properties_from_msg(inertia)
-    return _described_body(mass_properties, tuple(p_FB_F.tolist()), known)
-
-
-@lru_cache(maxsize=_REMEMBERED)
-def _described_body(mass_properties: MassProperties, com: Vector, known: Body | None) -> Body:
-    """Return a body with the mass properties of a request, and any known body's name and shape."""
-    if known is None:
-        return Body(name="", mass_properties=mass_properties, p_FB_F=com)
-    return changed_body(known, mass_properties, np.array(com))
-
-
-def _is_described(inertia: Inertia) -> bool:
-    """Whether a request says anything of a body's mass: one of mass zero with other numbers is none."""
-    com = inertia.com
-    numbers = (inertia.m, inertia.ixx, inertia.ixy, inertia.ixz, inertia.iyy, inertia.iyz, inertia.izz)
-    return any(numbers) or any((com.x, com.y, com.z))
-
-
-def _stamp_ns(request: _SubjectRequest) -> int | None:
-    """Return the time of the published state that a request names, or None if it names none."""
-    if request.state_source == request.STATE_AT_STAMP:
-        return stamp_ns_from_msg(request.stamp)
-    if request.state_source not in {request.STATE_NEWEST, request.STATE_EXPLICIT}:
-        allowed = "STATE_NEWEST (0), STATE_EXPLICIT (1) or STATE_AT_STAMP (2)"
-        raise InvalidFieldError("state_source", request.state_source, allowed)
-    if request.stamp.sec or request.stamp.nanosec:
-        found = f"{stamp_ns_from_msg(request.stamp)} ns"
-        raise InvalidFieldError("stamp", found, "zero, or with state_source STATE_AT_STAMP (2) any time")
-    return None
-
-
-def _published(stamp_ns: int | None, fit_window: float = 0.0) -> PublishedState:
-    if stamp_ns is None and fit_window == 0.0:
-        return NEWEST
-    return PublishedState(stamp_ns=stamp_ns, fit_window=fit_window)
+    problem = _problem(request.problem)
+    may_be_planar = problem is not Problem.SPATIAL
+    body, state = asked_subject(request, world, world_frame)
+    return ContactModeQuestion(
+        body=body,
+        state=state,
+        contacts=_contacts(request),
+        gravity_W=asked_gravity(request),
+        problem=problem,
+        plane=_plane(request.plane_normal) if may_be_planar else None,
+        out_of_plane_tolerance=_out_of_plane_tolerance(request) if may_be_planar else None,
+        velocity_tolerance=optional("velocity_tolerance", request.velocity_tolerance),
+        distance_tolerance=optional("distance_tolerance", request.distance_tolerance),
+        friction_facets=optional("friction_facets", request.friction_facets),
+        margin_length=optional("margin_length", request.margin_length) if compares_torques else None,
+        force_W=force_W,
+        torque_W=torque_W,
+        want_margins=request.want_margins,
+        want_wrenches=want_wrenches,
+        want_statics=want_statics,
+        want_impact=want_impact,
+        uncertainty=uncertainty,
+        want_geometry_margins=want_geometry_margins,
+    )
 
 
 def optional(field: str, numbers: Sequence[Number]) -> Number | None:
@@ -307,7 +259,7 @@ def asked_gravity(request: _GravityRequest) -> FloatArray | None:
     if request.gravity == request.GRAVITY_AS_CONFIGURED:
         return None
     if request.gravity == request.GRAVITY_NONE:
-        return _NO_GRAVITY
+        return _NOTHING
     raise InvalidFieldError("gravity", request.gravity, "GRAVITY_AS_CONFIGURED (0) or GRAVITY_NONE (1)")
 
 

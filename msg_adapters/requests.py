@@ -17,6 +17,7 @@ from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, P
 from msg_adapters.body_state import known_state_to_msg
 from msg_adapters.contacts import contacts_to_msg
 from msg_adapters.geometry import mass_properties_to_msg, point_to_msg, vector_to_msg, wrench_to_msg
+from msg_adapters.geometry_margins import write_uncertainty
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 
 Number = TypeVar("Number", int, float)
@@ -27,19 +28,28 @@ if TYPE_CHECKING:
     from geometry_msgs.msg import Inertia
 
     from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.questions.contact_modes import ContactModeQuestion
+    from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
     from contact_dynamics.questions.impact_question import ImpactQuestion
     from contact_dynamics.questions.sample_times import Sampling
     from contact_dynamics.questions.subject import StateSource
     from contact_dynamics.questions.tumbling import TumblingQuestion
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
-    from contact_dynamics_interfaces.srv import PredictTumblingBatch
+    from contact_dynamics_interfaces.srv import (
+        PredictContactModeBatch,
+        PredictToss,
+        PredictTumblingBatch,
+    )
 
-    Request: TypeAlias = PredictContactMode.Request | PredictImpact.Request | PredictTumbling.Request
-    ContactRequest: TypeAlias = PredictContactMode.Request | PredictImpact.Request
+    ContactRequest: TypeAlias = (
+        PredictContactMode.Request | PredictContactModeBatch.Request | PredictImpact.Request
+    )
+    Request: TypeAlias = ContactRequest | PredictToss.Request | PredictTumbling.Request
     GravityRequest: TypeAlias = (
-        PredictContactMode.Request | PredictTumbling.Request | PredictTumblingBatch.Request
+        PredictContactMode.Request
+        | PredictContactModeBatch.Request
+        | PredictTumbling.Request
+        | PredictTumblingBatch.Request
     )
 
 
@@ -58,7 +68,7 @@ def tumbling_question_to_msg(
         NotSupportedError: the question has no request.
     """
     msg = PredictTumbling.Request()
-    _write_subject(msg, question.body, question.state, world, world_frame)
+    write_subject(msg, question.body, question.state, world, world_frame)
     if isinstance(question.state, PublishedState):
         msg.fit_window = question.state.fit_window
     _write_sampling(msg, question.sampling)
@@ -78,7 +88,7 @@ def impact_question_to_msg(
 ) -> PredictImpact.Request:
     """Return the request of a question about an impact, with arguments as in `tumbling_question_to_msg`."""
     msg = PredictImpact.Request()
-    _write_subject(msg, question.body, question.state, world, world_frame)
+    write_subject(msg, question.body, question.state, world, world_frame)
     if isinstance(question.state, PublishedState):
         msg.fit_window = question.state.fit_window
     if question.other is not None:
@@ -104,27 +114,44 @@ def contact_mode_question_to_msg(
 ) -> PredictContactMode.Request:
     """Return the request of a question about contact modes, as in `tumbling_question_to_msg`."""
     msg = PredictContactMode.Request()
-    _write_subject(msg, question.body, question.state, world, world_frame)
+    write_contact_modes(msg, question, world, world_frame)
+    msg.applied_wrench = wrench_to_msg(question.force_W, question.torque_W)
+    msg.want_wrenches = question.want_wrenches
+    msg.want_statics = question.want_statics
+    msg.want_impact = question.want_impact
+    write_uncertainty(question.uncertainty, msg)
+    msg.want_geometry_margins = question.want_geometry_margins
+    return msg
+
+
+def write_contact_modes(
+    msg: PredictContactMode.Request | PredictContactModeBatch.Request,
+    question: ContactModeQuestion,
+    world: World,
+    world_frame: str,
+) -> None:
+    """Write what requests about one candidate and about many have in common."""
+    write_subject(msg, question.body, question.state, world, world_frame)
     if isinstance(question.state, PublishedState) and question.state.fit_window > 0.0:
         message = f"fit_window: found {question.state.fit_window:g}, allowed about contact modes is 0"
         raise NotSupportedError(message)
     _write_contacts(msg, question.contacts)
-    msg.applied_wrench = wrench_to_msg(question.force_W, question.torque_W)
     write_gravity(msg, question.gravity_W)
     _write_problem(msg, question)
     msg.friction_facets = asked_optional(question.friction_facets)
     msg.margin_length = asked_optional(question.margin_length)
     msg.want_margins = question.want_margins
-    msg.want_wrenches = question.want_wrenches
-    msg.want_statics = question.want_statics
-    msg.want_impact = question.want_impact
-    return msg
 
 
-def _write_subject(
+def write_subject(
     msg: Request, body: Body | str, source: StateSource, world: World, world_frame: str
 ) -> None:
-    """Write the body that a request is about, and where its state comes from."""
+    """Write the body that a request is about, and where its state comes from.
+
+    Raises:
+        UnknownBodyError: the world does not have the body.
+        NotSupportedError: the body has no request.
+    """
     body = world.body(body) if isinstance(body, str) else body
     msg.body_name = body.name
     inertia = asked_inertia(body, world)

@@ -1,4 +1,4 @@
-"""`mocap4r2_msgs/RigidBodies` to states: all bodies that a motion capture sees, in one message.
+"""Converts `mocap4r2_msgs/RigidBodies` to states of all bodies that a motion capture sees.
 
 A body is found by its frame, which is the `rigid_body_name` there. The velocities come from its poses. The
 package `mocap4r2_msgs` is needed only where this source is used.

@@ -50,8 +50,11 @@ class StateAdapter:
         readers: Returns a reader for each topic, in the same order. It is called once for each body.
         is_whole: Whether each message is a state by itself, whatever came before. It can then be read later,
             or never. Its first field is a header with the body's stamp.
+        is_of_one_body: Whether each message is about one body, whatever that is called. Then no two bodies
+            can have their states by the same topic.
     """
 
     type_names: tuple[str, ...]
     readers: Callable[[SourceSettings], Sequence[Reader]]
     is_whole: bool = False
+    is_of_one_body: bool = False

@@ -23,6 +23,10 @@ _CODE_NAMES: Final[tuple[tuple[type[errors.ContactDynamicsError], str], ...]] = 
 )
 
 
+MOST_SAID: Final = 2000
+"""Letters of a message about an error. It quotes what was found, which may be a name of any length."""
+
+
 class Response(Protocol):
     """The fields that every response has."""
 
@@ -30,6 +34,12 @@ class Response(Protocol):
     status: int
     message: str
     computation_time: float
+
+
+def short(message: str) -> str:
+    """Return a message without its middle, if it is too long to be read."""
+    half = MOST_SAID // 2
+    return message if len(message) <= MOST_SAID else f"{message[:half]} ... {message[-half:]}"
 
 
 def code_name(error: Exception) -> str:
@@ -43,7 +53,7 @@ def report_error(response: Response, error: Exception) -> None:
         code = getattr(response, code_name, None)
         if isinstance(error, error_type) and code is not None:
             response.status = code
-            response.message = str(error)
+            response.message = short(str(error))
             return
     response.status = response.INTERNAL_ERROR  # type: ignore[attr-defined]
-    response.message = f"{type(error).__name__}: {error}"
+    response.message = short(f"{type(error).__name__}: {error}")

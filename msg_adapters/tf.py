@@ -1,4 +1,4 @@
-"""`tf2_msgs/TFMessage` to states: a body's frame in the world frame, with velocities from its poses.
+"""Converts `tf2_msgs/TFMessage` to states: a body's frame in the world frame, with velocities from its poses.
 
 The body's own frame moves. Frames between it and the world stand still (they come on the static topic), or
 are told with the same stamp, before the body's frame or in the same message.

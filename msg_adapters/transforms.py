@@ -1,4 +1,4 @@
-"""`tf2_msgs/TFMessage`: the tree of frames that such messages describe, and a frame's pose in another one.
+"""Reads the tree of frames that `tf2_msgs/TFMessage` describes, and finds a frame's pose in another one.
 
 Each transform says where a child frame is in its parent. A frame's pose in another frame is found by going up
 from both to the frame that they share. Nothing is interpolated: a link that moves counts only at its own

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -28,7 +28,9 @@ from msg_adapters.stamps import stamp_to_msg
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import World
-    from contact_dynamics_interfaces.srv import PredictImpact
+    from contact_dynamics_interfaces.srv import PredictImpact, PredictToss
+
+    FittedResponse: TypeAlias = PredictImpact.Response | PredictToss.Response | PredictTumbling.Response
 
 
 def tumbling_answer_to_msg(
@@ -156,7 +158,7 @@ def read_covariances(msg: TrajectoryMsg) -> CarriedCovariance | None:
     )
 
 
-def write_fit(response: PredictImpact.Response | PredictTumbling.Response, fit: FitQuality | None) -> None:
+def write_fit(response: FittedResponse, fit: FitQuality | None) -> None:
     """Write into a response how good the fit was that its state came from, with NaN for no fit."""
     if fit is None:
         response.fit_position_residual = response.fit_orientation_residual = math.nan
@@ -166,7 +168,7 @@ def write_fit(response: PredictImpact.Response | PredictTumbling.Response, fit: 
     response.fit_orientation_residual = fit.orientation_residual
 
 
-def read_fit(response: PredictImpact.Response | PredictTumbling.Response) -> FitQuality | None:
+def read_fit(response: FittedResponse) -> FitQuality | None:
     """Return how good the fit was that a response's state came from, or None without a fit."""
     if response.fit_count == 0:
         return None

@@ -13,7 +13,11 @@ from hypothesis import strategies as st
 
 from architecture.test_interfaces import FILES
 from contact_dynamics.errors import NotSupportedError
-from contact_dynamics.questions import ContactModeQuestion, ImpactQuestion, PublishedState
+from contact_dynamics.questions import (
+    ContactModeQuestion,
+    ImpactQuestion,
+    PublishedState,
+)
 from contact_dynamics.questions.subject import NEWEST
 from contact_dynamics.world import Body, World
 from contact_dynamics_interfaces.msg import Poinsot as PoinsotMsg
@@ -22,22 +26,33 @@ from message_values import (
     BRICK,
     NO_OFFSET,
     WORLD,
+    branches,
     carried,
     contact_mode_answers,
     contact_mode_questions,
     contact_sets,
+    event_regions,
+    geometry_margins,
     impact_answers,
     impact_questions,
     known_states,
+    many_contact_modes_answers,
+    many_contact_modes_questions,
     many_impacts_answers,
     many_impacts_questions,
     many_states,
     many_tumblings_answers,
     many_tumblings_questions,
     modes_and_margins,
+    regions,
     resolved_impacts,
     rotations,
     same,
+    toss_answers,
+    toss_distributions,
+    toss_events,
+    toss_paths,
+    toss_questions,
     trajectories,
     tumbling_answers,
     tumbling_questions,
@@ -65,7 +80,14 @@ from msg_adapters.contact_mode import (
     wrench_set_from_msg,
     wrench_set_to_msg,
 )
+from msg_adapters.contact_mode_batch import (
+    contact_modes_answer_from_msg,
+    contact_modes_answer_to_msg,
+    contact_modes_question_from_msg,
+    contact_modes_question_to_msg,
+)
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg
+from msg_adapters.geometry_margins import geometry_margin_from_msg, geometry_margin_to_msg
 from msg_adapters.impact import (
     impact_answer_from_msg,
     impact_answer_to_msg,
@@ -81,6 +103,26 @@ from msg_adapters.requests import (
     contact_mode_question_to_msg,
     impact_question_to_msg,
     tumbling_question_to_msg,
+)
+from msg_adapters.toss import (
+    toss_answer_from_msg,
+    toss_answer_to_msg,
+    toss_event_from_msg,
+    toss_event_to_msg,
+    toss_path_from_msg,
+    toss_path_to_msg,
+    toss_question_from_msg,
+    toss_question_to_msg,
+)
+from msg_adapters.toss_distribution import (
+    branch_from_msg,
+    branch_to_msg,
+    distribution_from_msg,
+    distribution_to_msg,
+    event_regions_from_msg,
+    event_regions_to_msg,
+    region_from_msg,
+    region_to_msg,
 )
 from msg_adapters.tumbling import (
     curves_from_msg,
@@ -145,6 +187,7 @@ PAIRS = {
         lambda value: resolved_impact_to_msg(value, body_name="brick", **BODY),
         lambda msg: resolved_impact_from_msg(msg, p_FB_F=NO_OFFSET),
     ),
+    "GeometryMargin": Pair(geometry_margins, geometry_margin_to_msg, geometry_margin_from_msg),
     "ModeWrenches": Pair(wrench_sets(), wrench_set_to_msg, wrench_set_from_msg),
     "Poinsot": Pair(rotations(), lambda value: poinsot_to_msg(*value), _poinsot_from_msg),
     "Trajectory": Pair(
@@ -156,6 +199,34 @@ PAIRS = {
         many_states(3),
         lambda value: body_states_to_msg(value, p_FB_F=NO_OFFSET),
         lambda msg: body_states_from_msg(msg, p_FB_F=NO_OFFSET),
+    ),
+    "TossRegion": Pair(regions, region_to_msg, region_from_msg),
+    "TossEventRegions": Pair(event_regions, event_regions_to_msg, event_regions_from_msg),
+    "TossBranch": Pair(branches, branch_to_msg, branch_from_msg),
+    "TossDistribution": Pair(
+        toss_distributions(),
+        lambda value: distribution_to_msg(value, p_FB_F=NO_OFFSET),
+        lambda msg: distribution_from_msg(msg, p_FB_F=NO_OFFSET),
+    ),
+    "TossEvent": Pair(
+        toss_events(),
+        lambda value: toss_event_to_msg(value, body_name="brick", **BODY),
+        lambda msg: toss_event_from_msg(msg, p_FB_F=NO_OFFSET),
+    ),
+    "TossPath": Pair(
+        toss_paths(),
+        lambda value: toss_path_to_msg(value, stamp_ns=7, body_name="brick", **BODY),
+        lambda msg: toss_path_from_msg(msg, p_FB_F=NO_OFFSET),
+    ),
+    "PredictToss.Request": Pair(
+        toss_questions(),
+        lambda value: toss_question_to_msg(value, world=WORLD, **FRAME),
+        lambda msg: toss_question_from_msg(msg, world=WORLD, **FRAME),
+    ),
+    "PredictToss.Response": Pair(
+        toss_answers(),
+        lambda value: toss_answer_to_msg(value, **FRAME),
+        lambda msg: toss_answer_from_msg(msg, world=NOWHERE),
     ),
     "PredictImpactBatch.Request": Pair(
         many_impacts_questions(),
@@ -176,6 +247,16 @@ PAIRS = {
         many_tumblings_answers(),
         lambda value: tumblings_answer_to_msg(value, **FRAME),
         lambda msg: tumblings_answer_from_msg(msg, world=NOWHERE),
+    ),
+    "PredictContactModeBatch.Request": Pair(
+        many_contact_modes_questions(),
+        lambda value: contact_modes_question_to_msg(value, world=WORLD, **FRAME),
+        lambda msg: contact_modes_question_from_msg(msg, world=WORLD, **FRAME),
+    ),
+    "PredictContactModeBatch.Response": Pair(
+        many_contact_modes_answers(),
+        lambda value: contact_modes_answer_to_msg(value, **FRAME),
+        lambda msg: contact_modes_answer_from_msg(msg, world=NOWHERE),
     ),
     "PredictContactMode.Request": Pair(
         contact_mode_questions(),
@@ -221,7 +302,7 @@ def test_each_interface_has_a_pair() -> None:
 
 
 @pytest.mark.parametrize("name", PAIRS)
-@settings(suppress_health_check=[HealthCheck.too_slow], deadline=None, max_examples=40)
+@settings(suppress_health_check=[HealthCheck.too_slow], deadline=None, max_examples=15)
 @given(data=st.data())
 def test_a_value_comes_back_and_goes_again_as_it_was(name: str, data: st.DataObject) -> None:
     """Every field, to the last bit, of the value and of the message."""
@@ -236,7 +317,7 @@ def test_a_value_comes_back_and_goes_again_as_it_was(name: str, data: st.DataObj
 @pytest.mark.parametrize(
     "name", ["PredictContactMode.Response", "PredictImpact.Response", "PredictTumbling.Response"]
 )
-@settings(suppress_health_check=[HealthCheck.too_slow], deadline=None, max_examples=40)
+@settings(suppress_health_check=[HealthCheck.too_slow], deadline=None, max_examples=15)
 @given(data=st.data())
 def test_answers_find_the_centre_of_mass_in_the_world(name: str, data: st.DataObject) -> None:
     """The message has the published frame: positions come back to rounding, all else as it was."""

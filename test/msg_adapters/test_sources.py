@@ -260,6 +260,17 @@ def test_a_covariance_that_is_none_leaves_the_state(unknown: str) -> None:
     assert isinstance(found, BodyState)
 
 
+def test_odometry_of_another_frame_than_the_bodys_is_refused() -> None:
+    """Its pose and twist would be taken for those of the body."""
+    (read,) = ODOMETRY.readers(settings())
+    known = {"world_frame": "world", "p_FB_F": CENTER}
+    assert read(odometry_from_body_state(STATE, child_frame="brick_link", **known)) is not None
+    assert read(odometry_from_body_state(STATE, child_frame="", **known)) is not None
+    allowed = "child_frame_id: found 'base_link', allowed is 'brick_link'"
+    with pytest.raises(FrameMismatchError, match=allowed):
+        read(odometry_from_body_state(STATE, child_frame="base_link", **known))
+
+
 # Poses alone
 
 

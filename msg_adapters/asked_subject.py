@@ -1,0 +1,131 @@
+"""Reads from requests which body they are about and where its state comes from.
+
+A body is named, or described by an inertia, or both. Its state stands in the request, or was published.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING, Final, Protocol
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.questions.subject import NEWEST, PublishedState, changed_body
+from contact_dynamics.validation import check_not_negative
+from contact_dynamics.world import LONGEST_NAME, Body
+from msg_adapters.body_state import known_state_from_msg
+from msg_adapters.geometry import mass_properties_from_msg
+from msg_adapters.stamps import stamp_ns_from_msg
+
+if TYPE_CHECKING:
+    from builtin_interfaces.msg import Time
+    from geometry_msgs.msg import Inertia
+
+    from contact_dynamics.numerics.vectors import Vector3 as Vector
+    from contact_dynamics.questions.subject import StateSource
+    from contact_dynamics.rigid_body.body import MassProperties
+    from contact_dynamics.world import World
+    from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
+    from contact_dynamics_interfaces.srv import PredictImpact
+
+_REMEMBERED: Final = 16  # described bodies that are kept, since a client sends an inertia with every request
+
+
+class _SubjectRequest(Protocol):
+    """The fields about the body, which the requests of all services have."""
+
+    STATE_NEWEST: int
+    STATE_EXPLICIT: int
+    STATE_AT_STAMP: int
+    body_name: str
+    inertia: Inertia
+    state_source: int
+    stamp: Time
+    state: BodyStateMsg
+
+
+def asked_subject(
+    request: _SubjectRequest, world: World, world_frame: str, *, fit_window: float = 0.0
+) -> tuple[Body, StateSource]:
+    """Return the body that a request names or describes, and where its state comes from.
+
+    Raises:
+        ContactDynamicsError: the body is not known, or a field about the state holds what is not allowed.
+    """
+    stamp_ns = _stamp_ns(request)
+    is_explicit = request.state_source == request.STATE_EXPLICIT
+    if is_explicit and check_not_negative("fit_window", fit_window) > 0.0:
+        raise InvalidFieldError(
+            "fit_window", fit_window, "0 for an explicit state: published states are fitted"
+        )
+    body = asked_body(request.body_name, request.inertia, world)
+    if is_explicit:
+        return body, known_state_from_msg(request.state, world_frame=world_frame, p_FB_F=body.p_FB_F)
+    return body, _published(stamp_ns, fit_window)
+
+
+def asked_other(
+    request: PredictImpact.Request, world: World, world_frame: str
+) -> tuple[Body | None, StateSource]:
+    """Return the second body of an impact, or None if the world is struck, and where its state comes from."""
+    explicit = request.other_state[0] if request.other_state else None
+    if not request.other_body_name and explicit is None and not _is_described(request.other_inertia):
+        return None, NEWEST
+    body = asked_body(request.other_body_name, request.other_inertia, world)
+    if explicit is None:
+        return body, _published(_stamp_ns(request))
+    return body, known_state_from_msg(explicit, world_frame=world_frame, p_FB_F=body.p_FB_F)
+
+
+def asked_body(name: str, inertia: Inertia, world: World) -> Body:
+    """Return the body that a request names or describes.
+
+    Raises:
+        ContactDynamicsError: the name is not known or too long, or the numbers are no body's.
+    """
+    if len(name) > LONGEST_NAME:
+        raise TooLargeError("body_name", f"{len(name)} characters", f"at most {LONGEST_NAME}")
+    is_described = _is_described(inertia)
+    if not name and not is_described:
+        raise InvalidFieldError("body_name", name, "the name of a configured body, or an inertia of mass > 0")
+    # The body is looked up here, because an explicit state is that of the body's published frame.
+    known = world.body(name) if name else None
+    if known is not None and not is_described:
+        return known
+    mass_properties, p_FB_F = mass_properties_from_msg(inertia)
+    return _described_body(mass_properties, tuple(p_FB_F.tolist()), known)
+
+
+@lru_cache(maxsize=_REMEMBERED)
+def _described_body(mass_properties: MassProperties, com: Vector, known: Body | None) -> Body:
+    """Return a body with the mass properties of a request, and any known body's name and shape."""
+    if known is None:
+        return Body(name="", mass_properties=mass_properties, p_FB_F=com)
+    return changed_body(known, mass_properties, np.array(com))
+
+
+def _is_described(inertia: Inertia) -> bool:
+    """Whether a request says anything of a body's mass: one of mass zero with other numbers is none."""
+    com = inertia.com
+    numbers = (inertia.m, inertia.ixx, inertia.ixy, inertia.ixz, inertia.iyy, inertia.iyz, inertia.izz)
+    return any(numbers) or any((com.x, com.y, com.z))
+
+
+def _stamp_ns(request: _SubjectRequest) -> int | None:
+    """Return the time of the published state that a request names, or None if it names none."""
+    if request.state_source == request.STATE_AT_STAMP:
+        return stamp_ns_from_msg(request.stamp)
+    if request.state_source not in {request.STATE_NEWEST, request.STATE_EXPLICIT}:
+        allowed = "STATE_NEWEST (0), STATE_EXPLICIT (1) or STATE_AT_STAMP (2)"
+        raise InvalidFieldError("state_source", request.state_source, allowed)
+    if request.stamp.sec or request.stamp.nanosec:
+        found = f"{stamp_ns_from_msg(request.stamp)} ns"
+        raise InvalidFieldError("stamp", found, "zero, or with state_source STATE_AT_STAMP (2) any time")
+    return None
+
+
+def _published(stamp_ns: int | None, fit_window: float = 0.0) -> PublishedState:
+    if stamp_ns is None and fit_window == 0.0:
+        return NEWEST
+    return PublishedState(stamp_ns=stamp_ns, fit_window=fit_window)
