@@ -1,4 +1,4 @@
-"""Lecture 26's construction for one mode: acceleration centres and force duals, and what they span.
+"""Lecture 26's construction shows acceleration centres and force duals of one mode, and what they span.
 
 The applied wrenches that can bring a mode about are pos({a} + {-c_i}): a its accelerations, c_i the edges of
 the friction cones that its letters allow. Each is a point of the oriented plane, anticlockwise on the left,

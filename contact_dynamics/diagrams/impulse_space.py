@@ -1,4 +1,4 @@
-"""An impact in impulse space (Mason, lecture 27): tangential impulse to the right, normal impulse up.
+"""Impulse space shows an impact (Mason, lecture 27): tangential impulse to the right, normal impulse up.
 
 The path of the accumulated impulse leaves the origin, inside the friction cone. On the sticking line the
 contact does not slide, and on the compression line it does not approach. The path bends where it meets the
@@ -57,7 +57,7 @@ class Line(NamedTuple):
     offset: float
 
 
-class _ContactMotion(NamedTuple):
+class ContactMotion(NamedTuple):
     """The contact's velocity after an impulse x is ``velocity + response @ x`` (lecture 27, eq. 9 and 10).
 
     The components are along the picture's tangent, along the normal, and out of the picture.
@@ -135,7 +135,7 @@ def impulse_space_of(
     compression: tuple[Line, ...] = ()
     if mass_properties is not None and (answer.other is None or other is not None):
         before = chosen[0] if chosen else 0
-        motion = _contact_motion(mass_properties, answer, contact, axes_W, other=other, before=before)
+        motion = contact_motion(mass_properties, answer, contact, axes_W, other=other, before=before)
         sticking = (motion.sticking_line(in_space=answer.plane is None),)
         compressed_W = [impact.path_W[i] for i, event in events if event == PathEvent.COMPRESSION_ENDS]
         aside = [float(np.cross(*axes_W) @ p_W) for p_W in compressed_W]
@@ -202,7 +202,7 @@ def line_in_box(line: Line, extent: float) -> FloatArray:
     return np.array([[foot + begin * along, foot + end * along]])
 
 
-def _contact_motion(
+def contact_motion(
     mass_properties: MassProperties,
     answer: ImpactAnswer,
     contact: int,
@@ -210,8 +210,17 @@ def _contact_motion(
     *,
     other: MassProperties | None,
     before: int,
-) -> _ContactMotion:
-    """Return the motion of a contact after the strikes that come before a vertex of the path."""
+) -> ContactMotion:
+    """Return the motion of a contact after the strikes that come before a vertex of the path.
+
+    Args:
+        mass_properties: Those of the body.
+        answer: The impact.
+        contact: Which contact.
+        axes_W: (2, 3), unit, the tangent and the normal of the picture, world axes.
+        other: Mass properties of the body that is struck.
+        before: The vertex of the path, as an index.
+    """
     state, impact = answer.state, answer.impact
     p_WC_W = answer.contacts.p_WC_W[contact]
     struck_W = dict(
@@ -226,7 +235,7 @@ def _contact_motion(
         velocity_W = velocity_W - _velocity_of_point(other, struck, p_WC_W, pushes)
         response_W = response_W + contact_inverse_inertia(other, struck, p_WC_W - struck.p_WB_W)
     axes = np.vstack([axes_W, np.cross(*axes_W)])
-    return _ContactMotion(axes @ velocity_W, axes @ response_W @ axes.T)
+    return ContactMotion(axes @ velocity_W, axes @ response_W @ axes.T)
 
 
 def _velocity_of_point(

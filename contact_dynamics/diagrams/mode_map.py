@@ -1,4 +1,4 @@
-"""The map of contact modes over applied wrenches (Mason, lecture 26, "Contact modes for wrench in tray").
+"""The map of contact modes shows which applied wrench brings about which mode (Mason, lecture 26).
 
 Each region of a chart belongs to the modes that its wrenches bring about. In some regions several modes are
 consistent (indeterminate), and in some none is (inconsistent).

@@ -1,4 +1,4 @@
-"""A planar answer about contact modes: its consistent modes side by side, and what the map of modes shows.
+"""This file puts the consistent modes of a planar answer side by side, and says what the map of modes shows.
 
 The plane's normal points towards the eye.
 """
@@ -16,6 +16,7 @@ from contact_dynamics.contact_modes.spatial.applied_wrench import applied_wrench
 from contact_dynamics.diagrams.mode_map import LIVE_RESOLUTION, chart_for
 from contact_dynamics.diagrams.planar_scene import planar_scene_of
 from contact_dynamics.diagrams.words import margin_in_words
+from contact_dynamics.diagrams.wrench_chart import DirectionChart, ForceDualChart
 from contact_dynamics.questions.planar_view import seen_contacts, seen_modes, seen_wrench, seen_wrench_set
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ NO_SIZE: Final = 0.1
 MOST_SETS: Final = 100
 """A map of more modes than this is not drawn, because its regions are too small to see and take seconds."""
 
-_AROUND: Final = 0.45  # room around body and contacts in each picture, relative to the body's size
+_AROUND: Final = 0.35  # room around body and contacts in each picture, relative to the body's size
 _WALL: Final = 0.15  # half of the length of a contact's flat, relative to the body's size
 
 
@@ -133,7 +134,7 @@ def map_of_answer(
     if not answer.wrench_sets or len(answer.wrench_sets) > MOST_SETS:
         return None
     sets = tuple(seen_wrench_set(wrenches, plane) for wrenches in answer.wrench_sets)
-    applied = _applied(answer, plane, body)
+    applied = applied_of(answer, plane, body)
     return AnswersMap(
         sets=sets,
         chart=chart_for(sets, length=length_of(sets), applied=applied, resolution=resolution),
@@ -142,10 +143,31 @@ def map_of_answer(
     )
 
 
-def _applied(
+def dual_chart_of(view: ModesSideBySide, shown: AnswersMap, *, resolution: int) -> ForceDualChart | None:
+    """Return the chart of force duals for the modes of an answer, as wide as each of their pictures.
+
+    It is None where there is no such construction: without a consistent mode, or for a moving body.
+
+    Args:
+        view: The modes.
+        shown: The map of the same answer.
+        resolution: Points on a side of each of the chart's squares.
+    """
+    if not view.modes or not isinstance(shown.chart, DirectionChart):
+        return None
+    middle = 0.5 * (view.low + view.high)
+    return ForceDualChart(
+        length=shown.chart.length,
+        half_side=0.5 * float(np.max(view.high - view.low)),
+        centre=(float(middle[0]), float(middle[1])),
+        resolution=resolution,
+    )
+
+
+def applied_of(
     answer: ContactModeAnswer, plane: PlaneOfMotion, body: MassProperties | None
 ) -> PlanarWrench | None:
-    """Return the wrench in question, or None if it is not known."""
+    """Return the wrench in question, or None if it is not known: without modes or mass properties."""
     if body is None or not answer.modes:
         return None
     return seen_wrench(applied_wrench(body, answer.state, answer.contacts, answer.modes[0]), plane)

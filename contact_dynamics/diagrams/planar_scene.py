@@ -1,4 +1,4 @@
-"""A planar body and its contacts: outline, walls, friction cones, one mode's letters and forces.
+"""This file outlines a planar body, walls and friction cones, with one mode's letters and forces.
 
 Coordinates are in metres from the centre of mass, x to the right, y up.
 """

@@ -1,4 +1,4 @@
-"""Poinsot's picture: the inertia ellipsoid of a free body rolls on the invariable plane (lecture 25).
+"""In Poinsot's picture the inertia ellipsoid of a free body rolls on the invariable plane (lecture 25).
 
 In the space of angular velocities the ellipsoid w^T I w = 2 T turns with the body about its fixed centre, and
 touches the plane at w. Its trace on the ellipsoid is the polhode, its trace on the plane the herpolhode. The

@@ -1,4 +1,4 @@
-"""Energies and momenta over a trajectory, from its states and the body's mass properties."""
+"""This file finds energies and momenta over a trajectory, from its states and the body's mass properties."""
 
 from __future__ import annotations
 
@@ -7,11 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contact_dynamics.constants import seconds_since
 from contact_dynamics.rotations.many import matrices_of
+from contact_dynamics.tumbling import Trajectory
 
 if TYPE_CHECKING:
-    from contact_dynamics.rigid_body.body import MassProperties
-    from contact_dynamics.tumbling import Trajectory
+    from collections.abc import Sequence
+
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
 
 
@@ -33,6 +36,18 @@ class Energies:
     def total(self) -> FloatArray:
         """Return their sum, (n,), J."""
         return self.translational + self.rotational + self.potential
+
+
+def trajectory_of(states: Sequence[BodyState]) -> Trajectory:
+    """Return states that were published one after another as a trajectory, s after the first."""
+    stamps_ns = [state.stamp_ns for state in states]
+    return Trajectory(
+        seconds=seconds_since(stamps_ns[0], stamps_ns),
+        p_WB_W=np.array([state.p_WB_W for state in states]),
+        q_WB=np.array([state.q_WB for state in states]),
+        v_WB_W=np.array([state.v_WB_W for state in states]),
+        w_WB_W=np.array([state.w_WB_W for state in states]),
+    )
 
 
 def angular_momenta_of(body: MassProperties, trajectory: Trajectory) -> FloatArray:

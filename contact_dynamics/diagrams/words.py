@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.contact_modes import Certainty, ModeVerdict
+from contact_dynamics.contact_modes.letters import SEPARATES, SLIDES_LEFT, SLIDES_RIGHT, STAYS, STICKS
 from contact_dynamics.impact import ImpactOutcome, SequenceEnd
+from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
 from contact_dynamics.tumbling.regime import Regime
 
 if TYPE_CHECKING:
-    from contact_dynamics.contact_modes import BodyStatics, SpatialModeMargin
+    from contact_dynamics.contact_modes import BodyStatics, GeometryMargin, SpatialModeMargin, VerdictsWithin
+    from contact_dynamics.diagrams.after_impact import AfterImpact
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.questions.impact import ImpactAnswer
     from contact_dynamics.questions.resolved_impact import ResolvedImpact
@@ -24,7 +28,13 @@ if TYPE_CHECKING:
 TUMBLING: Final = "Tumbling"
 IMPACT: Final = "Impact"
 CONTACT_MODE: Final = "Contact mode"
+TOSS: Final = "Toss"
+MANY_TUMBLINGS: Final = "Tumbling of many"
+MANY_IMPACTS: Final = "Impacts of many"
 """The kinds of answers."""
+
+AFTER_IMPACT: Final = "After the impact"
+"""The kind of words about what was measured after an answer."""
 
 MOST_LISTED: Final = 8
 """Up to this number of refused modes are listed. The others are only counted."""
@@ -61,6 +71,15 @@ VERDICTS: Final = {
     ModeVerdict.UNDECIDED: "has modes that could not all be made out",
 }
 """The words for each verdict on a contact set."""
+
+LETTERS: Final = {
+    SEPARATES: ("separates", "separate"),
+    SLIDES_LEFT: ("slides left", "slide left"),
+    SLIDES_RIGHT: ("slides right", "slide right"),
+    STICKS: ("stays fixed", "stay fixed"),
+    STAYS: ("slides", "slide"),
+}
+"""The words for what one contact does, and for several."""
 
 CERTAINTIES: Final = {Certainty.NO: "no", Certainty.POSSIBLE: "possible", Certainty.CERTAIN: "certain"}
 """The words for answers to static questions."""
@@ -104,6 +123,16 @@ def impact_in_words(answer: ImpactAnswer) -> list[str]:
     return words
 
 
+def after_impact_in_words(found: AfterImpact) -> list[str]:
+    """Return words for the velocities after an impact as measured and as predicted, and their difference."""
+    after = found.answer.impact.state
+    return [
+        f"velocity measured ({_numbers(found.v_WB_W)}), predicted ({_numbers(after.v_WB_W)}) m/s",
+        f"spin measured ({_numbers(found.w_WB_W)}), predicted ({_numbers(after.w_WB_W)}) rad/s",
+        f"they differ by {found.linear_error:.2g} m/s and {found.angular_error:.2g} rad/s",
+    ]
+
+
 def contact_modes_in_words(answer: ContactModeAnswer) -> list[str]:
     """Return words for the verdict with every mode, for refused modes, and for what else was asked for."""
     margins = [""] * len(answer.modes)
@@ -111,6 +140,7 @@ def contact_modes_in_words(answer: ContactModeAnswer) -> list[str]:
         margins = [margin_in_words(margin) for margin in answer.margins]
     modes = [f"{mode.mode} {margin}".strip() for mode, margin in zip(answer.modes, margins, strict=True)]
     words = [_verdict_in_words(answer.verdict, modes)]
+    words += _within_in_words(answer.within) + _geometry_in_words(answer.geometry_margins)
     shared = [mode.mode for mode in answer.modes if not mode.forces_unique]
     if shared:
         words.append(f"the contact forces of {', '.join(shared)} are one choice of many")
@@ -121,6 +151,30 @@ def contact_modes_in_words(answer: ContactModeAnswer) -> list[str]:
         more = f" and {len(refused) - MOST_LISTED} more" if len(refused) > MOST_LISTED else ""
         words.append(f"refused: {', '.join(refused[:MOST_LISTED])}{more}")
     return [*words, *_statics_in_words(answer.statics), *_settled_in_words(answer.settled)]
+
+
+def mode_in_words(mode: str) -> str:
+    """Return words for a mode with forces, one letter for each contact: what the body does, or each kind."""
+    kinds = {letter: mode.count(letter) for letter in LETTERS if letter in mode}
+    if len(kinds) <= 1:
+        return next((f"it {_ALTOGETHER.get(kind, LETTERS[kind][0])}" for kind in kinds), "nothing touches it")
+    (first, most), *others = kinds.items()
+    words = f"{most} contact{'s' * (most > 1)} {LETTERS[first][most > 1]}"
+    words += "".join(f", {count} {LETTERS[kind][count > 1]}" for kind, count in others)
+    # A rigid body of which one contact stays fixed can only turn about it.
+    return f"it tips ({words})" if set(kinds) == {SEPARATES, STICKS} else words
+
+
+def many_in_words(answer: ManyTumblingsAnswer | ManyImpactsAnswer) -> list[str]:
+    """Return words for how many states there are, and what the impacts do."""
+    count = f"has {len(answer.states)} states"
+    if isinstance(answer, ManyTumblingsAnswer):
+        return [count]
+    words = [
+        "separates" if separates else OUTCOMES[ImpactOutcome(int(outcome))]
+        for outcome, separates in zip(answer.outcomes, answer.separates, strict=True)
+    ]
+    return [count, *(f"{number} {word}" for word, number in Counter(words).most_common())]
 
 
 def outcome_in_words(outcome: ImpactOutcome | None) -> str:
@@ -138,8 +192,46 @@ def margin_in_words(margin: SpatialModeMargin) -> str:
     return f"({margin.margin:.3g} N from {beyond})"
 
 
+_ALTOGETHER: Final = {SEPARATES: "leaves"}  # where a body is not said to do what its contacts do
+
+
 def _verdict_in_words(verdict: ModeVerdict, modes: list[str]) -> str:
     return f"{VERDICTS[verdict]}: {', '.join(modes)}" if modes else VERDICTS[verdict]
+
+
+def _within_in_words(within: VerdictsWithin | None) -> list[str]:
+    """Return words for the verdicts that occur if the contacts are known only to some uncertainty."""
+    if within is None:
+        return []
+    if within.certain:
+        return ["the verdict holds within the errors of the contacts"]
+    verdicts = ", ".join(VERDICTS[verdict] for verdict in within.verdicts)
+    listed = _verdicts_and_modes(verdicts, within.modes)
+    return [f"within the errors of the contacts, {within.samples} samples show: {listed}"]
+
+
+def _verdicts_and_modes(verdicts: str, modes: tuple[str, ...]) -> str:
+    more = f" and {len(modes) - MOST_LISTED} more" if len(modes) > MOST_LISTED else ""
+    return f"{verdicts} ({', '.join(modes[:MOST_LISTED])}{more})" if modes else verdicts
+
+
+_GEOMETRY: Final = {
+    "points": "points may be off by {:.2g} m",
+    "normals": "normals may be off by {:.2g} rad",
+    "frictions": "friction may be off by {:.2g}",
+}
+
+
+def _geometry_in_words(margins: tuple[GeometryMargin, ...] | None) -> list[str]:
+    """Return words for how far the contacts are from another answer."""
+    words = []
+    for margin in margins or ():
+        told = _GEOMETRY[margin.kind].format(margin.holds_within)
+        if math.isfinite(margin.changes_at):
+            beyond = _verdicts_and_modes(VERDICTS[margin.verdict_beyond], margin.modes_beyond)
+            told += f", at {margin.changes_at:.2g} the answer is {beyond}"
+        words.append(told)
+    return words
 
 
 def _flips_in_words(flips: Flips | None) -> list[str]:

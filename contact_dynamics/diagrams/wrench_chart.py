@@ -1,4 +1,4 @@
-"""Charts of applied planar wrenches, which give each wrench a place in a flat picture.
+"""Charts of applied planar wrenches give each wrench a place in a flat picture.
 
 If modes depend on a wrench's direction alone (a body at rest), every wrench is a point of a sphere, once its
 torque is divided by the radius of gyration. `DirectionChart` shows the whole sphere as two discs, with

@@ -7,16 +7,19 @@ Matplotlib, which the extra ``[plot]`` brings.
 In reading order: the colours (`colors`) and what all diagrams share (`style`), lecture 25's curves
 (`trajectory`) and rolling ellipsoid (`poinsot`), lecture 26's body with its contacts (`planar_scene`),
 contact forces in their cones (`contact_forces`) and charts of wrenches (`wrenches`), lecture 27's impulse
-space (`impulse_space`), all diagrams of an answer as figures (`figures`), and the command
-`contact-dynamics plot` (`arguments`, `logged_answers`, `run`).
+space (`impulse_space`, `impulse_space_in_3d`), whole tosses (`toss`), all diagrams of an answer as figures
+(`figures`), and the command `contact-dynamics plot` (`arguments`, `logged_answers`, `run`).
 """
 
 from contact_dynamics.plots.contact_forces import draw_contact_forces
 from contact_dynamics.plots.figures import figures_of
 from contact_dynamics.plots.impulse_space import draw_impulse_space
+from contact_dynamics.plots.impulse_space_in_3d import draw_impulse_space_in_3d
+from contact_dynamics.plots.many_states import draw_many_states
 from contact_dynamics.plots.planar_scene import draw_planar_scene
 from contact_dynamics.plots.poinsot import draw_poinsot
 from contact_dynamics.plots.style import save_figure
+from contact_dynamics.plots.toss import draw_event_tree, draw_toss
 from contact_dynamics.plots.trajectory import (
     draw_angular_momentum,
     draw_angular_velocity,
@@ -34,13 +37,17 @@ __all__ = [
     "draw_attitude",
     "draw_contact_forces",
     "draw_energy",
+    "draw_event_tree",
     "draw_force_dual",
     "draw_impulse_space",
+    "draw_impulse_space_in_3d",
+    "draw_many_states",
     "draw_mode_map",
     "draw_momentum",
     "draw_planar_scene",
     "draw_poinsot",
     "draw_position",
+    "draw_toss",
     "draw_velocity",
     "figures_of",
     "save_figure",

@@ -1,4 +1,4 @@
-"""The arguments of `contact-dynamics plot`."""
+"""These are the arguments of `contact-dynamics plot`."""
 
 from __future__ import annotations
 

@@ -1,19 +1,19 @@
-"""All diagrams of an answer, as figures of Matplotlib."""
+"""This file makes figures of Matplotlib of all diagrams of an answer."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-import numpy as np
-
-from contact_dynamics.diagrams.planar_modes import map_of_answer, modes_side_by_side
+from contact_dynamics.diagrams.planar_modes import dual_chart_of, map_of_answer, modes_side_by_side
 from contact_dynamics.diagrams.planar_scene import silhouette
 from contact_dynamics.diagrams.shape import drawn_shape
-from contact_dynamics.diagrams.wrench_chart import DirectionChart, ForceDualChart
 from contact_dynamics.plots.contact_forces import draw_contact_forces
 from contact_dynamics.plots.impulse_space import draw_impulse_space
+from contact_dynamics.plots.impulse_space_in_3d import draw_impulse_space_in_3d
+from contact_dynamics.plots.many_states import draw_many_states
 from contact_dynamics.plots.planar_scene import draw_planar_scene
 from contact_dynamics.plots.poinsot import draw_poinsot
+from contact_dynamics.plots.toss import draw_event_tree, draw_toss
 from contact_dynamics.plots.trajectory import (
     draw_angular_momentum,
     draw_angular_velocity,
@@ -26,6 +26,8 @@ from contact_dynamics.plots.trajectory import (
 from contact_dynamics.plots.wrenches import draw_force_dual, draw_mode_map
 from contact_dynamics.questions.contact_modes import ContactModeAnswer
 from contact_dynamics.questions.impact import ImpactAnswer
+from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
+from contact_dynamics.questions.toss import TossAnswer
 from contact_dynamics.shapes.convex import NO_SHAPE
 from contact_dynamics.tumbling.regime import Regime
 
@@ -54,7 +56,12 @@ class NamedFigure(NamedTuple):
 
 
 def figures_of(
-    answer: TumblingAnswer | ImpactAnswer | ContactModeAnswer,
+    answer: TumblingAnswer
+    | ImpactAnswer
+    | ContactModeAnswer
+    | TossAnswer
+    | ManyTumblingsAnswer
+    | ManyImpactsAnswer,
     *,
     gravity_W: FloatArray,
     body: MassProperties | None = None,
@@ -64,7 +71,7 @@ def figures_of(
     """Yield the figures of an answer. There are none for an answer without a diagram.
 
     Args:
-        answer: The answer to any of the three questions.
+        answer: The answer to any of the questions, or to one about many states.
         gravity_W: (3,), m/s^2, world axes, for the potential energy.
         body: Mass properties of the body. Without them there are no lines in impulse space, no energies and
             no momenta.
@@ -75,8 +82,35 @@ def figures_of(
         yield from _of_impact(answer, body, other)
     elif isinstance(answer, ContactModeAnswer):
         yield from _of_modes(answer, body, shape)
+    elif isinstance(answer, TossAnswer):
+        yield from _of_toss(answer, shape)
+    elif isinstance(answer, (ManyTumblingsAnswer, ManyImpactsAnswer)):
+        yield from _of_many(answer)
     else:
         yield from _of_tumbling(answer, body, gravity_W)
+
+
+def _of_many(answer: ManyTumblingsAnswer | ManyImpactsAnswer) -> Iterator[NamedFigure]:
+    if len(answer.states) == 0:
+        return
+    figure = _figure(8.0, 8.0)
+    side, top = figure.subplots(2, 1)
+    draw_many_states(side, answer, across="x", up="z")
+    draw_many_states(top, answer, across="x", up="y")
+    yield NamedFigure("states", figure)
+
+
+def _of_toss(answer: TossAnswer, shape: ConvexShape) -> Iterator[NamedFigure]:
+    outline = drawn_shape(shape)
+    figure = _figure(8.0, 8.0)
+    side, top = figure.subplots(2, 1)
+    draw_toss(side, answer, outline, across="x", up="z")
+    draw_toss(top, answer, outline, across="x", up="y")
+    yield NamedFigure("toss", figure)
+    if answer.distribution is not None and answer.distribution.branches:
+        figure = _figure(9.0, 5.0)
+        draw_event_tree(figure.add_subplot(), answer.distribution)
+        yield NamedFigure("toss-tree", figure)
 
 
 def _of_impact(
@@ -87,6 +121,10 @@ def _of_impact(
     figure = _figure(8.0, 4.6)
     draw_impulse_space(figure.add_subplot(), body, answer, other=other)
     yield NamedFigure("impulse-space", figure)
+    if answer.plane is None:
+        figure = _figure(9.0, 6.0)
+        draw_impulse_space_in_3d(figure.add_subplot(projection="3d"), body, answer, other=other)
+        yield NamedFigure("impulse-space-in-3d", figure)
 
 
 def _of_tumbling(
@@ -141,15 +179,9 @@ def _of_modes(
     figure = _figure(11.0, 5.0)
     draw_mode_map(figure.add_subplot(), shown.sets, shown.chart, applied=shown.applied, change=shown.change)
     yield NamedFigure("mode-map", figure)
-    if not isinstance(shown.chart, DirectionChart):  # the construction is that of a body at rest
+    chart = dual_chart_of(view, shown, resolution=_RESOLUTION)
+    if chart is None:
         return
-    half_side, middle = 0.5 * float(np.max(view.high - view.low)), 0.5 * (view.low + view.high)
-    chart = ForceDualChart(
-        length=shown.chart.length,
-        half_side=half_side,
-        centre=(float(middle[0]), float(middle[1])),
-        resolution=_RESOLUTION,
-    )
     for i, seen in enumerate(view.modes[:MOST_MODES], start=1):
         one = next(one for one in shown.sets if one.mode == seen.mode)
         figure = _figure(11.0, 5.0)

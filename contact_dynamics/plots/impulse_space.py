@@ -16,11 +16,12 @@ if TYPE_CHECKING:
     from contact_dynamics.questions.impact import ImpactAnswer
     from contact_dynamics.rigid_body.body import MassProperties
 
-_MARKERS: Final = {
+MARKERS: Final = {
     PathEvent.SLIDING_STOPS: "s",
     PathEvent.COMPRESSION_ENDS: "o",
     PathEvent.RESTITUTION_ENDS: "^",
 }
+"""How the events of a path are marked."""
 
 
 def draw_impulse_space(
@@ -74,7 +75,7 @@ def draw_impulse_space(
             [t],
             [n],
             linestyle="",
-            marker=_MARKERS[event],
+            marker=MARKERS[event],
             markersize=8.0,
             markerfacecolor="white",
             color=colors.BLACK,

@@ -6,16 +6,14 @@ import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.questions.contact_modes import ContactModeAnswer
-from contact_dynamics.questions.impact import ImpactAnswer
-from contact_dynamics.questions.tumbling import TumblingAnswer
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.errors import DamagedLogWarning
-from contact_dynamics.recording.service_calls import service_calls
+from contact_dynamics.recording.service_calls import ServiceCall
 from contact_dynamics.records import Record
 from contact_dynamics.replay.event_parts import part_of
+from contact_dynamics.replay.events import Answer
 from contact_dynamics.replay.of_log import server_of_log
-from contact_dynamics.replay.timeline import is_event_of_ours
+from contact_dynamics.replay.timeline import in_order
 from contact_dynamics.validation import FloatArray
 from contact_dynamics.world import Body
 
@@ -29,6 +27,9 @@ _KINDS: Final = {
     "PredictTumbling": "tumbling",
     "PredictImpact": "impact",
     "PredictContactMode": "contact-modes",
+    "PredictToss": "toss",
+    "PredictTumblingBatch": "tumbling-of-many",
+    "PredictImpactBatch": "impacts-of-many",
 }
 
 OK: Final = 0
@@ -41,7 +42,7 @@ class LoggedAnswer(Record):
 
     Attributes:
         number: Number of its question among all of the log, from 1.
-        kind: "tumbling", "impact" or "contact-modes".
+        kind: "tumbling", "impact", "contact-modes", "toss", "tumbling-of-many" or "impacts-of-many".
         answer: The answer as the server gave it.
         body: The body that the question was about, or None if the log does not describe it.
         other: A second body that was struck, or None.
@@ -50,7 +51,7 @@ class LoggedAnswer(Record):
 
     number: int
     kind: str
-    answer: TumblingAnswer | ImpactAnswer | ContactModeAnswer
+    answer: Answer
     body: Body | None
     other: Body | None
     gravity_W: FloatArray
@@ -59,7 +60,7 @@ class LoggedAnswer(Record):
 def logged_answers(path: Path) -> Iterator[LoggedAnswer]:
     """Yield the answers of a log, in the order in which the questions came.
 
-    Refused questions and batches are left out.
+    Refused questions are left out.
 
     Raises:
         NotALogError: the path has no log, or a log of something else than the server.
@@ -71,8 +72,12 @@ def logged_answers(path: Path) -> Iterator[LoggedAnswer]:
         warnings.simplefilter("ignore", DamagedLogWarning)  # what is whole is drawn
         _, server = server_of_log(path)
         log = BagReader(path)
-        events = (message for message in log.messages() if is_event_of_ours(message))
-        for number, call in enumerate(service_calls(events), start=1):
+        number = 0
+        for call in in_order(log, BagReader(path), server.topics_of_changes):
+            if not isinstance(call, ServiceCall):
+                server.receive(call)
+                continue
+            number += 1
             kind = _KINDS.get(call.service_type.rpartition("/")[2])
             if kind is None or call.request_event is None or call.response_event is None:
                 continue
@@ -81,8 +86,6 @@ def logged_answers(path: Path) -> Iterator[LoggedAnswer]:
                 continue
             question = server.question_from(call.service_type, part_of(call.request_event, "request"))
             answer = server.answer_from(call.service_type, response)
-            if question is None or answer is None:
-                continue
             gravity_W = getattr(question, "gravity_W", None)  # an impact needs none
             yield LoggedAnswer(
                 number=number,

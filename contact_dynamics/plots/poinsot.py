@@ -52,7 +52,7 @@ def draw_poinsot(axes: Any, picture: Poinsot, curves: RollingCurves, state: Body
         axes.quiver(0.0, 0.0, 0.0, *tip, color=color, arrow_length_ratio=0.08, linewidth=1.8, label=name)
     axes.set_xlabel("in the plane, rad/s", labelpad=_ROOM)
     axes.set_ylabel("in the plane, rad/s", labelpad=_ROOM)
-    axes.set_zlabel("against the angular momentum, rad/s", labelpad=_ROOM)
+    axes.set_zlabel("against the momentum, rad/s", labelpad=_ROOM)
     axes.locator_params(nbins=_TICKS)
     axes.set_aspect("equal")
     axes.view_init(elev=18.0, azim=-60.0)

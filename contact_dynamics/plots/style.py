@@ -1,4 +1,4 @@
-"""What all diagrams share: the legend beside them, the lines through zero, and the way into a file."""
+"""All diagrams share the legend beside them, the lines through zero, and the way into a file."""
 
 from __future__ import annotations
 

@@ -8,6 +8,7 @@ from enum import IntEnum
 import numpy as np
 import pytest
 
+from contact_dynamics.contact import ContactSet, ContactUncertainty
 from contact_dynamics.contact_modes import Certainty, ModeVerdict, SpatialModeMargin
 from contact_dynamics.diagrams.words import (
     CERTAINTIES,
@@ -15,10 +16,15 @@ from contact_dynamics.diagrams.words import (
     REGIMES,
     SEQUENCE_ENDS,
     VERDICTS,
+    contact_modes_in_words,
     margin_in_words,
+    mode_in_words,
 )
 from contact_dynamics.impact import ImpactOutcome, SequenceEnd
+from contact_dynamics.questions import ContactModeQuestion, ask
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import Regime
+from contact_dynamics.world import Body
 
 
 @pytest.mark.parametrize(
@@ -50,3 +56,43 @@ def test_a_margin_says_how_far_it_is_to_what(margin: float, words: str) -> None:
         modes_beyond=("ff", "s"),
     )
     assert margin_in_words(told) == words
+
+
+@pytest.mark.parametrize(
+    ("mode", "words"),
+    [
+        ("ffff", "it stays fixed"),
+        ("rr", "it slides right"),
+        ("l", "it slides left"),
+        ("ccc", "it slides"),
+        ("ss", "it leaves"),
+        ("", "nothing touches it"),
+        ("ssff", "it tips (2 contacts separate, 2 stay fixed)"),
+        ("sf", "it tips (1 contact separates, 1 stays fixed)"),
+        ("ssr", "2 contacts separate, 1 slides right"),
+    ],
+)
+def test_a_mode_says_what_the_body_does(mode: str, words: str) -> None:
+    assert mode_in_words(mode) == words
+
+
+def test_what_holds_within_the_errors_of_contacts_has_words() -> None:
+    """A ball rests on one point, or slips if its friction may be too little for the push."""
+    properties = MassProperties(mass=1.0, I_B=0.004 * np.eye(3))
+    state = BodyState(p_WB_W=(0, 0, 0.1), q_WB=(0, 0, 0, 1), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3))
+    contacts = ContactSet(p_WC_W=[(0.0, 0.0, 0.0)], normals_W=(0.0, 0.0, 1.0), frictions=0.3)
+
+    def words(frictions: float, *, margins: bool = False) -> str:
+        question = ContactModeQuestion(
+            body=Body(name="ball", mass_properties=properties),
+            state=state,
+            contacts=contacts,
+            force_W=(5.0, 0.0, 0.0),
+            uncertainty=ContactUncertainty(frictions=frictions),
+            want_geometry_margins=margins,
+        )
+        return "; ".join(contact_modes_in_words(ask(question)))
+
+    assert "the verdict holds within the errors of the contacts" in words(1e-3)
+    assert "64 samples show" in words(0.3)
+    assert "friction may be off by" in words(0.0, margins=True)

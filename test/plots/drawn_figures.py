@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +12,7 @@ from matplotlib.figure import Figure
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes, mode_margins, wrench_sets
 from contact_dynamics.diagrams.planar_scene import planar_scene_of
+from contact_dynamics.diagrams.shape import drawn_shape
 from contact_dynamics.diagrams.wrench_chart import DirectionChart, ForceDualChart
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench
@@ -21,26 +24,46 @@ from contact_dynamics.plots import (
     draw_energy,
     draw_force_dual,
     draw_impulse_space,
+    draw_impulse_space_in_3d,
+    draw_many_states,
     draw_mode_map,
     draw_momentum,
     draw_planar_scene,
     draw_poinsot,
     draw_position,
+    draw_toss,
     draw_velocity,
 )
-from contact_dynamics.questions import ContactModeQuestion, ImpactQuestion, Problem, TumblingQuestion, ask
+from contact_dynamics.questions import (
+    ContactModeQuestion,
+    ImpactQuestion,
+    Knowledge,
+    Problem,
+    TossQuestion,
+    TossSampling,
+    TumblingQuestion,
+    ask,
+)
+from contact_dynamics.questions.many import (
+    ManyImpactsAnswer,
+    ManyImpactsQuestion,
+    ManyStates,
+    answer_impacts,
+)
 from contact_dynamics.questions.sample_times import AtTimes
 from contact_dynamics.questions.uncertain_state import UncertainState
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import box
-from contact_dynamics.world import Body
+from contact_dynamics.toss import TossUncertainty
+from contact_dynamics.world import Body, Surface, World
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from xml.etree import ElementTree as ET
 
     from matplotlib.axes import Axes
 
-    from contact_dynamics.questions import ContactModeAnswer, ImpactAnswer, TumblingAnswer
+    from contact_dynamics.questions import ContactModeAnswer, ImpactAnswer, TossAnswer, TumblingAnswer
 
 GRAVITY_W = np.array([0.0, 0.0, -9.81])
 BRICK = MassProperties(mass=0.4, I_B=np.diag([3.5e-4, 8.3e-4, 1.02e-3]))
@@ -154,9 +177,57 @@ def _resting(axes: Axes) -> None:
     draw_contact_forces(axes, answer.contacts, answer.modes[0])
 
 
+def many_impacts() -> ManyImpactsAnswer:
+    """Bricks side by side that strike ever more slantwise, and some that leave."""
+    count = 24
+    across = np.linspace(0.0, 2.0, count)
+    positions = np.column_stack([across, np.zeros(count), 0.1 * np.sin(3.0 * across)])
+    velocities = np.column_stack([2.0 * across, np.zeros(count), np.where(across > 1.7, 1.0, -1.0)])
+    question = ManyImpactsQuestion(
+        body=Body(name="brick", mass_properties=BRICK),
+        states=ManyStates(
+            p_WB_W=positions,
+            q_WB=np.tile([0.0, 0.0, 0.0, 1.0], (count, 1)),
+            v_WB_W=velocities,
+            w_WB_W=np.zeros((count, 3)),
+        ),
+        p_WC_W=positions + np.array([0.02, 0.0, -0.03]),
+        normals_W=np.array([[0.0, 0.0, 1.0]]),
+        frictions=np.array([0.3]),
+        restitutions=np.array([0.5]),
+    )
+    return answer_impacts(question)
+
+
+CUBE = Body(
+    name="cube", mass_properties=MassProperties(mass=0.4, I_B=7e-4 * np.eye(3)), shape=box(size=[0.1] * 3)
+)
+
+
+@cache
+def tossed() -> TossAnswer:
+    """A cube that lands on a corner, with samples; some of them are followed to rest."""
+    floor = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.2)
+    state = BodyState(
+        p_WB_W=[0.0, 0.0, 0.2], q_WB=[0.4, 0.2, 0.4, 0.8], v_WB_W=[0.6, 0.2, 0.0], w_WB_W=[3.0, 1.0, 0.0]
+    )
+    covariance = np.diag([1e-3] * 3 + [0.02] * 3 + [0.02] * 3 + [0.5] * 3) ** 2
+    question = TossQuestion(
+        body=CUBE,
+        state=UncertainState(state=state, covariance=covariance),
+        rate=50.0,
+        most_alternatives=1,
+        sampling=TossSampling(count=30, to_rest=True, uncertainty=TossUncertainty(velocity=0.02, spin=0.3)),
+    )
+    return ask(question, Knowledge(world=World(bodies=(CUBE,), surfaces=(floor,))))
+
+
 DIAGRAMS: dict[str, Callable[[Axes], None]] = {
     "impulse space in the plane": lambda axes: draw_impulse_space(axes, ROD, impact(in_plane=True)),
     "impulse space": lambda axes: draw_impulse_space(axes, ROD, impact(in_plane=False)),
+    "impulse space in 3D": lambda axes: draw_impulse_space_in_3d(axes, ROD, impact(in_plane=False)),
+    "states of many": lambda axes: draw_many_states(axes, many_impacts()),
+    "toss": lambda axes: draw_toss(axes, tossed(), drawn_shape(CUBE.shape)),
     "planar scene": _scene,
     "map of modes": _map,
     "force dual": _dual,
@@ -173,10 +244,15 @@ DIAGRAMS: dict[str, Callable[[Axes], None]] = {
 """Every diagram, by its name."""
 
 
+SVG_DIGITS = 2e-5  # of the width of the axes; SVG has six digits of a place on the page
+
+IN_3D = {"Poinsot", "impulse space in 3D"}
+
+
 def drawn(name: str) -> tuple[Figure, Axes]:
     """A figure with one diagram."""
     figure = Figure(figsize=(11.0, 6.0), layout="constrained")
-    axes = figure.add_subplot(projection="3d" if name == "Poinsot" else None)
+    axes = figure.add_subplot(projection="3d" if name in IN_3D else None)
     DIAGRAMS[name](axes)
     return figure, axes
 
@@ -185,3 +261,14 @@ def curve(axes: Axes, gid: str) -> np.ndarray:
     """The points of the line of that name, (k, 2)."""
     (line,) = (line for line in axes.lines if line.get_gid() == gid)
     return np.column_stack(line.get_data())
+
+
+def points_in_svg(root: ET.Element, gid: str, axes: Axes) -> np.ndarray:
+    """The points of a line of that name, (k, 2), in the units of the axes."""
+    (group,) = (each for each in root.iter() if each.get("id") == gid)
+    (path,) = (each.get("d") or "" for each in group)
+    numbers = np.array(re.findall(r"-?\d+\.?\d*(?:e-?\d+)?", path), dtype=float).reshape(-1, 2)
+    height = float((root.get("height") or "").removesuffix("pt"))
+    pixels = np.column_stack([numbers[:, 0], height - numbers[:, 1]]) * axes.get_figure(root=True).dpi / 72.0
+    points: np.ndarray = axes.transData.inverted().transform(pixels)
+    return points

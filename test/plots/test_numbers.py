@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
@@ -18,10 +17,11 @@ from matplotlib.figure import Figure
 from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes, mode_margins, wrench_sets
 from contact_dynamics.diagrams.force_dual import split_generators
 from contact_dynamics.diagrams.impulse_space import EVENTS
-from contact_dynamics.impact.law import PathEvent
+from contact_dynamics.diagrams.impulse_space_in_3d import impulse_space_in_3d_of
+from contact_dynamics.impact.law import ImpactOutcome, PathEvent
 from contact_dynamics.plane.force_dual import acceleration_centre
 from contact_dynamics.plane.types import PlanarWrench
-from contact_dynamics.plots import colors, draw_impulse_space, save_figure
+from contact_dynamics.plots import colors, draw_impulse_space, draw_many_states, save_figure
 from contact_dynamics.rigid_body.body import kinetic_energy, rotational_energy
 from plots.drawn_figures import (
     APPLIED,
@@ -32,10 +32,13 @@ from plots.drawn_figures import (
     IN_TRAY,
     KEY,
     ROD,
+    SVG_DIGITS,
     TRAY,
     curve,
     drawn,
     impact,
+    many_impacts,
+    points_in_svg,
     resting,
     tumbling,
 )
@@ -44,7 +47,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 ROUNDING = 1e-12  # relative; a sum in another order
-SVG_DIGITS = 2e-5  # of the width of the axes; SVG has six digits of a place on the page
 NAMED = {PathEvent.COMPRESSION_ENDS: "compression", PathEvent.SLIDING_STOPS: "sticking"}
 
 
@@ -74,6 +76,35 @@ def test_every_dot_of_impulse_space_lies_on_the_line_that_names_it(*, in_plane: 
             assert min(distance(dot, np.column_stack(line.get_data())) for line in lines) < 1e-9 * extent
             checked += 1
     assert checked >= 1
+
+
+def test_the_path_in_three_dimensions_meets_what_bends_and_ends_it() -> None:
+    answer = impact(in_plane=False)
+    space = impulse_space_in_3d_of(ROD, answer)
+    np.testing.assert_allclose(space.path @ space.axes_W, answer.impact.path_W, atol=ROUNDING)
+    along = space.sticking[1] - space.sticking[0]
+    sticks = list(answer.impact.path_events).index(PathEvent.SLIDING_STOPS)
+    for point in space.path[sticks:]:  # it sticks from there on
+        away = np.cross(point - space.sticking[0], along) / np.linalg.norm(along)
+        assert np.linalg.norm(away) < 1e-9 * space.extent
+    normal = np.cross(
+        space.compression[1] - space.compression[0], space.compression[3] - space.compression[0]
+    )
+    ended = space.points[space.events.index(PathEvent.COMPRESSION_ENDS)]
+    assert abs(normal @ (ended - space.compression[0])) < 1e-9 * np.linalg.norm(normal)
+    slope = np.linalg.norm(space.path[1:, :2], axis=1) / space.path[1:, 2]
+    assert slope.max() <= 0.6 * (1.0 + 1e-9)  # inside the cone, and on it while it slides
+    for strip in space.cone[:4]:
+        np.testing.assert_allclose(np.linalg.norm(strip[:, :2], axis=1), 0.6 * strip[:, 2], rtol=ROUNDING)
+    _, axes = drawn("impulse space in 3D")
+    (line,) = (line for line in axes.lines if line.get_gid() == "path")
+    np.testing.assert_allclose(np.column_stack(line.get_data_3d()), space.path, atol=ROUNDING)
+
+
+def test_without_mass_properties_there_is_the_path_alone() -> None:
+    space = impulse_space_in_3d_of(None, impact(in_plane=False))
+    assert len(space.sticking) == len(space.compression) == 0
+    assert len(space.path) > 2
 
 
 def test_a_projection_is_called_one() -> None:
@@ -232,15 +263,25 @@ def test_numbers_in_svg_are_those_of_the_result(tmp_path: Path) -> None:
     save_figure(figure, again / "impulse.svg")
     assert (tmp_path / "impulse.svg").read_bytes() == (again / "impulse.svg").read_bytes()
     root = ET.parse(tmp_path / "impulse.svg").getroot()
-    (group,) = (each for each in root.iter() if each.get("id") == "path")
-    (path,) = (each.get("d") or "" for each in group)
-    numbers = np.array(re.findall(r"-?\d+\.?\d*(?:e-?\d+)?", path), dtype=float).reshape(-1, 2)
-    height = float((root.get("height") or "").removesuffix("pt"))
-    pixels = np.column_stack([numbers[:, 0], height - numbers[:, 1]]) * figure.dpi / 72.0
-    impulses = axes.transData.inverted().transform(pixels)
+    impulses = points_in_svg(root, "path", axes)
     width = float(np.ptp(axes.get_xlim()))
     tangents = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     np.testing.assert_allclose(impulses, answer.impact.path_W @ tangents.T, atol=SVG_DIGITS * width)
     words = "".join(root.itertext())
     assert "compression ends" in words
     assert f"μ = {0.6:.3g}" in words
+
+
+def test_states_of_many_stand_where_they_are_and_in_the_group_of_their_outcome() -> None:
+    answer = many_impacts()
+    axes = Figure().add_subplot()
+    draw_many_states(axes, answer)
+    groups = {each.get_gid(): np.array(each.get_offsets()) for each in axes.collections if each.get_label()}
+    (arrows,) = (each for each in axes.collections if each.get_gid() == "velocities")
+    np.testing.assert_array_equal(np.column_stack([arrows.U, arrows.V]), answer.states.v_WB_W[:, [0, 2]])
+    np.testing.assert_array_equal(
+        groups["states_separates"], answer.states.p_WB_W[answer.separates][:, [0, 2]]
+    )
+    slides = (answer.outcomes == ImpactOutcome.SLIDES) & ~answer.separates
+    assert slides.any()
+    np.testing.assert_array_equal(groups["states_slides"], answer.states.p_WB_W[slides][:, [0, 2]])

@@ -18,6 +18,7 @@ from contact_dynamics.plots.logged_answers import logged_answers
 from contact_dynamics.plots.run import NO_LOG, NOTHING_DRAWN, main
 from contact_dynamics.questions.impact import ImpactAnswer
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from replay.asked_log import about_many
 from running_server import ROOT, server_and_client
 
 BLOCKED = """
@@ -66,7 +67,8 @@ def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
     )
     standing.state.pose.position.z = 0.025
     with server_and_client(folder, params_file=ROOT / "config" / "server.yaml") as client:
-        for request in (tumbling, PredictImpact.Request(body_name="cat"), impact, standing):
+        several = (tumbling, PredictImpact.Request(body_name="cat"), impact, standing, *about_many(0))
+        for request in several:
             answer = client.ask(request)
             assert (answer.status == answer.OK) == (request.body_name == "brick"), answer.message
     (found,) = folder.iterdir()
@@ -82,7 +84,10 @@ def test_each_answer_has_its_diagrams_without_ros(log: Path, tmp_path: Path) -> 
         "001-tumbling-brick-motion.svg",
         "001-tumbling-brick-poinsot.svg",
         "003-impact-brick-impulse-space.svg",
+        "003-impact-brick-impulse-space-in-3d.svg",
         "004-contact-modes-brick-contact-forces-1.svg",
+        "005-impacts-of-many-brick-states.svg",
+        "006-tumbling-of-many-brick-states.svg",
     } <= files
     assert set(run.stdout.split()) == {str(tmp_path / "out" / name) for name in files}
     impact = next(each.answer for each in logged_answers(log) if isinstance(each.answer, ImpactAnswer))

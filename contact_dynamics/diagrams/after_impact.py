@@ -1,0 +1,121 @@
+"""Compares the velocity that a body has after an impact with the one that was predicted.
+
+The measured velocity is found from the poses after the impact alone, as `motion.velocity_estimate` finds
+velocities: a published velocity would often be that of a window which spans the impact. If the body strikes
+again within `SPAN_S`, the measured velocity is an average over both strikes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.constants import ns_after, seconds_since, to_ns
+from contact_dynamics.motion.velocity_estimate import FEWEST_FRAMES, WINDOW, velocity_at
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.questions.impact import ImpactAnswer
+    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.validation import FloatArray
+
+SPAN_S: Final = WINDOW
+"""s. Velocities are found from the poses of this time after the impact."""
+
+LATE_S: Final = 0.003
+"""s. A strike may come this much later than predicted. Poses before that are left out."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class AfterImpact:
+    """What a body did after an impact, beside the prediction.
+
+    Attributes:
+        answer: The prediction.
+        strike_ns: ns, when the impact was predicted to end.
+        stamps_ns: The stamps of the poses that the velocities are found from, and of the curves.
+        v_WB_W: (3,), m/s, the measured velocity of the centre of mass at ``strike_ns``.
+        w_WB_W: (3,), rad/s, the measured angular velocity then.
+        predicted_speeds: (n,), m/s, at the stamps, if the body flies on as predicted.
+        measured_speeds: (n,), m/s, at the stamps.
+    """
+
+    answer: ImpactAnswer
+    strike_ns: int
+    stamps_ns: tuple[int, ...]
+    v_WB_W: FloatArray
+    w_WB_W: FloatArray
+    predicted_speeds: FloatArray
+    measured_speeds: FloatArray
+
+    @property
+    def linear_error(self) -> float:
+        """Return how far the measured velocity is from the predicted one, m/s."""
+        return float(np.linalg.norm(self.v_WB_W - self.answer.impact.state.v_WB_W))
+
+    @property
+    def angular_error(self) -> float:
+        """Return how far the measured angular velocity is from the predicted one, rad/s."""
+        return float(np.linalg.norm(self.w_WB_W - self.answer.impact.state.w_WB_W))
+
+
+class AwaitedImpacts:
+    """The predicted impacts of bodies that are still to come, or of which too little has been seen."""
+
+    def __init__(self, *, gravity_W: FloatArray) -> None:
+        """Begin without any. ``gravity_W`` is (3,), m/s^2, world axes."""
+        self._gravity_W = gravity_W
+        self._awaited: dict[str, list[tuple[int, ImpactAnswer]]] = {}
+        self._seen: dict[str, list[BodyState]] = {}  # since the first awaited impact
+
+    def expect(self, answer: ImpactAnswer, *, now_ns: int) -> None:
+        """Wait for an impact. It takes the place of those that had not come by ``now_ns``, ns, either.
+
+        Without a stamp there is no knowing when it comes.
+        """
+        strike_ns = answer.impact.state.stamp_ns or answer.state.stamp_ns
+        if not strike_ns:
+            return
+        begun = [each for each in self._awaited.get(answer.body_name, []) if each[0] < now_ns]
+        self._awaited[answer.body_name] = [*begun, (strike_ns, answer)]
+
+    def see(self, body_name: str, states: Sequence[BodyState]) -> list[AfterImpact]:
+        """Take measured states in the order of their stamps, and return the impacts that are now compared."""
+        awaited = self._awaited.get(body_name)
+        if not awaited or not states:
+            return []
+        seen = self._seen.setdefault(body_name, [])
+        seen += [state for state in states if state.stamp_ns >= awaited[0][0]]
+        newest_ns = states[-1].stamp_ns
+        over = [each for each in awaited if newest_ns > each[0] + to_ns(SPAN_S)]
+        self._awaited[body_name] = awaited = awaited[len(over) :]
+        compared = [self._compare(answer, strike_ns, seen) for strike_ns, answer in over]
+        first_ns = awaited[0][0] if awaited else newest_ns + 1
+        self._seen[body_name] = [state for state in seen if state.stamp_ns >= first_ns]
+        return [each for each in compared if each is not None]
+
+    def _compare(self, answer: ImpactAnswer, strike_ns: int, seen: list[BodyState]) -> AfterImpact | None:
+        """Return the comparison, or None if there are too few poses."""
+        begin_ns, end_ns = ns_after(strike_ns, LATE_S), ns_after(strike_ns, SPAN_S)
+        states = [state for state in seen if begin_ns <= state.stamp_ns <= end_ns]
+        if len(states) < FEWEST_FRAMES:
+            return None
+        stamps_ns = tuple(state.stamp_ns for state in states)
+        seconds = seconds_since(strike_ns, stamps_ns)
+        p_W = np.array([state.p_WB_W for state in states])
+        q = np.array([state.q_WB for state in states])
+        v_W, w_W = velocity_at(0.0, seconds, p_W, q)
+        measured_W = [velocity_at(t, seconds, p_W, q)[0] for t in seconds.tolist()]
+        predicted_W = answer.impact.state.v_WB_W + np.outer(seconds, self._gravity_W)
+        return AfterImpact(
+            answer=answer,
+            strike_ns=strike_ns,
+            stamps_ns=stamps_ns,
+            v_WB_W=v_W,
+            w_WB_W=w_W,
+            predicted_speeds=np.linalg.norm(predicted_W, axis=1),
+            measured_speeds=np.linalg.norm(measured_W, axis=1),
+        )

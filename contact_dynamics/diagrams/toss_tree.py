@@ -1,0 +1,76 @@
+"""The fan of a toss as points and lines: nodes of the event tree in space and time, and poses of samples."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.diagrams.toss_words import branch_in_words, face_in_words
+
+if TYPE_CHECKING:
+    from contact_dynamics.toss import TossDistribution
+    from contact_dynamics.toss.distribution import EventRegions
+    from contact_dynamics.validation import FloatArray
+
+
+class TreeNode(NamedTuple):
+    """A strike of the event tree that has regions.
+
+    Attributes:
+        parent: The index of the node before it, or -1 for the state that the toss begins with.
+        strike: Which strike it is, from 1.
+        text: Which strike it is, what happens, and with which probability.
+        probability: Share of all samples.
+        regions: When and where it happens.
+    """
+
+    parent: int
+    strike: int
+    text: str
+    probability: float
+    regions: EventRegions
+
+
+class RestNode(NamedTuple):
+    """A face on which samples rest.
+
+    Attributes:
+        text: Where the face is, in body axes, and the probability.
+        probability: Share of all samples.
+    """
+
+    text: str
+    probability: float
+
+
+def tree_of(told: TossDistribution) -> list[TreeNode]:
+    """Return the nodes of the tree, those that others follow first."""
+    nodes: list[TreeNode] = []
+    places: dict[int, int] = {-1: -1}
+    for k, branch in enumerate(told.branches):
+        if branch.regions is None or branch.parent not in places:
+            continue
+        places[k] = len(nodes)
+        text = f"{branch.strike}. {branch_in_words(branch.kind, branch.corner)}: {branch.probability:.0%}"
+        nodes.append(TreeNode(places[branch.parent], branch.strike, text, branch.probability, branch.regions))
+    return nodes
+
+
+def faces_of(told: TossDistribution) -> list[RestNode]:
+    """Return the faces on which samples rest, the probable ones first."""
+    return [
+        RestNode(f"rests on its face towards {face_in_words(normal)}: {share:.0%}", share)
+        for normal, share in zip(told.face_normals_B, told.face_probabilities.tolist(), strict=True)
+    ]
+
+
+def fan_of(told: TossDistribution) -> list[FloatArray]:
+    """Return for each sample that has ghosts its places, (k, 3), m, at its strikes and at rest."""
+    ghosts = told.ghosts
+    lines = []
+    for sample in np.unique(ghosts.samples).tolist():
+        mine = np.flatnonzero(ghosts.samples == sample)
+        order = sorted(mine.tolist(), key=lambda i: (ghosts.strikes[i] == 0, ghosts.strikes[i]))
+        lines.append(ghosts.p_WB_W[order])
+    return lines
