@@ -9,27 +9,37 @@ import numpy as np
 import rerun.blueprint as rrb
 
 from contact_dynamics.numerics.vectors import tangents_near_x
-from contact_dynamics.viewing import contact_modes, impact, palette, trajectory
+from contact_dynamics.viewing import contact_modes, palette
 from contact_dynamics.viewing.entities import (
+    ANGULAR_MOMENTUM,
     ANSWER_LOG,
+    ANSWERS,
+    CONTACTS,
+    ENERGY,
+    ERROR,
+    FORCE_DUAL,
     HEIGHT,
+    IMPACTS,
     IMPULSE_SPACE,
+    IMPULSE_SPACE_IN_3D,
     LEGEND,
     MODE_MAP,
+    MOMENTUM,
     NEWEST_ANSWERS,
+    ORDER,
     PLANAR_MODES,
     POINSOT,
+    PREDICTED,
     SCENE,
+    SINCE_START,
     SPEED,
     TIMELINE,
     contacts_entity,
-    impact_entity,
-    predicted_entity,
     trail_entity,
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from contact_dynamics.validation import FloatArray
 
@@ -44,11 +54,16 @@ STRAIGHT: Final = 0.01
 from its right."""
 
 WINDOW_S: Final = 10.0
-"""s. How long trails and earlier predictions stay in view, and how far back the curves go."""
+"""s. How long trails stay in view, and how far back the curves go."""
+
+WINDOW_STEPS: Final = 1000
+"""Steps. The same on the timeline of events."""
 
 DIAGRAMS: Final = {
     IMPULSE_SPACE: "Impulse space",
+    IMPULSE_SPACE_IN_3D: "Impulse space in 3-D",
     MODE_MAP: "Mode map",
+    FORCE_DUAL: "Force dual",
     PLANAR_MODES: "Contact modes",
     POINSOT: "Poinsot",
 }
@@ -92,59 +107,115 @@ def eye_on(points_W: FloatArray, *, up_W: FloatArray, margin: float) -> Eye:
 
 
 def make_blueprint(
-    body_names: Sequence[str], *, eye: Eye | None, diagrams: Sequence[str] = ()
+    body_names: Sequence[str], *, eye: Eye | None, shown: Collection[str] = ()
 ) -> rrb.Blueprint:
-    """Return the arrangement of the views.
+    """Return the arrangement of the views: a page for each question that was asked, and an overview.
 
     Args:
-        body_names: names of the bodies whose trails and predictions stay in view.
-        eye: the eye of the scene. If it is None, the viewer looks at all that there is.
-        diagrams: the `DIAGRAMS` in which there is something to see.
+        body_names: names of the bodies whose trails stay in view.
+        eye: the eye of the scenes. If it is None, the viewer looks at all that there is.
+        shown: what there is to see, of `DIAGRAMS`, `ERROR`, `ENERGY`, and the entities `PREDICTED`,
+            `IMPACTS`, `CONTACTS` and `ANSWERS`. What is not among it has no panel.
     """
+    pages = [_overview(_scene("Scene", body_names, eye), shown)]
+    if PREDICTED in shown:
+        scene = _scene("Flight", body_names, eye, without=(IMPACTS, CONTACTS))
+        curves = [_height(), _speed(), *([_error()] if ERROR in shown else [])]
+        pages.append(_page("Flight", scene, [_diagram(POINSOT)] if POINSOT in shown else [], curves))
+    if IMPACTS in shown:
+        left: rrb.Spatial3DView | rrb.Vertical = _scene("Impact", body_names, eye, without=(CONTACTS,))
+        spaces = [_diagram(IMPULSE_SPACE)] if IMPULSE_SPACE in shown else []
+        if IMPULSE_SPACE_IN_3D in shown:
+            left = rrb.Vertical(left, _diagram(IMPULSE_SPACE_IN_3D), row_shares=[3, 2])
+        pages.append(_page("Impact", left, spaces, [_speed(), _told()]))
+    if CONTACTS in shown:
+        scene = _scene("Contacts", body_names, eye, without=(IMPACTS, PREDICTED))
+        diagrams = [_diagram(origin) for origin in (PLANAR_MODES, MODE_MAP, FORCE_DUAL) if origin in shown]
+        pages.append(_page("Contact modes", scene, diagrams, [_told()]))
+    if ENERGY in shown:
+        scene = _scene("Motion", body_names, eye, without=(IMPACTS, CONTACTS))
+        pages.append(_page("Energy and momentum", scene, [], _conserved()))
+    return rrb.Blueprint(
+        rrb.Tabs(*pages, active_tab=0),
+        rrb.BlueprintPanel(state=rrb.PanelState.Collapsed),
+        rrb.SelectionPanel(state=rrb.PanelState.Collapsed),
+        rrb.TimePanel(state=rrb.PanelState.Collapsed, timeline=TIMELINE, play_state="Following"),
+    )
+
+
+def _overview(scene: rrb.Spatial3DView, shown: Collection[str]) -> rrb.Horizontal:
+    views = [_diagram(origin) for origin in DIAGRAMS if origin in shown]
+    diagrams = [rrb.Tabs(*views, active_tab=0)] if views else []
+    curves = [_height(), _speed(), *([_error()] if ERROR in shown else [])]
+    words: list[rrb.View] = [rrb.TextDocumentView(origin=LEGEND, name="Legend")]
+    if ANSWERS in shown:
+        words = [_told(), rrb.TextLogView(origin=ANSWER_LOG, name="All answers"), *words]
+    shares = [5] * len(diagrams) + [2] * len(curves) + [4]
+    aside = rrb.Vertical(*diagrams, *curves, rrb.Tabs(*words, active_tab=0), row_shares=shares)
+    return rrb.Horizontal(scene, aside, column_shares=[3, 2], name="Overview")
+
+
+def _page(
+    name: str,
+    scene: rrb.Spatial3DView | rrb.Vertical,
+    diagrams: Sequence[rrb.View],
+    below: Sequence[rrb.View],
+) -> rrb.Horizontal:
+    """Return a page: the scene on the left, on the right diagrams and what stands below them."""
+    shares = [3] * len(diagrams) + [2] * len(below)
+    aside = rrb.Vertical(*diagrams, *below, row_shares=shares)
+    return rrb.Horizontal(scene, aside, column_shares=[1 if diagrams else 2, 1], name=name)
+
+
+def _scene(
+    name: str, body_names: Sequence[str], eye: Eye | None, *, without: Sequence[str] = ()
+) -> rrb.Spatial3DView:
     controls = None
     if eye is not None:
         controls = rrb.EyeControls3D(
             kind=rrb.Eye3DKind.Orbital, position=eye.position_W, look_target=eye.target_W, eye_up=eye.up_W
         )
-    scene = rrb.Spatial3DView(
+    return rrb.Spatial3DView(
         origin="/",
-        contents=f"{SCENE}/**",
-        name="Scene",
+        contents=[f"+ {SCENE}/**", *(f"- {part}/**" for part in without)],
+        name=name,
         background=rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor),
         line_grid=False,
         eye_controls=controls,
         overrides={
-            **{path: _window() for name in body_names for path in _recent(name)},
+            **{trail_entity(name): _window() for name in body_names},
             **{
                 f"{contacts_entity(name)}/{mode}": rrb.EntityBehavior(visible=False)
                 for name in body_names
                 for mode in contact_modes.mode_names()[1:]
+                if CONTACTS not in without  # each costs 3 kB, in every arrangement that is sent
             },
         },
     )
-    tabs = []
-    if diagrams:
-        views = [_diagram(origin) for origin in DIAGRAMS if origin in diagrams]
-        tabs = [rrb.Tabs(*views, active_tab=0)]
-    curves = [
-        _curves(HEIGHT, "Height of the centre of mass, m"),
-        _curves(SPEED, "Speed of the centre of mass, m/s"),
+
+
+def _height() -> rrb.TimeSeriesView:
+    return _curves(HEIGHT, "Height of the centre of mass, m (thin: predicted)")
+
+
+def _speed() -> rrb.TimeSeriesView:
+    return _curves(SPEED, "Speed of the centre of mass, m/s (thin: predicted)")
+
+
+def _conserved() -> list[rrb.View]:
+    return [
+        _curves(ENERGY, "Energy, J (thin: predicted)"),
+        _curves(MOMENTUM, "Momentum, kg m/s (thin: predicted)"),
+        _curves(ANGULAR_MOMENTUM, "Angular momentum, kg m²/s (thin: predicted)"),
     ]
-    answers = rrb.Tabs(
-        rrb.TextDocumentView(origin=NEWEST_ANSWERS, name="Newest answers"),
-        rrb.TextLogView(origin=ANSWER_LOG, name="All answers"),
-        rrb.TextDocumentView(origin=LEGEND, name="Legend"),
-    )
-    return rrb.Blueprint(
-        rrb.Horizontal(
-            scene,
-            rrb.Vertical(*tabs, *curves, answers, row_shares=[5] * len(tabs) + [2, 2, 3]),
-            column_shares=[3, 2],
-        ),
-        rrb.BlueprintPanel(state=rrb.PanelState.Collapsed),
-        rrb.SelectionPanel(state=rrb.PanelState.Collapsed),
-        rrb.TimePanel(state=rrb.PanelState.Collapsed, timeline=TIMELINE, play_state="Following"),
-    )
+
+
+def _error() -> rrb.TimeSeriesView:
+    return _curves(ERROR, "Distance of the measured from the predicted place, m")
+
+
+def _told() -> rrb.TextDocumentView:
+    return rrb.TextDocumentView(origin=NEWEST_ANSWERS, name="Newest answers")
 
 
 def poinsot_view() -> rrb.Spatial3DView:
@@ -163,29 +234,41 @@ def poinsot_view() -> rrb.Spatial3DView:
     )
 
 
+def impulse_space_in_3d_view() -> rrb.Spatial3DView:
+    """Return the view of impulse space in three dimensions, with the normal impulse upwards."""
+    return rrb.Spatial3DView(
+        origin=IMPULSE_SPACE_IN_3D,
+        name=DIAGRAMS[IMPULSE_SPACE_IN_3D],
+        background=rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor),
+        line_grid=False,
+        eye_controls=rrb.EyeControls3D(
+            kind=rrb.Eye3DKind.Orbital,
+            position=(0.65, -1.4, 0.95),  # all that is 1 high fits, and its words if the view is wide
+            look_target=(0.15, 0.0, 0.5),
+            eye_up=(0, 0, 1),
+        ),
+    )
+
+
 def _diagram(origin: str) -> rrb.Spatial2DView | rrb.Spatial3DView:
     if origin == POINSOT:
         return poinsot_view()
+    if origin == IMPULSE_SPACE_IN_3D:
+        return impulse_space_in_3d_view()
     return rrb.Spatial2DView(origin=origin, name=DIAGRAMS[origin], background=palette.BACKGROUND)
 
 
 def _curves(origin: str, name: str) -> rrb.TimeSeriesView:
-    legend = rrb.PlotLegend(corner=rrb.Corner2D.RightTop)
+    # A legend would hide curves. The name says what is thin, and bodies have their colours in the scene.
+    legend = rrb.PlotLegend(visible=False)
     return rrb.TimeSeriesView(origin=origin, name=name, plot_legend=legend, time_ranges=_window())
 
 
-def _recent(body_name: str) -> list[str]:
-    """Return what stays in view beside what comes after it."""
-    return [
-        trail_entity(body_name),
-        *(f"{predicted_entity(body_name)}/{name}" for name in trajectory.RECENT),
-        *(f"{impact_entity(body_name)}/{name}" for name in impact.RECENT),
-    ]
-
-
 def _window() -> rrb.VisibleTimeRanges:
+    now = rrb.TimeRangeBoundary.cursor_relative()
+    ago = rrb.TimeRangeBoundary.cursor_relative(seconds=-WINDOW_S)
+    steps_ago = rrb.TimeRangeBoundary.cursor_relative(seq=-WINDOW_STEPS)
+    begins = ((TIMELINE, ago), (SINCE_START, ago), (ORDER, steps_ago))
     return rrb.VisibleTimeRanges(
-        timeline=TIMELINE,
-        start=rrb.TimeRangeBoundary.cursor_relative(seconds=-WINDOW_S),
-        end=rrb.TimeRangeBoundary.cursor_relative(),
+        [rrb.VisibleTimeRange(timeline, start=begin, end=now) for timeline, begin in begins]
     )

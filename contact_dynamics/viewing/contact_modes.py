@@ -28,6 +28,9 @@ FORCE_LENGTH: Final = 0.6
 MOST_MODES: Final = 6
 """Largest number of modes that are drawn. Further modes are only listed in words."""
 
+LETTERS: Final = "letters"
+"""The labels of the contacts. Only those of the newest answer are in view."""
+
 _ACCELERATION_LENGTH: Final = 0.6  # length of the arrow at the centre of mass, relative to the body's size
 _SLIDING_LENGTH: Final = 0.3  # length of the arrows of sliding directions, relative to the body's size
 _CONE_HEIGHT: Final = 0.25  # relative to the body's size
@@ -45,10 +48,16 @@ def draw_contact_modes(recording: rr.RecordingStream, shape: Shape, answer: Cont
     contacts = answer.contacts
     letters = letters_of_contacts(tuple(mode.mode for mode in answer.modes), len(contacts))
     colors = np.array([color_of_letters(text) for text in letters], dtype=np.uint8).reshape(-1, 4)
-    points = rr.Points3D(
-        contacts.p_WC_W, colors=colors, radii=_POINT_SIZE * size, labels=letters, show_labels=True
-    )
+    points = rr.Points3D(contacts.p_WC_W, colors=colors, radii=_POINT_SIZE * size)
     recording.log(f"{path}/points", points)
+    words = rr.Points3D(
+        contacts.p_WC_W,
+        colors=[palette.readable(color_of_letters(text)) for text in letters],
+        radii=0.0,
+        labels=letters,
+        show_labels=True,
+    )
+    recording.log(f"{path}/{LETTERS}", words)
     cones = friction_cones(
         contacts.p_WC_W, contacts.normals_W, contacts.frictions, height=_CONE_HEIGHT * size
     )

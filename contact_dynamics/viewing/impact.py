@@ -32,8 +32,11 @@ if TYPE_CHECKING:
 ARROW_LENGTH: Final = 1.1
 """Length of the longest arrow of a kind, relative to the body's size. Labels say how much it stands for."""
 
-RECENT: Final = ("body", "impulse")
-"""The parts of an impact that stay in view beside later ones."""
+ARROW_WIDTH: Final = 0.016
+"""Relative to the size of the body."""
+
+LABELS: Final = ("impulse_label", "velocity_label")
+"""The labels of an impact. Only those of the newest impact are in view."""
 
 CONE_HEIGHT: Final = 0.35
 """Relative to the size of the body."""
@@ -42,13 +45,12 @@ MOST_STRIKES: Final = 5
 """This many strikes of a sequence, those with the largest impulses, have a label and the body drawn."""
 
 _CONE_FACETS: Final = 32
-_ARROW_WIDTH: Final = 0.016  # relative to the size of the body
 _POINT_SIZE: Final = 0.02  # radius of points, relative to the body's size
 _OUTLINE_WIDTH: Final = -1.2  # a negative size is in points of the screen
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Arrows:
+class Arrows:
     """Arrows of one unit, which are drawn to their own scale."""
 
     origins: FloatArray  # (n, 3), m, world
@@ -62,7 +64,7 @@ class _Arrows:
             origins=self.origins,
             vectors=self.tips(size) - self.origins,
             colors=self._colors(),
-            radii=_ARROW_WIDTH * size,
+            radii=ARROW_WIDTH * size,
         )
 
     def labels(self, places: FloatArray, *, before: Sequence[str] = ()) -> rr.Points3D:
@@ -71,13 +73,8 @@ class _Arrows:
         words = [f"{length:.3g} {self.unit}" for length in lengths]
         if before:
             words = [f"{one} {word}" for one, word in zip(before, words, strict=True)]
-        return rr.Points3D(
-            places,
-            colors=self._colors(),
-            radii=0.0,
-            labels=words,
-            show_labels=True,
-        )
+        colors = [palette.readable(color) for color in self.colors]
+        return rr.Points3D(places, colors=colors, radii=0.0, labels=words, show_labels=True)
 
     def tips(self, size: float) -> FloatArray:
         """Return the tips of the arrows, (n, 3), m, world, for a body of that size, m."""
@@ -110,26 +107,19 @@ def draw_impact(
     path, size = impact_entity(answer.body_name), shape.size
     impact, other = answer.impact, answer.other
     struck, points, impulses_W = _struck(answer)
-    impulses = _Arrows(origins=points, vectors=impulses_W, unit="N s", colors=(palette.IMPACT,) * len(points))
-    moving = [(answer.state.p_WB_W, answer.state.v_WB_W, impact.state.v_WB_W)]
-    if other is not None and impact.other_state is not None:
-        moving.append((other.state.p_WB_W, other.state.v_WB_W, impact.other_state.v_WB_W))
-    velocities = _Arrows(
-        origins=np.array([p_W for p_W, _, _ in moving for _ in range(2)]),
-        vectors=np.array([v_W for _, *both in moving for v_W in both]),
-        unit="m/s",
-        colors=(palette.BEFORE_IMPACT, palette.AFTER_IMPACT) * len(moving),
-    )
+    impulses = Arrows(origins=points, vectors=impulses_W, unit="N s", colors=(palette.IMPACT,) * len(points))
+    velocities = velocity_arrows(answer)
     recording.log(f"{path}/impulse", impulses.drawn(size))
     main = main_strikes(impact.strikes)
     recording.log(f"{path}/impulse_label", _impulse_labels(impact.strikes, impulses, main, size=size))
     recording.log(f"{path}/velocity", velocities.drawn(size))
-    recording.log(f"{path}/velocity_label", velocities.labels(velocities.tips(size)))
+    recording.log(f"{path}/velocity_label", velocity_labels(answer, size))
+    recording.log(f"{path}/measured_velocity", rr.Clear(recursive=False))  # the impact before had one
     paths = _paths(answer, scale=impulses.scale(size)) if not impact.strikes else []
     strips = rr.LineStrips3D(paths, colors=palette.IMPACT, radii=2.0 * _OUTLINE_WIDTH)
     recording.log(f"{path}/impulse_path", strips)
     height = CONE_HEIGHT * size
-    width = 0.5 * _ARROW_WIDTH * size
+    width = 0.5 * ARROW_WIDTH * size
     once = [struck.index(contact) for contact in dict.fromkeys(struck)]
     points = points[once]
     normals = answer.contacts.normals_W[struck][once]
@@ -146,6 +136,29 @@ def draw_impact(
     edges = [edge for drawn, state in bodies for edge in outline(drawn, state.p_WB_W, state.q_WB)]
     body = rr.LineStrips3D(edges, colors=palette.translucent(palette.IMPACT, 0.7), radii=_OUTLINE_WIDTH)
     recording.log(f"{path}/body", body)
+
+
+def velocity_arrows(answer: ImpactAnswer) -> Arrows:
+    """Return the velocities of the moving bodies before and after an impact, two arrows for each body."""
+    impact, other = answer.impact, answer.other
+    moving = [(answer.state.p_WB_W, answer.state.v_WB_W, impact.state.v_WB_W)]
+    if other is not None and impact.other_state is not None:
+        moving.append((other.state.p_WB_W, other.state.v_WB_W, impact.other_state.v_WB_W))
+    return Arrows(
+        origins=np.array([p_W for p_W, _, _ in moving for _ in range(2)]),
+        vectors=np.array([v_W for _, *both in moving for v_W in both]),
+        unit="m/s",
+        colors=(palette.BEFORE_IMPACT, palette.AFTER_IMPACT) * len(moving),
+    )
+
+
+def velocity_labels(answer: ImpactAnswer, size: float, measured: str = "") -> rr.Points3D:
+    """Return the labels of these arrows, for a body of that size, m, with what was measured after it."""
+    velocities = velocity_arrows(answer)
+    words = ["before", "predicted after"] * (len(velocities.origins) // 2)
+    if measured:
+        words[1] = f"{measured}, predicted"
+    return velocities.labels(velocities.tips(size), before=words)
 
 
 def main_strikes(strikes: Sequence[SequenceStrike]) -> list[int]:
@@ -168,7 +181,7 @@ def _struck(answer: ImpactAnswer) -> tuple[list[int], FloatArray, FloatArray]:
 
 
 def _impulse_labels(
-    strikes: Sequence[SequenceStrike], impulses: _Arrows, main: list[int], *, size: float
+    strikes: Sequence[SequenceStrike], impulses: Arrows, main: list[int], *, size: float
 ) -> rr.Points3D:
     if not strikes:
         return impulses.labels(impulses.origins)

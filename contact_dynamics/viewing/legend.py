@@ -7,12 +7,18 @@ from typing import Final
 LEGEND_TEXT: Final = """\
 | drawn | means |
 | --- | --- |
-| blue grey body, trail, curves | measured |
-| orange paths, outlines, curves | predicted, in the last 10 s |
+| body, trail and thick curves in the body's colour | measured; a single body is blue grey |
+| orange path, outlines, thin curves | the newest prediction; faint: the three paths before it |
+| curve *distance of the measured from the predicted place* | of the centre of mass |
 | orange ellipsoids | two deviations of the predicted centre of mass; white: not to be relied on |
 | orange translucent body | end of the newest prediction |
-| red outlines, arrows | bodies at predicted impacts in the last 10 s, impulses on them |
-| pale, bright yellow arrow | velocity of the centre of mass before, after the newest of them |
+| red outlines, arrows | each body at its newest predicted impact, impulses on it |
+| pale, bright yellow arrow | velocity of the centre of mass before, after it as predicted |
+| arrow in the body's colour | its velocity after the impact as measured, from the poses of the next 50 ms |
+| red, pale curve of the speed | after an impact, as predicted and as measured from the poses |
+| points with arrows, of many | where many states are then, their velocities; red: their impulses |
+| red points, faint red outlines | strikes of a whole toss, and of its samples; white: other ways |
+| yellow lines, points, ellipsoids | the tree of the next strikes, and where nine tenths of the samples are |
 | violet cone | friction cone: the impulses and forces that friction allows |
 | green, pink, cyan points and arrows | contacts that stay fixed, slide, separate; their contact forces |
 | white outline | the body that the newest answer about contact modes is about |
@@ -20,11 +26,15 @@ LEGEND_TEXT: Final = """\
 | orange arrow | acceleration of the centre of mass, or of contacts |
 
 The longest arrow of each kind is drawn as long as suits the body: read its label. Strikes in sequence are
-numbered, the largest of them with the body as it is then.
+numbered, the largest of them with the body as it is then. The newest impact has labels, until 0.5 s after it;
+older ones of other bodies go then.
 
 In *impulse space* the tangential impulse goes to the right, the normal impulse up. The red path is
 the impulse as it accumulates. On the green line the contact does not slide, on the cyan line it does not
 approach.
+
+*Impulse space in 3-D*, of impacts in space, has the round friction cone (violet), the line on which the
+contact does not slide (green), and the plane on which it does not approach (cyan).
 
 Several *contact modes* may be consistent: the tab shows all, side by side; the scene shows `mode_1` (switch
 on `mode_2` and so on under *contacts* in the blueprint panel). `s` separates, `l` and `r` slide left and
@@ -34,6 +44,15 @@ The *mode map* shows which applied wrench brings about which mode. Each point of
 angle that of the force, its distance from the centre the share of force, the centre a pure torque. White:
 several modes are consistent; black: none is. Red: the wrench in question, and its least change into another
 mode. Of a moving body, the square shows forces at the applied torque.
+
+The *force dual* shows the first mode in the plane of the body at rest, twice: wrenches that turn it
+anticlockwise on the left, clockwise on the right. Each is a point: the centre about which it would turn the
+free body. Violet `-c`: edges of friction cones, negated; orange `a`: centres of accelerations that the mode
+allows. What they span can bring the mode about. Red: the wrench in question; the larger orange point: the
+centre of the acceleration.
+
+*Energy and momentum* are those of the body that was asked about, until its prediction is over. The energy
+includes the potential energy. The angular momentum is about the centre of mass.
 
 *Poinsot*: in the space of angular velocities the inertia ellipsoid turns with the body and rolls on the plane
 at right angles to the angular momentum (white). Yellow: the angular velocity, which ends where they touch.

@@ -1,35 +1,86 @@
-"""Draws what was measured: a body's pose, its trail, height and speed, for many states in one call."""
+"""Draws what was measured: a body's pose, its trail and its curves over time, for many states in one call.
+
+The curves are height and speed. If the mass properties are known, they are energy and momenta too, which do
+not change in free flight, apart from the momentum that gravity gives.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import rerun as rr
 
 from contact_dynamics.constants import seconds_since
+from contact_dynamics.diagrams.trajectory_curves import (
+    angular_momenta_of,
+    energies_of,
+    momenta_of,
+    trajectory_of,
+)
 from contact_dynamics.viewing import palette
-from contact_dynamics.viewing.entities import HEIGHT, SPEED, TIMELINE, body_entity, entity, trail_entity
+from contact_dynamics.viewing.entities import (
+    ANGULAR_MOMENTUM,
+    ENERGY,
+    ERROR,
+    HEIGHT,
+    MOMENTUM,
+    SPEED,
+    TIMELINE,
+    body_entity,
+    entity,
+    trail_entity,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
-    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.validation import FloatArray
 
+CONSERVED: Final = (ENERGY, MOMENTUM, ANGULAR_MOMENTUM)
+"""The entities of the curves that need mass properties."""
 
-def style_series(recording: rr.RecordingStream, body_name: str) -> None:
-    """Set colours and names of a body's curves."""
-    for quantity in (HEIGHT, SPEED):
-        for kind, color, width in (
-            ("measured", palette.MEASURED, 4.0),
-            ("predicted", palette.PREDICTED, 2.0),
+
+def curves_of(
+    trajectory: Trajectory,
+    *,
+    up_W: FloatArray,
+    body: MassProperties | None = None,
+    gravity_W: FloatArray | None = None,
+) -> dict[str, FloatArray]:
+    """Return the curves over a trajectory by their entities, (n,) each.
+
+    They are the height, m, and the speed, m/s, of the centre of mass. With the mass properties of the body
+    they are also its energy, J, with the potential energy in gravity, (3,), m/s^2, which is zero at the
+    origin of the world, and the sizes of its momentum, kg m/s, and of its angular momentum about the centre
+    of mass, kg m^2/s.
+    """
+    curves = {HEIGHT: trajectory.p_WB_W @ up_W, SPEED: np.linalg.norm(trajectory.v_WB_W, axis=1)}
+    if body is not None:
+        gravity_W = np.zeros(3) if gravity_W is None else gravity_W
+        curves[ENERGY] = energies_of(body, trajectory, gravity_W=gravity_W).total
+        curves[MOMENTUM] = np.linalg.norm(momenta_of(body, trajectory), axis=1)
+        curves[ANGULAR_MOMENTUM] = np.linalg.norm(angular_momenta_of(body, trajectory), axis=1)
+    return curves
+
+
+def style_series(
+    recording: rr.RecordingStream, body_name: str, color: palette.Color = palette.MEASURED
+) -> None:
+    """Set colours and names of a body's curves; ``color`` is the body's own."""
+    error = rr.SeriesLines(colors=color, names=f"{body_name} off its prediction", widths=2.0)
+    recording.log(entity(ERROR, body_name), error, static=True)
+    for quantity in (HEIGHT, SPEED, *CONSERVED):
+        for kind, own, width in (
+            ("measured", color, 4.0),
+            ("predicted", palette.PREDICTED, 1.0),
         ):
             path = entity(quantity, body_name, kind)
-            series = rr.SeriesLines(colors=color, names=f"{body_name} {kind}", widths=width)
+            series = rr.SeriesLines(colors=own, names=f"{body_name} {kind}", widths=width)
             recording.log(path, series, static=True)
 
 
@@ -40,51 +91,86 @@ def draw_states(
     *,
     before: BodyState | None,
     up_W: FloatArray,
+    body: MassProperties | None = None,
+    gravity_W: FloatArray | None = None,
 ) -> None:
-    """Draw states in the order of their stamps. The trail continues from the state ``before``, if any."""
+    """Draw states in the order of their stamps. The trail continues from the state ``before``, if any.
+
+    The other arguments are those of `curves_of`.
+    """
     if not states:
         return
     stamps = time_column([state.stamp_ns for state in states])
-    points = np.array([state.p_WB_W for state in states])
-    orientations = np.array([state.q_WB for state in states])
-    poses = rr.Transform3D.columns(translation=points, quaternion=orientations)
+    measured = trajectory_of(states)
+    points = measured.p_WB_W
+    poses = rr.Transform3D.columns(translation=points, quaternion=measured.q_WB)
     recording.send_columns(body_entity(body_name), indexes=[stamps], columns=poses)
     starts = np.vstack([points[:1] if before is None else before.p_WB_W, points[:-1]])
     segments = np.stack([starts, points], axis=1)
     trail = rr.LineStrips3D.columns(strips=list(segments))
     recording.send_columns(trail_entity(body_name), indexes=[stamps], columns=trail)
-    speeds = np.linalg.norm([state.v_WB_W for state in states], axis=1)
-    _draw_curves(recording, body_name, "measured", stamps, heights=points @ up_W, speeds=speeds)
+    curves = curves_of(measured, up_W=up_W, body=body, gravity_W=gravity_W)
+    _draw_curves(recording, body_name, "measured", stamps, curves)
+
+
+def draw_conserved(
+    recording: rr.RecordingStream,
+    body_name: str,
+    states: Sequence[BodyState],
+    *,
+    body: MassProperties,
+    gravity_W: FloatArray,
+) -> None:
+    """Draw energy and momenta of measured states whose other curves are drawn already."""
+    if not states:
+        return
+    stamps = time_column([state.stamp_ns for state in states])
+    curves = curves_of(trajectory_of(states), up_W=np.zeros(3), body=body, gravity_W=gravity_W)
+    _draw_curves(recording, body_name, "measured", stamps, {name: curves[name] for name in CONSERVED})
 
 
 def draw_prediction_at(
     recording: rr.RecordingStream,
     body_name: str,
-    stamps_ns: Sequence[int],
+    states: Sequence[BodyState],
     *,
     trajectory: Trajectory,
+    curves: Mapping[str, FloatArray],
     begin_ns: int,
-    up_W: FloatArray,
-) -> None:
-    """Draw the height and speed of a trajectory, which began at ``begin_ns``, at the stamps that it reaches.
+) -> int | None:
+    """Draw a trajectory, which began at ``begin_ns``, beside measured states, as far as it reaches.
 
-    So the curves of measured and predicted values share their times, and many predictions make one curve,
-    which has a gap where a trajectory has ended.
+    These are its ``curves`` of `curves_of` at their stamps, and how far the measured centre of mass is from
+    it. So the curves of measured and predicted values share their times, and many predictions make one curve,
+    which has a gap where a trajectory has ended. Return the stamp of the last state that it reaches, if any.
     """
     if len(trajectory) == 0:
-        return
+        return None
+    stamps_ns = [state.stamp_ns for state in states]
     seconds = seconds_since(begin_ns, stamps_ns)
     inside = (seconds >= trajectory.seconds[0]) & (seconds <= trajectory.seconds[-1])
     reached = np.array(stamps_ns, dtype=np.int64)[inside]
     if len(reached) > 0:
-        heights = np.interp(seconds[inside], trajectory.seconds, trajectory.p_WB_W @ up_W)
-        speeds = np.interp(seconds[inside], trajectory.seconds, np.linalg.norm(trajectory.v_WB_W, axis=1))
-        _draw_curves(recording, body_name, "predicted", time_column(reached), heights=heights, speeds=speeds)
+        there = {
+            quantity: np.interp(seconds[inside], trajectory.seconds, values)
+            for quantity, values in curves.items()
+        }
+        _draw_curves(recording, body_name, "predicted", time_column(reached), there)
+        measured_W = np.array([state.p_WB_W for state in states])[inside]
+        predicted_W = [np.interp(seconds[inside], trajectory.seconds, each) for each in trajectory.p_WB_W.T]
+        apart = np.linalg.norm(measured_W - np.column_stack(predicted_W), axis=1)
+        recording.send_columns(
+            entity(ERROR, body_name),
+            indexes=[time_column(reached)],
+            columns=rr.Scalars.columns(scalars=apart),
+        )
     past = np.array(stamps_ns, dtype=np.int64)[seconds > trajectory.seconds[-1]]
     if len(past) > 0:
         set_time(recording, int(past[0]))
-        for quantity in (HEIGHT, SPEED):
+        for quantity in curves:
             recording.log(entity(quantity, body_name, "predicted"), rr.Clear(recursive=False))
+        recording.log(entity(ERROR, body_name), rr.Clear(recursive=False))
+    return int(reached[-1]) if len(reached) > 0 else None
 
 
 def time_column(stamps_ns: ArrayLike) -> rr.TimeColumn:
@@ -102,11 +188,9 @@ def _draw_curves(
     body_name: str,
     kind: str,
     stamps: rr.TimeColumn,
-    *,
-    heights: FloatArray,
-    speeds: FloatArray,
+    curves: Mapping[str, FloatArray],
 ) -> None:
-    for quantity, values in ((HEIGHT, heights), (SPEED, speeds)):
+    for quantity, values in curves.items():
         recording.send_columns(
             entity(quantity, body_name, kind), indexes=[stamps], columns=rr.Scalars.columns(scalars=values)
         )

@@ -1,4 +1,4 @@
-"""The map of contact modes over applied wrenches (Mason, lecture 26, "Contact modes for wrench in tray").
+"""Draws the map of contact modes over applied wrenches (Mason, lecture 26, "wrench in tray").
 
 Each region of the chart has the colour of the mode that its wrenches bring about, and shows that mode's
 string. In white regions several modes are consistent (indeterminate). In black ones none is (inconsistent).
@@ -26,6 +26,7 @@ from contact_dynamics.diagrams.mode_map import (
 from contact_dynamics.diagrams.wrench_chart import gap, picture_size
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import MODE_MAP
+from contact_dynamics.viewing.words import room_2d
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 _BORDER_WIDTH: Final = -1.0  # a negative size is in points of the screen
 _POINT_SIZE: Final = -5.0
 _HOVERED_SIZE: Final = -2.0
+_BELOW: Final = 0.12  # room for the names below a chart, relative to the side of its parts
 
 
 def draw_mode_map(
@@ -110,6 +112,9 @@ def draw_frame(recording: rr.RecordingStream, chart: WrenchChart, entity: str, *
         texts.append(note)
     words = rr.Points2D(places, colors=palette.NORMAL, radii=0.0, labels=texts, show_labels=True)
     recording.log(f"{entity}/captions", words)
+    width, height = picture_size(chart)
+    corners = np.array([(0.0, -0.6 * gap(chart.resolution)), (width, height + _BELOW * chart.resolution)])
+    recording.log(f"{entity}/room", room_2d(corners))
 
 
 def draw_applied(

@@ -19,6 +19,7 @@ from contact_dynamics.viewing.contact_modes import MOST_MODES
 from contact_dynamics.viewing.entities import MODE_MAP, PLANAR_MODES
 from contact_dynamics.viewing.mode_map import draw_applied, draw_mode_map
 from contact_dynamics.viewing.planar_scene import draw_planar_scene, upright
+from contact_dynamics.viewing.words import room_2d, words_2d
 
 if TYPE_CHECKING:
     from contact_dynamics.diagrams.planar_modes import AnswersMap
@@ -58,12 +59,8 @@ def draw_planar_modes(
             entity=path,
         )
         place = upright(np.array([0.5 * (low[0] + high[0]), high[1]]) + aside)
-        title = rr.Points2D(
-            place, colors=palette.NORMAL, radii=0.0, labels=[view.titles[i]], show_labels=True
-        )
-        recording.log(f"{path}/title", title)
-        room = rr.Points2D(upright(np.array([low, high]) + aside), colors=palette.BACKGROUND, radii=0.0)
-        recording.log(f"{path}/room", room)  # the viewer fits these points into the view
+        recording.log(f"{path}/title", words_2d(place, [view.titles[i]], [palette.NORMAL]))
+        recording.log(f"{path}/room", room_2d(upright(np.array([low, high]) + aside)))
 
 
 def draw_planar_map(

@@ -13,6 +13,7 @@ import rerun as rr
 from contact_dynamics.diagrams.planar_scene import planar_scene_of
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import PLANAR_SCENE
+from contact_dynamics.viewing.words import words_2d
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -58,15 +59,13 @@ def draw_planar_scene(
     _strips(recording, f"{entity}/body", [scene.outline + aside], palette.MEASURED, _OUTLINE_WIDTH)
     cones = [cone + aside for cone in scene.cones]
     _strips(recording, f"{entity}/cones", cones, palette.translucent(palette.FRICTION_CONE, 1.0), _CONE_WIDTH)
-    colors = np.array([palette.LETTER_COLORS.get(letter, palette.UNDECIDED) for letter in scene.letters])
+    colors = [_color(letter) for letter in scene.letters]
     points = rr.Points2D(upright(scene.points + aside), colors=colors, radii=_POINT_SIZE)
     recording.log(f"{entity}/contacts", points)
-    names = rr.Points2D(
+    names = words_2d(
         upright(np.array([label.place for label in scene.labels]).reshape(-1, 2) + aside),
-        colors=colors[[label.contacts[0] for label in scene.labels]],
-        radii=0.0,
-        labels=[label.text for label in scene.labels],
-        show_labels=True,
+        [label.text for label in scene.labels],
+        [_color(scene.letters[label.contacts[0]]) for label in scene.labels],
     )
     recording.log(f"{entity}/letters", names)
     centre = rr.Points2D(
@@ -89,6 +88,10 @@ def draw_planar_scene(
             show_labels=False,
         )
         recording.log(f"{entity}/{name}", drawn)
+
+
+def _color(letter: str) -> palette.Color:
+    return palette.LETTER_COLORS.get(letter, palette.UNDECIDED)
 
 
 def upright(points: FloatArray) -> FloatArray:

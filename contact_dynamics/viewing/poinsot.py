@@ -1,4 +1,4 @@
-"""Poinsot's picture: the inertia ellipsoid of a free body rolls on the invariable plane (lecture 25).
+"""Draws Poinsot's picture: the inertia ellipsoid of a free body rolls on the invariable plane (lecture 25).
 
 In the space of angular velocities the ellipsoid w^T I w = 2 T turns with the body about its fixed centre, and
 touches the plane at w. Its trace on the ellipsoid is the polhode, its trace on the plane the herpolhode. The
@@ -6,7 +6,7 @@ angular momentum points down here, so that the plane lies below, and the largest
 
 The picture is that of one flight. An impact or a contact changes the angular momentum, which leaves
 ellipsoid, plane and curves without meaning: they are cleared at the first state that does not have the
-flight's any more.
+flight's any more. Of several bodies, the one that was asked about last is in the picture.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import rerun as rr
 from contact_dynamics.diagrams.poinsot import poinsot_figure
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.viewing import palette
-from contact_dynamics.viewing.entities import poinsot_entity
+from contact_dynamics.viewing.entities import POINSOT_WORDS, poinsot_entity
 from contact_dynamics.viewing.measured import time_column
 
 if TYPE_CHECKING:
@@ -32,6 +32,7 @@ SAME_MOMENTUM: Final = 0.2
 """Relative. If the angular momentum is off by more, the flight is over. In the demo's toss the noise of
 motion capture makes up to 0.08 of it, and impacts make more than 1."""
 
+_ABOVE: Final = (0.0, 0.0, 0.75)  # where words stand: the largest semi-axis has length 1
 _CURVE_WIDTH: Final = -1.2  # a negative size is in points of the screen
 _GRID_WIDTH: Final = -0.6
 _ARROW_WIDTH: Final = 0.02  # relative to the largest semi-axis
@@ -57,6 +58,7 @@ def draw_poinsot(
     """
     path = poinsot_entity(body_name)
     figure = poinsot_figure(picture, curves)
+    _tell(recording, body_name or "the body")
     unit = figure.unit
     recording.log(path, rr.Transform3D(mat3x3=figure.axes_W / unit))
     ellipsoid = rr.LineStrips3D(
@@ -95,8 +97,20 @@ def draw_poinsot(
 
 
 def clear_poinsot(recording: rr.RecordingStream, body_name: str) -> None:
-    """Remove the picture at the recording's current time."""
+    """Remove the picture at the recording's current time, and say that the flight is over."""
+    hide_poinsot(recording, body_name)
+    _tell(recording, f"the flight of {body_name or 'the body'} is over")
+
+
+def hide_poinsot(recording: rr.RecordingStream, body_name: str) -> None:
+    """Remove the picture at the recording's current time, because that of another body comes."""
     recording.log(poinsot_entity(body_name), rr.Clear(recursive=True))
+
+
+def _tell(recording: rr.RecordingStream, words: str) -> None:
+    """Write words above the picture, or where it was."""
+    told = rr.Points3D([_ABOVE], colors=palette.NORMAL, radii=0.0, labels=[words], show_labels=True)
+    recording.log(POINSOT_WORDS, told)
 
 
 def draw_rolling(recording: rr.RecordingStream, body_name: str, states: Sequence[BodyState]) -> None:

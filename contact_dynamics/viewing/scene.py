@@ -10,12 +10,13 @@ import rerun as rr
 from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.viewing import palette
-from contact_dynamics.viewing.entities import SCENE, SURFACES, body_entity, entity, trail_entity
+from contact_dynamics.viewing.entities import SCENE, SURFACES, entity, trail_entity
 
 if TYPE_CHECKING:
     from contact_dynamics.diagrams.shape import Shape
     from contact_dynamics.shapes.obstacle import Obstacle
     from contact_dynamics.validation import FloatArray
+    from contact_dynamics.viewing.scenery import Part
     from contact_dynamics.world import Surface
 
 GRID_SPACING: Final = 0.1
@@ -37,10 +38,13 @@ def draw_axes(recording: rr.RecordingStream, up_W: FloatArray) -> None:
     recording.log(SCENE, getattr(rr.ViewCoordinates, f"{names[axis]}_{sign}"), static=True)
 
 
-def draw_surface(
-    recording: rr.RecordingStream, surface: Surface, *, center_W: FloatArray, side: float
-) -> None:
-    """Draw a square of a surface with that side, m, about the point nearest to ``center_W``, (3,), m."""
+def surface_path(name: str) -> str:
+    """Return where a surface is drawn."""
+    return entity(SURFACES, name)
+
+
+def surface_parts(surface: Surface, *, center_W: FloatArray, side: float) -> dict[str, Part]:
+    """Return a square of a surface with that side, m, about the point nearest to ``center_W``, (3,), m."""
     p_W = center_W - float(surface.gaps(center_W)) * surface.normal_W
     u_W, v_W = (0.5 * side * tangent for tangent in tangents_near_x(surface.normal_W))
     patch = rr.Mesh3D(
@@ -56,33 +60,46 @@ def draw_surface(
     lines = [
         p_W + np.array([a * s - b, a * s + b]) for a, b in ((u_W, v_W), (v_W, u_W)) for s in places.tolist()
     ]
-    path = entity(SURFACES, surface.name)
-    recording.log(f"{path}/patch", patch, static=True)
-    grid = rr.LineStrips3D(lines, colors=palette.SURFACE_GRID, radii=_GRID_WIDTH)
-    recording.log(f"{path}/grid", grid, static=True)
+    return {
+        "patch": patch,
+        "grid": rr.LineStrips3D(lines, colors=palette.SURFACE_GRID, radii=_GRID_WIDTH),
+    }
 
 
-def draw_obstacle(recording: rr.RecordingStream, obstacle: Obstacle) -> None:
-    """Draw a convex piece of the world."""
+def obstacle_parts(obstacle: Obstacle) -> dict[str, Part]:
+    """Return a convex piece of the world."""
     shape = convex_shape(obstacle.vertices_W)
-    path = entity(SURFACES, obstacle.name)
-    recording.log(f"{path}/patch", solid(shape, palette.SURFACE), static=True)
-    edges = rr.LineStrips3D(list(shape.edges_B), colors=palette.SURFACE_GRID, radii=_EDGE_WIDTH)
-    recording.log(f"{path}/grid", edges, static=True)
+    return {
+        "patch": solid(shape, palette.SURFACE),
+        "grid": rr.LineStrips3D(list(shape.edges_B), colors=palette.SURFACE_GRID, radii=_EDGE_WIDTH),
+    }
 
 
-def draw_body(recording: rr.RecordingStream, body_name: str, shape: Shape) -> None:
-    """Draw a body's shape, which moves with the body's pose. A body without shape is a ball."""
-    path = body_entity(body_name)
+def body_parts(shape: Shape, *, color: palette.Color = palette.MEASURED, name: str = "") -> dict[str, Part]:
+    """Return a body's shape, which moves with the body's pose, and its name, if one is given.
+
+    A body without shape is a ball.
+    """
+    parts: dict[str, Part] = {}
     if len(shape.triangles_B) > 0:
-        recording.log(f"{path}/faces", solid(shape, palette.MEASURED), static=True)
+        parts["faces"] = solid(shape, color)
     if len(shape.edges_B) > 0:
-        edges = rr.LineStrips3D(list(shape.edges_B), colors=palette.MEASURED_EDGE, radii=_EDGE_WIDTH)
-        recording.log(f"{path}/edges", edges, static=True)
+        edges = list(shape.edges_B)
+        parts["edges"] = rr.LineStrips3D(edges, colors=palette.MEASURED_EDGE, radii=_EDGE_WIDTH)
     else:
-        ball = rr.Points3D([[0.0, 0.0, 0.0]], radii=0.5 * shape.size, colors=palette.MEASURED)
-        recording.log(f"{path}/faces", ball, static=True)
-    trail = rr.LineStrips3D.from_fields(colors=palette.translucent(palette.MEASURED, 0.9), radii=_TRAIL_WIDTH)
+        parts["faces"] = rr.Points3D([[0.0, 0.0, 0.0]], radii=0.5 * shape.size, colors=color)
+    if name:
+        parts["name"] = rr.Points3D(
+            [[0.0, 0.0, 0.0]], radii=0.0, colors=palette.NORMAL, labels=[name], show_labels=True
+        )
+    return parts
+
+
+def draw_trail_style(
+    recording: rr.RecordingStream, body_name: str, color: palette.Color = palette.MEASURED
+) -> None:
+    """Tell the viewer how the trail of a body looks."""
+    trail = rr.LineStrips3D.from_fields(colors=palette.translucent(color, 0.9), radii=_TRAIL_WIDTH)
     recording.log(trail_entity(body_name), trail, static=True)
 
 

@@ -1,28 +1,47 @@
 """Opens the places where the picture goes: a file, a viewer that is started, served or connected to, or both.
 
 All network addresses are of this machine (127.0.0.1) unless a URL names another. If a viewer dies or hangs
-later, the picture still goes into the file, and closing waits for the viewer a few seconds at most.
+later, the picture still goes into the file, and closing waits for the viewer a few seconds at most. A viewer
+that is opened again at the same place gets what stands in the picture. What is served stays in a memory of
+limited size, for viewers that come later.
 """
 
 from __future__ import annotations
 
-import socket
+import re
 import threading
+import time
 from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Final
-from urllib.parse import urlsplit
 
 import rerun as rr
 
-from contact_dynamics.errors import ContactDynamicsError
-from contact_dynamics.viewing.viewer_process import LOCAL, ViewerProcess, connection_problem
+from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
+from contact_dynamics.viewing.kept_recording import KeptRecording
+from contact_dynamics.viewing.live_viewer import LiveViewer
+from contact_dynamics.viewing.ports import (
+    DEFAULT_PORT,
+    LOCAL,
+    connection_problem,
+    host_and_port,
+    local_url,
+    serving_problem,
+)
+from contact_dynamics.viewing.rrd_files import RrdFiles
+from contact_dynamics.viewing.viewer_process import ViewerProcess
+from contact_dynamics.viewing.web_viewer import WebViewer
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-APPLICATION: Final = "contact_dynamics"
-DEFAULT_PORT: Final = 9876
+DEFAULT_MEMORY: Final = "1GiB"
+DEFAULT_WEB_PORT: Final = 9090
+NO_WEB_PORT: Final = 0
+
+_MEMORY: Final = re.compile(r"(\d+(\.\d+)?)(%|B|[kKMGT]B|[KMGT]iB)")
+
+_TEND_S: Final = 1.0  # between two looks at a file's size, and at whether a viewer is back
 
 
 class ViewerMode(Enum):
@@ -40,14 +59,31 @@ class Sinks:
 
     Attributes:
         rrd_path: File to write, which is replaced. If it is empty, no file is written.
+        rrd_size: Bytes. When a file is larger, the next one begins, with _1, _2 and so on in its name. 0
+            means that there is one file.
+        rrd_files: The newest files that stay, where there are several. 0 means all.
         port: Port of the viewer that is started, or that is served.
         url: URL of the viewer to connect to, such as rerun+http://127.0.0.1:9876/proxy.
+        memory: Memory of the viewer that is started, or of what is served, as rerun takes it: `2GB`, `50%`.
+        web_port: Port of the web viewer beside what is served. `NO_WEB_PORT` means that there is none.
+
+    Raises:
+        InvalidFieldError: the memory is not a size.
     """
 
     rrd_path: str = ""
+    rrd_size: int = 0
+    rrd_files: int = 0
     viewer: ViewerMode = ViewerMode.NONE
     port: int = DEFAULT_PORT
     url: str = ""
+    memory: str = DEFAULT_MEMORY
+    web_port: int = NO_WEB_PORT
+
+    def __post_init__(self) -> None:
+        """Check what rerun would refuse too late."""
+        if not _MEMORY.fullmatch(self.memory):
+            raise InvalidFieldError("viewer_memory", repr(self.memory), "a size such as 500MB, 2GiB or 25%")
 
 
 class NowhereToDrawError(ContactDynamicsError):
@@ -64,11 +100,16 @@ class OpenRecording:
             OSError: the file cannot be written.
             NowhereToDrawError: a viewer was asked for without a file, and there is none.
         """
-        self.stream = rr.RecordingStream(APPLICATION)
+        self.stream = KeptRecording()
+        self._sinks = sinks
         self._on_problem = on_problem
-        self._viewer: ViewerProcess | None = None
+        self._process: ViewerProcess | None = None
+        self._viewer: LiveViewer | None = None
+        self._files: RrdFiles | None = None
+        self._web: WebViewer | None = None
         self._problem = ""
-        self.description = ", ".join(self._open(sinks)) or "nowhere"
+        self._tended = time.monotonic()
+        self.description = ", ".join(self._open()) or "nowhere"
         if self._problem and not sinks.rrd_path:
             message = f"nowhere to draw to: {self._problem}"
             raise NowhereToDrawError(message)
@@ -78,77 +119,80 @@ class OpenRecording:
     @property
     def viewer_failed(self) -> bool:
         """Whether the viewer that was asked for could not be reached, or has failed since."""
-        return bool(self._problem) or (self._viewer is not None and self._viewer.failed)
+        return bool(self._problem) or (self._process is not None and self._process.failed)
+
+    def tend(self) -> None:
+        """Begin the next file if this one is full, and give the picture to a viewer that is back.
+
+        It is to be called now and then, by who draws.
+        """
+        now = time.monotonic()
+        if now < self._tended + _TEND_S:
+            return
+        self._tended = now
+        if self._files is not None:
+            self._files.roll()
+        if self._viewer is not None:
+            self._viewer.look()
 
     def close(self, *, timeout: float = 5.0) -> bool:
         """Write what is left and leave the viewer, which stays open. Return whether it took everything.
 
         If it did not within ``timeout``, s, rerun would wait for it for ever when the process exits.
         """
-        thread = threading.Thread(target=self._disconnect, daemon=True)
+        for opened in (self._web, self._viewer):
+            if opened is not None:
+                opened.close()
+        thread = threading.Thread(target=self.stream.disconnect, daemon=True)
         thread.start()
         thread.join(timeout)
         if thread.is_alive():
             self._on_problem(f"the viewer did not take all that was drawn within {timeout:g} s")
         return not thread.is_alive()
 
-    def _disconnect(self) -> None:
-        self.stream.disconnect()
-
-    def _open(self, sinks: Sinks) -> list[str]:
-        opened: list[rr.sinks.LogSinkLike] = []
-        names: list[str] = []
+    def _open(self) -> list[str]:
+        sinks, names = self._sinks, []
         if sinks.rrd_path:
-            with open(sinks.rrd_path, "wb"):  # noqa: PTH123  rerun itself only logs that it cannot write
-                pass
-            # The footer, an index of all that was drawn, stays in memory until the end: 50 KB an answer.
-            opened.append(rr.FileSink(sinks.rrd_path, write_footer=False))
+            self._files = RrdFiles(self.stream, sinks.rrd_path, size=sinks.rrd_size, most=sinks.rrd_files)
             names.append(sinks.rrd_path)
-        url = self._viewer_url(sinks)
-        problem = _serving_problem(sinks.port) if sinks.viewer is ViewerMode.SERVE else ""
-        if problem:
-            self._problem = f"the picture is not served at port {sinks.port}: {problem}"
-        elif sinks.viewer is ViewerMode.SERVE:
-            opened.append(rr.GrpcServerSink(bind_ip=LOCAL, port=sinks.port))
-            names.append(f"served at {_local_url(sinks.port)}")
+        url = self._viewer_url()
+        if sinks.viewer is ViewerMode.SERVE:
+            names += self._serve()
         elif url:
-            opened.append(rr.GrpcSink(url))
+            self._viewer = LiveViewer(self.stream, url, on_problem=self._on_problem)
             names.append(f"viewer at {url}")
-        if opened:
-            self.stream.set_sinks(*opened)
         return names
 
-    def _viewer_url(self, sinks: Sinks) -> str:
-        """Return the URL of a viewer that listens, or None after a message that says why there is none."""
+    def _serve(self) -> list[str]:
+        """Serve the picture, and return where."""
+        sinks, url = self._sinks, local_url(self._sinks.port)
+        problem = serving_problem(sinks.port)
+        if problem:
+            self._problem = f"the picture is not served at port {sinks.port}: {problem}"
+            return []
+        self.stream.open(rr.GrpcServerSink(bind_ip=LOCAL, port=sinks.port, server_memory_limit=sinks.memory))
+        names = [f"served at {url}"]
+        if sinks.web_port != NO_WEB_PORT:
+            self._web = WebViewer(sinks.web_port, url, on_problem=self._on_problem)
+            names += [f"in a browser at {self._web.address}"] if self._web.address else []
+        return names
+
+    def _viewer_url(self) -> str:
+        """Return the URL of a viewer that listens, or an empty string after noting why there is none."""
+        sinks = self._sinks
         if sinks.viewer is ViewerMode.CONNECT:
-            parts = urlsplit(sinks.url)
-            problem = connection_problem(parts.hostname or LOCAL, parts.port or DEFAULT_PORT)
+            problem = connection_problem(*host_and_port(sinks.url))
             if not problem:
                 return sinks.url
             self._problem = f"no viewer listens at {sinks.url}: {problem}"
         elif sinks.viewer is ViewerMode.SPAWN:
-            self._viewer = ViewerProcess(sinks.port, on_problem=self._on_problem)
-            if not self._viewer.problem:
-                return _local_url(sinks.port)
-            self._problem = self._viewer.problem
+            self._process = ViewerProcess(sinks.port, memory=sinks.memory, on_problem=self._on_problem)
+            if not self._process.problem:
+                return local_url(sinks.port)
+            self._problem = self._process.problem
         return ""
 
 
 def raise_errors() -> None:
     """Make rerun raise an error for what it cannot draw, instead of a warning."""
     rr.set_strict_mode(True)
-
-
-def _serving_problem(port: int) -> str:
-    """Return the system's reason why a port cannot be served at, or an empty string if it can."""
-    try:
-        with socket.socket() as probe:
-            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # as rerun does
-            probe.bind((LOCAL, port))
-            return ""
-    except OSError as error:
-        return str(error)
-
-
-def _local_url(port: int) -> str:
-    return f"rerun+http://{LOCAL}:{port}/proxy"

@@ -36,8 +36,8 @@ the body."""
 DEVIATIONS: Final = 2.0
 """Half axes of the ellipsoids of uncertainty, in standard deviations: 74 % of a normal distribution."""
 
-RECENT: Final = ("path", "outlines", "end", "uncertainty")
-"""The parts of a prediction that stay in view beside later ones."""
+DEFAULT_PREDICTIONS: Final = 4
+"""The paths of this many newest predictions of a body are in view."""
 
 _PATH_WIDTH: Final = -2.0  # a negative size is in points of the screen
 _OUTLINE_WIDTH: Final = -0.8
@@ -61,8 +61,7 @@ def draw_trajectory(
         recording.log(path, rr.Clear(recursive=True))
         return
     last = len(trajectory) - 1
-    samples = np.unique(np.linspace(0, last, min(last + 1, MOST_PATH_POINTS)).round().astype(int))
-    strip = rr.LineStrips3D([trajectory.p_WB_W[samples]], colors=palette.PREDICTED, radii=_PATH_WIDTH)
+    strip = rr.LineStrips3D([_thinned(trajectory)], colors=palette.PREDICTED, radii=_PATH_WIDTH)
     recording.log(f"{path}/path", strip)
     travelled = float(np.linalg.norm(np.diff(trajectory.p_WB_W, axis=0), axis=1).sum())
     count = min(MOST_OUTLINES, int(travelled / shape.size))
@@ -82,6 +81,22 @@ def draw_trajectory(
     recording.log(f"{path}/newest_end", pose)
     faces = solid(shape, palette.translucent(palette.PREDICTED, 0.25))
     recording.log(f"{path}/newest_end/faces", faces if moves_away else rr.Clear(recursive=False))
+
+
+def draw_earlier_path(
+    recording: rr.RecordingStream, body_name: str, trajectory: Trajectory, *, place: int
+) -> None:
+    """Keep the path of a trajectory in view when a later one is drawn, until another takes its place."""
+    path = f"{predicted_entity(body_name)}/earlier/{place}"
+    color = palette.translucent(palette.PREDICTED, 0.4)
+    recording.log(path, rr.LineStrips3D([_thinned(trajectory)], colors=color, radii=0.5 * _PATH_WIDTH))
+
+
+def _thinned(trajectory: Trajectory) -> FloatArray:
+    last = len(trajectory) - 1
+    samples = np.unique(np.linspace(0, last, min(last + 1, MOST_PATH_POINTS)).round().astype(int))
+    thinned: FloatArray = trajectory.p_WB_W[samples]
+    return thinned
 
 
 def _ellipsoids(

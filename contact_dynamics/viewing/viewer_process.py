@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import os
 import re
-import socket
 import subprocess
 import tempfile
 import threading
@@ -22,33 +21,32 @@ from typing import IO, TYPE_CHECKING, Final
 
 import rerun as rr
 
+from contact_dynamics.viewing.ports import LOCAL, connection_problem, speaks_http2
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-LOCAL: Final = "127.0.0.1"
-
 _START_S: Final = 15.0
 _WINDOW_S: Final = 5.0  # s, after which a viewer that listens and still lives counts as open
-_CONNECT_S: Final = 1.0
 _POLL_S: Final = 0.05
 _DRAWS: Final = "wgpu adapter"  # the viewer logs this once it has a window and a graphics adapter
 _MOST_WORDS: Final = 4  # number of the viewer's lines that are shown
 _COLORS: Final = re.compile(r"\x1b\[[0-9;]*m")
 _LOGGED: Final = re.compile(r"^\S+ +(?:TRACE|DEBUG|INFO|WARN|ERROR) ")
-_HTTP2_GREETING: Final = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + bytes([0, 0, 0, 4, 0, 0, 0, 0, 0])
-_SETTINGS: Final = 4  # type of the frame that an HTTP/2 server begins with (RFC 9113, 3.4 and 6.5)
 
 
 class ViewerProcess:
     """A viewer that was started, or that listened already."""
 
-    def __init__(self, port: int, *, on_problem: Callable[[str], object]) -> None:
+    def __init__(self, port: int, *, memory: str, on_problem: Callable[[str], object]) -> None:
         """Start a viewer, unless one listens at the port, and wait until it is open.
 
-        Afterwards ``problem`` says why there is none, and is empty if there is one. ``on_problem`` is called
-        with what happens to the viewer later.
+        It drops the oldest data beyond a limit of its ``memory``, as rerun takes it: `2GB`, `50%`. Afterwards
+        ``problem`` says why there is none, and is empty if there is one. ``on_problem`` is called with what
+        happens to the viewer later.
         """
         self._port = port
+        self._memory = memory
         self._on_problem = on_problem
         self._failed = False
         self.problem = self._start()
@@ -60,7 +58,7 @@ class ViewerProcess:
 
     def _start(self) -> str:
         if not connection_problem(LOCAL, self._port):
-            if _speaks_http2(self._port):
+            if speaks_http2(LOCAL, self._port):
                 return ""
             return f"port {self._port} is taken by something that does not answer as rerun's viewer does"
         executable = viewer_executable()
@@ -68,7 +66,10 @@ class ViewerProcess:
         try:
             self._tell_other_version(executable)
             process = subprocess.Popen(  # noqa: S603  rerun's own program
-                [executable, "--bind", LOCAL, "--port", str(self._port), "--expect-data-soon"],
+                [
+                    *(executable, "--bind", LOCAL, "--port", str(self._port)),
+                    *("--memory-limit", self._memory, "--expect-data-soon"),
+                ],
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,
@@ -147,23 +148,3 @@ def viewer_executable() -> str:
     spec = find_spec("rerun_cli")
     folders = (spec.submodule_search_locations if spec else None) or ["rerun_cli"]
     return str(Path(folders[0]) / "rerun")
-
-
-def connection_problem(host: str, port: int) -> str:
-    """Return the system's reason why nothing is reached at a port, or an empty string if something is."""
-    try:
-        with socket.create_connection((host, port), timeout=_CONNECT_S):
-            return ""
-    except OSError as error:
-        return str(error)
-
-
-def _speaks_http2(port: int) -> bool:
-    """Return whether the process that listens there greets as gRPC's servers do. rerun's viewer is one."""
-    try:
-        with socket.create_connection((LOCAL, port), timeout=_CONNECT_S) as connection:
-            connection.sendall(_HTTP2_GREETING)
-            header = connection.recv(9)
-    except OSError:
-        return False
-    return len(header) > 3 and header[3] == _SETTINGS

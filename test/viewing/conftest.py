@@ -17,7 +17,7 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.viewing.measured import set_time
-from contact_dynamics.viewing.viewer_process import LOCAL
+from contact_dynamics.viewing.ports import LOCAL
 from contact_dynamics.world import Body, Surface, World, box_vertices
 from viewing.drawn import STAMP_NS, Drawn, read_drawn
 
@@ -44,6 +44,15 @@ def free_port() -> int:
         probe.bind((LOCAL, 0))
         port: int = probe.getsockname()[1]
         return port
+
+
+@pytest.fixture
+def silent_viewer() -> Iterator[int]:
+    """A port where something listens and never answers."""
+    with socket.socket() as listener:
+        listener.bind((LOCAL, 0))
+        listener.listen()
+        yield listener.getsockname()[1]
 
 
 @pytest.fixture

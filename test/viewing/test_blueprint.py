@@ -8,11 +8,20 @@ from rerun.chunk import RrdReader
 
 from contact_dynamics.viewing.blueprint import DIAGRAMS, LOWEST_DISTANCE, Eye, eye_on, make_blueprint
 from contact_dynamics.viewing.entities import (
+    ANSWERS,
+    CONTACTS,
+    ENERGY,
+    ERROR,
+    FORCE_DUAL,
+    IMPACTS,
+    IMPULSE_SPACE,
+    IMPULSE_SPACE_IN_3D,
     MODE_MAP,
+    PLANAR_MODES,
     POINSOT,
+    PREDICTED,
+    contacts_entity,
     entity,
-    impact_entity,
-    predicted_entity,
     trail_entity,
 )
 
@@ -51,28 +60,124 @@ def test_the_eye_is_where_the_path_bulges_to() -> None:
         assert nearest == 1
 
 
+HEIGHT = "Height of the centre of mass, m (thin: predicted)"
+SPEED = "Speed of the centre of mass, m/s (thin: predicted)"
+APART = "Distance of the measured from the predicted place, m"
+CONSERVED = [
+    "Energy, J (thin: predicted)",
+    "Momentum, kg m/s (thin: predicted)",
+    "Angular momentum, kg m²/s (thin: predicted)",
+]
+OVERVIEW = ["Scene", HEIGHT, SPEED, "Legend"]
+TOLD = ["Newest answers", "All answers"]
+PAGES = {
+    "nothing yet": ([], OVERVIEW, []),
+    "a refusal": ([ANSWERS], [*OVERVIEW, *TOLD], []),
+    "a flight": (
+        [ANSWERS, PREDICTED, POINSOT, ERROR],
+        [*OVERVIEW, *TOLD, "Poinsot", APART, "Flight", "Poinsot", HEIGHT, SPEED, APART],
+        ["Flight"],
+    ),
+    "an impact": (
+        [ANSWERS, IMPACTS, IMPULSE_SPACE],
+        [*OVERVIEW, *TOLD, "Impulse space", "Impact", "Impulse space", SPEED, "Newest answers"],
+        ["Impact"],
+    ),
+    "an impact in space": (
+        [ANSWERS, IMPACTS, IMPULSE_SPACE, IMPULSE_SPACE_IN_3D],
+        [
+            *OVERVIEW,
+            *TOLD,
+            "Impact",
+            SPEED,
+            "Newest answers",
+            *2 * ["Impulse space", "Impulse space in 3-D"],
+        ],
+        ["Impact"],
+    ),
+    "energy": ([ENERGY], [*OVERVIEW, "Motion", *CONSERVED], ["Energy and momentum"]),
+    "contact modes in space": (
+        [ANSWERS, CONTACTS],
+        [*OVERVIEW, *TOLD, "Contacts", "Newest answers"],
+        ["Contact modes"],
+    ),
+    "contact modes in the plane": (
+        [ANSWERS, CONTACTS, PLANAR_MODES, MODE_MAP, FORCE_DUAL],
+        [*OVERVIEW, *TOLD, "Contacts", "Newest answers", *2 * ["Contact modes", "Mode map", "Force dual"]],
+        ["Contact modes"],
+    ),
+    "everything": (
+        [ANSWERS, PREDICTED, IMPACTS, CONTACTS, ERROR, ENERGY, *DIAGRAMS],
+        [
+            *OVERVIEW,
+            *TOLD,
+            APART,
+            *DIAGRAMS.values(),
+            "Flight",
+            "Poinsot",
+            HEIGHT,
+            SPEED,
+            APART,
+            "Impact",
+            "Impulse space",
+            "Impulse space in 3-D",
+            SPEED,
+            "Newest answers",
+            "Contacts",
+            "Contact modes",
+            "Mode map",
+            "Force dual",
+            "Newest answers",
+            "Motion",
+            *CONSERVED,
+        ],
+        ["Flight", "Impact", "Contact modes", "Energy and momentum"],
+    ),
+}  # what there is to see, the views, the pages beside the overview
+
+
+@pytest.mark.parametrize("case", PAGES)
+def test_each_question_has_a_page_and_what_is_not_there_has_no_panel(tmp_path: Path, case: str) -> None:
+    shown, views, pages = PAGES[case]
+    names, _ = names_and_paths(tmp_path, eye=None, shown=shown)
+    assert sorted(names["ViewBlueprint"]) == sorted(views)
+    assert sorted(names["ContainerBlueprint"]) == sorted(["Overview", *pages])
+
+
 @pytest.mark.parametrize(
     "eye", [None, Eye(position_W=np.array([1.0, 2.0, 3.0]), target_W=np.zeros(3), up_W=UP)]
 )
-@pytest.mark.parametrize("diagrams", [[], [MODE_MAP], list(DIAGRAMS)])
-def test_the_arrangement_holds_every_view(tmp_path: Path, eye: Eye | None, diagrams: list[str]) -> None:
-    path = tmp_path / "views.rbl"
-    make_blueprint(["brick", "arm/tool 1"], eye=eye, diagrams=diagrams).save("test", path)
+def test_every_scene_has_the_eye_and_keeps_the_trails(tmp_path: Path, eye: Eye | None) -> None:
+    shown = [ANSWERS, PREDICTED, IMPACTS, CONTACTS, POINSOT]
+    _, paths = names_and_paths(tmp_path, eye=eye, shown=shown)
+    scenes = 4  # of the overview and of three pages
+    poinsots = 2  # of the overview and of the flight
+    assert sum("EyeControls3D" in path for path in paths) == (scenes if eye else 0) + poinsots
+    for name in ("brick", "arm/tool 1"):
+        assert sum(f"overrides/{trail_entity(name)}/" in path for path in paths) == scenes
+        hidden = {
+            path for path in paths if "overrides/" in path and f"{contacts_entity(name)}/mode_2" in path
+        }
+        assert len(hidden) == 2  # in the overview and among the contact modes; other scenes have no contacts
+
+
+def names_and_paths(
+    folder: Path, *, eye: Eye | None, shown: list[str]
+) -> tuple[dict[str, list[str]], list[str]]:
+    """The names of views and containers in an arrangement's file, and the paths of all that is in it."""
+    path = folder / "views.rbl"
+    make_blueprint(["brick", "arm/tool 1"], eye=eye, shown=shown).save("test", path)
     (entry,) = RrdReader(path).blueprints()
-    names: list[str] = []
+    names: dict[str, list[str]] = {"ViewBlueprint": [], "ContainerBlueprint": []}
     paths: list[str] = []
     for chunk in RrdReader(path).stream(store=entry):
         batch = chunk.to_record_batch()
         paths.append(str(chunk.entity_path))
-        if "ViewBlueprint:display_name" in batch.schema.names:
-            names += [name for row in batch.column("ViewBlueprint:display_name").to_pylist() for name in row]
-    assert len(names) == 6 + len(diagrams)
-    eyes = (eye is not None) + (POINSOT in diagrams)
-    assert sum("EyeControls3D" in path for path in paths) == eyes
-    for name in ("brick", "arm/tool 1"):
-        recent = [trail_entity(name), f"{predicted_entity(name)}/path", f"{impact_entity(name)}/impulse"]
-        for kept in recent:
-            assert sum(f"overrides/{kept}/" in path for path in paths) == 1
+        for kind, found in names.items():
+            if f"{kind}:display_name" in batch.schema.names:
+                rows = batch.column(f"{kind}:display_name").to_pylist()
+                found += [name for row in rows if row for name in row]
+    return names, paths
 
 
 def test_names_may_hold_any_characters() -> None:

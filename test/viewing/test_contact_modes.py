@@ -82,7 +82,7 @@ def test_points_carry_letters_and_forces_their_direction(
     answer = contact_mode_answer(AT_REST, two_contacts, mode_of("sr", forces, slides=slides))
     draw_contact_modes(recording, convex_shape(body.vertices_B), answer)
     drawn = read()
-    assert drawn.last(f"{CONTACTS}/points", "Points3D:labels") == ["s", "r"]
+    assert drawn.last(f"{CONTACTS}/letters", "Points3D:labels") == ["s", "r"]
     colors = [color.to_bytes(4, "big") for color in drawn.last(f"{CONTACTS}/points", "Points3D:colors")]
     assert colors == [bytes(palette.SEPARATE), bytes(palette.SLIDE)]
     assert drawn.last(f"{CONTACTS}/mode_1/forces", "Arrows3D:labels") == ["0.5 N"]
@@ -121,7 +121,7 @@ def test_no_consistent_mode_is_drawn_as_a_question(
 ) -> None:
     draw_contact_modes(recording, convex_shape(body.vertices_B), contact_mode_answer(AT_REST, two_contacts))
     drawn = read()
-    assert drawn.last(f"{CONTACTS}/points", "Points3D:labels") == ["?", "?"]
+    assert drawn.last(f"{CONTACTS}/letters", "Points3D:labels") == ["?", "?"]
     assert drawn.last(f"{CONTACTS}/mode_1", "Clear:is_recursive") == [True]
 
 

@@ -110,7 +110,10 @@ def test_a_body_that_is_struck_is_drawn_with_its_velocities(
     shape = convex_shape(body.vertices_B)
     draw_impact(recording, shape, answer, other_shape=shape)
     drawn = read()
-    assert drawn.last(f"{IMPACT}/velocity_label", "Points3D:labels")[2:] == ["1 m/s", "0.5 m/s"]
+    assert drawn.last(f"{IMPACT}/velocity_label", "Points3D:labels")[2:] == [
+        "before 1 m/s",
+        "predicted after 0.5 m/s",
+    ]
     np.testing.assert_allclose(
         drawn.array(f"{IMPACT}/velocity", "Arrows3D:origins")[2:], np.tile([2.0, 0.0, 0.0], (2, 1))
     )

@@ -104,7 +104,7 @@ def test_the_lines_pass_through_the_lectures_points(
         assert distance(point, sticking) < DIGITS
     assert distance(COMPRESSED, compression) < DIGITS
     assert distance(ENDS, compression) > 0.01
-    labels = drawn.last(r"/impulse_space/event\ labels", "Points2D:labels")
+    labels = drawn.last(r"/impulse_space/event\ labels", "LineStrips2D:labels")
     assert labels == [
         "sliding stops: 0.0993, 0.172 N s",
         "compression ends: 0.111, 0.222 N s",
@@ -156,7 +156,7 @@ def check_dots(body: MassProperties, answer: ImpactAnswer) -> None:
         drawn = read_drawn(path)
     extent = np.abs(drawn.last("/impulse_space/axes", "LineStrips2D:strips")[0]).max()
     dots = on_paper(drawn.last("/impulse_space/events", "Points2D:positions")).reshape(-1, 2)
-    labels = drawn.last(r"/impulse_space/event\ labels", "Points2D:labels")
+    labels = drawn.last(r"/impulse_space/event\ labels", "LineStrips2D:labels")
     for dot, label in zip(dots, labels, strict=True):
         for words, name in (("compression ends", "compression"), ("sliding stops", "sticking")):
             if label.startswith(words):
@@ -279,3 +279,25 @@ def test_what_is_drawn_of_a_line_is_all_that_lies_in_the_picture(
 
 def test_a_line_of_no_direction_is_not_drawn() -> None:
     assert len(line_in_box(Line(np.zeros(2), 1.0), 1.0)) == 0
+
+
+def test_words_stand_beside_the_lines_and_apart_and_the_axes_have_names(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    body, answer = MassProperties(mass=1.0, I_B=np.eye(3)), sliding_rod()
+    draw_impulse_space(recording, body, answer)
+    drawn = read()
+    (right, _) = drawn.last("/impulse_space/axes", "LineStrips2D:strips")[0]
+    extent = abs(right[0])
+    for name in (r"event\ labels", "names"):
+        places = on_paper([strip[0] for strip in drawn.last(f"/impulse_space/{name}", "LineStrips2D:strips")])
+        assert (np.abs(places[:, 0]) > 1.2 * extent).all()
+        # A word is 20 points high, and a picture in a grid of two columns has 125 from its lower axis up.
+        assert (np.diff(np.sort(places[:, 1])) > 0.16 * extent).all()
+    axes = drawn.last(r"/impulse_space/axis\ names", "LineStrips2D:labels")
+    assert axes == ["tangential impulse, N s", "normal impulse, N s"]
+    name_of_axis = on_paper(drawn.last(r"/impulse_space/axis\ names", "LineStrips2D:strips")[0])[0]
+    labels = on_paper(
+        [strip[0] for strip in drawn.last(r"/impulse_space/event\ labels", "LineStrips2D:strips")]
+    )
+    assert (name_of_axis[0] * labels[:, 0] < 0.0).all()  # low labels would cover it

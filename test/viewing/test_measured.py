@@ -1,12 +1,14 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import free_motion
-from contact_dynamics.viewing.measured import draw_prediction_at, draw_states, style_series
+from contact_dynamics.viewing.measured import curves_of, draw_prediction_at, draw_states, style_series
 from viewing.drawn import STAMP_NS
 
 if TYPE_CHECKING:
@@ -70,7 +72,9 @@ def test_a_prediction_is_drawn_where_it_reaches_and_nowhere_else(
 ) -> None:
     ends_ns = STAMP_NS + 400_000_000
     stamps = [STAMP_NS - 1, STAMP_NS, STAMP_NS + 123_456_789, ends_ns, ends_ns + 1_000, ends_ns + 2_000]
-    draw_prediction_at(recording, "brick", stamps, trajectory=trajectory, begin_ns=STAMP_NS, up_W=UP)
+    measured = [replace(state, stamp_ns=stamp_ns) for stamp_ns in stamps]
+    curves = curves_of(trajectory, up_W=UP)
+    draw_prediction_at(recording, "brick", measured, trajectory=trajectory, curves=curves, begin_ns=STAMP_NS)
     drawn = read()
     assert drawn.stamps("/height/brick/predicted", "Scalars:scalars")[:3] == stamps[1:4]
     seconds = np.array([0.0, 0.123456789, 0.4])
@@ -80,13 +84,45 @@ def test_a_prediction_is_drawn_where_it_reaches_and_nowhere_else(
     np.testing.assert_allclose(heights, falling, atol=9.80665 * 0.01**2 / 8.0 + 1e-12)
     cleared = drawn.values["/height/brick/predicted", "Clear:is_recursive"]
     assert [stamp for stamp, _ in cleared] == [stamps[4]]
+    places = [np.interp(each, trajectory.seconds, axis) for each in seconds for axis in trajectory.p_WB_W.T]
+    apart = np.linalg.norm(np.reshape(places, (3, 3)) - state.p_WB_W, axis=1)
+    errors = [value[0] for _, value in drawn.values["/error/brick", "Scalars:scalars"][:3]]
+    np.testing.assert_allclose(errors, apart, atol=1e-12)
+
+
+def test_energy_and_momenta_are_those_of_the_states(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, state: BodyState
+) -> None:
+    """In free flight energy and angular momentum stay, and the momentum gains m g t."""
+    states, known, gravity_W = flight(body, state, 50), body.mass_properties, np.array([0.0, 0.0, -9.80665])
+    draw_states(recording, "brick", states, before=None, up_W=UP, body=known, gravity_W=gravity_W)
+    drawn = read()
+    energy, momentum, spin = (
+        drawn.series(f"/{quantity}/brick/measured", "Scalars:scalars")
+        for quantity in ("energy", "momentum", "angular_momentum")
+    )
+    R_WB = Rotation.from_quat(state.q_WB).as_matrix()
+    L_W = R_WB @ known.I_B @ R_WB.T @ state.w_WB_W
+    kinetic = 0.5 * known.mass * state.v_WB_W @ state.v_WB_W + 0.5 * state.w_WB_W @ L_W
+    np.testing.assert_allclose(energy, kinetic + known.mass * 9.80665 * state.p_WB_W[2], rtol=1e-12)
+    np.testing.assert_allclose(spin, np.linalg.norm(L_W), rtol=1e-12)
+    seconds = 1e-9 * ODD_NS * np.arange(50)
+    expected = known.mass * (state.v_WB_W + seconds[:, None] * gravity_W)
+    np.testing.assert_allclose(momentum, np.linalg.norm(expected, axis=1), rtol=1e-12)
+
+
+def test_what_is_not_known_has_no_energy(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], state: BodyState
+) -> None:
+    draw_states(recording, "brick", [state], before=None, up_W=UP)
+    assert "/energy/brick/measured" not in read().entities
 
 
 def test_a_prediction_without_samples_draws_nothing(
     recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, state: BodyState
 ) -> None:
     empty = free_motion(body.mass_properties, state).at([])
-    draw_prediction_at(recording, "brick", [STAMP_NS], trajectory=empty, begin_ns=STAMP_NS, up_W=UP)
+    draw_prediction_at(recording, "brick", [state], trajectory=empty, curves={}, begin_ns=STAMP_NS)
     assert "/height/brick/predicted" not in read().entities
 
 

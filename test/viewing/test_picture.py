@@ -1,12 +1,18 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
+from contact_dynamics.constants import to_ns
 from contact_dynamics.impact import PathEvent
 from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.tumbling import free_motion
+from contact_dynamics.viewing.entities import ERROR
+from contact_dynamics.viewing.impact import LABELS
+from contact_dynamics.viewing.in_view import LABELS_S
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.world import World
 from viewing.answers import contact_mode_answer, impact_answer, tumbling_answer
@@ -63,7 +69,7 @@ def test_each_answer_appears_at_its_stamp(
     assert drawn.stamps("/world/predicted/brick/path", "LineStrips3D:strips") == [STAMP_NS]
     assert drawn.stamps("/world/impact/brick/impulse", "Arrows3D:vectors") == [STAMP_NS + 1]
     assert drawn.stamps("/impulse_space/path", "LineStrips2D:strips") == [STAMP_NS + 1]
-    assert drawn.stamps("/world/contacts/brick/points", "Points3D:labels") == [STAMP_NS + 2]
+    assert drawn.stamps("/world/contacts/brick/letters", "Points3D:labels") == [STAMP_NS + 2]
 
 
 def test_measured_states_after_a_prediction_stand_beside_it(
@@ -80,7 +86,72 @@ def test_measured_states_after_a_prediction_stand_beside_it(
     drawn = read()
     assert drawn.stamps("/height/brick/measured", "Scalars:scalars") == [STAMP_NS, LATER_NS]
     assert drawn.stamps("/height/brick/predicted", "Scalars:scalars") == [LATER_NS]
+    seconds = 1e-9 * (LATER_NS - STAMP_NS)
+    there = [np.interp(seconds, trajectory.seconds, each) for each in trajectory.p_WB_W.T]
+    apart = float(np.linalg.norm(state.p_WB_W - there))  # the state that was measured later is the same
+    assert apart > 0.0
+    assert drawn.series("/error/brick", "Scalars:scalars").tolist() == [apart]
     assert picture.newest_stamp_ns() == LATER_NS
+
+
+def test_an_answer_that_comes_late_stands_beside_the_states_before_it_once(
+    recording: rr.RecordingStream,
+    read: Callable[[], Drawn],
+    *,
+    world: World,
+    state: BodyState,
+    trajectory: Trajectory,
+) -> None:
+    """On a machine under load an answer can take longer than the flight. An answer after it adds nothing."""
+    picture = Picture(recording, world, surface_side=2.0)
+    stamps = [STAMP_NS + i * 100_000_000 for i in range(6)]  # the trajectory has 0.4 s
+    picture.add_states("brick", [moved(state, stamp_ns) for stamp_ns in stamps])
+    picture.show_tumbling(tumbling_answer(state, trajectory))
+    picture.show_tumbling(tumbling_answer(state, trajectory))
+    drawn = read()
+    assert drawn.stamps("/height/brick/predicted", "Scalars:scalars") == stamps[1:5]
+    assert drawn.stamps("/error/brick", "Scalars:scalars") == stamps[1:5]
+    assert drawn.stamps("/energy/brick/predicted", "Scalars:scalars") == stamps[1:5]
+    assert drawn.stamps("/energy/brick/measured", "Scalars:scalars") == stamps
+    assert drawn.stamps("/world/predicted/brick/path", "LineStrips3D:strips") == [STAMP_NS, STAMP_NS]
+
+
+def test_a_prediction_without_states_beside_it_has_no_panel_of_its_error(
+    recording: rr.RecordingStream, world: World, state: BodyState, trajectory: Trajectory
+) -> None:
+    picture = Picture(recording, world, surface_side=2.0)
+    picture.show_tumbling(tumbling_answer(state, trajectory))
+    picture.add_states("brick", [moved(state, STAMP_NS + 10_000_000_000)])
+    assert ERROR not in picture.shown
+    picture.add_states("brick", [moved(state, STAMP_NS + 10_100_000_000)])
+    picture.show_tumbling(tumbling_answer(moved(state, STAMP_NS + 10_000_000_000), trajectory))
+    assert ERROR in picture.shown
+
+
+def test_energy_and_momenta_are_drawn_beside_a_prediction(
+    recording: rr.RecordingStream,
+    read: Callable[[], Drawn],
+    *,
+    world: World,
+    state: BodyState,
+    trajectory: Trajectory,
+) -> None:
+    """In free flight the measured curves of energy and angular momentum are those that were predicted."""
+    (brick,) = world.bodies
+    picture = Picture(recording, world, surface_side=2.0)
+    picture.add_states("brick", [state])
+    picture.show_tumbling(tumbling_answer(state, trajectory))
+    flight = free_motion(brick.mass_properties, state)
+    picture.add_states("brick", [flight.state_at(0.001 * i) for i in range(1, 20)])
+    drawn = read()
+    for quantity in ("energy", "angular_momentum"):
+        values = {
+            kind: drawn.series(f"/{quantity}/brick/{kind}", "Scalars:scalars")
+            for kind in ("measured", "predicted")
+        }
+        assert len(values["measured"]) == 20  # with the state that was asked about
+        np.testing.assert_allclose(values["measured"][1:], values["predicted"], rtol=1e-9)
+        assert values["measured"][0] > 0.0
 
 
 def test_the_first_trajectory_is_looked_at_with_the_ground_below_it_and_later_ones_are_not(
@@ -94,7 +165,7 @@ def test_the_first_trajectory_is_looked_at_with_the_ground_below_it_and_later_on
     for offset in (0, 1, 2):
         picture.show_tumbling(tumbling_answer(moved(state, STAMP_NS + offset), trajectory))
     drawn = read()
-    assert drawn.blueprints == 2  # without, then with the trajectory
+    assert drawn.blueprints == 3  # without, with the trajectory, with its page and the answer in words
     patch = drawn.array("/world/surfaces/floor/patch", "Mesh3D:vertex_positions")
     center = 0.5 * (trajectory.p_WB_W.min(axis=0) + trajectory.p_WB_W.max(axis=0))
     np.testing.assert_allclose(patch.mean(axis=0), [*center[:2], 0.0], atol=1e-6)
@@ -111,7 +182,7 @@ def test_a_diagram_gets_its_tab_when_it_is_first_drawn(
     picture = Picture(recording, world, surface_side=0.5)
     for _ in range(3):
         picture.show_impact(an_impact(state, two_contacts))
-    assert read().blueprints == 2  # without, then with impulse space
+    assert read().blueprints == 2  # without, with impact, impulse space and words
 
 
 def test_the_last_look_is_at_what_is_in_view_then(
@@ -179,3 +250,70 @@ def test_a_world_without_gravity_bodies_or_surfaces_is_drawn(
 ) -> None:
     Picture(recording, World(gravity_W=np.zeros(3)), surface_side=2.0)
     assert "/legend" in read().entities
+
+
+@pytest.mark.parametrize(
+    ("predictions", "stamps"), [(1, []), (2, [[1, 2, 3, 4, 5]]), (4, [[1, 4], [2, 5], [3]])]
+)
+def test_the_newest_predictions_are_in_view_and_no_more(
+    recording: rr.RecordingStream,
+    read: Callable[[], Drawn],
+    *,
+    world: World,
+    state: BodyState,
+    trajectory: Trajectory,
+    predictions: int,
+    stamps: list[list[int]],
+) -> None:
+    picture = Picture(recording, world, surface_side=0.5, predictions=predictions)
+    for offset in range(6):
+        picture.show_tumbling(tumbling_answer(moved(state, STAMP_NS + offset), trajectory))
+    drawn = read()
+    earlier = sorted(path for path in drawn.entities if "/earlier/" in path)
+    found = [drawn.stamps(path, "LineStrips3D:strips") for path in earlier]
+    assert [[stamp - STAMP_NS for stamp in each] for each in found] == stamps
+
+
+def test_only_the_newest_impact_has_labels_until_it_is_past(
+    recording: rr.RecordingStream,
+    read: Callable[[], Drawn],
+    *,
+    world: World,
+    state: BodyState,
+    two_contacts: ContactSet,
+) -> None:
+    """The labels of another body's impact go at once, and its own when it has been measured for a while."""
+    picture = Picture(recording, world, surface_side=0.5)
+    picture.show_impact(an_impact(state, two_contacts))
+    other = an_impact(state, two_contacts, stamp_ns=STAMP_NS + 1, name="ball")
+    picture.show_impact(other)
+    over_ns = STAMP_NS + 1 + to_ns(other.seconds_to_contact + LABELS_S)
+    picture.add_states("ball", [moved(state, over_ns - 1_000_000)])
+    picture.add_states("ball", [moved(state, over_ns + 1_000_000)])
+    drawn = read()
+    for label in LABELS:
+        assert drawn.stamps(f"/world/impact/brick/{label}", "Clear:is_recursive") == [STAMP_NS + 1]
+        assert drawn.stamps(f"/world/impact/ball/{label}", "Clear:is_recursive") == [over_ns + 1_000_000]
+
+
+def test_twenty_bodies_have_names_and_colours_of_their_own(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], world: World, state: BodyState
+) -> None:
+    names = [f"brick {i}" for i in range(20)]
+    (body,) = world.bodies
+    many = replace(world, bodies=tuple(replace(body, name=name) for name in names))
+    picture = Picture(recording, many, surface_side=0.5)
+    for name in names:
+        picture.add_states(name, [state])
+    drawn = read()
+    paths = [f"/world/bodies/brick\\ {i}" for i in range(20)]
+    assert [drawn.last(f"{path}/name", "Points3D:labels") for path in paths] == [[name] for name in names]
+    assert len({str(drawn.last(f"{path}/faces", "Mesh3D:albedo_factor")) for path in paths}) == 20
+
+
+def test_a_single_body_has_no_name_in_its_way(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], world: World, state: BodyState
+) -> None:
+    picture = Picture(recording, world, surface_side=0.5)
+    picture.add_states("brick", [state])
+    assert "/world/bodies/brick/name" not in read().entities

@@ -11,11 +11,13 @@ from contact_dynamics.diagrams.planar_modes import MOST_SETS
 from contact_dynamics.diagrams.planar_scene import silhouette
 from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions import ContactModeQuestion, Problem
+from contact_dynamics.questions import ContactModeQuestion, Knowledge, Problem
 from contact_dynamics.questions.contact_modes import answer
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.viewing.picture import Picture
+from contact_dynamics.viewing.planar_dual import draw_planar_dual
 from contact_dynamics.viewing.planar_modes import draw_planar_map, draw_planar_modes
-from contact_dynamics.world import Body, box_vertices
+from contact_dynamics.world import Body, World, box_vertices
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -67,7 +69,7 @@ def test_the_modes_of_the_indeterminate_rod_stand_side_by_side(
     found = answer_of(force=ALONG)
     draw_planar_modes(recording, found, PLANE, outline=np.array([TIP[[0, 2]], -TIP[[0, 2]]]))
     drawn = read()
-    titles = [drawn.last(f"/planar_modes/mode_{i}/title", "Points2D:labels")[0] for i in (1, 2)]
+    titles = [drawn.last(f"/planar_modes/mode_{i}/title", "LineStrips2D:labels")[0] for i in (1, 2)]
     assert sorted(title[0] for title in titles) == ["f", "l"]
     assert all(title[1:3] == " (" and " N from " in title for title in titles)
     places = [drawn.array(f"/planar_modes/mode_{i}/contacts", "Points2D:positions")[0] for i in (1, 2)]
@@ -81,7 +83,7 @@ def test_the_inconsistent_rod_says_so(recording: rr.RecordingStream, read: Calla
     draw_planar_modes(recording, found, PLANE, outline=np.zeros((0, 2)))
     draw_planar_map(recording, found, PLANE, None, body=ROD)
     drawn = read()
-    assert drawn.last("/planar_modes/mode_1/title", "Points2D:labels") == ["no consistent mode"]
+    assert drawn.last("/planar_modes/mode_1/title", "LineStrips2D:labels") == ["no consistent mode"]
     assert drawn.last("/planar_modes/mode_2", "Clear:is_recursive") == [True]
     assert "black: none is" in drawn.last("/mode_map/captions", "Points2D:labels")[-1]
 
@@ -131,3 +133,61 @@ def test_a_silhouette_is_the_hull_as_seen() -> None:
     rod = convex_shape(np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
     assert len(silhouette(rod, np.eye(3)[:2])) == 2
     assert len(silhouette(convex_shape(np.zeros((0, 3))), np.eye(3)[:2])) == 0
+
+
+def test_the_force_dual_shows_the_wrench_in_question_and_the_acceleration_centre(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], world: World
+) -> None:
+    """A brick on two feet is pushed aside and lifted on the left, so that it tips about its right foot.
+
+    A body at rest accelerates about the foot that stays, where the lecture has the centre. The force dual of
+    a wrench is the centre about which it would turn the free body.
+    """
+    (brick,) = world.bodies
+    feet = np.array([[-0.075, 0.0, 0.0], [0.075, 0.0, 0.0]])
+    known = brick.mass_properties
+    weight = known.mass * 9.80665
+    question = ContactModeQuestion(
+        body="brick",
+        state=BodyState(p_WB_W=[0, 0, 0.025], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0]),
+        contacts=ContactSet(p_WC_W=feet, normals_W=[[0.0, 0.0, 1.0]] * 2, frictions=2.0, restitutions=0.0),
+        torque_W=[0.0, 0.1 * weight, 0.0],
+        problem=Problem.PLANAR,
+        plane=PLANE,
+        want_wrenches=True,
+    )
+    found = answer(question, Knowledge(world=world))
+    assert [mode.mode for mode in found.modes] == ["sf"]
+    picture = Picture(recording, world, surface_side=1.0)
+    for stamp_ns in (1, 2):
+        picture.show_contact_modes(found, now_ns=stamp_ns)
+    drawn = read()
+    assert len(drawn.values["/force_dual/wrenches", "Image:buffer"]) == 1  # the second is the same
+    labels = drawn.last("/force_dual/answer", "Points2D:labels")
+    places = dict(zip(labels, drawn.last("/force_dual/answer", "Points2D:positions"), strict=True))
+    # Pictures of the body, below the construction, tell where its points are on the clockwise half.
+    strips = [np.array(strip) for strip in drawn.last("/force_dual/body", "LineStrips2D:strips")]
+    low, high = np.min(strips[1], axis=0), np.max(strips[1], axis=0)
+    middle, scale = 0.5 * (low + high), float(high[0] - low[0]) / 0.15  # points, points per m
+    np.testing.assert_allclose(
+        places["acceleration centre"], middle + scale * np.array([0.075, 0.025]), atol=0.1
+    )
+    rho_square = known.I_B[1, 1] / known.mass
+    beside = -rho_square / 0.1  # m: the weight moves the body down, the torque moves points on the left up
+    np.testing.assert_allclose(places["applied wrench"], middle + scale * np.array([beside, 0.0]), atol=0.1)
+    words = np.array(drawn.last("/force_dual/words", "LineStrips2D:strips"))[:, 0]
+    frames = np.vstack(drawn.last("/force_dual/frame", "LineStrips2D:strips"))
+    assert (words[:, 0] > frames[:, 0].max()).all()  # beside the chart, where they cover nothing
+    assert abs(words[1, 1] - words[0, 1]) > 0.15 * np.ptp(frames[:, 1])
+
+
+def test_a_moving_body_and_one_without_a_mode_have_no_force_dual(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    found = answer_of(force=(0.0, 0.0, -9.81), speed=-1.0)
+    shown = draw_planar_map(recording, found, PLANE, None, body=ROD)
+    outline = np.zeros((0, 2))
+    assert draw_planar_dual(recording, found, PLANE, None, shown=shown, applied=None, outline=outline) is None
+    drawn = read()
+    assert drawn.last("/force_dual", "Clear:is_recursive") == [True]
+    assert "/force_dual/wrenches" not in drawn.entities

@@ -45,7 +45,7 @@ def test_letters_forces_and_accelerations_of_a_mode(
     ).modes
     draw_planar_scene(recording, OUTLINE, BLOCK, mode=mode)
     drawn = read()
-    assert drawn.last("/planar_scene/letters", "Points2D:labels") == [
+    assert drawn.last("/planar_scene/letters", "LineStrips2D:labels") == [
         f"1 {mode.mode[0]}",
         f"2 {mode.mode[1]}",
     ]
@@ -63,7 +63,7 @@ def test_without_a_mode_contacts_are_numbered(
 ) -> None:
     draw_planar_scene(recording, OUTLINE, BLOCK)
     drawn = read()
-    assert drawn.last("/planar_scene/letters", "Points2D:labels") == ["1", "2"]
+    assert drawn.last("/planar_scene/letters", "LineStrips2D:labels") == ["1", "2"]
     assert ("/planar_scene/forces", "Arrows2D:vectors") not in drawn.values
 
 
@@ -71,4 +71,4 @@ def test_contacts_at_one_place_share_a_label(
     recording: rr.RecordingStream, read: Callable[[], Drawn]
 ) -> None:
     draw_planar_scene(recording, OUTLINE, [*BLOCK, *BLOCK])
-    assert read().last("/planar_scene/letters", "Points2D:labels") == ["1, 3", "2, 4"]
+    assert read().last("/planar_scene/letters", "LineStrips2D:labels") == ["1, 3", "2, 4"]

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from contact_dynamics.world import Body, World
     from viewing.drawn import Drawn
 
-PATH = "/poinsot/brick"
+PATH = "/poinsot/bodies/brick"
 
 
 def answer_of(motion: FreeMotion) -> TumblingAnswer:

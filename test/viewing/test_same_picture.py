@@ -16,15 +16,20 @@ from contact_dynamics.questions import (
     ImpactQuestion,
     Knowledge,
     Problem,
+    TossQuestion,
+    TossSampling,
     TumblingQuestion,
+    UncertainState,
     contact_modes,
     impact,
+    toss,
     tumbling,
 )
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.viewing.picture import Picture
 from msg_adapters.contact_mode import contact_mode_answer_from_msg, contact_mode_answer_to_msg
 from msg_adapters.impact import impact_answer_from_msg, impact_answer_to_msg
+from msg_adapters.toss import toss_answer_from_msg, toss_answer_to_msg
 from msg_adapters.tumbling import tumbling_answer_from_msg, tumbling_answer_to_msg
 from viewing.drawn import STAMP_NS, Drawn, read_drawn
 
@@ -80,7 +85,18 @@ def draw_modes(picture: Picture, world: World, read_back: Callable[[Any], Any]) 
     picture.show_contact_modes(read_back(contact_modes.answer(question, Knowledge(world=world))))
 
 
+def draw_toss(picture: Picture, world: World, read_back: Callable[[Any], Any]) -> None:
+    question = TossQuestion(
+        body="brick",
+        state=UncertainState(state=FALLING, covariance=1e-4 * np.eye(12)),
+        most_alternatives=1,
+        sampling=TossSampling(count=25),
+    )
+    picture.show_toss(read_back(toss.answer(question, Knowledge(world=world))))
+
+
 PAIRS = {
+    draw_toss: (toss_answer_to_msg, toss_answer_from_msg),
     draw_tumbling: (tumbling_answer_to_msg, tumbling_answer_from_msg),
     draw_impact: (impact_answer_to_msg, impact_answer_from_msg),
     draw_modes: (contact_mode_answer_to_msg, contact_mode_answer_from_msg),
@@ -107,4 +123,5 @@ def test_a_response_and_its_answer_are_drawn_alike(
     assert described == {key for key in served.values if key[0] != "/__properties"}
     assert len(described) > 30
     for key in described:
-        np.testing.assert_equal(served.values[key], asked.values[key])
+        if served.values[key] != asked.values[key]:  # as they are where one of the numbers is NaN
+            np.testing.assert_equal(served.values[key], asked.values[key])

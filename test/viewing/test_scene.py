@@ -11,13 +11,16 @@ from hypothesis import strategies as st
 from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.shapes.obstacle import Obstacle
+from contact_dynamics.viewing.entities import body_entity
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.scene import (
     MOST_GRID_LINES,
+    body_parts,
     draw_axes,
-    draw_body,
-    draw_surface,
+    surface_parts,
+    surface_path,
 )
+from contact_dynamics.viewing.scenery import Scenery
 from contact_dynamics.world import Surface, World, box_vertices
 
 if TYPE_CHECKING:
@@ -40,7 +43,8 @@ def test_a_surface_is_a_square_in_its_plane_below_the_centre(
     recording: rr.RecordingStream, read: Callable[[], Drawn], side: float
 ) -> None:
     center = np.array([2.0, 3.0, 4.0])
-    draw_surface(recording, TILTED, center_W=center, side=side)
+    parts = surface_parts(TILTED, center_W=center, side=side)
+    Scenery(recording).draw(surface_path(TILTED.name), parts)
     drawn = read()
     corners = drawn.array("/world/surfaces/ramp/patch", "Mesh3D:vertex_positions")
     tolerance = 1e-6 * (side + 5.0)  # float32
@@ -67,7 +71,7 @@ def test_tangents_and_normal_are_a_right_handed_frame(direction: tuple[float, fl
 def test_a_body_is_drawn_in_its_own_axes(
     recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body
 ) -> None:
-    draw_body(recording, "brick", convex_shape(body.vertices_B))
+    Scenery(recording).draw(body_entity("brick"), body_parts(convex_shape(body.vertices_B)))
     drawn = read()
     faces = drawn.array("/world/bodies/brick/faces", "Mesh3D:vertex_positions")
     np.testing.assert_allclose(np.unique(np.abs(faces), axis=0), [[0.075, 0.045, 0.025]], rtol=1e-6)
@@ -88,7 +92,7 @@ def test_an_obstacle_is_drawn_where_it_stands(
 
 
 def test_a_body_without_shape_is_a_ball(recording: rr.RecordingStream, read: Callable[[], Drawn]) -> None:
-    draw_body(recording, "", convex_shape(np.zeros((0, 3))))
+    Scenery(recording).draw(body_entity(""), body_parts(convex_shape(np.zeros((0, 3)))))
     assert read().last("/world/bodies/unnamed/faces", "Points3D:radii")[0] > 0.0
 
 

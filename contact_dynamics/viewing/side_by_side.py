@@ -1,0 +1,86 @@
+"""Events side by side: each has a place of its own in one scene, row after row, with a table beside them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import rerun.blueprint as rrb
+
+from contact_dynamics.numerics.vectors import tangents_near_x
+from contact_dynamics.records import Record
+from contact_dynamics.viewing import palette
+
+if TYPE_CHECKING:
+    from contact_dynamics.validation import FloatArray
+
+MOST_DRAWN: Final = 48
+"""Events that are drawn: more could not be told apart."""
+
+COLUMN_COUNT: Final = 6
+"""Events in one row."""
+
+EVENTS: Final = "events"
+TABLE: Final = "table"
+
+_APART: Final = 2.6  # sizes of the largest body from place to place
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class SideBySide(Record):
+    """The places of events.
+
+    Attributes:
+        count: Number of events.
+        size: m, of the largest body.
+        gravity_W: (3,), m/s^2, which tells what is up.
+    """
+
+    count: int
+    size: float
+    gravity_W: FloatArray
+
+    @property
+    def up_W(self) -> FloatArray:
+        """Return the unit vector against gravity, (3,), or z without gravity."""
+        size = float(np.linalg.norm(self.gravity_W))
+        return -self.gravity_W / size if size > 0.0 else np.array([0.0, 0.0, 1.0])
+
+    def place(self, number: int) -> FloatArray:
+        """Return the place of an event, (3,), m."""
+        u_W, v_W = tangents_near_x(self.up_W)
+        place: FloatArray = (
+            _APART * self.size * ((number % COLUMN_COUNT) * u_W - (number // COLUMN_COUNT) * v_W)
+        )
+        return place
+
+    def blueprint(self, name: str, table: str) -> rrb.Blueprint:
+        """Return the arrangement: all events from above, and the table, each with its name."""
+        apart, up_W = _APART * self.size, self.up_W
+        u_W, v_W = tangents_near_x(up_W)
+        columns = min(COLUMN_COUNT, max(1, self.count))
+        row_count = math.ceil(max(1, self.count) / COLUMN_COUNT)
+        middle = 0.5 * apart * ((columns - 1) * u_W - (row_count - 1) * v_W)
+        distance = apart * max(0.95 * columns, 1.2 * row_count, 1.0)
+        eye = rrb.EyeControls3D(
+            kind=rrb.Eye3DKind.Orbital,
+            position=middle + distance * (0.75 * up_W - 0.65 * v_W),
+            look_target=middle,
+            eye_up=up_W,
+        )
+        view = rrb.Spatial3DView(
+            origin="/",
+            contents=f"{EVENTS}/**",
+            name=name,
+            background=rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor),
+            line_grid=False,
+            eye_controls=eye,
+        )
+        return rrb.Blueprint(
+            rrb.Horizontal(view, rrb.TextDocumentView(origin=TABLE, name=table), column_shares=[3, 2]),
+            rrb.BlueprintPanel(state=rrb.PanelState.Collapsed),
+            rrb.SelectionPanel(state=rrb.PanelState.Collapsed),
+            rrb.TimePanel(state=rrb.PanelState.Hidden),
+        )

@@ -1,0 +1,79 @@
+"""What is cleared from the scene, and when."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from contact_dynamics.constants import to_ns
+from contact_dynamics.viewing.in_view import LABELS_S, ConservedInView, ImpactsInView, LettersInView
+from viewing.drawn import STAMP_NS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import rerun as rr
+
+    from viewing.drawn import Drawn
+
+AFTER_NS = STAMP_NS + to_ns(LABELS_S) + 1
+
+
+def cleared(drawn: Drawn, entity: str) -> list[int]:
+    """The stamps at which something was cleared."""
+    return [stamp for stamp, _ in drawn.values.get((entity, "Clear:is_recursive"), [])]
+
+
+def test_an_older_impact_goes_when_it_is_over_and_the_newest_keeps_its_arrows(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    impacts = ImpactsInView(recording)
+    impacts.come("a", stamp_ns=STAMP_NS, strike_ns=STAMP_NS)
+    impacts.come("b", stamp_ns=STAMP_NS + 5, strike_ns=STAMP_NS)
+    for name in ("a", "b", "c"):
+        impacts.pass_by(name, AFTER_NS - 1)  # not yet over
+        impacts.pass_by(name, AFTER_NS)
+        impacts.pass_by(name, AFTER_NS + 1)  # no second time
+    drawn = read()
+    assert cleared(drawn, "/world/impact/a") == [AFTER_NS]
+    assert cleared(drawn, "/world/impact/a/velocity_label") == [STAMP_NS + 5]
+    assert cleared(drawn, "/world/impact/b") == []
+    assert cleared(drawn, "/world/impact/b/velocity_label") == [AFTER_NS]
+
+
+def test_an_impact_that_is_over_goes_when_that_of_another_body_comes(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    impacts = ImpactsInView(recording)
+    impacts.come("a", stamp_ns=STAMP_NS, strike_ns=STAMP_NS)
+    impacts.pass_by("a", AFTER_NS)
+    impacts.come("b", stamp_ns=AFTER_NS + 7, strike_ns=AFTER_NS + 7)
+    assert cleared(read(), "/world/impact/a") == [AFTER_NS + 7]
+
+
+def test_the_body_that_was_asked_about_last_has_letters(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    letters = LettersInView(recording)
+    for offset, name in enumerate(("a", "a", "b", "a")):
+        letters.come(name, STAMP_NS + offset)
+    drawn = read()
+    assert cleared(drawn, "/world/contacts/a/letters") == [STAMP_NS + 2]
+    assert cleared(drawn, "/world/contacts/b/letters") == [STAMP_NS + 3]
+
+
+def test_the_curves_stay_with_a_body_until_its_prediction_is_over(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    curves, end_ns = ConservedInView(recording), STAMP_NS + 100
+    assert curves.body_name is None
+    assert curves.come("a", stamp_ns=STAMP_NS, end_ns=end_ns)
+    assert not curves.come("b", stamp_ns=end_ns - 1, end_ns=end_ns + 50)
+    assert curves.body_name == "a"
+    assert curves.come("b", stamp_ns=end_ns, end_ns=end_ns + 50)
+    assert not curves.come("b", stamp_ns=end_ns + 1, end_ns=end_ns + 50)
+    assert curves.body_name == "b"
+    drawn = read()
+    for quantity in ("energy", "momentum", "angular_momentum"):
+        for kind in ("measured", "predicted"):
+            assert cleared(drawn, f"/{quantity}/a/{kind}") == [end_ns]
+            assert cleared(drawn, f"/{quantity}/b/{kind}") == []

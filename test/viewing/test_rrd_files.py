@@ -1,0 +1,71 @@
+"""Files that follow each other when they are full."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+import rerun as rr
+from rerun.chunk import RrdReader
+
+from contact_dynamics.viewing.kept_recording import KeptRecording
+from contact_dynamics.viewing.measured import set_time
+from contact_dynamics.viewing.rrd_files import RrdFiles
+from viewing.drawn import STAMP_NS, read_drawn
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SIZE = 100_000
+FILL = np.random.default_rng(1).normal(size=(20_000, 3))  # 240 kB, which does not compress
+
+
+def draw_files(folder: Path, *, size: int, most: int, full: int) -> list[str]:
+    """Draw so that so many files are full, and return the names of those that are there."""
+    recording = KeptRecording()
+    files = RrdFiles(recording, str(folder / "drive.rrd"), size=size, most=most)
+    recording.log("ground", rr.Points3D([[0.0, 0.0, 0.0]]), static=True)
+    for i in range(full):
+        set_time(recording, STAMP_NS + i)
+        recording.log("fill", rr.Points3D(FILL))
+        recording.log("number", rr.Scalars(float(i)))
+        recording.flush()
+        files.roll()
+        files.roll()  # the next one is not full yet
+        recording.log("fill", rr.Clear(recursive=False))
+    recording.disconnect()
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_each_file_begins_with_what_stands(tmp_path: Path) -> None:
+    """What fills a file stands when it is full, so the next is full at once: here it is cleared before."""
+    names = draw_files(tmp_path, size=SIZE, most=0, full=2)
+    assert names[:2] == ["drive.rrd", "drive_1.rrd"]
+    for name in names:
+        drawn = read_drawn(tmp_path / name)
+        assert drawn.last("/ground", "Points3D:positions") == [[0.0, 0.0, 0.0]]
+    numbers = [read_drawn(tmp_path / name).values.get(("/number", "Scalars:scalars"), []) for name in names]
+    assert numbers[0] == [(STAMP_NS, [0.0])]
+    assert numbers[1][0] == (STAMP_NS, [0.0])  # it stands when the file begins
+
+
+def test_they_are_parts_of_one_recording(tmp_path: Path) -> None:
+    names = draw_files(tmp_path, size=SIZE, most=0, full=2)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # files without an index are read whole
+        entries = [entry for name in names for entry in RrdReader(tmp_path / name).recordings()]
+    assert len(entries) == len(names) == 3
+    assert len({entry.recording_id for entry in entries}) == 1
+
+
+def test_the_oldest_files_go(tmp_path: Path) -> None:
+    names = draw_files(tmp_path, size=SIZE, most=2, full=4)
+    assert len(names) == 2
+    assert "drive.rrd" not in names
+
+
+@pytest.mark.parametrize("size", [0, 100_000_000])
+def test_without_a_size_or_below_it_there_is_one_file(tmp_path: Path, size: int) -> None:
+    assert draw_files(tmp_path, size=size, most=1, full=3) == ["drive.rrd"]

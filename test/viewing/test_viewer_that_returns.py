@@ -1,0 +1,127 @@
+"""rerun's own viewer, without a window, dies and comes back: it then has the whole picture."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import socket
+import subprocess
+import time
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+import rerun as rr
+from rerun.experimental import ViewerClient
+
+from contact_dynamics.viewing.kept_recording import APPLICATION
+from contact_dynamics.viewing.measured import set_time
+from contact_dynamics.viewing.ports import LOCAL, connection_problem, local_url
+from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode
+from contact_dynamics.viewing.viewer_process import viewer_executable
+from viewing.drawn import STAMP_NS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+PATIENCE_S = 120.0
+
+
+@contextlib.contextmanager
+def viewer(port: int, *arguments: str) -> Iterator[subprocess.Popen[bytes]]:
+    """A viewer that listens at a port, and is killed at the end."""
+    command = [viewer_executable(), "--headless", "--bind", LOCAL, "--port", str(port), *arguments]
+    environment = {**os.environ, "RERUN_APP_ONLY": "true"}
+    quiet = subprocess.DEVNULL
+    process = subprocess.Popen(command, env=environment, stdin=quiet, stdout=quiet, stderr=quiet)
+    try:
+        wait_until(lambda: not connection_problem(LOCAL, port) or process.poll() is not None)
+        if process.poll() is not None:
+            pytest.skip("NOT TESTED: a viewer that returns. rerun's viewer does not start here.")
+        yield process
+    finally:
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+
+
+def wait_until(done: Callable[[], bool]) -> None:
+    deadline = time.monotonic() + PATIENCE_S
+    while not done():
+        assert time.monotonic() < deadline, "it did not come to that"
+        time.sleep(0.1)
+
+
+pytestmark = pytest.mark.skipif(
+    not hasattr(ViewerClient, "get_recording_schema"),
+    reason="NOT TESTED: this rerun's viewer does not say what it has",
+)
+
+STATIC, NEWEST = "/ground", "/newest"
+
+
+def shown(port: int) -> set[str]:
+    """The entities that a viewer has of our picture."""
+    try:
+        client = ViewerClient.connect(local_url(port))
+        ours = [each for each in client.get_state().recordings if APPLICATION in str(each.store_id)]
+        return {
+            one.entity_path for each in ours for one in client.get_recording_schema(each.store_id).entities
+        }
+    except Exception:  # noqa: BLE001  while it starts and has no recording, it raises several untyped errors
+        return set()
+
+
+def draw(recording: OpenRecording) -> None:
+    recording.stream.log(STATIC, rr.Points3D([[1.0, 2.0, 3.0]]), static=True)
+    set_time(recording.stream, STAMP_NS)
+    recording.stream.log(NEWEST, rr.Points3D([[1.0, 2.0, 3.0]]))
+
+
+def free_ports() -> tuple[int, int]:
+    with socket.socket() as one, socket.socket() as other:
+        for probe in (one, other):
+            probe.bind((LOCAL, 0))
+        return one.getsockname()[1], other.getsockname()[1]
+
+
+def test_one_that_is_drawn_to_gets_the_picture_again(free_port: int) -> None:
+    told: list[str] = []
+    url = local_url(free_port)
+    with viewer(free_port):
+        recording = OpenRecording(Sinks(viewer=ViewerMode.CONNECT, url=url), on_problem=told.append)
+        draw(recording)
+        wait_until(lambda: {STATIC, NEWEST} <= shown(free_port))
+
+    def has_heard(words: str) -> bool:
+        recording.tend()
+        return any(words in each for each in told)
+
+    wait_until(lambda: has_heard(f"no viewer listens at {url} any more"))
+    recording.stream.log("/meanwhile", rr.Points3D([[1.0, 2.0, 3.0]]))
+    with viewer(free_port):
+        wait_until(lambda: has_heard(f"a viewer listens at {url} again"))
+        wait_until(lambda: {STATIC, NEWEST, "/meanwhile"} <= shown(free_port))
+        recording.stream.log("/later", rr.Points3D([[1.0, 2.0, 3.0]]))
+        wait_until(lambda: "/later" in shown(free_port))
+        assert recording.close()
+    assert len(told) == 2
+
+
+def test_one_that_looks_at_what_is_served_gets_the_picture_again() -> None:
+    """Also when more was drawn than the memory holds: what stands still and the newest are not dropped."""
+    served, port = free_ports()
+    recording = OpenRecording(Sinks(viewer=ViewerMode.SERVE, port=served, memory="1MB"), on_problem=print)
+    draw(recording)
+    fill = np.random.default_rng(1).normal(size=(20_000, 3))  # 240 kB, which does not compress
+    for _ in range(2):
+        with viewer(port, "--connect", local_url(served)):
+            wait_until(lambda: STATIC in shown(port))
+        for i in range(40):  # 10 MB
+            recording.stream.log(f"/fill/{i}", rr.Points3D(fill))
+        recording.stream.flush()
+        recording.stream.log("/last", rr.Points3D([[1.0, 2.0, 3.0]]))
+    with viewer(port, "--connect", local_url(served)):
+        wait_until(lambda: {STATIC, "/last"} <= shown(port))
+        assert "/fill/0" not in shown(port)  # the memory has its limit
+    assert recording.close()
