@@ -1,4 +1,4 @@
-"""A file that only grows. The process holds nothing back, so a kill loses nothing that was written.
+"""An append file only grows. The process holds nothing back, so a kill loses nothing that was written.
 
 Python's own buffered file keeps data that a full disk refused, and then cannot be closed. This file does not
 do that, and it can be cut back to where it was last whole.

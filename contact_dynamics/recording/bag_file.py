@@ -1,4 +1,4 @@
-"""One MCAP file of a log that is being written. `bag_writer.BagWriter` writes a folder of them."""
+"""This file writes one MCAP file of a log. `bag_writer.BagWriter` writes a folder of them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING, Any, Final
 from mcap.writer import CompressionType, Writer
 
 from contact_dynamics.recording.append_file import AppendFile
-from contact_dynamics.recording.bag_metadata import RUN_RECORD, FileSummary, sealed_run
+from contact_dynamics.recording.bag_metadata import (
+    OFFERED_QOS,
+    RUN_RECORD,
+    TYPE_HASH,
+    FileSummary,
+    sealed_run,
+)
 from contact_dynamics.recording.limits import Compression
 
 if TYPE_CHECKING:
@@ -89,7 +95,7 @@ class BagFile:
         )
 
     def add_topic(self, name: str, definition: TypeDefinition, qos: tuple[str, ...]) -> None:
-        """Write the definition of a topic."""
+        """Write the definition of a topic, or another one, which holds for its messages from now on."""
         with self._cut_back_on_failure():
             type_name = definition.type_name
             if type_name not in self._schemas:
@@ -100,11 +106,12 @@ class BagFile:
                 message_encoding="cdr",
                 schema_id=self._schemas[type_name],
                 metadata={
-                    "offered_qos_profiles": "\n".join(qos),
-                    "topic_type_hash": definition.type_hash,
+                    OFFERED_QOS: "\n".join(qos),
+                    TYPE_HASH: definition.type_hash,
                 },
             )
-        self._counts[name] = self._safe_counts[name] = 0
+        self._counts.setdefault(name, 0)
+        self._safe_counts.setdefault(name, 0)
 
     def write(self, topic: str, data: bytes, *, log_time_ns: int, publish_time_ns: int) -> None:
         """Append a message of a topic that was added."""

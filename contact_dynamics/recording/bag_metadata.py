@@ -1,4 +1,4 @@
-"""``metadata.yaml`` of a bag as rosbag2 of Jazzy writes it (version 9). The MCAP file has the same text.
+"""A bag's ``metadata.yaml`` is as rosbag2 of Jazzy writes it (version 9). The MCAP file has the same text.
 
 The code writes the YAML without a library, since the form is fixed and short. JSON strings are valid YAML.
 """
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 METADATA_FILE: Final = "metadata.yaml"
 RUN_RECORD: Final = "contact_dynamics"  # the MCAP metadata record that says how the run was made
+OFFERED_QOS: Final = "offered_qos_profiles"  # in the metadata of a channel, as rosbag2 names it
+TYPE_HASH: Final = "topic_type_hash"  # beside it
 CHECKSUM_KEY: Final = "checksum"  # in that record, because MCAP gives metadata none
 
 

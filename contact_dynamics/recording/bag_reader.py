@@ -72,7 +72,8 @@ class BagReader:
         self.paths = _files_of(path) if path.is_dir() else [path]
         self.losses: list[Loss] = []  # the stretches that the last reading has had to leave out so far
         if not self.paths or not self.paths[0].is_file():
-            raise NotALogError(f"{path}: no MCAP file here, and no .db3 file")
+            found = "no MCAP file here, and no .db3 file" if path.exists() else "no such file or folder"
+            raise NotALogError(f"{path}: {found}")
 
     @property
     def size(self) -> int:

@@ -139,7 +139,8 @@ class BagWriter:
                 ``<service>/_service_event``.
             type_name: ``package/msg/Name``, or ``package/srv/Name_Event``.
             qos: the quality of service of the publisher, as rclpy's ``QoSProfile`` or an `OfferedQos`, whose
-                defaults are taken for None.
+                defaults are taken for None. A list has what each of several publishers offers, and is empty
+                where none is known yet.
 
         Raises:
             InvalidFieldError: the name is taken or not absolute, or the type is not installed.
@@ -148,9 +149,22 @@ class BagWriter:
         if not name.startswith("/") or name in self._topics:
             raise InvalidFieldError("topic", name, "an absolute name that is not declared yet")
         definition = find_definition(type_name)
-        qos_yaml = tuple(qos_lines(OfferedQos() if qos is None else qos))
+        qos_yaml = _qos_yaml(qos)
         self._file.add_topic(name, definition, qos_yaml)
         self._topics[name] = _Topic(definition=definition, qos=qos_yaml)
+        self._metadata_due_s = 0.0
+
+    def set_qos(self, topic: str, qos: Any) -> None:
+        """Declare another quality of service of a topic, as `add_topic` takes it, for messages from now on.
+
+        Raises:
+            InvalidFieldError: the topic is not declared.
+        """
+        self._check_open()
+        definition = self._declared(topic).definition
+        qos_yaml = _qos_yaml(qos)
+        self._file.add_topic(topic, definition, qos_yaml)
+        self._topics[topic] = _Topic(definition=definition, qos=qos_yaml)
         self._metadata_due_s = 0.0
 
     def write(self, topic: str, data: bytes, *, log_time_ns: int, publish_time_ns: int | None = None) -> None:
@@ -167,9 +181,7 @@ class BagWriter:
             InvalidFieldError: an argument is not as described. Nothing is written then, and the log goes on.
         """
         self._check_open()
-        declared = self._topics.get(topic)
-        if declared is None:
-            raise InvalidFieldError("topic", topic, f"one of {sorted(self._topics)}")
+        declared = self._declared(topic)
         if not isinstance(data, bytes) or len(data) < _SHORTEST_MESSAGE:
             raise InvalidFieldError(
                 "data", data, f"bytes of a serialised message, at least {_SHORTEST_MESSAGE}"
@@ -182,6 +194,10 @@ class BagWriter:
         if self._is_full(log_time):
             self._next_file()
         self._file.write(topic, data, log_time_ns=log_time, publish_time_ns=publish_time)
+
+    def change_run(self, run: Mapping[str, str]) -> None:
+        """Let the files that begin from now on say that the run is made so, and not the present one."""
+        self._run = {"version": _package_version(), **_checked_run(run)}
 
     def flush(self) -> None:
         """Bring all messages so far into the file, where a death of this process cannot take them."""
@@ -209,6 +225,12 @@ class BagWriter:
                     self._write_metadata_file()
         finally:
             self._file.close()
+
+    def _declared(self, topic: str) -> _Topic:
+        declared = self._topics.get(topic)
+        if declared is None:
+            raise InvalidFieldError("topic", topic, f"one of {sorted(self._topics)}")
+        return declared
 
     def _new_file(self, number: int) -> BagFile:
         return BagFile(
@@ -300,6 +322,11 @@ class BagWriter:
             part.unlink(missing_ok=True)
             raise
         self._metadata_due_s = time.monotonic() + _METADATA_EVERY_S
+
+
+def _qos_yaml(qos: Any) -> tuple[str, ...]:
+    offers = qos if isinstance(qos, (list, tuple)) else [OfferedQos() if qos is None else qos]
+    return tuple(qos_lines(offers))
 
 
 def _topic_summary(name: str, topic: _Topic) -> TopicSummary:

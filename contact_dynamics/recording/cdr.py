@@ -1,4 +1,4 @@
-"""Serialised messages (CDR) to objects, with nothing but the types' texts in the log.
+"""Turns serialised messages (CDR) into objects, with nothing but the types' texts in the log.
 
 A message begins with four bytes of encapsulation, of which the second says the byte order. Its fields follow
 one after the other. A number is aligned to its own size, counted from the fifth byte. A string is its length
@@ -59,15 +59,37 @@ def deserialize(data: bytes, message_type: type[Message]) -> Message:
     Raises:
         InvalidFieldError: they are none.
     """
+    return _message_and_end(data, message_type)[0]
+
+
+def _message_and_end(data: bytes, message_type: type[Message]) -> tuple[Message, int]:
+    """Return the message that the bytes are, and where it ends among them."""
     if len(data) < _HEAD or data[0] != 0 or data[1] not in _CDR:
         raise InvalidFieldError("data", f"bytes that begin with {data[:_HEAD].hex()}", "CDR: 0000 or 0001")
     try:
         kind: Any = message_type  # classes are hashable, which not all tools know
         plan = _plan(kind, _CDR[data[1]])
-        return plan.message_at(data, _HEAD)[0]
+        return plan.message_at(data, _HEAD)
     except (struct.error, ValueError, OverflowError, RecursionError) as error:
         expected = f"a serialised {message_type.__name__} ({error})"
         raise InvalidFieldError("data", f"{len(data)} bytes", expected) from None
+
+
+def cut_to_its_end(data: bytes, *, type_name: str, definition: str) -> bytes:
+    """Return a serialised message without what follows its end.
+
+    What ``rclpy.serialization.serialize_message`` returns ends in some bytes of whatever was in memory.
+
+    Args:
+        data: the serialised message.
+        type_name: "package/msg/Name" or "package/srv/Name_Event".
+        definition: the text of its type, as ros2msg.
+
+    Raises:
+        InvalidFieldError: the bytes are no message of this type.
+    """
+    _, end = _message_and_end(data, _type_of(type_name, definition))
+    return data[:end]
 
 
 @lru_cache(maxsize=256)

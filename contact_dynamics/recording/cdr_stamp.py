@@ -1,4 +1,4 @@
-"""Stamps and identities, read from serialised messages (CDR) without a message class.
+"""Reads stamps and identities from serialised messages (CDR) without a message class.
 
 CDR has four bytes of encapsulation, the second of which gives the byte order. Then come the fields, each
 aligned to its own size, counted from the fifth byte. So a message that begins with a ``std_msgs/Header`` or a

@@ -1,4 +1,4 @@
-"""The definition of a message type: its full text in ROS's notation and its hash, from the ament prefixes.
+"""A message type's definition is its full text in ROS's notation and its hash, found by the ament prefixes.
 
 A log explains itself. For each type it has the `.msg` text, followed by the text of each type that it uses
 (MCAP's encoding ``ros2msg``: a line of 80 ``=``, a line ``MSG: package/Type``, the text). The texts are in

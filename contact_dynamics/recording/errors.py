@@ -1,4 +1,4 @@
-"""The errors of misused or damaged logs. A full disk raises its own `OSError`."""
+"""These errors tell of misused or damaged logs. A full disk raises its own `OSError`."""
 
 from __future__ import annotations
 

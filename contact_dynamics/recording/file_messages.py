@@ -1,4 +1,4 @@
-"""The types that the readers of all kinds of files give to `bag_reader`."""
+"""The readers of all kinds of files give these types to `bag_reader`."""
 
 from __future__ import annotations
 
@@ -13,11 +13,19 @@ if TYPE_CHECKING:
 
 
 class Topic(NamedTuple):
-    """A topic, its type, and the text of the type, which is empty unless it has MCAP's form ros2msg."""
+    """A topic of a log.
+
+    Attributes:
+        name: Its name.
+        type_name: Its type, "package/msg/Name" or "package/srv/Name_Event".
+        definition: The text of the type, which is empty unless it has MCAP's form ros2msg.
+        qos: The YAML list of what its publishers offered, which `qos.offered_qos` reads, or nothing.
+    """
 
     name: str
     type_name: str
     definition: str
+    qos: str = ""
 
 
 class StoredMessage(NamedTuple):

@@ -1,4 +1,4 @@
-"""Limits of a log that is written for weeks: how it is cut into files and packed, and which are kept."""
+"""A log that is written for weeks has limits: how it is cut into files and packed, and which are kept."""
 
 from __future__ import annotations
 
@@ -8,9 +8,14 @@ from typing import Final
 
 from contact_dynamics.errors import InvalidFieldError
 
-_LEAST_FILE_BYTES: Final = 64 * 1024  # with less than a chunk, every chunk would be a file
-_LEAST_FILE_SECONDS: Final = 1.0
-_FILES_KEPT: Final = 2  # number of files for which a limit on all files must have room
+LEAST_FILE_BYTES: Final = 64 * 1024
+"""The smallest limit of a file's size. With less than a chunk, every chunk would be a file."""
+
+LEAST_FILE_SECONDS: Final = 1.0
+"""s, the shortest limit of a file's time."""
+
+FILES_KEPT: Final = 2
+"""The number of files for which a limit on all files must have room."""
 
 
 class Compression(enum.Enum):
@@ -43,18 +48,18 @@ class LogLimits:
 
     def __post_init__(self) -> None:
         """Check the limits."""
-        if self.file_bytes is not None and self.file_bytes < _LEAST_FILE_BYTES:
-            raise InvalidFieldError("file_bytes", self.file_bytes, f"at least {_LEAST_FILE_BYTES}, or None")
-        if self.file_seconds is not None and not self.file_seconds >= _LEAST_FILE_SECONDS:
+        if self.file_bytes is not None and self.file_bytes < LEAST_FILE_BYTES:
+            raise InvalidFieldError("file_bytes", self.file_bytes, f"at least {LEAST_FILE_BYTES}, or None")
+        if self.file_seconds is not None and not self.file_seconds >= LEAST_FILE_SECONDS:
             raise InvalidFieldError(
-                "file_seconds", self.file_seconds, f"at least {_LEAST_FILE_SECONDS}, or None"
+                "file_seconds", self.file_seconds, f"at least {LEAST_FILE_SECONDS}, or None"
             )
         if self.kept_bytes is None:
             return
         if self.file_bytes is None:
             raise InvalidFieldError("kept_bytes", self.kept_bytes, "None, unless file_bytes is given too")
-        if self.kept_bytes < _FILES_KEPT * self.file_bytes:
-            allowed = f"at least {_FILES_KEPT} times file_bytes, which is {self.file_bytes}"
+        if self.kept_bytes < FILES_KEPT * self.file_bytes:
+            allowed = f"at least {FILES_KEPT} times file_bytes, which is {self.file_bytes}"
             raise InvalidFieldError("kept_bytes", self.kept_bytes, allowed)
 
 

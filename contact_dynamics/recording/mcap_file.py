@@ -1,4 +1,4 @@
-"""The bytes of an MCAP file, and where its records begin and end."""
+"""This file finds where the records of an MCAP file begin and end."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The messages of an MCAP file. Of a span of times, only the chunks that the index names are read."""
+"""Reads the messages of an MCAP file. For a span of times it reads only the chunks that the index names."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from mcap.records import Channel, Message, Metadata, Schema
 
-from contact_dynamics.recording.bag_metadata import RUN_RECORD, unsealed_run
+from contact_dynamics.recording.bag_metadata import OFFERED_QOS, RUN_RECORD, unsealed_run
 from contact_dynamics.recording.file_messages import StoredMessage, Topic
 from contact_dynamics.recording.mcap_file import McapFile
 from contact_dynamics.recording.mcap_summary import Summary
@@ -150,7 +150,8 @@ class _Definitions:
             return None
         if channel.message_encoding not in _ENCODINGS:
             return Topic(channel.topic, "", "")
-        return Topic(channel.topic, schema.name, _ros2msg(schema))
+        offered = channel.metadata.get(OFFERED_QOS, "")
+        return Topic(channel.topic, schema.name, _ros2msg(schema), offered)
 
     @property
     def _summary(self) -> Summary:

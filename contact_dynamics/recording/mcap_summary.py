@@ -1,4 +1,4 @@
-"""The summary at the end of an MCAP file, which has its own checksum."""
+"""An MCAP file ends with a summary, which has its own checksum."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Message types as a log describes them: classes made of their texts, which need no ROS.
+"""Makes classes of message types from the texts in a log. They need no ROS.
 
 A log holds the full text of each type (`definitions`). Here the text becomes a class with the fields, the
 defaults and the constants of the type. What reads a message of ROS can read one of these.

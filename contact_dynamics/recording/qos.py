@@ -1,17 +1,20 @@
-"""Quality of service in the form of rosbag2: YAML maps with all nine keys. rosbag2 fails on a partial one.
+"""rosbag2 writes quality of service as YAML maps with all nine keys, and fails on a partial one.
 
-The functions use only the attributes of rclpy's ``QoSProfile``, so that writing a log needs no rclpy. Without
-rclpy, use `OfferedQos`.
+A topic has a list of them: what each of its publishers offers. The functions use only the attributes of
+rclpy's ``QoSProfile``, so that writing a log needs no rclpy. Without rclpy, use `OfferedQos`.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.constants import NS_PER_S
 
-_FOREVER_NS: Final = 2**63 - 1
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+FOREVER_NS: Final = 2**63 - 1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,15 +37,62 @@ class OfferedQos:
     depth: int = 10
     reliability: str = "reliable"
     durability: str = "volatile"
-    deadline: int = _FOREVER_NS
-    lifespan: int = _FOREVER_NS
+    deadline: int = FOREVER_NS
+    lifespan: int = FOREVER_NS
     liveliness: str = "automatic"
-    liveliness_lease_duration: int = _FOREVER_NS
+    liveliness_lease_duration: int = FOREVER_NS
     avoid_ros_namespace_conventions: bool = False
 
 
-def qos_lines(qos: Any) -> list[str]:
-    """Return the lines of a YAML list of one profile: rclpy's ``QoSProfile`` or an `OfferedQos`."""
+_WORDS: Final = {
+    "history": ("system_default", "keep_last", "keep_all", "unknown"),
+    "reliability": ("system_default", "reliable", "best_effort", "unknown", "best_available"),
+    "durability": ("system_default", "transient_local", "volatile", "unknown", "best_available"),
+    "liveliness": ("system_default", "automatic", "unknown", "manual_by_topic", "unknown", "best_available"),
+}
+"""The names of policies by their numbers in rmw, which stand in bags from before ROS 2 Jazzy."""
+
+
+def qos_lines(offers: Sequence[Any]) -> list[str]:
+    """Return the lines of a YAML list of what publishers offer: rclpy's ``QoSProfile`` or `OfferedQos` each.
+
+    Without publishers, this is the line of an empty list.
+    """
+    return [line for qos in offers for line in _profile_lines(qos)] or ["[]"]
+
+
+def offered_qos(text: str) -> list[OfferedQos]:
+    """Return what publishers offered, by the YAML list that a bag has for a topic.
+
+    What cannot be read is left out, as is what the list does not say.
+    """
+    import yaml  # comes with ROS, and with the extra [evaluate]
+
+    try:
+        listed = yaml.safe_load(text)
+    except (yaml.YAMLError, RecursionError):
+        return []
+    return [_profile(each) for each in listed if isinstance(each, dict)] if isinstance(listed, list) else []
+
+
+def _profile(found: dict[str, Any]) -> OfferedQos:
+    given: dict[str, Any] = {}
+    for name, words in _WORDS.items():
+        word = found.get(name)
+        if isinstance(word, int) and 0 <= word < len(words):
+            word = words[word]
+        if word in words:
+            given[name] = word
+    if isinstance(found.get("depth"), int):
+        given["depth"] = found["depth"]
+    for name in ("deadline", "lifespan", "liveliness_lease_duration"):
+        duration = found.get(name)
+        if isinstance(duration, dict) and {type(duration.get(key)) for key in ("sec", "nsec")} == {int}:
+            given[name] = min(duration["sec"] * NS_PER_S + duration["nsec"], FOREVER_NS)
+    return OfferedQos(**given)
+
+
+def _profile_lines(qos: Any) -> list[str]:
     return [
         f"- history: {_word(qos.history)}",
         f"  depth: {qos.depth}",

@@ -1,4 +1,4 @@
-"""A log written beside a running server. Handing over a message takes microseconds and never raises.
+"""A recorder writes a log beside a running server. To hand over a message takes µs and never raises.
 
 Every 100 ms (sooner above 1 MiB) a thread takes the messages that wait, writes and flushes them. So a kill of
 the process costs at most that much. Every second it waits until the disk itself has them, so a loss of power
@@ -18,12 +18,12 @@ import logging
 import threading
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from contact_dynamics.errors import InvalidFieldError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
     from types import TracebackType
 
     from typing_extensions import Self
@@ -64,6 +64,10 @@ class _Item(NamedTuple):
     publish_time_ns: int | None
 
 
+class _RunChange(NamedTuple):
+    run: Mapping[str, str]
+
+
 class Recorder:
     """A thread that owns a `BagWriter` whose topics are declared. It is a context manager."""
 
@@ -87,7 +91,8 @@ class Recorder:
         self._on_problem = on_problem or logging.getLogger(__name__).warning
         self._max_waiting_bytes = max_waiting_bytes
         self._lock = threading.Lock()
-        self._items: list[_Item] = []
+        self._items: list[_Item | _RunChange] = []
+        self._qos: dict[str, Any] = {}  # by topic, to be declared anew
         self._waiting_bytes = 0
         self._most_waiting_bytes = 0
         self._given = 0
@@ -144,9 +149,23 @@ class Recorder:
         if taken and waiting > _WAKE_BYTES:
             self._wake.set()
         elif open_ and not taken:
+            most = self._max_waiting_bytes
             self._report(
-                f"the disk does not keep up: {self._max_waiting_bytes} bytes wait, newer messages are dropped"
+                f"the disk does not keep up: {most} bytes wait, newer messages are dropped"
+                if size <= most
+                else f"{topic}: a message of {size} bytes is not logged, since at most {most} may wait"
             )
+
+    def set_qos(self, topic: str, qos: Any) -> None:
+        """Declare another quality of service of a topic; see `BagWriter.set_qos`. It never raises."""
+        with self._lock:
+            self._qos[topic] = qos
+
+    def change_run(self, run: Mapping[str, str]) -> None:
+        """Let the files that begin after the messages handed over so far say that the run is made so."""
+        with self._lock:
+            if not self._dead and not self._closing:
+                self._items.append(_RunChange(run))
 
     def settle(self, *, timeout_s: float = 10.0) -> bool:
         """Wait until the disk itself has all messages handed over so far. Return whether it has them.
@@ -183,9 +202,12 @@ class Recorder:
                 with self._lock:
                     closing = self._closing  # once it is set, nothing is added behind these items
                     items, self._items = self._items, []
+                    qos, self._qos = self._qos, {}
                     given = self._given
                     must_sync, self._asked_to_settle = self._asked_to_settle, False
-                if items:
+                for topic, offers in qos.items():
+                    self._writer.set_qos(topic, offers)
+                if items or qos:
                     self._write(items)
                 if given > self._on_disk and (must_sync or time.monotonic() >= synced_s + SYNC_EVERY_S):
                     self._writer.sync()
@@ -201,15 +223,18 @@ class Recorder:
             self._on_disk = given
             self._settled.notify_all()
 
-    def _write(self, items: list[_Item]) -> None:
+    def _write(self, items: list[_Item | _RunChange]) -> None:
         refused = sum(not self._accepts(item) for item in items)
         self._writer.flush()
         with self._lock:
-            self._waiting_bytes -= sum(_size(item.data) for item in items)
+            self._waiting_bytes -= sum(_size(item.data) for item in items if isinstance(item, _Item))
             self._written = self._writer.safe_count
             self._lost += refused
 
-    def _accepts(self, item: _Item) -> bool:
+    def _accepts(self, item: _Item | _RunChange) -> bool:
+        if isinstance(item, _RunChange):
+            self._writer.change_run(item.run)
+            return True
         try:
             self._writer.write(
                 item.topic, item.data, log_time_ns=item.log_time_ns, publish_time_ns=item.publish_time_ns

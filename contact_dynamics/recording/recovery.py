@@ -16,7 +16,9 @@ from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.recording.bag_file import BagFile
 from contact_dynamics.recording.bag_metadata import (
     METADATA_FILE,
+    OFFERED_QOS,
     RUN_RECORD,
+    TYPE_HASH,
     BagSummary,
     TopicSummary,
     metadata_file_text,
@@ -39,8 +41,6 @@ if TYPE_CHECKING:
     from contact_dynamics.recording.bag_metadata import FileSummary
     from contact_dynamics.recording.file_messages import Loss
 
-_QOS: Final = "offered_qos_profiles"
-_HASH: Final = "topic_type_hash"
 _TOLD_EVERY: Final = 1000  # messages
 
 
@@ -184,15 +184,16 @@ class _Rewriting:
         schema = self._schemas.get(channel.schema_id) or summary.schemas.get(channel.schema_id)
         if schema is None:
             return None
-        if channel.topic not in self.topics:
-            type_hash = channel.metadata.get(_HASH, "")
+        qos = tuple(channel.metadata.get(OFFERED_QOS, "").splitlines()) or ("[]",)
+        known = self.topics.get(channel.topic)
+        if known is None or known.qos != qos:
+            type_hash = channel.metadata.get(TYPE_HASH, "")
             definition = TypeDefinition(
                 type_name=schema.name,
                 text=schema.data.decode(errors="replace"),
                 type_hash=type_hash,
                 begins_with_stamp=False,  # the times of the messages are known
             )
-            qos = tuple(channel.metadata.get(_QOS, "").splitlines())
             self._opened().add_topic(channel.topic, definition, qos)
             self.topics[channel.topic] = TopicSummary(
                 name=channel.topic,

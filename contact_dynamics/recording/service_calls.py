@@ -1,4 +1,4 @@
-"""Requests and responses of a log brought together, by client and sequence number.
+"""Brings requests and responses of a log together, by client and sequence number.
 
 A call can leave four events. This file uses the server's two: request received, response sent. The client's
 two (request sent, response received) have the same contents, and are there only if the client is introspected

@@ -25,6 +25,9 @@ _NEXT_ROWS: Final = (
     "SELECT id, topic_id, timestamp, data FROM messages "
     "WHERE id > ? AND id <= ? AND topic_id IN ({}) ORDER BY id"
 )
+_QOS: Final = "offered_qos_profiles"
+_TOPICS: Final = "SELECT id, name, type, serialization_format, offered_qos_profiles FROM topics"
+_TOPICS_OF_DASHING: Final = "SELECT id, name, type, serialization_format, '' FROM topics"
 _SPANNED: Final = " AND timestamp >= ? AND timestamp < ?"
 _LEAST_NS: Final = -(2**63)
 _LATEST_NS: Final = 2**63 - 1
@@ -127,15 +130,14 @@ class SqliteMessages:
     def _topics(self) -> dict[int, Topic]:
         texts = self.definitions()
         try:
-            rows = self._database.execute(
-                "SELECT id, name, type, serialization_format FROM topics"
-            ).fetchall()
+            columns = {row[1] for row in self._database.execute("PRAGMA table_info(topics)")}
+            rows = self._database.execute(_TOPICS if _QOS in columns else _TOPICS_OF_DASHING).fetchall()
         except sqlite3.Error as error:
             self._lose(f"the table of topics: {error}")
             return {}
         return {
-            int(number): Topic(str(name), str(kind), texts.get(str(kind), ""))
-            for number, name, kind, encoding in rows
+            int(number): Topic(str(name), str(kind), texts.get(str(kind), ""), str(qos))
+            for number, name, kind, encoding, qos in rows
             if encoding == "cdr" and isinstance(number, int)
         }
 

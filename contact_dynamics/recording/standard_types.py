@@ -1,4 +1,4 @@
-"""The texts of the types of published states, for recordings that do not contain them.
+"""This file has the texts of the types of published states, for recordings that do not contain them.
 
 Bags of rosbag2 in SQLite from before ROS 2 Iron name the types of their topics and nothing more. These types
 have been the same since ROS 2 began.

@@ -126,7 +126,7 @@ def _record(folder: Path, domain: int) -> RealLog:
             executor.spin_once(timeout_sec=0.1)
             if client.poll() not in (None, 0):
                 break
-        output, _ = client.communicate(timeout=30.0)
+        output, _ = client.communicate(timeout=300)
     finally:
         client.kill()
         client.wait()

@@ -146,6 +146,15 @@ def test_stalled_disk_costs_memory_up_to_the_bound_then_messages() -> None:
     assert (status.written, status.lost, status.waiting) == (10, 20, 0)
 
 
+def test_a_message_that_is_too_large_is_not_taken_for_a_slow_disk(tmp_path: Path, pose_cdr: PoseCdr) -> None:
+    problems: list[str] = []
+    with Recorder(pose_log(tmp_path / "log"), on_problem=problems.append, max_waiting_bytes=3000) as recorder:
+        recorder.record("/pose", bytes(4000), log_time_ns=0)
+        recorder.record("/pose", pose_cdr(0, 0.0), log_time_ns=0)
+    assert problems == ["/pose: a message of 4200 bytes is not logged, since at most 3000 may wait"]
+    assert (recorder.status.written, recorder.status.lost) == (1, 1)
+
+
 def test_close_does_not_wait_for_a_hanging_disk_for_ever() -> None:
     writer = StuckWriter()
     recorder = Recorder(writer)  # type: ignore[arg-type]

@@ -89,7 +89,7 @@ def test_the_command_names_what_is_lost_and_overwrites_nothing(
 
 
 def test_what_cannot_be_recovered_is_refused_by_name(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "text.mcap").write_text("hello")
     assert main(["recover", str(tmp_path / "text.mcap")]) == 2
@@ -97,3 +97,10 @@ def test_what_cannot_be_recovered_is_refused_by_name(
     (tmp_path / "bag.db3").write_text("hello")
     assert main(["recover", str(tmp_path / "bag.db3")]) == 2
     assert "found SQLite, allowed is MCAP" in capsys.readouterr().err
+    (tmp_path / "empty").mkdir()
+    monkeypatch.chdir(tmp_path / "empty")
+    (tmp_path / "text.mcap").unlink()
+    (tmp_path / "bag.db3").unlink()
+    for here in (".", ".."):  # a log's folder that was not found there; neither has a name of its own
+        assert main(["recover", here]) == 2
+        assert f"{here}: no MCAP file here" in capsys.readouterr().err
