@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from contact_dynamics.nodes.parameters import ParameterSource
+    from contact_dynamics.nodes.parameter_reader import ParameterSource
     from contact_dynamics.questions.uncertain_state import KnownState
 
 _OURS: Final = "contact_dynamics_interfaces/"
@@ -98,9 +98,10 @@ def _states(log: BagReader, parameters: ServerParameters) -> dict[str, list[tupl
     """Return the states by body, in the order in which they came, with the log_time of each, ns."""
     stand_in((name, text) for name, text in log.definitions().items() if not name.startswith(_OURS))
     from contact_dynamics.nodes.state_sources import state_sources  # imports what now stands in for ROS
+    from msg_adapters.transforms import TransformTree
 
     found: dict[str, list[tuple[KnownState, int]]] = {body.name: [] for body in parameters.world.bodies}
-    sources = {each.full_name: each for each in state_sources(parameters)}
+    sources = {each.full_name: each for each in state_sources(parameters, static=TransformTree())}
     for message in log.messages(sources.keys()):
         for body_name, state_from in sources[message.topic].readers:
             with suppress(ContactDynamicsError):  # the server refused it too

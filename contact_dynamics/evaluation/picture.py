@@ -8,25 +8,23 @@ says by number how far the predictions were off.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import rerun as rr
-import rerun.blueprint as rrb
 
 from contact_dynamics.diagrams.shape import drawn_shape
 from contact_dynamics.evaluation.events import find_events
 from contact_dynamics.evaluation.found_event import EventKind
 from contact_dynamics.evaluation.report import COLUMNS, UNITS
 from contact_dynamics.evaluation.settings import Method
-from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.records import Record
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import entity
+from contact_dynamics.viewing.kept_recording import APPLICATION
 from contact_dynamics.viewing.scene import solid
-from contact_dynamics.viewing.sinks import APPLICATION
+from contact_dynamics.viewing.side_by_side import EVENTS, MOST_DRAWN, TABLE, SideBySide
 from contact_dynamics.viewing.trajectory import outline
 
 if TYPE_CHECKING:
@@ -38,21 +36,11 @@ if TYPE_CHECKING:
     from contact_dynamics.evaluation.motion import MeasuredMotion
     from contact_dynamics.evaluation.result import Evaluation
     from contact_dynamics.evaluation.sources import Source
-    from contact_dynamics.validation import FloatArray
-
-MOST_DRAWN: Final = 48
-"""Events that are drawn, the first ones: more could not be told apart."""
-
-COLUMN_COUNT: Final = 6
-"""Events in one row."""
 
 TRAIL_S: Final = 0.08
 """s of the measured path on either side of an event."""
 
-_APART: Final = 2.6  # sizes of the largest body from place to place
 _ARROW: Final = 1.0  # length of the longest arrow, in sizes of the body
-_EVENTS: Final = "events"
-_TABLE: Final = "table"
 _FAINTEST: Final = 0.35
 _WIDTH: Final = -1.8  # negative: points of the screen
 
@@ -90,12 +78,16 @@ def write_picture(
             break
     recording = rr.RecordingStream(APPLICATION)
     recording.set_sinks(rr.FileSink(str(path)))
-    recording.send_blueprint(_blueprint(cells))
-    apart = _APART * max((drawn_shape(cell.motion.body.shape).size for cell in cells), default=1.0)
+    places = SideBySide(
+        count=len(cells),
+        size=max((drawn_shape(cell.motion.body.shape).size for cell in cells), default=1.0),
+        gravity_W=cells[0].motion.gravity_W if cells else np.zeros(3),
+    )
+    recording.send_blueprint(places.blueprint("Events, measured and predicted", "How far off"))
     for number, cell in enumerate(cells):
-        _draw(recording, number, cell, apart)
+        _draw(recording, number, cell, places)
     table = rr.TextDocument(_table(cells), media_type=rr.MediaType.MARKDOWN)
-    recording.log(_TABLE, table, static=True)
+    recording.log(TABLE, table, static=True)
     recording.disconnect()
     return len(cells)
 
@@ -133,15 +125,12 @@ def _rows(rows: Sequence[Comparison], number: int | None) -> tuple[Comparison, .
     return tuple(row for row in rows if row.event == number and not row.refused)
 
 
-def _draw(recording: rr.RecordingStream, number: int, cell: _Cell, apart: float) -> None:
-    path = entity(_EVENTS, f"{number:02d} {cell.name}")
+def _draw(recording: rr.RecordingStream, number: int, cell: _Cell, places: SideBySide) -> None:
+    path = entity(EVENTS, f"{number:02d} {cell.name}")
     motion, event = cell.motion, cell.event
     shape = drawn_shape(motion.body.shape)
-    up_W = _up(motion)
-    u_W, v_W = tangents_near_x(up_W)
-    place = apart * ((number % COLUMN_COUNT) * u_W - (number // COLUMN_COUNT) * v_W)
     at_W = event.state.p_WB_W
-    recording.log(path, rr.Transform3D(translation=place - at_W), static=True)
+    recording.log(path, rr.Transform3D(translation=places.place(number) - at_W), static=True)
     pose = rr.Transform3D(translation=at_W, quaternion=rr.Quaternion(xyzw=event.state.q_WB))
     recording.log(f"{path}/measured", pose, static=True)
     if len(shape.triangles_B) > 0:
@@ -160,7 +149,7 @@ def _draw(recording: rr.RecordingStream, number: int, cell: _Cell, apart: float)
         strips = rr.LineStrips3D(list(lines), colors=color, radii=_WIDTH)
         recording.log(entity(f"{path}/predicted", f"{1e3 * row.horizon:.0f} ms before"), strips, static=True)
     _draw_velocities(recording, path, cell, shape.size)
-    below_W = at_W - 0.75 * shape.size * up_W
+    below_W = at_W - 0.75 * shape.size * places.up_W
     name = f"{number} {event.kind.value}"
     label = rr.Points3D([below_W], labels=[name], radii=0.0, show_labels=True)
     recording.log(f"{path}/label", label, static=True)
@@ -213,38 +202,3 @@ def _answers(cell: _Cell) -> Iterator[str]:
             if (error := getattr(row, name)) is not None
         ]
         yield f"{asked} | off by {', '.join(errors)}"
-
-
-def _up(motion: MeasuredMotion) -> FloatArray:
-    size = float(np.linalg.norm(motion.gravity_W))
-    return -motion.gravity_W / size if size > 0.0 else np.array([0.0, 0.0, 1.0])
-
-
-def _blueprint(cells: Sequence[_Cell]) -> rrb.Blueprint:
-    apart = _APART * max((drawn_shape(cell.motion.body.shape).size for cell in cells), default=1.0)
-    up_W = _up(cells[0].motion) if cells else np.array([0.0, 0.0, 1.0])
-    u_W, v_W = tangents_near_x(up_W)
-    columns = min(COLUMN_COUNT, max(1, len(cells)))
-    row_count = math.ceil(max(1, len(cells)) / COLUMN_COUNT)
-    middle = 0.5 * apart * ((columns - 1) * u_W - (row_count - 1) * v_W)
-    distance = apart * max(0.95 * columns, 1.2 * row_count, 1.0)
-    eye = rrb.EyeControls3D(
-        kind=rrb.Eye3DKind.Orbital,
-        position=middle + distance * (0.75 * up_W - 0.65 * v_W),
-        look_target=middle,
-        eye_up=up_W,
-    )
-    view = rrb.Spatial3DView(
-        origin="/",
-        contents=f"{_EVENTS}/**",
-        name="Events, measured and predicted",
-        background=rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor),
-        line_grid=False,
-        eye_controls=eye,
-    )
-    return rrb.Blueprint(
-        rrb.Horizontal(view, rrb.TextDocumentView(origin=_TABLE, name="How far off"), column_shares=[3, 2]),
-        rrb.BlueprintPanel(state=rrb.PanelState.Collapsed),
-        rrb.SelectionPanel(state=rrb.PanelState.Collapsed),
-        rrb.TimePanel(state=rrb.PanelState.Hidden),
-    )

@@ -1,1 +1,1 @@
-"""Recorded motion: tosses are read from files, and velocities, flights and events are found in them."""
+"""Tosses are read from files, and velocities, flights and events are found in them."""

@@ -1,4 +1,4 @@
-"""The measured tosses of an acrylic cube onto a board that Pfrommer, Halm and Posa published.
+"""Pfrommer, Halm and Posa published measured tosses of an acrylic cube onto a board. This file reads them.
 
 S. Pfrommer, M. Halm, M. Posa, "ContactNets: Learning discontinuous contact dynamics with smooth, implicit
 representations", Conference on Robot Learning 2020 (arXiv 2009.11193); data from the repository
@@ -17,6 +17,7 @@ the recordings are off by 1 or 2 %.
 
 from __future__ import annotations
 
+import zlib
 from typing import TYPE_CHECKING, Final
 from zipfile import BadZipFile
 
@@ -157,9 +158,12 @@ def _strikes(lowest: FloatArray) -> list[int]:
 def _load(path: Path) -> tuple[FloatArray, list[int]]:
     """Return data, (N, 14), and offsets, (tosses + 1,)."""
     try:
-        with np.load(path) as arrays:
+        with path.open("rb") as stream:
+            arrays = np.load(stream)
+            if not isinstance(arrays, np.lib.npyio.NpzFile):
+                raise InvalidFieldError(path.name, "a single array", "an .npz of plain arrays")
             content = {name: arrays[name] for name in ("data", "offsets") if name in arrays}
-    except (OSError, ValueError, BadZipFile) as error:
+    except (OSError, ValueError, EOFError, BadZipFile, zlib.error) as error:  # damaged at any place
         raise InvalidFieldError(path.name, error, "an .npz of plain arrays") from error
     if len(content) < 2:
         raise InvalidFieldError(path.name, f"arrays {sorted(content)}", "arrays data and offsets")

@@ -1,4 +1,4 @@
-"""The events of a measured toss, in hindsight: its strikes with the states before and after, and its rest.
+"""This file finds in hindsight the strikes of a measured toss, with the states around them, and its rest.
 
 A strike is between two flights with at most one frame between them. Both flights are fitted over the frames
 next to the strike. The time of the strike is when their positions and orientations agree best, because the
@@ -100,6 +100,23 @@ class MeasuredStrike(Record):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class RestingPose(Record):
+    """The pose that a body keeps at the end of a recording.
+
+    Attributes:
+        time: Time of the first frame from which on the pose stayed, s.
+        state: The mean pose from then on, at velocity 0.
+        position_std: Standard deviation of each coordinate of the mean, m.
+        orientation_std: Standard deviation of each component of the mean, rad.
+    """
+
+    time: float
+    state: BodyState
+    position_std: float
+    orientation_std: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class MeasuredRest(Record):
     """The body at rest at the end of the recording.
 
@@ -196,31 +213,44 @@ def _crossing(before: FlightFit, after: FlightFit) -> tuple[float, float]:
     return time, time_std
 
 
-def _rest(toss: Toss) -> MeasuredRest | None:
-    n = max(FEWEST_FRAMES, round(REST_SPAN * toss.rate))
-    poses = np.hstack([toss.p_WB_W, rotation_vectors(toss.q_WB, toss.q_WB[-1])])
-    noise = np.repeat([toss.position_noise, toss.orientation_noise], 3)
-    if n > len(toss) or (_drift(toss.times[-n:], poses[-n:]) > np.repeat([REST_SPEED, REST_SPIN], 3)).any():
+def find_rest(poses: MeasuredPoses) -> RestingPose | None:
+    """Return the pose in which a body rests at the end of a recording, or None if it still moves."""
+    n = max(FEWEST_FRAMES, round(REST_SPAN * poses.rate))
+    rows = np.hstack([poses.p_WB_W, rotation_vectors(poses.q_WB, poses.q_WB[-1])])
+    noise = np.repeat([poses.position_noise, poses.orientation_noise], 3)
+    moves = np.repeat([REST_SPEED, REST_SPIN], 3)
+    if n > len(poses) or (_drift(poses.times[-n:], rows[-n:]) > moves).any():
         return None
     allowed = DEVIATIONS * noise + np.repeat([POSITION_SLACK, ORIENTATION_SLACK], 3)
-    moved = np.flatnonzero((np.abs(poses - poses[-n:].mean(axis=0)) > allowed).any(axis=1))
+    moved = np.flatnonzero((np.abs(rows - rows[-n:].mean(axis=0)) > allowed).any(axis=1))
     begin = int(moved[-1]) + 1 if len(moved) else 0
-    if len(toss) - begin < n:
+    if len(poses) - begin < n:
         return None
-    mean, std = poses[begin:].mean(axis=0), noise / math.sqrt(len(toss) - begin)
-    state = BodyState(
-        p_WB_W=mean[:3],
-        q_WB=turned(toss.q_WB[-1], mean[None, 3:])[0],
-        v_WB_W=np.zeros(3),
-        w_WB_W=np.zeros(3),
-        stamp_ns=to_ns(float(toss.times[begin])),
-    )
-    return MeasuredRest(
-        time=float(toss.times[begin]),
-        state=state,
+    mean, std = rows[begin:].mean(axis=0), noise / math.sqrt(len(poses) - begin)
+    return RestingPose(
+        time=float(poses.times[begin]),
+        state=BodyState(
+            p_WB_W=mean[:3],
+            q_WB=turned(poses.q_WB[-1], mean[None, 3:])[0],
+            v_WB_W=np.zeros(3),
+            w_WB_W=np.zeros(3),
+            stamp_ns=to_ns(float(poses.times[begin])),
+        ),
         position_std=float(std[0]),
         orientation_std=float(std[3]),
-        heights=corner_heights(toss, state),
+    )
+
+
+def _rest(toss: Toss) -> MeasuredRest | None:
+    pose = find_rest(toss)
+    if pose is None:
+        return None
+    return MeasuredRest(
+        time=pose.time,
+        state=pose.state,
+        position_std=pose.position_std,
+        orientation_std=pose.orientation_std,
+        heights=corner_heights(toss, pose.state),
     )
 
 

@@ -1,4 +1,4 @@
-"""The free flight that fits a stretch of measured poses best, in hindsight.
+"""This file fits a free flight to a stretch of measured poses, in hindsight.
 
 Model: the centre of mass flies a parabola of known gravity, and the angular momentum L about it is constant
 (lecture 25). The orientations themselves are measured, so the angular inertia in world axes is known at each

@@ -1,4 +1,4 @@
-"""When the body of a recorded toss was in free flight: stretches of frames that one flight explains.
+"""This file finds stretches of a recorded toss that one free flight explains.
 
 A flight grows frame by frame. Each new pose is compared with the prediction of the fitted last frames
 (`SPAN`). The flight ends where the pose is off by more than noise and an imperfect model explain. A stretch

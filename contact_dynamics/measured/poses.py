@@ -1,4 +1,4 @@
-"""What flights are found in: the measured poses of one body, from whichever source."""
+"""Flights are found in the measured poses of one body, from whichever source they come."""
 
 from __future__ import annotations
 

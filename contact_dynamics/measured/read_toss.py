@@ -1,4 +1,4 @@
-"""Reading a recorded toss by path: the package's own recording, another like it, or a measured cube toss."""
+"""This file reads a recorded toss by path: the package's own, another like it, or a measured cube toss."""
 
 from __future__ import annotations
 

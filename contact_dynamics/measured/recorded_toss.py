@@ -1,4 +1,4 @@
-"""A recorded toss: a tracking system measured a body that flew, bounced and came to rest.
+"""In a recorded toss a tracking system measured a body that flew, bounced and came to rest.
 
 Velocities are estimates from past poses alone (`velocity_estimate`), by the same method for every source. So
 a prediction from them was possible at that moment.

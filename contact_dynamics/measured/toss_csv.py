@@ -1,4 +1,4 @@
-"""The project's own file of one recorded toss: CSV, with a header of comment lines that a person can read.
+"""The project's own file of one toss is CSV, with a header of comment lines that a person can read.
 
 A header line is `# name [unit]: value`, with the value in JSON. Other comment lines are prose. After the
 header there is one line of column names, then the samples. Numbers are rounded in decimal, far below the
@@ -129,16 +129,20 @@ def _split(path: Path) -> tuple[dict[str, Any], list[str]]:
     """Return the header's values by name, and the lines that follow it."""
     header: dict[str, Any] = {}
     rows = []
-    for line in path.read_text(encoding="utf-8").splitlines():
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise InvalidFieldError(path.name, error, "text in UTF-8") from None
+    for line in text.splitlines():
         match = _HEADER_LINE.fullmatch(line)
         if match and match[1] in UNITS:
-            name, unit, text = match.groups(default="")
+            name, unit, value = match.groups(default="")
             if unit != UNITS[name]:
                 raise InvalidFieldError(f"{path.name}: {name}", f"unit {unit!r}", f"unit {UNITS[name]!r}")
             try:
-                header[name] = json.loads(text)
+                header[name] = json.loads(value)
             except json.JSONDecodeError:
-                raise InvalidFieldError(f"{path.name}: {name}", text, "a value in JSON") from None
+                raise InvalidFieldError(f"{path.name}: {name}", value, "a value in JSON") from None
         elif line and not line.startswith("#"):
             rows.append(line)
     missing = [name for name in UNITS if name not in header]

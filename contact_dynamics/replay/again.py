@@ -7,20 +7,30 @@ answers, and responses are written by the same functions. It needs no ROS.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.nodes import parameter_event
+from contact_dynamics.nodes.parameter_event import changed_values
 from contact_dynamics.nodes.parameters import read_server_parameters
+from contact_dynamics.nodes.reconfiguring import CONFIGURED_ANEW, bodies_read_otherwise
+from contact_dynamics.nodes.run_record import LoggedParameters
 from contact_dynamics.nodes.services import SERVICES
-from contact_dynamics.nodes.state_sources import state_sources
+from contact_dynamics.nodes.state_sources import no_message, state_sources
 from contact_dynamics.questions.extent import check_believable
 from contact_dynamics.questions.knowledge import Knowledge
-from contact_dynamics.questions.state_store import StateStore
+from contact_dynamics.questions.state_store import CLOCK_SET_BACK, StateStore
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr import decode_without_ros
 from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
 from contact_dynamics.replay.events import Answer, Question
+from msg_adapters.batches import (
+    impacts_answer_from_msg,
+    impacts_question_from_msg,
+    tumblings_answer_from_msg,
+    tumblings_question_from_msg,
+)
 from msg_adapters.contact_mode import contact_mode_answer_from_msg
 from msg_adapters.impact import impact_answer_from_msg
 from msg_adapters.questions import (
@@ -29,12 +39,15 @@ from msg_adapters.questions import (
     tumbling_question_from_msg,
 )
 from msg_adapters.status import report_error
+from msg_adapters.toss import toss_answer_from_msg, toss_question_from_msg
+from msg_adapters.transforms import TransformTree
 from msg_adapters.tumbling import tumbling_answer_from_msg
 
 if TYPE_CHECKING:
-    from contact_dynamics.nodes.parameters import ParameterSource
+    from contact_dynamics.nodes.parameter_reader import ParameterSource
     from contact_dynamics.recording.bag_reader import LoggedMessage
     from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.world import World
     from msg_adapters.state_adapter import Reader
 
 CLOCK: Final = "/clock"
@@ -42,13 +55,19 @@ CLOCK: Final = "/clock"
 _QUESTIONS: Final[Mapping[str, Callable[..., Question]]] = {
     "PredictContactMode": contact_mode_question_from_msg,
     "PredictImpact": impact_question_from_msg,
+    "PredictToss": toss_question_from_msg,
     "PredictTumbling": tumbling_question_from_msg,
+    "PredictImpactBatch": impacts_question_from_msg,
+    "PredictTumblingBatch": tumblings_question_from_msg,
 }
 
 _ANSWERS: Final[Mapping[str, Callable[..., Answer]]] = {
     "PredictContactMode": contact_mode_answer_from_msg,
     "PredictImpact": impact_answer_from_msg,
+    "PredictToss": toss_answer_from_msg,
     "PredictTumbling": tumbling_answer_from_msg,
+    "PredictImpactBatch": impacts_answer_from_msg,
+    "PredictTumblingBatch": tumblings_answer_from_msg,
 }
 
 
@@ -74,8 +93,8 @@ class ServerAgain:
         Raises:
             ConfigurationError: a parameter is missing, or one is not allowed.
         """
-        parameters = read_server_parameters(source)
-        self.world = parameters.world
+        self._source = source
+        self._parameters = parameters = read_server_parameters(source)
         self.refused: dict[str, Refused] = {}
         self._asked_ns = 0
         self._clock_ns = 0
@@ -84,28 +103,39 @@ class ServerAgain:
             history=parameters.state_history,
             timeout=parameters.state_timeout,
             future_tolerance=parameters.future_tolerance,
+            most_states=parameters.most_states,
         )
-        self._world_frame = parameters.world_frame
+        self._static = TransformTree()
         self._knowledge = Knowledge(
             world=parameters.world,
             states=self._states,
             defaults=parameters.defaults,
             now_ns=lambda: self._asked_ns or None,  # it is zero before a simulation tells the time
         )
-        self._sources = {each.full_name: each.readers for each in state_sources(parameters)}
+        self._find_sources()
+
+    @property
+    def world(self) -> World:
+        """The bodies and surfaces that are configured at present."""
+        return self._parameters.world
 
     @property
     def world_frame(self) -> str:
         """The name of the world's frame."""
-        return self._world_frame
+        return self._parameters.world_frame
 
     @property
     def topics(self) -> frozenset[str]:
         """The topics that answers depend on."""
-        return frozenset({*self._sources, CLOCK})
+        return frozenset({*self._sources, CLOCK, *self.topics_of_changes})
+
+    @property
+    def topics_of_changes(self) -> frozenset[str]:
+        """The topics of changes of the configuration, which the log of a server has."""
+        return frozenset({parameter_event.TOPIC} if isinstance(self._source, LoggedParameters) else ())
 
     def receive(self, message: LoggedMessage, *, is_live: bool = True) -> list[tuple[str, BodyState]]:
-        """Take a message about bodies, or a tick of the simulated time; ignore what the server ignored.
+        """Take a message about bodies, a tick of the simulated time, or a change; ignore what the server did.
 
         Args:
             message: a message of one of the `topics`.
@@ -116,6 +146,9 @@ class ServerAgain:
         """
         if message.topic == CLOCK:
             self._tick(leading_stamp_ns(message.data))
+            return []
+        if message.topic in self.topics_of_changes:
+            self._change(changed_values(decode_without_ros(message)))  # type: ignore[arg-type]
             return []
         now_ns = self._clock_ns or None if self._is_simulated else message.log_time_ns
         came = (
@@ -128,38 +161,46 @@ class ServerAgain:
         self, message: LoggedMessage, body_name: str, state_from: Reader, *, now_ns: int | None
     ) -> tuple[str, BodyState] | None:
         try:
-            state = state_from(decode_without_ros(message))
+            decoded = decode_without_ros(message)
+        except ContactDynamicsError as error:
+            self._refuse(message.topic, body_name, error, no_message(message.data, message.type_name))
+            return None
+        try:
+            state = state_from(decoded)
             if state is None:
                 return None
             check_believable(state_of(state))
             self._states.add(body_name, state, now_ns=now_ns)
         except ContactDynamicsError as error:
-            self.refused.setdefault(message.topic, Refused(reason=str(error))).count += 1
+            self._refuse(message.topic, body_name, error, error)
             return None
         return body_name, state_of(state)
+
+    def _refuse(self, topic: str, body_name: str, error: Exception, said_by_server: Exception) -> None:
+        self.refused.setdefault(topic, Refused(reason=str(error))).count += 1
+        self._states.refuse(body_name, said_by_server)
 
     def knowledge_at(self, asked_ns: int) -> Knowledge:
         """Return what is known at a time, ns by the clock of the states."""
         self._asked_ns = asked_ns
         return self._knowledge
 
-    def question_from(self, service_type: str, request: Any) -> Question | None:
-        """Return the question that a request asks, or None for a batch of questions.
+    def question_from(self, service_type: str, request: Any) -> Question:
+        """Return the question that a request asks.
 
         Raises:
             ContactDynamicsError: the request is refused.
         """
-        read = _QUESTIONS.get(service_type.rpartition("/")[2])
-        return None if read is None else read(request, world=self.world, world_frame=self._world_frame)
+        read = _QUESTIONS[service_type.rpartition("/")[2]]
+        return read(request, world=self.world, world_frame=self._parameters.world_frame)
 
-    def answer_from(self, service_type: str, response: Any) -> Answer | None:
-        """Return the answer that a response carries, whose status is OK, or None for a batch of answers.
+    def answer_from(self, service_type: str, response: Any) -> Answer:
+        """Return the answer that a response carries, whose status is OK.
 
         Raises:
             ContactDynamicsError: a number in it is not allowed.
         """
-        read = _ANSWERS.get(service_type.rpartition("/")[2])
-        return None if read is None else read(response, world=self.world)
+        return _ANSWERS[service_type.rpartition("/")[2]](response, world=self.world)
 
     def answer(
         self, service_type: str, request: object, make_response: Callable[[], Any], *, asked_ns: int
@@ -177,13 +218,37 @@ class ServerAgain:
         service = next(service for service in SERVICES if service.type_name == name)
         response = make_response()
         try:
-            service.serve(request, response, self._knowledge, world_frame=self._world_frame)
+            service.serve(request, response, self._knowledge, world_frame=self._parameters.world_frame)
         except Exception as error:  # noqa: BLE001  the server reports a fault of its own too, and goes on
             response = make_response()
             report_error(response, error)
         return response
 
+    def _change(self, values: Mapping[str, Any]) -> None:
+        """Answer with another configuration from now on, as `Serving.change` does."""
+        if not isinstance(self._source, LoggedParameters):
+            return
+        self._source = self._source.changed(values)
+        before, self._parameters = self._parameters, read_server_parameters(self._source)
+        parameters = self._parameters
+        self._states.change_limits(
+            history=parameters.state_history,
+            timeout=parameters.state_timeout,
+            future_tolerance=parameters.future_tolerance,
+            most_states=parameters.most_states,
+        )
+        changed = bodies_read_otherwise(before, parameters)
+        for name in changed:
+            self._states.forget(name, CONFIGURED_ANEW)
+        if changed:
+            self._find_sources()
+        self._knowledge = replace(self._knowledge, world=parameters.world, defaults=parameters.defaults)
+
+    def _find_sources(self) -> None:
+        sources = state_sources(self._parameters, static=self._static)
+        self._sources = {each.full_name: each.readers for each in sources}
+
     def _tick(self, clock_ns: int) -> None:
         if clock_ns < self._clock_ns:  # the server forgets all states when its clock is set back
-            self._states.clear()
+            self._states.clear(CLOCK_SET_BACK)
         self._clock_ns = clock_ns

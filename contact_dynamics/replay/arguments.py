@@ -1,4 +1,4 @@
-"""The arguments of `contact-dynamics replay`, with its modes, and of `contact-dynamics recover`."""
+"""These are the arguments of `contact-dynamics replay`, with its modes, and of `contact-dynamics recover`."""
 
 from __future__ import annotations
 

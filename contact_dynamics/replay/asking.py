@@ -1,4 +1,4 @@
-"""Questions asked of a recording that perhaps no server of ours was part of: what would it have said?
+"""Asks questions of a recording that perhaps no server of ours was part of: what would it have said?
 
 The clock is that of the states' stamps. Each question is asked at a state, of what was published by then.
 """
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 from contact_dynamics.constants import ns_after
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.questions.asking import ask
-from contact_dynamics.questions.contact_modes import ContactModeQuestion
+from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
 from contact_dynamics.questions.impact_question import ImpactQuestion
 from contact_dynamics.questions.sample_times import UntilContact
 from contact_dynamics.questions.subject import PublishedState
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-    from contact_dynamics.nodes.parameters import ParameterSource
+    from contact_dynamics.nodes.parameter_reader import ParameterSource
     from contact_dynamics.questions.knowledge import Knowledge
     from contact_dynamics.recording.file_messages import Span
     from contact_dynamics.replay.again import Refused, ServerAgain

@@ -1,11 +1,11 @@
-"""A configuration given beside a recording: a file of parameters, and topics on the command line."""
+"""A configuration can be given beside a recording: a file of parameters, and topics on the command line."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
 from contact_dynamics.nodes.parameter_file import ParameterFile
-from contact_dynamics.nodes.parameters import ConfigurationError
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,13 +35,16 @@ class Configuration:
         self, name: str, default: Any, description: str, bounds: tuple[float, float] | None = None
     ) -> Any:
         """Return a parameter's value; see `ParameterSource`."""
-        if name in self._topics:
-            return self._topics[name]
-        return self._file.value(name, default, description, bounds)
+        found = self._file.value(name, default, description, bounds)
+        return self._topics.get(name, found)
 
     def resolved_topic(self, name: str, topic: str) -> str:
         """Return the full name of a topic; see `ParameterSource`."""
         return self._file.resolved_topic(name, topic)
+
+    def refuse_unknown(self) -> None:
+        """Refuse parameters of the file that nothing has read; see `ParameterSource`."""
+        self._file.refuse_unknown()
 
 
 def _topics(text: str) -> dict[str, str]:

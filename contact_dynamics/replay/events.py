@@ -9,9 +9,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol, TypeAlias
 
-from contact_dynamics.questions.contact_modes import ContactModeAnswer, ContactModeQuestion
+from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
+from contact_dynamics.questions.contact_modes import ContactModeAnswer
 from contact_dynamics.questions.impact import ImpactAnswer
 from contact_dynamics.questions.impact_question import ImpactQuestion
+from contact_dynamics.questions.many import (
+    ManyImpactsAnswer,
+    ManyImpactsQuestion,
+    ManyTumblingsAnswer,
+    ManyTumblingsQuestion,
+)
+from contact_dynamics.questions.toss import TossAnswer, TossQuestion
 from contact_dynamics.questions.tumbling import TumblingAnswer, TumblingQuestion
 
 if TYPE_CHECKING:
@@ -20,8 +28,17 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.world import World
 
-Question: TypeAlias = TumblingQuestion | ImpactQuestion | ContactModeQuestion
-Answer: TypeAlias = TumblingAnswer | ImpactAnswer | ContactModeAnswer
+Question: TypeAlias = (
+    TumblingQuestion
+    | ImpactQuestion
+    | ContactModeQuestion
+    | TossQuestion
+    | ManyTumblingsQuestion
+    | ManyImpactsQuestion
+)
+BatchAnswer: TypeAlias = ManyTumblingsAnswer | ManyImpactsAnswer
+SingleAnswer: TypeAlias = TumblingAnswer | ImpactAnswer | ContactModeAnswer | TossAnswer
+Answer: TypeAlias = SingleAnswer | BatchAnswer
 
 OK = "OK"
 """The status of a question that was answered."""
@@ -38,6 +55,19 @@ class StateCame:
 
     body_name: str
     state: BodyState
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WorldChanged:
+    """The bodies or surfaces were configured anew.
+
+    Attributes:
+        world: The bodies and surfaces from now on.
+        stamp_ns: ns, the time of the change by the clock of the states' stamps.
+    """
+
+    world: World
+    stamp_ns: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,14 +98,14 @@ class Answered:
     computation_time: float
 
 
-Event: TypeAlias = StateCame | Answered
+Event: TypeAlias = StateCame | WorldChanged | Answered
 
 
 class Events(Protocol):
     """A recording that events are read from.
 
     Attributes:
-        world: The bodies and surfaces that they are about.
+        world: The bodies and surfaces that they are about, as they were at the beginning.
     """
 
     world: World

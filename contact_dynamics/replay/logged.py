@@ -1,4 +1,4 @@
-"""The events of a log of the server: its states, and its answers as they were given."""
+"""A log of the server holds states as they came, and answers as they were given."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from contact_dynamics.recording.message_types import Message
 from contact_dynamics.recording.service_calls import ServiceCall
 from contact_dynamics.replay.compare import differences
 from contact_dynamics.replay.event_parts import part_of
-from contact_dynamics.replay.events import OK, Answered, StateCame
+from contact_dynamics.replay.events import OK, Answered, StateCame, WorldChanged
 from contact_dynamics.replay.of_log import server_of_log
 from contact_dynamics.replay.timeline import in_order
 
@@ -69,8 +69,11 @@ class LoggedEvents:
                     if answered is not None:
                         yield answered
                     continue
+                before = self._server.world
                 for body_name, state in self._server.receive(each):
                     yield StateCame(body_name=body_name, state=state)
+                if self._server.world is not before:
+                    yield WorldChanged(world=self._server.world, stamp_ns=each.publish_time_ns)
 
     def _answered(self, call: ServiceCall) -> Answered | None:
         if call.request_event is None or call.response_event is None:

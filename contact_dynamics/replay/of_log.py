@@ -1,4 +1,4 @@
-"""The server that a log is of: configured by the log's own record."""
+"""A log's own record configures the server that answers its questions again."""
 
 from __future__ import annotations
 
@@ -32,13 +32,16 @@ def server_of_log(path: Path) -> tuple[dict[str, str], ServerAgain]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DamagedLogWarning)  # told when the log is read
         definitions = log.definitions()
+        damage = f" ({log.damage})" if log.damage else ""
         run = log.run()
+        damage = f" ({log.damage})" if log.damage else damage
     events = [name for name in definitions if name.startswith(INTERFACES) and name.endswith(EVENT_SUFFIX)]
     if not events:
         known = ", ".join(sorted(definitions)) or "none"
-        raise NotALogError(f"{path}: not a log of the server: no service of it in the log's types ({known})")
+        raise NotALogError(
+            f"{path}: not a log of the server: no service of it in the log's types ({known}){damage}"
+        )
     if PARAMETERS not in run and "world_frame" not in run:
-        damage = f" ({log.damage})" if log.damage else ""
         raise NotALogError(
             f"{path}: not a log of the server: no record of how its run was configured{damage}"
         )

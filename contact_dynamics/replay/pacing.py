@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import select
 import sys
 import termios
@@ -80,7 +81,7 @@ class Pacing:
 
     def _read_keys(self) -> None:
         while sys.stdin.isatty() and select.select([sys.stdin], [], [], 0.0)[0]:
-            key = sys.stdin.read(1)
+            key = os.read(sys.stdin.fileno(), 1).decode(errors="replace")  # select sees what is left
             now_ns = self.now_ns
             if key == PAUSE:
                 self._is_paused = not self._is_paused
@@ -98,7 +99,7 @@ def single_keys() -> Iterator[None]:
         yield
         return
     before = termios.tcgetattr(sys.stdin)
-    tty.setcbreak(sys.stdin)
+    tty.setcbreak(sys.stdin, termios.TCSADRAIN)  # keys that were pressed before count too
     try:
         yield
     finally:

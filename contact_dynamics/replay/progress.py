@@ -1,4 +1,4 @@
-"""A line on the terminal that says how far long work is, where somebody watches."""
+"""This line on the terminal says how far long work is, where somebody watches."""
 
 from __future__ import annotations
 

@@ -14,8 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import rclpy
+from rclpy.duration import Duration
 from rclpy.node import Node
-from rclpy.qos import QoSProfile
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 from rclpy.signals import SignalHandlerOptions
 from rosgraph_msgs.msg import Clock
@@ -29,6 +30,7 @@ from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
 from contact_dynamics.recording.decoding import message_class
 from contact_dynamics.recording.definitions import EVENT_SUFFIX
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
+from contact_dynamics.recording.qos import FOREVER_NS, OfferedQos, offered_qos
 from contact_dynamics.recording.service_calls import EVENT_TOPIC_SUFFIX, ServiceCall
 from contact_dynamics.replay.again import CLOCK
 from contact_dynamics.replay.of_log import server_of_log
@@ -50,11 +52,11 @@ if TYPE_CHECKING:
 
 NODE_NAME: Final = "contact_dynamics_replay"
 
-QOS: Final = QoSProfile(depth=1000)
-"""The publishers are reliable, with a second of states at 1 kHz in their queues."""
+DEPTH: Final = 1000
+"""The publishers have a second of states at 1 kHz in their queues."""
 
 _TICK_NS: Final = NS_PER_S // 100
-_ANSWERS_S: Final = 10.0  # how long answers are waited for at the end
+_ANSWERS_S: Final = 10.0  # how long the next answer is waited for at the end
 _STAMPED: Final = ("std_msgs/Header", "builtin_interfaces/Time")
 _LITTLE_ENDIAN: Final = 1  # the second byte of a serialised message
 _POLL_S: Final = 0.02
@@ -78,6 +80,8 @@ def publish(given: argparse.Namespace, of_ros: list[str], *, span: Span) -> int:
                 rate=given.rate, is_paused=given.paused, meanwhile=publisher.meanwhile, is_over=stop.is_set
             )
             publisher.wait_for_listeners(given.wait)
+            if given.paused:
+                print(f"{path}: paused: the space bar goes on, a dot steps", file=sys.stderr, flush=True)
             while publisher.play(pacing, progress) and given.loop:
                 pass
             complete = stop.is_set() or publisher.wait_for_answers()
@@ -107,7 +111,7 @@ class _LogPublisher:
         for topic in topics:
             self._add(topic)
         ticks = given.clock and CLOCK not in self._publishers
-        self._ticks = self._node.create_publisher(Clock, CLOCK, QOS) if ticks else None
+        self._ticks = self._node.create_publisher(Clock, CLOCK, QoSProfile(depth=DEPTH)) if ticks else None
 
     @property
     def told(self) -> str:
@@ -157,10 +161,12 @@ class _LogPublisher:
             time.sleep(seconds)
 
     def wait_for_answers(self) -> bool:
-        """Wait for answers that are due; return whether all came."""
-        deadline = time.monotonic() + _ANSWERS_S
+        """Wait for answers that are due, as long as some come; return whether all came."""
+        came, deadline = self._answered, time.monotonic() + _ANSWERS_S
         while time.monotonic() < deadline and self._answered < self._asked:
             rclpy.spin_once(self._node, timeout_sec=_POLL_S)
+            if self._answered > came:
+                came, deadline = self._answered, time.monotonic() + _ANSWERS_S
         return self._answered == self._asked
 
     def _add(self, topic: Topic) -> None:
@@ -171,7 +177,8 @@ class _LogPublisher:
             return
         first = next(iter(kind.get_fields_and_field_types().values()), "")
         is_stamped = first in _STAMPED and topic.name != CLOCK
-        self._publishers[topic.name] = (self._node.create_publisher(kind, topic.name, QOS), is_stamped)
+        publisher = self._node.create_publisher(kind, topic.name, _as_offered(topic.qos))
+        self._publishers[topic.name] = (publisher, is_stamped)
 
     def _is_heard(self) -> bool:
         topics = all(publisher.get_subscription_count() > 0 for publisher, _ in self._publishers.values())
@@ -223,7 +230,8 @@ def _topics(path: Path, *, given: argparse.Namespace) -> list[Topic]:
     wanted = None
     if given.requests or not given.all_topics:
         try:
-            wanted = server_of_log(path)[1].topics
+            server = server_of_log(path)[1]
+            wanted = server.topics - server.topics_of_changes  # those of today's nodes are others
         except NotALogError:
             if given.requests:
                 raise
@@ -233,6 +241,30 @@ def _topics(path: Path, *, given: argparse.Namespace) -> list[Topic]:
     if not given.clock:
         wanted -= {CLOCK}  # a clock of other times than the present would mislead who listens to it
     return [topic for topic in found if topic.name in wanted]
+
+
+def _as_offered(text: str) -> QoSProfile:
+    """Return a QoS that those who heard the publishers of a bag hear, too.
+
+    Several publishers that offer different things become one that offers the most. What a bag does not say is
+    as for an ordinary publisher.
+    """
+    offers = offered_qos(text) or [OfferedQos()]
+    best_effort = all(offer.reliability == "best_effort" for offer in offers)
+    latched = any(offer.durability == "transient_local" for offer in offers)
+    deadline = min(offer.deadline for offer in offers)
+    lifespan = max(offer.lifespan for offer in offers)
+    return QoSProfile(
+        depth=DEPTH,
+        reliability=ReliabilityPolicy.BEST_EFFORT if best_effort else ReliabilityPolicy.RELIABLE,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
+        deadline=_duration(deadline),
+        lifespan=_duration(lifespan),
+    )
+
+
+def _duration(ns: int) -> Duration:
+    return Duration(nanoseconds=0 if ns == FOREVER_NS else ns)  # zero stands for no limit
 
 
 def _time_of(each: LoggedMessage | ServiceCall) -> int | None:

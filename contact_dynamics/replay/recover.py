@@ -22,7 +22,8 @@ def main(arguments: list[str]) -> int:
     if given.log is None:  # argparse would complain of this before it complains of a mistyped option
         parser.error("found no LOG, needed is one")
     path = Path(given.log)
-    folder = Path(given.out) if given.out else path.with_name(f"{path.name.partition('.')[0]}_recovered")
+    named = path.resolve() if path.name in {"", ".."} else path  # . and .. are no names
+    folder = Path(given.out) if given.out else named.with_name(f"{named.name.partition('.')[0]}_recovered")
     progress = Progress(str(path))
     try:
         recovered = recover(path, folder, on_progress=lambda count: progress.tell(count, f"{count} messages"))

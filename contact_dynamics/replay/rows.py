@@ -1,7 +1,7 @@
-"""A row for each question of a recording: what was asked, what the answer was, and what was then measured.
+"""Makes a row for each question of a recording: what was asked, what the answer was, what was then measured.
 
-Positions are those of the body's published frame, linear velocities those of its centre of mass, in world
-axes.
+A question about many states has a row for each of them. Positions are those of the body's published frame,
+linear velocities those of its centre of mass, in world axes.
 
 `then_measured` says what stands beside an answer as measured.
 """
@@ -12,15 +12,17 @@ import json
 import math
 from collections import deque
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.constants import ns_after
 from contact_dynamics.questions.contact_modes import ContactModeAnswer
 from contact_dynamics.questions.impact import ImpactAnswer
+from contact_dynamics.questions.toss import TossAnswer
 from contact_dynamics.questions.tumbling import TumblingAnswer
-from contact_dynamics.replay.events import Answered, StateCame
+from contact_dynamics.replay.batch_rows import STATE, rows_of_batch
+from contact_dynamics.replay.events import Answered, BatchAnswer, StateCame, WorldChanged
 from contact_dynamics.replay.then_measured import Measuring
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rigid_body.published_frame import origin_of_published_frame
@@ -28,21 +30,19 @@ from contact_dynamics.rigid_body.published_frame import origin_of_published_fram
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from contact_dynamics.replay.events import Answer, Events
+    from contact_dynamics.replay.batch_rows import Cell
+    from contact_dynamics.replay.events import Events, SingleAnswer
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import World
 
-Cell: TypeAlias = str | int | float | None
-
 _MOST_WAITING: Final = 10_000
 """Rows that wait for what is measured. Beyond, the oldest is given without."""
-
-_STATE: Final = ("x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz")
 
 COLUMNS: Final[dict[str, type]] = {
     "log": str,
     "service": str,
     "number": int,
+    "state": int,
     "log_time_ns": int,
     "asked_ns": int,
     "body": str,
@@ -55,9 +55,9 @@ COLUMNS: Final[dict[str, type]] = {
     "says": str,
     "surface": str,
     "predicted_ns": int,
-    **{f"predicted_{name}": float for name in _STATE},
+    **{f"predicted_{name}": float for name in STATE},
     "measured_ns": int,
-    **{f"measured_{name}": float for name in _STATE},
+    **{f"measured_{name}": float for name in STATE},
     "position_error": float,
     "angle_error": float,
     "velocity_error": float,
@@ -65,10 +65,10 @@ COLUMNS: Final[dict[str, type]] = {
 }
 """The columns of a row and their types. Any cell can be empty.
 
-Times are ns, ``computation_time`` is s. The state that the answer used is stamped ``state_stamp_ns``: the
-one that was taken, or the newest of ``states_fitted``. Lengths are m, quaternions x, y, z, w, velocities m/s
-and rad/s. The errors are the distance, m, the angle, rad, and the differences of the velocities, m/s and
-rad/s.
+If a question is about many states, ``state`` is the row's place among them, from 0. Times are ns,
+``computation_time`` is s. The state that the answer used is stamped ``state_stamp_ns``: the one that was
+taken, or the newest of ``states_fitted``. Lengths are m, quaternions x, y, z, w, velocities m/s and rad/s.
+The errors are the distance, m, the angle, rad, and the differences of the velocities, m/s and rad/s.
 """
 
 
@@ -76,6 +76,13 @@ rad/s.
 class _Waiting:
     row: dict[str, Cell]
     measuring: Measuring | None  # None if nothing of it can be measured
+    batch: Answered | None = None  # None if it is one row
+
+    @property
+    def weight(self) -> int:
+        """About how many rows it is."""
+        answer = None if self.batch is None else self.batch.answer
+        return len(answer.states) if isinstance(answer, BatchAnswer) else 1
 
 
 class Rows:
@@ -88,6 +95,7 @@ class Rows:
         self._log = log
         self._newest: dict[str, BodyState] = {}
         self._waiting: deque[_Waiting] = deque()
+        self._weight = 0
 
     def __iter__(self) -> Iterator[dict[str, Cell]]:
         """Yield the rows in the order in which the questions were asked."""
@@ -97,24 +105,33 @@ class Rows:
                     if waiting.measuring is not None:
                         waiting.measuring.see(event.body_name, event.state)
                 self._newest[event.body_name] = event.state
+            elif isinstance(event, WorldChanged):
+                self._world = event.world
             else:
                 self._waiting.append(self._row(event))
-            while self._waiting and (self._is_done(self._waiting[0]) or len(self._waiting) > _MOST_WAITING):
-                yield self._finished(self._waiting.popleft())
-        yield from (self._finished(waiting) for waiting in self._waiting)
+                self._weight += self._waiting[-1].weight
+            while self._waiting and (self._is_done(self._waiting[0]) or self._weight > _MOST_WAITING):
+                self._weight -= self._waiting[0].weight
+                yield from self._finished(self._waiting.popleft())
+        for waiting in self._waiting:
+            yield from self._finished(waiting)
 
     @staticmethod
     def _is_done(waiting: _Waiting) -> bool:
         return waiting.measuring is None or waiting.measuring.is_complete
 
-    def _finished(self, waiting: _Waiting) -> dict[str, Cell]:
+    def _finished(self, waiting: _Waiting) -> Iterator[dict[str, Cell]]:
+        if waiting.batch is not None:
+            for cells in rows_of_batch(waiting.batch):
+                yield waiting.row | cells
+            return
         measuring = waiting.measuring
         measured = None if measuring is None else measuring.result()
         if measuring is not None and measured is not None:
             waiting.row["measured_ns"] = measured.stamp_ns
             waiting.row |= self._cells("measured", measuring.body_name, measured)
             waiting.row |= _errors(measuring.predicted, measured)
-        return waiting.row
+        yield waiting.row
 
     def _row(self, answered: Answered) -> _Waiting:
         row: dict[str, Cell] = dict.fromkeys(COLUMNS)
@@ -133,6 +150,9 @@ class Rows:
         }
         if answered.answer is None:
             return _Waiting(row=row, measuring=None)
+        if isinstance(answered.answer, BatchAnswer):
+            row["body"] = answered.answer.body_name
+            return _Waiting(row=row, measuring=None, batch=answered)
         row |= _said(answered.answer)
         name, predicted = answered.answer.body_name, _predicted(answered.answer)
         if predicted is not None:
@@ -160,14 +180,14 @@ class Rows:
             *state.v_WB_W.tolist(),
             *state.w_WB_W.tolist(),
         ]
-        return {f"{kind}_{name}": number for name, number in zip(_STATE, numbers, strict=True)}
+        return {f"{kind}_{name}": number for name, number in zip(STATE, numbers, strict=True)}
 
     def _offset(self, body_name: str) -> FloatArray:
         known = [body.p_FB_F for body in self._world.bodies if body.name == body_name]
         return known[0] if known else np.zeros(3)
 
 
-def _said(answer: Answer) -> dict[str, Cell]:
+def _said(answer: SingleAnswer) -> dict[str, Cell]:
     """Return the cells of what an answer says and of the states that it used."""
     fit = None if isinstance(answer, ContactModeAnswer) else answer.fit
     fitted = 0 if fit is None else fit.count
@@ -180,6 +200,14 @@ def _said(answer: Answer) -> dict[str, Cell]:
         says = "several at once" if outcome is None else outcome.name.lower()
         surface = ", ".join(dict.fromkeys(answer.contacts.surfaces))
         stamp_ns = answer.state.stamp_ns and ns_after(answer.state.stamp_ns, -answer.seconds_to_contact)
+    elif isinstance(answer, TossAnswer):
+        corners = " ".join(map(str, answer.toss.resting_corners))
+        end = answer.toss.end.name.lower()
+        says = f"{end} on {corners}" if corners else end
+        surface = ", ".join(
+            dict.fromkeys(name for event in answer.toss.events[-1:] for name in event.surfaces)
+        )
+        stamp_ns = answer.state.stamp_ns
     else:
         modes = ", ".join(mode.mode for mode in answer.modes)
         says = f"{answer.verdict.name.lower()}: {modes}" if modes else answer.verdict.name.lower()
@@ -194,13 +222,16 @@ def _said(answer: Answer) -> dict[str, Cell]:
     }
 
 
-def _predicted(answer: Answer) -> BodyState | None:
+def _predicted(answer: SingleAnswer) -> BodyState | None:
     """Return the state that an answer predicts: at the end of a trajectory, or just after an impact."""
     if isinstance(answer, ImpactAnswer):
         return answer.impact.state
-    if isinstance(answer, ContactModeAnswer) or len(answer.trajectory) == 0:
+    if isinstance(answer, ContactModeAnswer):
         return None
-    path, stamp_ns = answer.trajectory, answer.state.stamp_ns
+    path = answer.toss.trajectory if isinstance(answer, TossAnswer) else answer.trajectory
+    if len(path) == 0:
+        return None
+    stamp_ns = answer.state.stamp_ns
     return BodyState(
         p_WB_W=path.p_WB_W[-1],
         q_WB=path.q_WB[-1],

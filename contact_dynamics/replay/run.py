@@ -69,7 +69,12 @@ def main(arguments: list[str]) -> int:
 def _verify(given: argparse.Namespace) -> int:
     worst = 0
     results: list[tuple[str, str]] = []
-    logs = [log for name in given.logs for log in logs_in(Path(name))]
+    logs: list[Path] = []
+    for name in given.logs:
+        try:
+            logs += logs_in(Path(name))
+        except OSError as error:  # noqa: PERF203  a folder that may not be read, a name that no file has
+            worst = _refused(str(error), NO_LOG)
     for log in logs:
         progress = _progress(log)
         try:
@@ -99,7 +104,7 @@ def _table(given: argparse.Namespace) -> int:
                 for count, row in enumerate(Rows(events, log=name), start=1):
                     write(row)
                     asked_ns = row["log_time_ns"]
-                    progress.tell(asked_ns if isinstance(asked_ns, int) else 0, f"{count} questions")
+                    progress.tell(asked_ns if isinstance(asked_ns, int) else 0, f"{count} rows")
             except (ContactDynamicsError, OSError) as error:
                 if len(given.logs) == 1:
                     raise
@@ -107,7 +112,7 @@ def _table(given: argparse.Namespace) -> int:
                 continue
             finally:
                 progress.end()
-            _tell(name, f"{count} questions", events)
+            _tell(name, f"{count} rows", events)
     return worst
 
 

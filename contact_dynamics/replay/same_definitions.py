@@ -22,10 +22,12 @@ if TYPE_CHECKING:
 _PACKAGE: Final = INTERFACES.partition("/")[0] + "/"
 
 DIGESTS: Final = {
-    "PredictContactMode": "b1b9b9ab683ad5ca",
+    "PredictContactMode": "daa8ba36d4c08594",
     "PredictImpact": "0e9a5c11c191d2d7",
+    "PredictContactModeBatch": "d17cfac59f50e7c0",
     "PredictImpactBatch": "55370ec29df49426",
     "PredictTumblingBatch": "f198a921773488f5",
+    "PredictToss": "26823becea0d94f9",
     "PredictTumbling": "d8fea09495ab8bd5",
 }
 """The digest of each service's fields (`digest`). A test compares them with the interface files."""

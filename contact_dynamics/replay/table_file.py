@@ -1,4 +1,4 @@
-"""Rows to a file, as CSV or Parquet, or to the terminal as CSV; a batch of rows at a time is in memory."""
+"""Writes rows as CSV or Parquet to a file, or as CSV to the terminal. Memory holds one batch of rows."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from contact_dynamics.replay.rows import Cell
+    from contact_dynamics.replay.batch_rows import Cell
 
     Write: TypeAlias = Callable[[dict[str, Cell]], None]
 

@@ -6,23 +6,27 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.diagrams.words import CONTACT_MODE, IMPACT, TUMBLING
+from contact_dynamics.diagrams.words import CONTACT_MODE, IMPACT, MANY_IMPACTS, MANY_TUMBLINGS, TOSS, TUMBLING
 from contact_dynamics.questions.impact import ImpactAnswer
+from contact_dynamics.questions.toss import TossAnswer
 from contact_dynamics.questions.tumbling import TumblingAnswer
-from contact_dynamics.replay.events import OK, Answered, StateCame
+from contact_dynamics.replay.events import Answered, BatchAnswer, StateCame, WorldChanged
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode, raise_errors
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from contact_dynamics.replay.events import Events
+    from contact_dynamics.replay.events import Event, Events
     from contact_dynamics.rigid_body.body import BodyState
 
 KINDS: Final = {
     "predict_tumbling": TUMBLING,
     "predict_impact": IMPACT,
     "predict_contact_mode": CONTACT_MODE,
+    "predict_toss": TOSS,
+    "predict_tumbling_batch": MANY_TUMBLINGS,
+    "predict_impact_batch": MANY_IMPACTS,
 }
 
 _AT_ONCE: Final = 1000
@@ -75,6 +79,7 @@ def draw(
     for event in events:
         drawing.show(event)
         if isinstance(event, StateCame):
+            recording.tend()
             on_progress(event.state.stamp_ns)
     drawing.finish(look_at_all=sinks.viewer is ViewerMode.NONE)
     took_all = recording.close()
@@ -98,7 +103,7 @@ class _Drawing:
         self._waiting: dict[str, list[BodyState]] = {}
         self._count = 0
 
-    def show(self, event: StateCame | Answered) -> None:
+    def show(self, event: Event) -> None:
         """Draw an event, or keep a state to be drawn with others."""
         if isinstance(event, StateCame):
             self.states += 1
@@ -107,8 +112,12 @@ class _Drawing:
             if self._count >= _AT_ONCE:
                 self._draw_states()
             return
-        self.answers += 1
         self._draw_states()
+        if isinstance(event, WorldChanged):
+            change = partial(self._picture.change_world, event.world, stamp_ns=event.stamp_ns)
+            self._guarded("a change of the world", change)
+            return
+        self.answers += 1
         self._guarded(event.service, lambda: self._show_answer(event))
 
     def finish(self, *, look_at_all: bool) -> None:
@@ -120,8 +129,6 @@ class _Drawing:
     def _show_answer(self, answered: Answered) -> None:
         answer, now_ns = answered.answer, self._picture.newest_stamp_ns() or answered.asked_ns
         remark, seconds = answered.message, answered.computation_time
-        if answer is None and answered.status == OK:
-            return  # a batch of answers, of which there is no picture
         if answer is None:
             refused = f"refused ({answered.status}): {remark}"
             self._picture.tell(
@@ -131,6 +138,10 @@ class _Drawing:
             self._picture.show_tumbling(answer, now_ns=now_ns, remark=remark, computation_time=seconds)
         elif isinstance(answer, ImpactAnswer):
             self._picture.show_impact(answer, now_ns=now_ns, remark=remark, computation_time=seconds)
+        elif isinstance(answer, TossAnswer):
+            self._picture.show_toss(answer, now_ns=now_ns, remark=remark, computation_time=seconds)
+        elif isinstance(answer, BatchAnswer):
+            self._picture.show_many(answer, now_ns=now_ns, remark=remark, computation_time=seconds)
         else:
             self._picture.show_contact_modes(answer, now_ns=now_ns, remark=remark, computation_time=seconds)
 

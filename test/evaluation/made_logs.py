@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from contact_dynamics.nodes.run_record import run_record
 from contact_dynamics.recording import BagWriter
 from contact_dynamics.rotations.many import rotated, turned
 
+BRIEF = 0.8  # s
 EPOCH_NS = 1_700_000_000_000_000_000
 PARTS = ("x", "y", "z", "w")
 
@@ -39,6 +41,7 @@ def write_log(
     delay_ns: int = 2_000_000,
     clock_offset_ns: int = 0,
     with_run: bool = True,
+    until: float = math.inf,
 ) -> Path:
     """A log of a toss.
 
@@ -48,6 +51,7 @@ def write_log(
         seed: of noise that is added, half as large as the toss's own; None: none is.
         delay_ns: from a state's stamp until it arrives.
         clock_offset_ns: what the clock of the stamps lacks.
+        until: s, the end of what is logged. `BRIEF` has a flight, an impact and the next flight.
         with_run: whether the log says how its server was configured.
     """
     toss = toss or read_toss()
@@ -58,7 +62,7 @@ def write_log(
     run = run_record(parameters, {f"body.{toss.body.name}.odometry_topic": topic}) if with_run else {}
     with BagWriter(folder, run=run) as writer:
         writer.add_topic(topic, "nav_msgs/msg/Odometry")
-        for i, time in enumerate(toss.times.tolist()):
+        for i, time in enumerate(toss.times[toss.times <= until].tolist()):
             stamp_ns = EPOCH_NS + round(1e9 * time) - clock_offset_ns
             msg = Odometry(child_frame_id=toss.body.name)
             msg.header.frame_id = "world"

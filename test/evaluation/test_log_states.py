@@ -14,7 +14,7 @@ from contact_dynamics.evaluation.log_states import recording_of_log
 from contact_dynamics.evaluation.recording import Recording, recording_of_toss
 from contact_dynamics.evaluation.sources import find_sources
 from contact_dynamics.measured.read_toss import read_toss
-from contact_dynamics.nodes.parameters import ConfigurationError
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording import BagReader
 from contact_dynamics.recording.errors import NotALogError

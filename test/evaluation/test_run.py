@@ -20,13 +20,14 @@ from contact_dynamics.evaluation.result import read_evaluation
 from contact_dynamics.evaluation.run import main
 from contact_dynamics.evaluation.settings import Settings
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING, read_toss
-from evaluation.made_logs import parameters_of_toss, write_log
+from evaluation.made_logs import BRIEF, parameters_of_toss, write_log
 from replay.asked_log import BLOCKED
 from running_server import ROOT
 from viewing.drawn import read_drawn
 
 QUICK = ("--horizons", "50", "--laws", "poisson")
 BRICK = str(DEFAULT_RECORDING)
+COUNT = 5  # recordings that are evaluated in turn, each in a small part of a second
 
 
 def test_the_arguments_name_what_the_settings_have() -> None:
@@ -173,13 +174,20 @@ def test_a_wrong_argument_is_named(
     assert named in capsys.readouterr().err
 
 
-def test_killed_in_the_middle_it_goes_on_with_the_rest(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def logs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of as many brief recordings."""
+    folder = tmp_path_factory.mktemp("logs")
+    for seed in range(COUNT):
+        write_log(folder / f"log{seed}", seed=seed, until=BRIEF)
+    return folder
+
+
+def test_killed_in_the_middle_it_goes_on_with_the_rest(logs: Path, tmp_path: Path) -> None:
     """The results that were there stay untouched, the others are made, and the numbers are the same."""
-    for seed in range(4):
-        write_log(tmp_path / "logs" / f"log{seed}", seed=seed)
     results = tmp_path / "results"
     command = [
-        *(sys.executable, "-m", "contact_dynamics", "evaluate", str(tmp_path / "logs")),
+        *(sys.executable, "-m", "contact_dynamics", "evaluate", str(logs)),
         *(*QUICK, "--results", str(results), "--json", str(tmp_path / "resumed.json")),
     ]
     first = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -191,29 +199,28 @@ def test_killed_in_the_middle_it_goes_on_with_the_rest(tmp_path: Path) -> None:
     first.send_signal(signal.SIGKILL)
     first.wait()
     there = {path: path.stat().st_mtime_ns for path in results.glob("*.json")}
-    assert 2 <= len(there) < 4
+    assert 2 <= len(there) < COUNT
     second = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
-    assert f"{len(there)} of 4 recordings were evaluated before" in second.stderr
+    assert f"{len(there)} of {COUNT} recordings were evaluated before" in second.stderr
     after = {path: path.stat().st_mtime_ns for path in results.glob("*.json")}
-    assert len(after) == 4
+    assert len(after) == COUNT
     assert {path: after[path] for path in there} == there
-    assert main([str(tmp_path / "logs"), *QUICK, "--json", str(tmp_path / "at_once.json")]) == 0
+    assert main([str(logs), *QUICK, "--json", str(tmp_path / "at_once.json")]) == 0
     resumed, at_once = (
         json.loads((tmp_path / f"{name}.json").read_text()) for name in ("resumed", "at_once")
     )
     assert resumed == at_once
 
 
-def test_a_bar_tells_who_watches_how_far_it_is_and_leaves_no_trace(tmp_path: Path) -> None:
-    for seed in range(4):  # together they take longer than the half second before it tells
-        write_log(tmp_path / f"log{seed}", seed=seed)
+def test_a_bar_tells_who_watches_how_far_it_is_and_leaves_no_trace(logs: Path) -> None:
+    """All recordings together take longer than the half second before it tells."""
     ours, theirs = pty.openpty()
-    command = [sys.executable, "-m", "contact_dynamics", "evaluate", str(tmp_path), *QUICK]
+    command = [sys.executable, "-m", "contact_dynamics", "evaluate", str(logs), *QUICK]
     subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=theirs, check=True)
     os.close(theirs)
     shown = os.read(ours, 10_000).decode()
     os.close(ours)
-    assert re.search(r" left, [1-4] of 4: ", shown)
+    assert re.search(rf" left, [1-{COUNT}] of {COUNT}: ", shown)
     assert shown.endswith("\r\x1b[K")
 
 

@@ -19,7 +19,7 @@ from contact_dynamics.evaluation.settings import Law, Settings
 from contact_dynamics.evaluation.sources import Source
 from contact_dynamics.evaluation.workers import run_jobs
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING
-from evaluation.made_logs import write_log
+from evaluation.made_logs import BRIEF, write_log
 
 QUICK = Settings(horizons=(0.05,), laws=(Law.POISSON,))
 
@@ -35,12 +35,12 @@ class DeadlySource(Source):
 
 @pytest.fixture(scope="module")
 def jobs(tmp_path_factory: pytest.TempPathFactory) -> list[Job]:
-    """A toss, two logs of it with noise, and a file that is none."""
+    """The beginnings of three tosses, the last two with noise, and a file that is none."""
     folder = tmp_path_factory.mktemp("logs")
-    logs = [write_log(folder / f"log{seed}", seed=seed) for seed in range(2)]
+    logs = [write_log(folder / f"log{seed}", seed=seed, until=BRIEF) for seed in (None, 0, 1)]
     bad = folder / "bad.mcap"
     bad.write_bytes(b"no log at all")
-    sources = [Source(path=path) for path in (DEFAULT_RECORDING, *logs, bad)]
+    sources = [Source(path=path) for path in (*logs, bad)]
     return [Job(source=source, settings=QUICK) for source in sources]
 
 

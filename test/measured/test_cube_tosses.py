@@ -106,9 +106,16 @@ def test_a_file_that_is_not_as_described_is_refused(tmp_path: Path) -> None:
         np.savez(path, data=np.zeros((3, 14)), offsets=offsets)
         with pytest.raises(InvalidFieldError, match="offsets"):
             read_toss(path)
-    path.write_bytes(b"no archive")
-    with pytest.raises(InvalidFieldError, match="plain arrays"):
-        read_toss(path)
+    np.savez_compressed(path, data=np.zeros((300, 14)), offsets=[0, 300])
+    whole = path.read_bytes()
+    with (tmp_path / "array.npy").open("wb") as stream:
+        np.save(stream, np.zeros(3))
+    one_array = (tmp_path / "array.npy").read_bytes()
+    flipped = whole[:60] + b"\xff" * 4 + whole[64:]  # within the packed numbers
+    for content in (b"no archive", b"", whole[:200], flipped, one_array):
+        path.write_bytes(content)
+        with pytest.raises(InvalidFieldError, match="plain arrays"):
+            read_toss(path)
 
 
 BESIDE = Path(__file__).parents[3] / "shared" / "data" / "cube_tosses" / "tosses.npz"

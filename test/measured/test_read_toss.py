@@ -173,6 +173,10 @@ def test_other_files_are_refused(tmp_path: Path) -> None:
         read_toss(other)
     with pytest.raises(InvalidFieldError, match="one toss"):
         read_toss(f"{DEFAULT_RECORDING}#3")
+    not_text = tmp_path / "toss.csv"
+    not_text.write_bytes(b"\xf1\x00\xff")
+    with pytest.raises(InvalidFieldError, match=r"toss.csv: found .*, allowed is text in UTF-8"):
+        read_toss(not_text)
 
 
 def _turn(a: np.ndarray, b: np.ndarray) -> np.ndarray:

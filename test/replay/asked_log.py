@@ -11,13 +11,23 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from nav_msgs.msg import Odometry
 
-from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from contact_dynamics_interfaces.msg import BodyStates
+from contact_dynamics_interfaces.srv import (
+    PredictContactMode,
+    PredictImpact,
+    PredictImpactBatch,
+    PredictToss,
+    PredictTumbling,
+    PredictTumblingBatch,
+)
 from running_server import ROOT, server_and_client
 
 ROUNDS = 8
+MANY = 3  # states of a question about many
 BLOCKED = """
 import sys
 class NoRos:
@@ -50,6 +60,12 @@ class Asked:
     log: Path
     counts: dict[str, int]
 
+    @property
+    def rows(self) -> int:
+        """How many rows a table of it has."""
+        batches = self.counts["PredictImpactBatch"] + self.counts["PredictTumblingBatch"]
+        return sum(self.counts.values()) + (MANY - 1) * batches
+
 
 def odometry(stamp: Any, number: int) -> Odometry:
     """A state of the brick in the air, tumbling."""
@@ -77,8 +93,40 @@ def questions(number: int) -> list[Any]:
         PredictImpact.Request(body_name="brick"),
         standing,
         PredictImpact.Request(body_name=f"cat {number}"),
+        *about_tosses(number),
         PredictTumbling.Request(body_name="ball", duration=[math.nan if number % 2 else 0.1]),
+        *about_many(number),
     ]
+
+
+def about_tosses(number: int) -> list[Any]:
+    """Tosses of the brick from where it is or is said to be, sampled too, and one that is refused."""
+    if number % 4:  # they take a hundred times as long as the others
+        return []
+    sampled = PredictToss.Request(body_name="brick", samples=20, strikes=[3], seed=number)
+    sampled.state_source, sampled.state.pose.position.z = sampled.STATE_EXPLICIT, 0.3
+    sampled.state.angular_velocity.x = 4.0
+    sampled.state.covariance = (1e-4 * np.eye(12)).ravel().tolist()
+    sampled.velocity_spread, sampled.spin_spread, sampled.height_spread = 0.02, 0.3, 0.001
+    return [
+        PredictToss.Request(body_name="brick", most_alternatives=[0], rate=[10.0]),
+        sampled,
+        PredictToss.Request(body_name="brick", samples=10_000),
+    ]
+
+
+def about_many(number: int) -> list[Any]:
+    """Three states of the brick: of the impacts two strike, and one separates."""
+    states = BodyStates(
+        positions=[0.0, 0.0, 1.0, 0.5, 0.0, 1.0, 1.0, 0.0, 1.0 + 0.1 * number],
+        orientations=[0.0, 0.0, 0.0, 1.0] * MANY,
+        linear_velocities=[1.0, 0.0, -1.0, 0.0, 0.2, -2.0, 0.0, 0.0, 3.0],
+        angular_velocities=[0.0, 3.0, 0.0] * MANY,
+    )
+    impacts = PredictImpactBatch.Request(body_name="brick", states=states, restitutions=[0.5])
+    impacts.contact_positions = [0.05, 0.0, 0.98, 0.45, 0.0, 0.98, 1.0, 0.0, 0.98]
+    impacts.contact_normals, impacts.frictions = [0.0, 0.0, 1.0], [0.1, 0.2, 0.3]
+    return [impacts, PredictTumblingBatch.Request(body_name="brick", states=states, times=[0.1, 0.2, 0.3])]
 
 
 def configured(folder: Path) -> Path:

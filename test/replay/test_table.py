@@ -11,10 +11,10 @@ import pyarrow.parquet as pq
 import pytest
 from rosbags.rosbag2 import CompressionMode, StoragePlugin
 
-from contact_dynamics.recording import BagReader
+from contact_dynamics.recording import BagReader, decode_without_ros, service_calls
 from contact_dynamics.replay.rows import COLUMNS
 from contact_dynamics.replay.run import main
-from replay.asked_log import Asked, without_ros
+from replay.asked_log import MANY, Asked, without_ros
 from replay.flights import CONFIGURATION, RATE, START_NS, write_flight
 
 EXACT = 1e-6
@@ -32,7 +32,7 @@ def test_a_row_for_each_question_of_a_log(asked: Asked, tmp_path: Path) -> None:
     assert list(rows[0]) == list(COLUMNS)
     counts = {service: sum(row["service"] == service for row in rows) for service in ("predict_impact",)}
     assert counts["predict_impact"] == asked.counts["PredictImpact"]
-    assert len(rows) == sum(asked.counts.values())
+    assert len(rows) == asked.rows
     published = {
         message.publish_time_ns
         for message in BagReader(asked.log).messages({"/brick/odometry", "/ball/pose"})
@@ -49,6 +49,35 @@ def test_a_row_for_each_question_of_a_log(asked: Asked, tmp_path: Path) -> None:
     assert rows[-1]["status"] == "STALE_STATE"
     for row in rows:
         assert json.loads(row["question"]).get("body_name", "") == row["body"]
+
+
+def test_a_question_about_many_states_has_a_row_for_each(asked: Asked, tmp_path: Path) -> None:
+    assert main(["table", str(asked.log), "--out", str(tmp_path / "table.csv")]) == 0
+    rows = rows_of(tmp_path / "table.csv")
+    impacts = [row for row in rows if row["service"] == "predict_impact_batch"]
+    flights = [row for row in rows if row["service"] == "predict_tumbling_batch"]
+    responses = [
+        decode_without_ros(call.response_event).response[0]
+        for call in service_calls(BagReader(asked.log).messages())
+        if call.service.endswith("predict_impact_batch") and call.response_event is not None
+    ]
+    for number, response in enumerate(responses, start=1):
+        group = [row for row in impacts if int(row["number"]) == number]
+        assert [int(row["state"]) for row in group] == list(range(MANY))
+        assert [float(row[f"predicted_v{axis}"]) for row in group for axis in "xyz"] == list(
+            response.states_after.linear_velocities
+        )
+        assert [float(row[f"predicted_{axis}"]) for row in group for axis in "xyz"] == pytest.approx(
+            list(response.states_after.positions), abs=EXACT
+        )
+    assert [row["says"] for row in impacts[:MANY]][-1] == "separates"
+    assert "separates" not in {row["says"] for row in impacts[: MANY - 1]}
+    second = json.loads(impacts[1]["question"])
+    assert second["states"]["positions"] == [0.5, 0.0, 1.0]
+    assert (second["frictions"], second["restitutions"]) == (0.2, [0.5])
+    assert second["contact_normals"] == [0.0, 0.0, 1.0]
+    assert [json.loads(row["question"])["times"] for row in flights[:MANY]] == [0.1, 0.2, 0.3]
+    assert {row["says"] for row in flights} == {"flight"}
 
 
 def test_parquet_has_the_cells_of_csv_and_needs_no_ros(asked: Asked, tmp_path: Path) -> None:
@@ -71,7 +100,7 @@ def test_a_part_of_a_log(asked: Asked, tmp_path: Path) -> None:
     assert main(["table", str(asked.log), "--start", str(seconds - 1.0), "--out", str(out)]) == 0
     assert len(rows_of(out)) == 1
     assert main(["table", str(asked.log), "--end", str(seconds - 1.0), "--out", str(out)]) == 0
-    assert len(rows_of(out)) == sum(asked.counts.values()) - 1
+    assert len(rows_of(out)) == asked.rows - 1
 
 
 @pytest.mark.parametrize(

@@ -36,6 +36,16 @@ def test_a_log_is_drawn_without_ros(asked: Asked, tmp_path: Path) -> None:
     )
     (strip,) = drawn.array("/world/predicted/brick/path", "LineStrips3D:strips")  # what was drawn last
     np.testing.assert_allclose(strip, np.array(last.trajectory.positions).reshape(-1, 3), atol=1e-6)
+    (*_, many) = (  # both batches draw to one place, and the one about flights comes last
+        decode_without_ros(call.response_event).response[0]
+        for call in service_calls(BagReader(asked.log).messages())
+        if call.service.endswith("predict_tumbling_batch") and call.response_event is not None
+    )
+    points = drawn.array("/world/many/brick/states", "Points3D:positions")
+    np.testing.assert_allclose(points, np.array(many.states.positions).reshape(-1, 3), atol=1e-6)
+    assert (
+        "Impacts of many**: brick has 3 states; 2 " in drawn.last("/answers/newest", "TextDocument:text")[0]
+    )
 
 
 def test_questions_to_a_recording_of_others_are_drawn(tmp_path: Path) -> None:

@@ -1,1 +1,1 @@
-"""Recordings of tosses that come with the package; `scripts/record_toss.py` makes them."""
+"""These recordings of tosses come with the package. `scripts/record_toss.py` makes them."""
