@@ -1,4 +1,4 @@
-"""The arguments that every node of this package takes on the command line, besides ROS's own.
+"""These are the arguments that every node of this package takes on the command line, besides ROS's own.
 
 This file imports no ROS, so that `--help` works without it.
 """
@@ -11,10 +11,15 @@ from typing import Final
 VISUALIZER_PARAMETERS: Final = {
     "server": "full name of the server node whose answers are drawn",
     "rrd_path": "file to draw into, which is replaced",
+    "rrd_file_size": "MB, after which the next file begins; 0: one file",
+    "rrd_most_files": "newest files that stay, where there are several; 0: all",
     "spawn": "true: start rerun's viewer",
     "serve": "true: serve the picture at the port, for viewers that connect",
     "connect": "URL of a viewer that is open already",
     "port": "port of this machine for spawn and serve",
+    "web_port": "port of this machine at which a browser finds what is served; 0: none",
+    "viewer_memory": "most memory of the viewer that is started, or of what is served, as 500MB",
+    "predictions": "newest predictions of a body whose paths are in view",
     "surface_side": "side of the square that a surface is drawn as, m",
 }
 """The parameters that the visualizer has besides the server's, with what `--help` says about each."""
@@ -28,6 +33,10 @@ SERVER_PARAMETERS: Final = {
     "state_timeout": "age, s, from which on the newest state is too old",
     "state_history": "how long states are kept, s",
     "future_tolerance": "how far a state's stamp may be ahead of the clock, s",
+    "most_states": "states of a body that are kept, however fast they come",
+    "warn_every": "time between two warnings of one kind about a topic, s",
+    "silent_after": "time without a message after which a topic counts as silent, s",
+    "client_gone_for": "how long a client that seemed gone gets no answers to what it asked before, s",
     "velocity_tolerance": "speed below which a contact counts as at rest, m/s",
     "distance_tolerance": "gap below which a body counts as touching, m",
     "out_of_plane_tolerance": "speed out of the plane that still counts as planar, m/s",
@@ -38,8 +47,10 @@ SERVER_PARAMETERS: Final = {
     "answer_deadline": "how long an answer of a worker may take, s",
     "worker_memory": "memory that a worker may take for an answer, MB",
     "most_waiting": "questions that may wait while all workers are busy",
+    "self_check_period": "time after which the server checks again whether messages reach it, s; 0: never",
     "log": "false: write no log",
     "log_directory": "folder to put the log's folder into",
+    "log_before_answer": "true: an answer leaves only once it is on the disk",
     "log_compression": "how the log is packed: none, lz4 or zstd",
     "log_file_size": "size at which a file of the log is finished, MB; 0: no limit",
     "log_file_duration": "time after which a file of the log is finished, s; 0: no limit",

@@ -1,4 +1,4 @@
-"""The parameters of a shape: one of several primitives, its pose in its frame, and the mass that fills it."""
+"""These parameters describe a shape: one of several primitives, its pose, and the mass that fills it."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.questions.extent import MOST_IN_CONTACT, check_place
 from contact_dynamics.rigid_body import inertia
 from contact_dynamics.shapes import convex as convex_shape
 from contact_dynamics.shapes.convex import NO_SHAPE, ConvexShape
@@ -133,7 +134,9 @@ class ShapeParameters:
 
     def _pose(self) -> tuple[FloatArray, FloatArray]:
         position, orientation = self.pose_names
-        return check_array(position, self.position, (3,)), check_unit(orientation, self.orientation, 4)
+        p = check_array(position, self.position, (3,))
+        check_place(position, p)
+        return p, check_unit(orientation, self.orientation, 4)
 
     def _name(self) -> str:
         given = [name for name, values in self.numbers.items() if values != [0.0]]
@@ -146,9 +149,15 @@ class ShapeParameters:
         if checks is None:
             if len(values) % 3 > 0:
                 raise InvalidFieldError(name, f"{len(values)} numbers", "3 for each (or [0.0]: none)")
-            return check_array(name, values, (None,)).reshape(-1, 3)
+            corners = check_array(name, values, (None,)).reshape(-1, 3)
+            check_place(name, corners)
+            return corners
         if len(values) != len(checks):
             allowed = f"{len(checks)} (or [0.0]: none)"
             raise InvalidFieldError(name, f"{len(values)} numbers", allowed)
         numbers = [checks[i](f"{name}[{i}]", x) for i, x in enumerate(values)]
+        for i, x in enumerate(numbers):
+            if x > 0.0 and not 1.0 / MOST_IN_CONTACT <= x <= MOST_IN_CONTACT:
+                allowed = f"a length from {1.0 / MOST_IN_CONTACT:g} m to {MOST_IN_CONTACT:g} m"
+                raise InvalidFieldError(f"{name}[{i}]", f"{x:g} m", allowed)
         return check_array(name, numbers, (None,))

@@ -28,10 +28,12 @@ class EventTimes(NamedTuple):
         log_time_ns: The time on this machine's clock.
         publish_time_ns: The time on the node's clock, which is the present time of the question, or None to
             take the event's own.
+        is_logged: Whether the log has it already.
     """
 
     log_time_ns: int
     publish_time_ns: int | None = None
+    is_logged: bool = False
 
 
 @dataclass(slots=True, kw_only=True)
@@ -43,12 +45,16 @@ class Call:
         received_ns: When it came, on this machine's clock, ns since the epoch.
         sent_ns: When its answer left, on the same clock.
         client: The identity of who called, or nothing while no event told of the request.
+        sequence_number: The number of the request among those of that client, told by the same event.
+        is_logged: Whether the log has the answer already, before an event tells of it.
     """
 
     node_clock_ns: int
     received_ns: int
     sent_ns: int = 0
     client: bytes = b""
+    sequence_number: int = 0
+    is_logged: bool = False
 
 
 class CallTimes:
@@ -85,11 +91,12 @@ class CallTimes:
             while self._unclaimed:
                 call = self._unclaimed.popleft()
                 if call.node_clock_ns >= info.stamp_ns:  # otherwise the event of this call got lost
-                    call.client = info.client_gid
+                    call.client, call.sequence_number = key
                     self._answered[key] = call
                     while len(self._answered) > _MOST_OPEN:
                         del self._answered[next(iter(self._answered))]
                     return EventTimes(call.received_ns, max(0, call.node_clock_ns))  # MCAP has no time before
         elif info.event_type is EventType.RESPONSE_SENT and key in self._answered:
-            return EventTimes(self._answered.pop(key).sent_ns)
+            answered = self._answered.pop(key)
+            return EventTimes(answered.sent_ns, is_logged=answered.is_logged)
         return EventTimes(time.time_ns())

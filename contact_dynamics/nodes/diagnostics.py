@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
+    from contact_dynamics.nodes.self_check import SelfCheck
     from contact_dynamics.nodes.topic_faults import TopicTraffic
     from contact_dynamics.recording.recorder import RecorderStatus
     from msg_adapters.status import Response
@@ -92,6 +93,15 @@ class Diagnostics:
         """Return the state of the services: a warning where answers met faults of the server."""
         values = {**times.values(), "hard questions that wait": str(waiting)}
         return self._status("answers", values, [f"{times.faults} faults"] if times.faults else [])
+
+    def of_self_check(self, check: SelfCheck, successions: int) -> DiagnosticStatus:
+        """Return the state of the self-check: a warning where the last one failed."""
+        values = {
+            "checks heard": str(check.heard),
+            "checks in turn not heard": str(check.unheard),
+            "times that the server joined anew": str(successions),
+        }
+        return self._status("self-check", values, ["messages may not arrive"] if check.unheard else [])
 
     def of_log(self, status: RecorderStatus | None) -> DiagnosticStatus:
         """Return the state of the log: a warning where it met a problem."""

@@ -9,12 +9,15 @@ that came before it.
 from __future__ import annotations
 
 import time
+from copy import copy
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
 from contact_dynamics.constants import NS_PER_S
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -22,8 +25,13 @@ if TYPE_CHECKING:
     from rclpy.qos import QoSProfile
     from rclpy.subscription import Subscription
 
+    from contact_dynamics.nodes.running import RunnableNode
+
 TAKE_EVERY_S: Final = 0.005
 """s, the least time between two rounds through all queues."""
+
+
+_TELL_EVERY_S: Final = 5.0
 
 
 class Taken(NamedTuple):
@@ -46,6 +54,11 @@ class InboxNode(Node):
     Attributes:
         inbox: These subscriptions.
     """
+
+    @property
+    def successor(self) -> Callable[[], RunnableNode] | None:
+        """What makes the node that takes over in a participant of its own, or None while none has to."""
+        return None
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         """Begin without any; the arguments are those of `rclpy.node.Node`."""
@@ -80,15 +93,41 @@ class InboxNode(Node):
             qos: the queue's; its depth is how many messages are taken in one round at most.
             may_override: whether parameters may override the QoS.
             in_rounds: whether `take_messages` takes its messages. Otherwise the node calls `empty`.
+
+        Raises:
+            ConfigurationError: a parameter overrides the QoS by something that is not allowed.
         """
-        overrides = QoSOverridingOptions.with_default_policies() if may_override else None
-        subscription = self.create_subscription(
-            msg_type, topic, receive, qos, raw=True, qos_overriding_options=overrides
-        )
+        overrides = QoSOverridingOptions.with_default_policies(callback=_allowed) if may_override else None
+        # rclpy writes a parameter's values into the profile that it is given, which other topics share.
+        try:
+            subscription = self.create_subscription(
+                msg_type, topic, receive, copy(qos), raw=True, qos_overriding_options=overrides
+            )
+        except Exception as error:
+            if not may_override:
+                raise
+            # rclpy raises several unrelated types for these parameters, as for all others.
+            message = f"qos_overrides.{self.resolve_topic_name(topic)}.subscription: {error}"
+            raise ConfigurationError(message) from None
         self.inbox.append(subscription)
         if in_rounds:
             self._in_rounds.append(subscription)
         return subscription
+
+    def subscribe_anew(self, subscription: Subscription) -> Subscription:
+        """Put another subscription in the place of one, and return it."""
+        made = self.create_subscription(
+            subscription.msg_type,
+            subscription.topic_name,
+            subscription.callback,
+            subscription.qos_profile,
+            raw=True,
+        )
+        for each in (self.inbox, self._in_rounds):
+            if subscription in each:
+                each[each.index(subscription)] = made
+        self.destroy_subscription(subscription)
+        return made
 
     def unsubscribe(self) -> None:
         """Give up all these subscriptions."""
@@ -140,14 +179,20 @@ class InboxNode(Node):
         source = getattr(self, "_time_source", None)  # there is none while the node is being made
         return None if source is None else source._clock_sub  # noqa: SLF001
 
-    @staticmethod
-    def _take_time(clock: Subscription) -> None:
+    def _take_time(self, clock: Subscription) -> None:
         with clock.handle:
             for _ in range(clock.qos_profile.depth):
                 taken = clock.handle.take_message(clock.msg_type, False)  # noqa: FBT003  not raw
                 if taken is None:
                     return
-                clock.callback(taken[0])
+                try:
+                    clock.callback(taken[0])
+                except ValueError:  # rclpy has no time before zero; the clock stays where it was
+                    self.get_logger().warning(
+                        f"{clock.topic_name}: message ignored: clock.sec: found {taken[0].clock.sec}, "
+                        "allowed is a number >= 0",
+                        throttle_duration_sec=_TELL_EVERY_S,
+                    )
 
     def _after_the_question(self, received_ns: int) -> int:
         """Return when a message came; one that came while a question was being taken counts as later."""
@@ -155,3 +200,9 @@ class InboxNode(Node):
         if question_ns - NS_PER_S < received_ns <= question_ns:  # else the machine's clock was set back
             return question_ns + 1
         return received_ns or time.time_ns()  # a DDS that does not tell says 0
+
+
+def _allowed(qos: QoSProfile) -> SetParametersResult:
+    """Tell whether an overridden QoS can be served: a queue without room would take nothing, silently."""
+    reason = "" if qos.depth > 0 else f"depth: found {qos.depth}, allowed is a whole number > 0"
+    return SetParametersResult(successful=not reason, reason=reason)

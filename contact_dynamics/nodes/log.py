@@ -5,9 +5,9 @@ from __future__ import annotations
 import time
 from datetime import datetime, timezone
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.nodes.parameters import ConfigurationError
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.recording.bag_writer import BagWriter
 from contact_dynamics.recording.errors import LogExistsError
 from contact_dynamics.recording.recorder import Recorder
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
     from contact_dynamics.recording.limits import LogLimits
     from contact_dynamics.recording.recorder import RecorderStatus
+
+_SETTLES_IN_S: Final = 1.0  # how long an answer waits for the disk
+_TRUSTS_AFTER_S: Final = 10.0  # how long answers do not wait for a disk that took longer
 
 
 class Log:
@@ -50,11 +53,17 @@ class Log:
         self.folder = self._writer.folder if self._writer is not None else None
         self._recorder: Recorder | None = None
         self._on_problem = on_problem
+        self._hung = -_TRUSTS_AFTER_S  # when the disk took too long, s
 
-    def add_topic(self, topic: str, type_name: str, qos: QoSProfile) -> None:
-        """Declare a topic, before `start`."""
+    def add_topic(self, topic: str, type_name: str, qos: QoSProfile | None = None) -> None:
+        """Declare a topic, before `start`. Without ``qos``, what its publishers offer is not known yet."""
         if self._writer is not None:
-            self._writer.add_topic(topic, type_name, qos)
+            self._writer.add_topic(topic, type_name, [] if qos is None else [qos])
+
+    def set_qos(self, topic: str, offers: list[QoSProfile]) -> None:
+        """Tell what the publishers of a topic offer, after `start`."""
+        if self._recorder is not None:
+            self._recorder.set_qos(topic, offers)
 
     def start(self) -> None:
         """Begin to record."""
@@ -71,6 +80,27 @@ class Log:
         if self._recorder is not None:
             when_ns = time.time_ns() if log_time_ns is None else log_time_ns
             self._recorder.record(topic, data, log_time_ns=when_ns, publish_time_ns=publish_time_ns)
+
+    def settle(self) -> None:
+        """Wait until the disk itself has all that was recorded so far, but for a second at most.
+
+        A disk that takes longer is told of, and is not waited for in the next ten seconds.
+        """
+        if self._recorder is None or time.monotonic() < self._hung + _TRUSTS_AFTER_S:
+            return
+        if self._recorder.settle(timeout_s=_SETTLES_IN_S):
+            return
+        self._hung = time.monotonic()
+        if self._recorder.status.problem is None:  # otherwise it has told why
+            self._on_problem(
+                f"the disk took longer than {_SETTLES_IN_S:g} s: for {_TRUSTS_AFTER_S:g} s, answers leave "
+                "before they are on it"
+            )
+
+    def change_run(self, run: Mapping[str, str]) -> None:
+        """Let the files of the log that begin from now on say that the run is made so."""
+        if self._recorder is not None:
+            self._recorder.change_run(run)
 
     @property
     def status(self) -> RecorderStatus | None:

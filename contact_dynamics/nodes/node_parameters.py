@@ -2,42 +2,76 @@
 
 from __future__ import annotations
 
-import difflib
-import re
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.parameter import Parameter
 
-from contact_dynamics.nodes.parameters import ConfigurationError
+from contact_dynamics.nodes.argument_values import values_given, what_is_wrong
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
+from contact_dynamics.nodes.parameter_sections import (
+    ANY_NODE,
+    Section,
+    check_sections,
+    files_given,
+    nodes_given,
+    read_sections,
+)
+from contact_dynamics.nodes.unknown_parameters import refuse_unknown
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from rclpy.node import Node
 
-_OF_ROS: Final = re.compile(r"use_sim_time|start_type_description_service|qos_overrides\..*")
+    from contact_dynamics.nodes.given_parameters import ReadParameter
+
 _MANDATORY: Final = {float: Parameter.Type.DOUBLE, list: Parameter.Type.DOUBLE_ARRAY}
 
 
 class NodeParameters:
     """Declares parameters at a node and returns their values, as a `ParameterSource`."""
 
-    def __init__(self, node: Node) -> None:
-        """Declare at this node."""
+    def __init__(
+        self,
+        node: Node,
+        *,
+        ros_arguments: Sequence[str] = (),
+        also_known: Iterable[str] = (),
+        read_only: bool,
+    ) -> None:
+        """Declare at this node.
+
+        Args:
+            node: the node.
+            ros_arguments: ROS's arguments, whose values must be of the type that a parameter has.
+            also_known: names of parameters that may be given besides.
+            read_only: whether the parameters stay as they are from then on.
+        """
         self._node = node
+        self._read_only = read_only
+        self._also_known = also_known
+        self._given = values_given(ros_arguments, node.get_fully_qualified_name())
         self.topics: dict[str, str] = {}  # the full name of each topic, by the parameter that names it
 
     def value(
         self, name: str, default: Any, description: str, bounds: tuple[float, float] | None = None
     ) -> Any:
-        """Return a read-only parameter's value (see `ParameterSource`)."""
-        descriptor = ParameterDescriptor(description=description, read_only=True)
-        if bounds and isinstance(default, int):
-            descriptor.integer_range = [IntegerRange(from_value=int(bounds[0]), to_value=int(bounds[1]))]
-        elif bounds:
-            descriptor.floating_point_range = [FloatingPointRange(from_value=bounds[0], to_value=bounds[1])]
+        """Return a parameter's value (see `ParameterSource`)."""
+        descriptor = _descriptor(default, description, bounds, read_only=self._read_only)
         declared = _MANDATORY[default] if isinstance(default, type) else default
+        allowed = what_is_wrong(
+            self._given.get(name, ""), default if isinstance(default, type) else type(default)
+        )
+        if allowed:
+            message = f"{name}: found {self._given[name]}, allowed is {allowed} ({description})"
+            raise ConfigurationError(message)
+        given = self._node._parameter_overrides.get(name)  # noqa: SLF001  rclpy has no public way to it
+        number: Any = None if given is None else given.value
+        if bounds and type(number) is type(default) and not bounds[0] <= number <= bounds[1]:
+            message = f"{name}: found {number!r}, allowed is {bounds[0]:g} to {bounds[1]:g} ({description})"
+            raise ConfigurationError(message)
         try:
             value = self._node.declare_parameter(name, declared, descriptor).value
         except Exception as error:  # noqa: BLE001  rclpy raises several unrelated types for a wrong type or range
@@ -47,6 +81,12 @@ class NodeParameters:
             message = f"{name}: found nothing, needed is: {description}"
             raise ConfigurationError(message)
         return value
+
+    def declare(self, name: str, parameter: ReadParameter) -> None:
+        """Declare a parameter that has come with a change, whatever a file says of it."""
+        value = parameter.value
+        descriptor = _descriptor(value, parameter.description, parameter.bounds, read_only=self._read_only)
+        self._node.declare_parameter(name, value, descriptor, ignore_override=True)
 
     def resolved_topic(self, name: str, topic: str) -> str:
         """Return the full name of a topic after ROS's remapping (see `ParameterSource`)."""
@@ -58,33 +98,44 @@ class NodeParameters:
         self.topics[name] = resolved
         return resolved
 
+    def refuse_unknown(self) -> None:
+        """Refuse parameters that are set and that the node lacks (see `ParameterSource`)."""
+        # rclpy has no public way to ask what was given and not declared.
+        known = {*self._node._parameters, *self._also_known}  # noqa: SLF001
+        refuse_unknown(self._node._parameter_overrides, known, self._listed)  # noqa: SLF001
 
-def refuse_unknown_parameters(node: Node, *, also_known: Iterable[str] = ()) -> None:
-    """Refuse parameters that a file or the command line sets and the node lacks. ROS would ignore them.
+    def _listed(self, name: str) -> list[str]:
+        return [each for each in self._node.get_parameter(name).value if each]
+
+
+def _descriptor(
+    default: Any, description: str, bounds: tuple[float, float] | None, *, read_only: bool
+) -> ParameterDescriptor:
+    descriptor = ParameterDescriptor(description=description, read_only=read_only)
+    if bounds and isinstance(default, int):
+        descriptor.integer_range = [IntegerRange(from_value=int(bounds[0]), to_value=int(bounds[1]))]
+    elif bounds:
+        descriptor.floating_point_range = [FloatingPointRange(from_value=bounds[0], to_value=bounds[1])]
+    return descriptor
+
+
+def refuse_lost_sections(node: Node, arguments: Sequence[str]) -> None:
+    """Refuse files of parameters that have none for a node; warn of sections that miss it by a few letters.
 
     Args:
-        node: a node that has declared all of its own parameters.
-        also_known: parameters of another node, which may be in the same file.
+        node: the node.
+        arguments: ROS's arguments, which name the files.
 
     Raises:
-        ConfigurationError: there is such a parameter. The message names each, with the most similar known
-            one.
+        ConfigurationError: a file has no parameters for the node. The message names whose it has.
     """
-    # rclpy has no public way to ask what was given and not declared.
-    known = {*node._parameters, *also_known}  # noqa: SLF001
-    given = sorted(name for name in node._parameter_overrides if not _OF_ROS.fullmatch(name))  # noqa: SLF001
-    unknown = [name for name in given if name not in known]
-    if unknown:
-        raise ConfigurationError("\n".join(_unknown(name, known, node) for name in unknown))
-
-
-def _unknown(name: str, known: set[str], node: Node) -> str:
-    kind, _, rest = name.partition(".")
-    listing = {"body": "bodies", "surface": "surfaces"}.get(kind)
-    if listing and rest:
-        own_name = rest.rpartition(".")[0] or rest
-        listed = [each for each in node.get_parameter(listing).value if each]
-        if own_name not in listed:
-            return f"{name}: found {kind} {own_name!r}, allowed is one that {listing} lists: {listed}"
-    nearest = difflib.get_close_matches(name, known, n=1, cutoff=0.0)
-    return f"{name}: there is no such parameter; the nearest is {nearest[0]}"
+    full_name = node.get_fully_qualified_name()
+    for path in map(Path, files_given(arguments)):
+        warning = check_sections(path, read_sections(path), full_name)
+        if warning:
+            node.get_logger().warning(warning)
+    single = [Section(name, {}) for name in nodes_given(arguments)]
+    if single:
+        warning = check_sections(Path("-p"), [*single, Section(ANY_NODE, {})], full_name)
+        if warning:
+            node.get_logger().warning(warning)

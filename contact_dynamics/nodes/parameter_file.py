@@ -1,91 +1,46 @@
 """A file of parameters, as ROS takes it, as the source of the server's parameters, without ROS.
 
-Parameters of ``/**`` and of the node ``contact_dynamics`` count, the latter more. Nested names are joined by
-points: ``body: {brick: {mass: 0.4}}`` is ``body.brick.mass``.
+Those sections count that ROS gives to the node ``contact_dynamics``. A later one counts more than an earlier.
+Nested names are joined by points: ``body: {brick: {mass: 0.4}}`` is ``body.brick.mass``.
 """
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any, Final
 
-from contact_dynamics.nodes.parameters import ConfigurationError
+from contact_dynamics.nodes.arguments import VISUALIZER_PARAMETERS
+from contact_dynamics.nodes.given_parameters import GivenParameters
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
+from contact_dynamics.nodes.parameter_sections import check_sections, read_sections
 from contact_dynamics.nodes.run_record import NODE_NAME
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-_NODES: Final = ("/**", NODE_NAME, f"/{NODE_NAME}")
+_NODE: Final = f"/{NODE_NAME}"
 
 
-class ParameterFile:
+class ParameterFile(GivenParameters):
     """The values in a file; a `ParameterSource`."""
 
     def __init__(self, path: Path) -> None:
         """Read the file.
 
         Raises:
-            ConfigurationError: it is missing, no YAML, or has no parameters of the server.
+            ConfigurationError: it is missing, no YAML, or has no parameters of the server; or it has those of
+                a node whose name is nearly the server's.
         """
-        self._path = path
-        self._values: dict[str, Any] = {}
-        content = _content(path)
-        nodes = [name for name in _NODES if isinstance(content, dict) and name in content]
-        if not nodes:
-            message = f"{path}: found no parameters, needed are those of {_NODES[0]} or {NODE_NAME}"
-            raise ConfigurationError(message)
-        for name in nodes:
-            given = content[name]
-            if not isinstance(given, dict) or not isinstance(given.get("ros__parameters"), dict):
-                message = f"{path}: {name}: found no ros__parameters, needed are names with values"
-                raise ConfigurationError(message)
-            self._values.update(_flat(given["ros__parameters"]))
-
-    def value(
-        self, name: str, default: Any, description: str, bounds: tuple[float, float] | None = None
-    ) -> Any:
-        """Return a parameter's value; see `ParameterSource`."""
-        found = self._values.get(name)
-        if found is None and not isinstance(default, type):
-            return default
-        wanted = default if isinstance(default, type) else type(default)
-        if not isinstance(found, wanted) or (isinstance(found, bool) and wanted is not bool):
-            message = f"{self._path}: {name}: found {found!r}, needed is: {description}"
-            raise ConfigurationError(message)
-        number: Any = found  # it has the default's type, which is a number where there are bounds
-        if bounds is not None and not bounds[0] <= number <= bounds[1]:
-            message = f"{self._path}: {name}: found {found!r}, allowed is {bounds[0]:g} to {bounds[1]:g}"
-            raise ConfigurationError(message)
-        return found
-
-    def resolved_topic(self, name: str, topic: str) -> str:  # noqa: ARG002  a file remaps nothing
-        """Return the full name of a topic; see `ParameterSource`."""
-        if topic.startswith("~"):
-            return f"/{NODE_NAME}{topic[1:]}"
-        return topic if topic.startswith("/") else f"/{topic}"
-
-
-def _content(path: Path) -> Any:
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        message = f"{path}: cannot be read: {error}"
-        raise ConfigurationError(message) from None
-    try:
-        return json.loads(text)  # JSON is YAML, and needs nothing that is not installed
-    except ValueError:
-        pass
-    try:
-        import yaml  # comes with ROS, and with the extra [evaluate]
-    except ImportError:
-        message = f"{path}: to read YAML, PyYAML is needed: pip install '.[evaluate]'"
-        raise ConfigurationError(message) from None
-    try:
-        return yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        message = f"{path}: no YAML: {error}"
-        raise ConfigurationError(message) from None
+        sections = read_sections(path)
+        warning = check_sections(path, sections, _NODE)
+        if warning:
+            raise ConfigurationError(warning)  # nobody else is configured by what is read here
+        values: dict[str, Any] = {}
+        for section in sections:
+            if section.is_for(_NODE):
+                values.update(_flat(section.values))
+        # One file may configure both nodes.
+        super().__init__(values, origin=str(path), also_known=VISUALIZER_PARAMETERS)
 
 
 def _flat(given: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:

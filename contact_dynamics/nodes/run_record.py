@@ -13,7 +13,7 @@ import re
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, Final
 
-from contact_dynamics.nodes.parameters import ConfigurationError
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.version import version_of_this_package
 
 if TYPE_CHECKING:
@@ -45,10 +45,9 @@ def versions_here() -> dict[str, str]:
 
 
 def run_record(parameters: Mapping[str, Any], topics: Mapping[str, str]) -> dict[str, str]:
-    """Return the log's record of a run. The log itself adds the package's version."""
-    plain = {name: _plain(value) for name, value in parameters.items()}
+    """Return the log's record of a run, by plain values. The log itself adds the package's version."""
     versions = {name: text for name, text in versions_here().items() if name != "version"}
-    return {**versions, PARAMETERS: json.dumps(plain), TOPICS: json.dumps(dict(topics))}
+    return {**versions, PARAMETERS: json.dumps(dict(parameters)), TOPICS: json.dumps(dict(topics))}
 
 
 class LoggedParameters:
@@ -70,6 +69,19 @@ class LoggedParameters:
         except (ValueError, TypeError) as error:
             message = f"the log's record of its run cannot be read: {error}"
             raise ConfigurationError(message) from None
+
+    def changed(self, values: Mapping[str, Any]) -> LoggedParameters:
+        """Return the parameters after a change, which names those that changed; None is one that is gone.
+
+        Raises:
+            ConfigurationError: the log is of a server whose parameters could not change.
+        """
+        if self._values is None:
+            message = "the log's record of its run is older than changes of parameters, and has one"
+            raise ConfigurationError(message)
+        merged = {**self._values, **values}
+        after = {name: value for name, value in merged.items() if value is not None}
+        return LoggedParameters({PARAMETERS: json.dumps(after), TOPICS: json.dumps(self._topics)})
 
     def value(
         self,
@@ -99,8 +111,12 @@ class LoggedParameters:
             return f"/{NODE_NAME}{topic[1:]}"
         return topic if topic.startswith("/") else f"/{topic}"
 
+    def refuse_unknown(self) -> None:
+        """Do nothing: another version of the server may have had other parameters (see `ParameterSource`)."""
 
-def _plain(value: Any) -> Any:
+
+def plain(value: Any) -> Any:
+    """Return the value of a parameter as JSON takes it, and as the parameters of a log are."""
     return value if isinstance(value, (bool, int, float, str, type(None))) else list(value)
 
 

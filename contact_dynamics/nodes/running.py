@@ -1,4 +1,4 @@
-"""Runs a node until its process is told to stop: the part of `main` that every node of ours shares.
+"""Runs a node until its process is told to stop. Every node of this package has this part of `main`.
 
 rclpy's own signal handlers end the context at once, so that messages which have come already cannot be taken
 any more, and Python's raise `KeyboardInterrupt` wherever the process happens to be, also while it closes its
@@ -13,16 +13,18 @@ import signal
 import threading
 import time
 from contextlib import contextmanager, suppress
+from functools import partial
 from typing import TYPE_CHECKING, Final, Protocol
 
 import rclpy
-from rclpy.exceptions import InvalidHandle
+from rclpy.exceptions import InvalidHandle, ParameterException
 from rclpy.experimental import EventsExecutor
 from rclpy.logging import get_logger
 from rclpy.signals import SignalHandlerOptions
 
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes.arguments import ros_arguments
+from contact_dynamics.nodes.reserved_memory import keep_reserved_memory_untouched
 from contact_dynamics.nodes.ros_log_directory import ensure_ros_log_directory
 
 if TYPE_CHECKING:
@@ -45,6 +47,13 @@ class RunnableNode(Protocol):
     def destroy_service(self, service: Service) -> bool:
         """End a service, as `rclpy.node.Node` does."""
 
+    @property
+    def successor(self) -> Callable[[], RunnableNode] | None:
+        """What makes the node that takes over in a participant of its own, or None while none has to."""
+
+    def destroy_node(self) -> None:
+        """End the node."""
+
     def attend(self) -> None:
         """Do what is due between two callbacks; it is called at least a hundred times a second."""
 
@@ -53,20 +62,26 @@ class RunnableNode(Protocol):
 
 
 def run_node(
-    make_node: Callable[[], RunnableNode], *, verb: str, parser: argparse.ArgumentParser, arguments: list[str]
+    make_node: Callable[[list[str]], RunnableNode],
+    *,
+    verb: str,
+    parser: argparse.ArgumentParser,
+    arguments: list[str],
 ) -> int:
     """Run a node until it is told to stop, and return the exit code.
 
     The code is 0, or 1 if something could not be finished, or 2 for a configuration that is refused.
 
     Args:
-        make_node: the node's class, which may raise `ContactDynamicsError` or `OSError`.
+        make_node: makes the node, and is given ROS's arguments. It may raise `ContactDynamicsError`,
+            `OSError`, or what rclpy raises for its own parameters, such as `use_sim_time`.
         verb: the verb of the command line that the node is.
         parser: the parser of the verb's arguments.
         arguments: all that follows the verb.
     """
     args = ros_arguments(parser, arguments)
     ensure_ros_log_directory()
+    keep_reserved_memory_untouched()
     with stop_signals() as stop:
         try:
             rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
@@ -74,7 +89,7 @@ def run_node(
             get_logger(verb).fatal(f"configuration: {error}")
             return 2
         try:
-            return _run(make_node, verb, stop)
+            return _run(partial(make_node, args), args, verb, stop)
         finally:
             rclpy.try_shutdown()
 
@@ -97,24 +112,34 @@ def stop_signals() -> Iterator[threading.Event]:
             signal.signal(number, handler)
 
 
-def _run(make_node: Callable[[], RunnableNode], verb: str, stop: threading.Event) -> int:
-    try:
-        node = make_node()
-    except (ContactDynamicsError, OSError) as error:
-        get_logger(verb).fatal(f"configuration: {error}")
-        return 2
-    try:
-        _spin(node, stop)
-    finally:
-        complete = node.close()
-    return 0 if complete else 1
+def _run(make_node: Callable[[], RunnableNode], args: list[str], verb: str, stop: threading.Event) -> int:
+    complete = True
+    while True:
+        try:
+            node = make_node()
+        except (ContactDynamicsError, OSError, ParameterException) as error:
+            get_logger(verb).fatal(f"configuration: {error}")
+            return 2
+        try:
+            successor = _spin(node, stop)
+        finally:
+            complete = node.close() and complete
+        if successor is None:
+            return 0 if complete else 1
+        get_logger(verb).error("messages do not reach this process any more, so it joins the domain anew")
+        node.destroy_node()
+        rclpy.shutdown()
+        rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+        make_node = successor
 
 
-def _spin(node: RunnableNode, stop: threading.Event) -> None:
+def _spin(node: RunnableNode, stop: threading.Event) -> Callable[[], RunnableNode] | None:
+    """Spin a node until it is to stop, or until another one has to take over; return what makes that."""
     executor = EventsExecutor()
     executor.add_node(node)
     gc.freeze()  # the objects made so far stay, and to search them for garbage stalls an answer for 30 ms
-    while not stop.is_set():
+    successor: Callable[[], RunnableNode] | None = None
+    while not stop.is_set() and (successor := node.successor) is None:
         executor.spin_once(timeout_sec=_SPIN_S)
         node.attend()
     for service in list(node.services):
@@ -124,3 +149,4 @@ def _spin(node: RunnableNode, stop: threading.Event) -> None:
         with suppress(InvalidHandle):  # a request that came to one of these services before it was destroyed
             executor.spin_once(timeout_sec=0.1 * _DRAIN_S)
         node.attend()
+    return successor

@@ -10,55 +10,122 @@ waits for a lifecycle manager. Configured, it receives states and writes the log
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
+from rclpy.parameter import Parameter
 
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes.arguments import VISUALIZER_PARAMETERS, server_parser
+from contact_dynamics.nodes.given_parameters import GivenParameters
 from contact_dynamics.nodes.inbox import InboxNode
-from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_unknown_parameters
+from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_lost_sections
+from contact_dynamics.nodes.parameter_event import event_of_change
 from contact_dynamics.nodes.parameters import read_server_parameters
-from contact_dynamics.nodes.run_record import NODE_NAME, run_record
+from contact_dynamics.nodes.reconfiguring import check_change
+from contact_dynamics.nodes.run_record import NODE_NAME, plain, run_record
 from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.serving import Serving
+from contact_dynamics.nodes.unknown_parameters import is_of_ros
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
     from rclpy.lifecycle import LifecycleState
+
+    from contact_dynamics.nodes.parameters import ServerParameters
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Predecessor:
+    """The state of a server that another one takes over from.
+
+    Attributes:
+        is_configured: Whether it was configured.
+        is_active: Whether it answered questions.
+        successions: How many times a server has taken over so far.
+    """
+
+    is_configured: bool
+    is_active: bool
+    successions: int
 
 
 class Server(InboxNode, LifecycleNode):
     """The node `contact_dynamics`."""
 
-    def __init__(self, **node_options: Any) -> None:
+    def __init__(
+        self,
+        *,
+        ros_arguments: Sequence[str] = (),
+        predecessor: Predecessor | None = None,
+        **node_options: Any,
+    ) -> None:
         """Read the parameters, and configure and activate the node where ``autostart`` says so.
+
+        Args:
+            ros_arguments: ROS's arguments, as `rclpy.init` was given them.
+            predecessor: the node that this one takes over from, in whose state it begins.
+            node_options: options of `rclpy.node.Node`.
 
         Raises:
             ConfigurationError: a parameter is missing, unknown or not allowed.
         """
         self._serving: Serving | None = None
         self._problem: ContactDynamicsError | OSError | None = None
+        self._configuration: ServerParameters | None = None
+        self._ros_arguments = ros_arguments
+        self._successions = 0 if predecessor is None else predecessor.successions + 1
         super().__init__(NODE_NAME, **node_options)
-        source = NodeParameters(self)
+        refuse_lost_sections(self, ros_arguments)
+        source = NodeParameters(
+            self,
+            ros_arguments=ros_arguments,
+            also_known=VISUALIZER_PARAMETERS,  # one file may configure both nodes
+            read_only=False,
+        )
+        self._source = source
         self._configuration = read_server_parameters(source)
-        # One file may configure both nodes.
-        refuse_unknown_parameters(self, also_known=VISUALIZER_PARAMETERS)
-        self._topics_by_parameter = source.topics
-        if not self._configuration.autostart:
+        autostart = self._configuration.autostart
+        is_configured = autostart if predecessor is None else predecessor.is_configured
+        is_active = autostart if predecessor is None else predecessor.is_active
+        if not is_configured:
             self.get_logger().info("waits to be configured and activated, since autostart is false")
             return
         self.trigger_configure()
         if self._problem is not None:
             raise self._problem
-        self.trigger_activate()
+        if is_active:
+            self.trigger_activate()
+
+    @property
+    def successor(self) -> Callable[[], Server] | None:
+        """What makes the node that takes over because this one is deaf, or None as long as it is not."""
+        if self._serving is None or not self._serving.is_deaf:
+            return None
+        predecessor = Predecessor(
+            is_configured=True, is_active=self._serving.is_active, successions=self._successions
+        )
+        values = {name: value for name, value in self._values().items() if value is not None}
+        return partial(
+            Server,
+            ros_arguments=self._ros_arguments,
+            predecessor=predecessor,
+            parameter_overrides=[Parameter(name, value=value) for name, value in values.items()],
+        )
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002  it is known
         """Receive states, begin the log, and create the services."""
-        parameters = {name: self._parameters[name].value for name in sorted(self._parameters)}
-        run = run_record(parameters, self._topics_by_parameter)
         self._problem = None
+        configuration = self._configuration
+        if configuration is None:  # nobody can ask for it before the parameters are read
+            return TransitionCallbackReturn.FAILURE
+        run = self._run(self._values())
         try:
-            self._serving = Serving(self, self._configuration, run=run)
+            self._serving = Serving(self, configuration, run=run, successions=self._successions)
         except (ContactDynamicsError, OSError) as error:
             self._problem = error
             self.get_logger().error(f"cannot be configured: {error}")
@@ -93,6 +160,53 @@ class Server(InboxNode, LifecycleNode):
         """Do as when it is cleaned up; a signal ends the process."""
         return self.on_cleanup(state)
 
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
+        """Set parameters, if the whole configuration is allowed with them; otherwise say why it is not.
+
+        Parameters of bodies and surfaces that are listed from now on come with them. Those of others go.
+        """
+        if self._configuration is None or all(is_of_ros(each.name) for each in parameter_list):
+            return super().set_parameters_atomically(parameter_list)
+        before = self._values()
+        proposed = {**before, **{each.name: plain(each.value) for each in parameter_list}}
+        given = GivenParameters(proposed, also_known=before, resolve=self._source.resolved_topic)
+        try:
+            configuration = read_server_parameters(given)
+            if self._serving is not None:
+                check_change(self._configuration, configuration)
+        except ContactDynamicsError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        new = [name for name in given.read if name not in before]
+        for name in new:
+            self._source.declare(name, given.read[name])
+        result = super().set_parameters_atomically(parameter_list)
+        unread = [name for name in self._values() if name not in given.read and not is_of_ros(name)]
+        for name in unread if result.successful else new:
+            self.undeclare_parameter(name)
+        if result.successful:
+            self._change(configuration, before)
+        return result
+
+    def _change(self, configuration: ServerParameters, before: Mapping[str, Any]) -> None:
+        """Serve with another configuration from now on."""
+        after = self._values()
+        event = event_of_change(self, before, after)
+        if event is None:
+            return
+        self._configuration = configuration
+        if self._serving is not None:
+            self._serving.change(configuration, event=event, run=self._run(after))
+        names = sorted(name for name in {*before, *after} if before.get(name) != after.get(name))
+        self.get_logger().info(f"configured anew: {', '.join(names)}")
+
+    def _run(self, values: Mapping[str, Any]) -> dict[str, str]:
+        """Return what the log says of the run."""
+        joined = {"joined_anew": str(self._successions)} if self._successions else {}
+        return {**run_record(values, self._source.topics), **joined}
+
+    def _values(self) -> dict[str, Any]:
+        return {name: plain(self._parameters[name].value) for name in sorted(self._parameters)}
+
     def attend(self) -> None:
         """Take messages and events, and look around once a second."""
         super().attend()
@@ -114,4 +228,9 @@ class Server(InboxNode, LifecycleNode):
 
 def main(arguments: list[str]) -> int:
     """Run the server until it is told to stop; return the exit code."""
-    return run_node(Server, verb="server", parser=server_parser(), arguments=arguments)
+    return run_node(
+        lambda ros_arguments: Server(ros_arguments=ros_arguments),
+        verb="server",
+        parser=server_parser(),
+        arguments=arguments,
+    )

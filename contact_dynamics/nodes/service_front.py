@@ -1,4 +1,4 @@
-"""One service of the server: it takes requests, answers them or has them answered, and sends the responses.
+"""A service's front takes requests, answers them or has them answered, and sends the responses.
 
 A quick question is answered at once. Another goes to a worker, and the server goes on until its answer comes.
 A client that left is not answered: to send to it takes 0.1 s, in which nobody else is served.
@@ -15,8 +15,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 from rclpy.service_introspection import ServiceIntrospectionState
 
+from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.errors import BusyError, ContactDynamicsError
 from contact_dynamics.nodes.call_times import CallTimes
+from contact_dynamics.nodes.event_bytes import EventBytes
 from contact_dynamics.questions.effort import excerpt, is_quick
 from msg_adapters.status import report_error
 
@@ -32,8 +34,12 @@ if TYPE_CHECKING:
     from contact_dynamics.questions.workers import Workers
     from msg_adapters.status import Response
 
-GONE_FOR_S: Final = 5.0
-"""s for which a client that seemed gone gets no answers: one that is still being found may be met later."""
+_EVENT_PATIENCE_S: Final = 0.1
+_TELL_EVERY_S: Final = 5.0  # an answer that did not reach its client
+"""s for which the event of a request is waited for, where the answer is logged before it leaves. DDS hands it
+over with the request, and another DDS may be later."""
+
+_EVENT_POLL_S: Final = 0.001
 
 
 @dataclass(slots=True, kw_only=True)
@@ -60,6 +66,9 @@ class ServiceFront:
 
     Attributes:
         is_active: Whether questions are answered. Otherwise they are refused.
+        gone_for: s for which a client that seemed gone gets no answers to what it asked before. One that is
+            only found late is answered what it asks from then on.
+        knowledge: What is known. It may be replaced, and counts for the questions that come later.
     """
 
     def __init__(
@@ -70,11 +79,13 @@ class ServiceFront:
         knowledge: Knowledge,
         world_frame: str,
         workers: Workers | None,
+        gone_for: float,
         begin: Callable[[int], object],
         answered: Callable[[Response], object],
         qos: QoSProfile,
         event_qos: QoSProfile,
         record: Callable[[str, bytes, int, int | None], object],
+        settle: Callable[[], object] | None,
     ) -> None:
         """Begin to serve.
 
@@ -84,24 +95,29 @@ class ServiceFront:
             knowledge: what is known.
             world_frame: the frame of states and answers.
             workers: they answer what takes long. Without them, this process does.
+            gone_for: s, as the attribute.
             begin: is told when a question came, ns by the node's clock, before it is answered.
             answered: sees each response before it is sent.
             qos: the queue of requests.
             event_qos: the queue of the service events.
             record: takes a service event as topic, bytes, time of the log, and time of the node's clock, if
                 that is another one than the event's.
+            settle: returns when the disk has what was recorded. If it is given, an answer leaves only then.
         """
         self._node = node
         self._served = served
-        self._knowledge = knowledge
+        self.knowledge = knowledge
         self._world_frame = world_frame
         self._workers = workers
         self._begin = begin
         self._answered = answered
         self._record = record
+        self._settle = settle
+        self._event_bytes = EventBytes(f"contact_dynamics_interfaces/srv/{served.type_name}_Event")
         self._times = CallTimes(lambda: node.get_clock().now().nanoseconds)
         self.is_active = False
-        self._gone: dict[bytes, float] = {}  # clients, and until when they count as gone
+        self.gone_for = gone_for
+        self._gone: dict[bytes, int] = {}  # clients, and when they seemed gone, ns since the epoch
         self._service = service = node.create_service(
             served.service_type, f"~/{served.name}", self._take, qos_profile=qos
         )
@@ -129,7 +145,7 @@ class ServiceFront:
         self._node.note_question(call.received_ns)
         self.take_events()  # one of them tells whose request it is
         answering = _Answering(call=call, response=response, begun=time.perf_counter())
-        if self._is_open() and not self._is_gone(call.client):
+        if self._is_open():
             self._serve(request, answering)
         return answering
 
@@ -162,7 +178,7 @@ class ServiceFront:
             answering.is_done = self._served.serve(
                 request,
                 answering.response,
-                self._knowledge,
+                self.knowledge,
                 world_frame=self._world_frame,
                 elsewhere=elsewhere,
             )
@@ -192,27 +208,62 @@ class ServiceFront:
 
     def _send(self, answering: _Answering) -> None:
         client = answering.call.client
-        if not self._is_open() or self._is_gone(client):
+        if not self._is_open() or self._seems_gone(client, answering.header.received_timestamp):
             return
         self._times.end(answering.call)
+        if self._settle is not None:
+            self._log_answer(answering)
+            self._settle()
         # rclpy warns if DDS waited in vain for the client. How long it took tells nothing on a busy machine.
         with warnings.catch_warnings(record=True) as warned:
             warnings.simplefilter("always")
             self._send_response(answering.response, answering.header)
         if client and warned:
-            now = time.monotonic()
-            self._gone = {each: until for each, until in self._gone.items() if until > now}
-            self._gone[client] = now + GONE_FOR_S
+            now_ns = time.time_ns()
+            oldest_ns = now_ns - round(self.gone_for * NS_PER_S)
+            self._gone = {each: since_ns for each, since_ns in self._gone.items() if since_ns > oldest_ns}
+            self._gone[client] = now_ns
+            self._node.get_logger().warning(
+                f"{self._served.name}: an answer did not reach its client, which left or is not found yet",
+                throttle_duration_sec=_TELL_EVERY_S,
+            )
+
+    def _log_answer(self, answering: _Answering) -> None:
+        """Log an answer before it leaves. The event that tells of it later is not logged again."""
+        call = answering.call
+        deadline = time.monotonic() + _EVENT_PATIENCE_S
+        while not call.client and time.monotonic() < deadline:  # it tells whose request this is
+            time.sleep(_EVENT_POLL_S)
+            self.take_events()
+        if not call.client:
+            return
+        stamp_ns = self._node.get_clock().now().nanoseconds
+        data = self._event_bytes.of_response(
+            answering.response,
+            client_gid=call.client,
+            sequence_number=call.sequence_number,
+            stamp_ns=stamp_ns,
+        )
+        self._record(self.topic, data, call.sent_ns, None)
+        call.is_logged = True
 
     def _is_open(self) -> bool:
         """Return whether the node still has the service. Requests that came before may still be taken."""
         return any(each is self._service for each in self._node.services)
 
-    def _is_gone(self, client: bytes) -> bool:
-        return bool(self._gone) and self._gone.get(client, 0.0) > time.monotonic()
+    def _seems_gone(self, client: bytes, asked_ns: int) -> bool:
+        """Tell whether a client asked before it seemed gone, a short time ago. Who asks later is there."""
+        since_ns = self._gone.get(client)
+        return (
+            since_ns is not None
+            and asked_ns <= since_ns
+            and time.time_ns() < since_ns + round(self.gone_for * NS_PER_S)
+        )
 
     def _record_event(self, event: Taken) -> None:
         happened = self._times.of_event(event.data)
+        if happened.is_logged:
+            return
         self._record(self.topic, event.data, happened.log_time_ns, happened.publish_time_ns)
 
 

@@ -1,15 +1,17 @@
-"""The services: which question each answers, and the adapters on both sides of it."""
+"""This file lists the services: which question each answers, and the adapters on both sides of it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Protocol, TypeAlias, TypeVar
 
-from contact_dynamics.questions import contact_modes, impact, many, tumbling
+from contact_dynamics.questions import contact_modes, impact, many, many_contact_modes, toss, tumbling
 from contact_dynamics_interfaces.srv import (
     PredictContactMode,
+    PredictContactModeBatch,
     PredictImpact,
     PredictImpactBatch,
+    PredictToss,
     PredictTumbling,
     PredictTumblingBatch,
 )
@@ -20,12 +22,14 @@ from msg_adapters.batches import (
     tumblings_question_from_msg,
 )
 from msg_adapters.contact_mode import contact_mode_answer_to_msg
+from msg_adapters.contact_mode_batch import contact_modes_answer_to_msg, contact_modes_question_from_msg
 from msg_adapters.impact import impact_answer_to_msg
 from msg_adapters.questions import (
     contact_mode_question_from_msg,
     impact_question_from_msg,
     tumbling_question_from_msg,
 )
+from msg_adapters.toss import toss_answer_to_msg, toss_question_from_msg
 from msg_adapters.tumbling import tumbling_answer_to_msg
 
 if TYPE_CHECKING:
@@ -160,6 +164,12 @@ SERVICES: Final = (
         serve=_serving(tumbling_question_from_msg, tumbling.answer, tumbling_answer_to_msg),
     ),
     Service(
+        service_type=PredictToss,
+        type_name="PredictToss",
+        name="predict_toss",
+        serve=_serving(toss_question_from_msg, toss.answer, toss_answer_to_msg),
+    ),
+    Service(
         service_type=PredictImpactBatch,
         type_name="PredictImpactBatch",
         name="predict_impact_batch",
@@ -170,5 +180,13 @@ SERVICES: Final = (
         type_name="PredictTumblingBatch",
         name="predict_tumbling_batch",
         serve=_serving(tumblings_question_from_msg, many.answer_tumblings, tumblings_answer_to_msg),
+    ),
+    Service(
+        service_type=PredictContactModeBatch,
+        type_name="PredictContactModeBatch",
+        name="predict_contact_mode_batch",
+        serve=_serving(
+            contact_modes_question_from_msg, many_contact_modes.answer, contact_modes_answer_to_msg
+        ),
     ),
 )

@@ -1,8 +1,9 @@
-"""What the server is while it is configured: the store of states, the log, the workers and the services."""
+"""While it is configured, the server has a store of states, a log, workers and services."""
 
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from nav_msgs.msg import Path
@@ -11,17 +12,23 @@ from rclpy.duration import Duration
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 
+from contact_dynamics.nodes import parameter_event
 from contact_dynamics.nodes.diagnostics import AnswerTimes, Diagnostics
 from contact_dynamics.nodes.log import Log
+from contact_dynamics.nodes.offered_qos import OfferedQosWatch
+from contact_dynamics.nodes.reconfiguring import CONFIGURED_ANEW, bodies_read_otherwise
+from contact_dynamics.nodes.self_check import SelfCheck
 from contact_dynamics.nodes.service_front import ServiceFront
 from contact_dynamics.nodes.services import SERVICES
-from contact_dynamics.nodes.state_subscriptions import STATE_QOS, subscribe_to_states
+from contact_dynamics.nodes.state_sources import state_sources
+from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
 from contact_dynamics.nodes.topic_faults import TopicFaults
 from contact_dynamics.questions.knowledge import Knowledge
-from contact_dynamics.questions.state_store import StateStore
+from contact_dynamics.questions.state_store import CLOCK_SET_BACK, StateStore
 from contact_dynamics.questions.workers import Workers
 from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters.path import path_from_trajectory
+from msg_adapters.transforms import TransformTree
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -47,31 +54,46 @@ PATH_QOS = QoSProfile(depth=1)
 LOOK_EVERY_S: Final = 1.0
 """s. Time between two looks at topics and other nodes, which /diagnostics then tells of."""
 
+STOOD_STILL_S: Final = 2.0
+"""s. A process that has not looked for so long was stopped or starved, and heard nothing for that reason."""
+
 
 class Serving:
     """Receives states, answers questions and writes the log, for a node."""
 
-    def __init__(self, node: InboxNode, parameters: ServerParameters, *, run: Mapping[str, str]) -> None:
+    def __init__(
+        self,
+        node: InboxNode,
+        parameters: ServerParameters,
+        *,
+        run: Mapping[str, str],
+        successions: int = 0,
+    ) -> None:
         """Begin the log, subscribe and create the services, which refuse all questions for now.
 
         Args:
             node: the node.
             parameters: how it is configured.
             run: what the log says of the run.
+            successions: how many times the server has joined the domain anew.
 
         Raises:
             ConfigurationError: a source or the log's folder is not there.
         """
         self._node = node
-        self._world = parameters.world
-        states = StateStore(
+        self._parameters = parameters
+        self._static = TransformTree()
+        self._states = states = StateStore(
             history=parameters.state_history,
             timeout=parameters.state_timeout,
             future_tolerance=parameters.future_tolerance,
+            most_states=parameters.most_states,
         )
         # A simulation or a log that is played again: without this its new states would count as old ones.
         set_back = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
-        self._jumps = node.get_clock().create_jump_callback(set_back, post_callback=lambda _: states.clear())
+        self._jumps = node.get_clock().create_jump_callback(
+            set_back, post_callback=lambda _: states.clear(CLOCK_SET_BACK)
+        )
         self._asked_ns = 0  # when the present question came, by the node's clock
         self._knowledge = Knowledge(
             world=parameters.world,
@@ -79,11 +101,15 @@ class Serving:
             defaults=parameters.defaults,
             now_ns=lambda: self._asked_ns or None,  # zero before a simulation tells the time
         )
-        self._world_frame = parameters.world_frame
         # The log begins after this, so that a configuration with an unknown source leaves no log.
-        self._faults = TopicFaults(node.get_logger().warning)
+        self._faults = TopicFaults(node.get_logger().warning, limits=parameters.fault_limits)
         self._topics = subscribe_to_states(
-            node, parameters, states=states, record=self._record, faults=self._faults
+            node,
+            state_sources(parameters, static=self._static),
+            states=states,
+            record=self._record,
+            offered=self._note_offers,
+            faults=self._faults,
         )
         self._log = Log(
             parameters.log_directory if parameters.log else None,
@@ -93,33 +119,86 @@ class Serving:
             on_deleted=node.get_logger().warning,
         )
         for topic in self._topics:
-            self._log.add_topic(topic.name, topic.type_name, STATE_QOS)
+            self._log.add_topic(topic.name, topic.type_name)
+        self._clock_publishers: OfferedQosWatch | None = None
         self._log_clock()
+        self._log.add_topic(parameter_event.TOPIC, parameter_event.TYPE_NAME, EVENT_QOS)
+        self._logs_first = parameters.log_before_answer
         self._path = node.create_publisher(Path, "~/predicted_path", PATH_QOS)
         limits = parameters.worker_limits
         self._workers = Workers(limits) if limits.count > 0 else None
         self._answer_times = AnswerTimes()
         self._diagnostics = Diagnostics(node)
+        self._self_check = SelfCheck(node, parameters.self_check_period)
+        self._successions = successions
         self._looked = time.monotonic()
+        self._awake_since = self._looked
         self._fronts = [self._serve(service) for service in SERVICES]
         self._log.start()
 
     def __str__(self) -> str:
         """Return in words what is served."""
-        bodies = ", ".join(body.name for body in self._world.bodies) or "none"
+        bodies = ", ".join(body.name for body in self._parameters.world.bodies) or "none"
         return f"bodies {bodies}; log {self._log.folder or 'off'}"
+
+    @property
+    def is_active(self) -> bool:
+        """Whether questions are answered."""
+        return all(front.is_active for front in self._fronts)
+
+    @property
+    def is_deaf(self) -> bool:
+        """Whether messages do not reach the node any more, as its self-check has found."""
+        return self._self_check.is_deaf
 
     def activate(self, *, is_active: bool) -> None:
         """Answer questions from now on, or refuse them."""
         for front in self._fronts:
             front.is_active = is_active
 
+    def change(self, parameters: ServerParameters, *, event: bytes, run: Mapping[str, str]) -> None:
+        """Answer with another configuration from now on, and log it.
+
+        Args:
+            parameters: the configuration, which `check_change` allows.
+            event: the change as a serialised event.
+            run: what the log says of the run from now on.
+        """
+        self._node.take_messages()  # what came before is of the configuration before
+        now_ns = time.time_ns()
+        self._node.note_question(now_ns)  # and what is taken from here on counts as later
+        self._log.record(parameter_event.TOPIC, event, log_time_ns=now_ns)
+        self._log.change_run(run)
+        self._states.change_limits(
+            history=parameters.state_history,
+            timeout=parameters.state_timeout,
+            future_tolerance=parameters.future_tolerance,
+            most_states=parameters.most_states,
+        )
+        changed = bodies_read_otherwise(self._parameters, parameters)
+        for name in changed:
+            self._states.forget(name, CONFIGURED_ANEW)
+        if changed:
+            sources = {each.full_name: each for each in state_sources(parameters, static=self._static)}
+            for topic in self._topics:
+                topic.source = sources[topic.name]
+        self._parameters = parameters
+        self._faults.limits = parameters.fault_limits
+        for front in self._fronts:
+            front.gone_for = parameters.client_gone_for
+            front.knowledge = replace(front.knowledge, world=parameters.world, defaults=parameters.defaults)
+        if self._workers is not None:
+            self._workers.limits = parameters.worker_limits
+
     def attend(self) -> None:
         """Take the events of the answer that has just left, and look around once a second."""
         for front in self._fronts:
             front.take_events()
-        if time.monotonic() - self._looked >= LOOK_EVERY_S:
+        since_look = time.monotonic() - self._looked
+        if since_look >= LOOK_EVERY_S:
             self._looked = time.monotonic()
+            if since_look > STOOD_STILL_S:
+                self._awake_since = self._looked
             self._look()
 
     def close(self) -> str:
@@ -139,24 +218,32 @@ class Serving:
         self._diagnostics.remove()
 
     def end_workers(self) -> None:
-        """End the processes that answer."""
+        """End the processes that answer, and that of a self-check."""
+        self._self_check.end()
         if self._workers is not None:
             self._workers.close()
 
     def _look(self) -> None:
         """Look at topics and other nodes, and tell how everything is."""
         for topic in self._topics:
-            topic.look()
+            topic.look(awake_for=self._looked - self._awake_since)
+        if self._clock_publishers is not None:
+            self._clock_publishers.look()
         full_names = [(namespace, name) for name, namespace in self._node.get_node_names_and_namespaces()]
         if full_names.count((self._node.get_namespace(), self._node.get_name())) > 1:
             text = "another node has this name: both answer the same questions"
             self._faults.add(self._node.get_fully_qualified_name(), "same name", 1, text)
+        suspicious = any(topic.traffic.is_silent for topic in self._topics)
+        problem = self._self_check.look(is_suspicious=suspicious)
+        if problem:
+            self._faults.add(self._node.get_fully_qualified_name(), "self-check", 1, problem)
         self._diagnostics.publish(
             self._diagnostics.of_topics([topic.traffic for topic in self._topics], self._faults.counts),
             self._diagnostics.of_answers(
                 self._answer_times, 0 if self._workers is None else self._workers.waiting
             ),
             self._diagnostics.of_log(self._log.status),
+            self._diagnostics.of_self_check(self._self_check, self._successions),
         )
 
     def _serve(self, served: Service) -> ServiceFront:
@@ -164,13 +251,15 @@ class Serving:
             self._node,
             served,
             knowledge=self._knowledge,
-            world_frame=self._world_frame,
+            world_frame=self._parameters.world_frame,
             workers=self._workers,
+            gone_for=self._parameters.client_gone_for,
             begin=self._begin,
             answered=self._note_answer,
             qos=SERVICE_QOS,
             event_qos=EVENT_QOS,
             record=self._record_event,
+            settle=self._log.settle if self._logs_first else None,
         )
         self._log.add_topic(
             front.topic, f"contact_dynamics_interfaces/srv/{served.type_name}_Event", EVENT_QOS
@@ -192,10 +281,14 @@ class Serving:
             self._record(topic, tick)
 
         topic: str = self._node.subscribe(Clock, "/clock", record, CLOCK_QOS).topic_name
-        self._log.add_topic(topic, "rosgraph_msgs/msg/Clock", CLOCK_QOS)
+        self._log.add_topic(topic, "rosgraph_msgs/msg/Clock")
+        self._clock_publishers = OfferedQosWatch(self._node, topic, self._note_offers)
 
     def _record(self, topic: str, taken: Taken) -> None:
         self._log.record(topic, taken.data, log_time_ns=taken.received_ns)
+
+    def _note_offers(self, topic: str, offers: list[QoSProfile]) -> None:
+        self._log.set_qos(topic, offers)
 
     def _note_answer(self, response: Response) -> None:
         self._answer_times.note(response)

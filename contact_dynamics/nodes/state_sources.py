@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 from importlib.metadata import entry_points
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from contact_dynamics.nodes.parameters import ConfigurationError
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from msg_adapters.odometry import ODOMETRY
 from msg_adapters.pose import POSE, POSE_WITH_COVARIANCE
 from msg_adapters.pose_twist import POSE_TWIST, POSE_TWIST_WITH_COVARIANCE
@@ -22,7 +23,9 @@ from msg_adapters.transforms import TransformTree
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from contact_dynamics.nodes.parameters import ConfiguredSource, ConfiguredTopic, ServerParameters
+    from contact_dynamics.nodes.parameter_reader import ConfiguredTopic
+    from contact_dynamics.nodes.parameters import ServerParameters
+    from contact_dynamics.nodes.world_parameters import ConfiguredSource
     from msg_adapters.state_adapter import Reader
     from msg_adapters.transforms import TFMessage
 
@@ -68,6 +71,7 @@ class StateSource:
         is_latched: Whether the last messages come to who subscribes later.
         is_whole: Whether each message is a state by itself, stamped by its leading header. It can then be
             read later, or never.
+        is_of_one_body: Whether each message is about one body, whatever that is called.
     """
 
     topic: str
@@ -76,6 +80,12 @@ class StateSource:
     readers: tuple[BodyReader, ...]
     is_latched: bool = False
     is_whole: bool = False
+    is_of_one_body: bool = False
+
+
+def no_message(data: bytes, type_name: str) -> InvalidFieldError:
+    """Return the error that says that bytes are no message of a type, live and where a log is replayed."""
+    return InvalidFieldError("data", f"{len(data)} bytes", f"a serialised {type_name}")
 
 
 def adapter_of(name: str, *, parameter: str) -> StateAdapter:
@@ -105,15 +115,19 @@ def adapter_of(name: str, *, parameter: str) -> StateAdapter:
     return adapter
 
 
-def state_sources(parameters: ServerParameters) -> tuple[StateSource, ...]:
+def state_sources(parameters: ServerParameters, *, static: TransformTree) -> tuple[StateSource, ...]:
     """Return the topics that states come by, each once.
+
+    Args:
+        parameters: the configuration.
+        static: what is known of frames that stand still, to which the topic of their transforms adds.
 
     Raises:
         ConfigurationError: no adapter has the name, or it takes another number of topics, or two sources say
-            different types of one topic.
+            different types of one topic, or two bodies have their states by the same messages.
     """
-    static = TransformTree()
     found: dict[str, StateSource] = {}
+    by_frame: dict[tuple[str, str], str] = {}
     if parameters.static_topic is not None:
         _add(found, _static_source(parameters.static_topic, static), parameters.static_topic.parameter)
     for body in parameters.sources:
@@ -128,6 +142,13 @@ def state_sources(parameters: ServerParameters) -> tuple[StateSource, ...]:
         for configured in body.sources:
             for source, topic in zip(_of_body(configured, settings), configured.topics, strict=True):
                 _add(found, source, topic.parameter)
+                other = by_frame.setdefault((topic.full_name, body.frame), body.body_name)
+                if other != body.body_name:
+                    message = (
+                        f"body.{body.body_name}.frame: found {body.frame!r}, allowed is another frame than "
+                        f"that of body.{other}, which shares the topic {topic.name!r}"
+                    )
+                    raise ConfigurationError(message)
     return tuple(found.values())
 
 
@@ -146,6 +167,7 @@ def _of_body(configured: ConfiguredSource, settings: SourceSettings) -> tuple[St
             type_name=type_name,
             readers=(BodyReader(settings.body_name, reader),),
             is_whole=adapter.is_whole,
+            is_of_one_body=adapter.is_of_one_body,
         )
         for topic, type_name, reader in zip(
             configured.topics, adapter.type_names, adapter.readers(settings), strict=True
@@ -176,6 +198,12 @@ def _add(found: dict[str, StateSource], source: StateSource, parameter: str) -> 
         message = (
             f"{parameter}: found {source.topic!r} for {source.type_name}, allowed is another topic than "
             f"that of {known.type_name}"
+        )
+        raise ConfigurationError(message)
+    if known.is_of_one_body or source.is_of_one_body:
+        message = (
+            f"{parameter}: found {source.topic!r}, allowed is another topic than that of the states of "
+            f"body.{known.readers[0].body_name}, since each message there is about one body"
         )
         raise ConfigurationError(message)
     found[source.full_name] = replace(known, readers=(*known.readers, *source.readers))

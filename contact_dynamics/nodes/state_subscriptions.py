@@ -17,7 +17,8 @@ from rclpy.serialization import deserialize_message
 
 from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.errors import ContactDynamicsError
-from contact_dynamics.nodes.state_sources import state_sources
+from contact_dynamics.nodes.offered_qos import OfferedQosWatch
+from contact_dynamics.nodes.state_sources import no_message
 from contact_dynamics.nodes.topic_faults import TopicFaults, TopicTraffic
 from contact_dynamics.questions.extent import check_believable
 from contact_dynamics.questions.uncertain_state import state_of
@@ -25,12 +26,11 @@ from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
 from contact_dynamics.recording.decoding import message_class
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from rclpy.node import Node
 
     from contact_dynamics.nodes.inbox import InboxNode, Taken
-    from contact_dynamics.nodes.parameters import ServerParameters
     from contact_dynamics.nodes.state_sources import BodyReader, StateSource
     from contact_dynamics.questions.state_store import StateStore
     from contact_dynamics.questions.uncertain_state import KnownState
@@ -43,29 +43,31 @@ LATCHED_QOS = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL
 """The queue of transforms that stand still, which also takes those that were told before."""
 
 _EXAMINE_EVERY_NS: Final = NS_PER_S // 2
+_ANEW_AFTER_S: Final = 5.0  # that a topic is silent although somebody publishes
+_ANEW_AT_LEAST_EVERY_S: Final = 600.0
 _FRAME_AT: Final = 12  # bytes before a header's frame: encapsulation and stamp
 
 
 def subscribe_to_states(
     node: InboxNode,
-    parameters: ServerParameters,
+    sources: Iterable[StateSource],
     *,
     states: StateStore,
     record: Callable[[str, Taken], object],
+    offered: Callable[[str, list[Any]], object],
     faults: TopicFaults,
 ) -> list[StateTopic]:
-    """Subscribe to the states of all bodies, record every message, keep every state.
+    """Subscribe to all sources of states, record every message, keep every state.
 
     A message that is no state or no believable one, or whose stamp is in the future, is recorded, and counted
-    in a warning, and not kept.
+    in a warning, and not kept. ``offered`` is told what the publishers of a topic offer.
 
     Raises:
-        ConfigurationError: a source is configured that there is not.
         InvalidFieldError: the package of a source's messages is not installed.
     """
     return [
-        StateTopic(node, source, states=states, record=record, faults=faults)
-        for source in state_sources(parameters)
+        StateTopic(node, source, states=states, record=record, offered=offered, faults=faults)
+        for source in sources
     ]
 
 
@@ -82,6 +84,7 @@ class StateTopic:
     Attributes:
         name: Its full name.
         type_name: The type of its messages.
+        source: What makes states of its messages. It may be replaced by another source of the same topic.
         traffic: What came on it.
     """
 
@@ -92,11 +95,12 @@ class StateTopic:
         *,
         states: StateStore,
         record: Callable[[str, Taken], object],
+        offered: Callable[[str, list[Any]], object],
         faults: TopicFaults,
     ) -> None:
         """Subscribe; see `subscribe_to_states`."""
         self._node = node
-        self._source = source
+        self.source = source
         self._states = states
         self._record = record
         self._faults = faults
@@ -104,35 +108,55 @@ class StateTopic:
         self._length = 0  # the last messages that were examined have it
         self._frame = b""  # and they have this frame
         self._examined_ns = 0
+        self._anew_after = _ANEW_AFTER_S
         qos = LATCHED_QOS if source.is_latched else STATE_QOS
         self._subscription = node.subscribe(
             self._msg_type, source.topic, self._receive, qos, may_override=True
         )
         self.name: str = self._subscription.topic_name
         self.type_name = source.type_name
+        self._publishers = OfferedQosWatch(node, self.name, offered)
         self.traffic = TopicTraffic(topic=self.name, faults=faults, one_publisher=source.is_whole)
 
-    def look(self) -> None:
-        """Look, once a second, at who publishes and for how long nothing came."""
-        self.traffic.look(time.time_ns(), self._subscription.get_publisher_count())
+    def look(self, *, awake_for: float) -> None:
+        """Look, once a second, at who publishes and for how long nothing came.
+
+        Where somebody publishes and nothing comes, subscribe anew, after longer and longer times. A process
+        that stood still does not do so at once. What was sent meanwhile still waits, or its publisher sends
+        it again within the 3 s of a heartbeat of DDS, and a new subscription would have neither.
+
+        Args:
+            awake_for: s, for how long this process has run without standing still.
+        """
+        publishers = self._publishers.look()
+        self.traffic.look(time.time_ns(), publishers, awake_for=awake_for)
+        if not (self.traffic.is_silent and publishers):
+            self._anew_after = _ANEW_AFTER_S
+        elif self.traffic.silence > self._anew_after:
+            self._anew_after = min(2.0 * self._anew_after, self.traffic.silence + _ANEW_AT_LEAST_EVERY_S)
+            text = f"{publishers} publish and nothing comes, so it is subscribed to anew"
+            self._faults.add(self.name, "subscribed anew", 1, text)
+            self._subscription = self._node.subscribe_anew(self._subscription)
 
     def _receive(self, taken: Taken) -> None:
+        if not self.traffic.received:
+            self._publishers.look()
         self._record(self.name, taken)
         self.traffic.note(taken)
         data, clock = taken.data, self._node.get_clock()
         now_ns = present_ns(self._node) if clock.ros_time_is_active else taken.received_ns
         try:
-            if self._source.is_whole and self._is_as_before(taken):
+            if self.source.is_whole and self._is_as_before(taken):
                 stamp_ns = leading_stamp_ns(data)
-                for reader in self._source.readers:
+                for reader in self.source.readers:
                     read = partial(self._read, reader, data)
                     self._states.add_unread(reader.body_name, stamp_ns, read, now_ns=now_ns)
                 return
             msg = deserialize_message(data, self._msg_type)
         except (ContactDynamicsError, RuntimeError) as error:  # bytes that are no message raise the latter
-            self._faults.refuse(self.name, error)
+            self._refuse(error, data, *self.source.readers)
             return
-        for reader in self._source.readers:
+        for reader in self.source.readers:
             self._keep(reader, msg, now_ns=now_ns, taken=taken)
 
     def _keep(self, reader: BodyReader, msg: object, *, now_ns: int | None, taken: Taken) -> None:
@@ -145,7 +169,7 @@ class StateTopic:
                 self._examined_ns, self._length = taken.received_ns, len(taken.data)
                 self._frame = _leading_frame(taken.data)
         except ContactDynamicsError as error:
-            self._faults.refuse(self.name, error)
+            self._refuse(error, taken.data, reader)
 
     def _is_as_before(self, taken: Taken) -> bool:
         """Tell whether a message looks like the one that was examined a moment ago."""
@@ -163,9 +187,23 @@ class StateTopic:
             if state is not None:
                 check_believable(state_of(state))
         except (ContactDynamicsError, RuntimeError) as error:  # bytes that are no message raise the latter
-            self._faults.refuse(self.name, error)
+            self._refuse(error, data, reader, was_kept=True)
             return None
         return state
+
+    def _refuse(
+        self,
+        error: ContactDynamicsError | RuntimeError,
+        data: bytes,
+        *readers: BodyReader,
+        was_kept: bool = False,
+    ) -> None:
+        """Tell of a message that is refused, and note it for those who ask about the bodies."""
+        self._faults.refuse(self.name, error)
+        is_message = isinstance(error, ContactDynamicsError)
+        reason = error if is_message else no_message(data, self.type_name)
+        for reader in readers:
+            self._states.refuse(reader.body_name, reason, was_kept=was_kept)
 
 
 def _leading_frame(data: bytes) -> bytes:

@@ -9,31 +9,49 @@ from __future__ import annotations
 import time
 from collections import Counter
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from contact_dynamics.constants import seconds_between
+from msg_adapters.status import short
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from contact_dynamics.nodes.inbox import Taken
 
-TELL_EVERY_S: Final = 5.0
-"""s. Time between two warnings of one kind about one topic. Another topic or another fault has a warning at
-once."""
 
-SILENT_AFTER_S: Final = 2.0
-"""s without a message, from which on a topic that was heard of counts as silent."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FaultLimits:
+    """When faults are told.
+
+    Attributes:
+        warn_every: s. Time between two warnings of one kind about one topic. Another topic or another fault
+            has a warning at once.
+        silent_after: s without a message, from which on a topic that was heard of counts as silent.
+    """
+
+    warn_every: float = 5.0
+    silent_after: float = 2.0
 
 
 class TopicFaults:
     """Counts faults by topic and kind, and warns of them.
 
     The throttle of ROS has one clock for each line of code, so one topic's fault would hide all others.
+
+    Attributes:
+        limits: When faults are told. They may be replaced.
     """
 
-    def __init__(self, tell: Callable[[str], object], *, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self,
+        tell: Callable[[str], object],
+        *,
+        limits: FaultLimits | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
         """Count from zero. ``tell`` takes a warning, ``clock`` returns seconds."""
+        self.limits = limits or FaultLimits()
         self._tell = tell
         self._clock = clock
         self._counts: Counter[tuple[str, str]] = Counter()
@@ -47,7 +65,7 @@ class TopicFaults:
     def refuse(self, topic: str, error: Exception) -> None:
         """Count a message that was refused, and warn with the reason, unless it has just warned of it."""
         kind = f"{type(error).__name__} {getattr(error, 'field', '')}".rstrip()
-        self.add(topic, kind, 1, f"message ignored: {error}")
+        self.add(topic, kind, 1, f"message ignored: {short(str(error))}")
 
     def add(self, topic: str, kind: str, count: int, text: str) -> None:
         """Count faults of a kind, and warn of them, unless it has just warned of it."""
@@ -55,7 +73,7 @@ class TopicFaults:
         self._counts[key] += count
         now = self._clock()
         told = self._told.get(key)
-        if told is not None and now - told < TELL_EVERY_S:
+        if told is not None and now - told < self.limits.warn_every:
             return
         self._told[key] = now
         self._tell(f"{topic}: {text} ({self._counts[key]} such so far)")
@@ -72,6 +90,7 @@ class TopicTraffic:
         lost: How many did not, as the numbers of those that came tell.
         age: s, since the newest message, at the last look. None while none came.
         rate: Hz, of the messages between the last two looks.
+        silence: s, for how long nothing came at the last look although the process could have heard it.
         is_silent: Whether nothing came for a while at the last look, where something had come before.
     """
 
@@ -82,6 +101,7 @@ class TopicTraffic:
     lost: int = 0
     age: float | None = None
     rate: float = 0.0
+    silence: float = 0.0
     is_silent: bool = False
     _newest_ns: int = 0
     _number: int | None = None
@@ -104,8 +124,14 @@ class TopicTraffic:
             self.lost += missing
             self.faults.add(self.topic, "lost", missing, "messages were lost before they could be taken")
 
-    def look(self, now_ns: int, publishers: int) -> None:
-        """Look, once a second, at who publishes and for how long nothing came."""
+    def look(self, now_ns: int, publishers: int, *, awake_for: float) -> None:
+        """Look, once a second, at who publishes and for how long nothing came.
+
+        Args:
+            now_ns: the present time, ns since the epoch.
+            publishers: how many publish on the topic.
+            awake_for: s, for how long this process has run without standing still.
+        """
         self._is_steady = publishers <= 1
         if self.one_publisher and publishers > 1:
             self.faults.add(
@@ -118,6 +144,7 @@ class TopicTraffic:
         )
         self._looked_ns, self._received_before = now_ns, self.received
         self.age = seconds_between(self._newest_ns, now_ns)
-        was_silent, self.is_silent = self.is_silent, self.age > SILENT_AFTER_S
+        self.silence = min(self.age, awake_for)
+        was_silent, self.is_silent = self.is_silent, self.silence > self.faults.limits.silent_after
         if self.is_silent and not was_silent:
-            self.faults.add(self.topic, "silent", 1, f"nothing came for {self.age:.1f} s")
+            self.faults.add(self.topic, "silent", 1, f"nothing came for {self.silence:.1f} s")

@@ -16,33 +16,50 @@ import traceback
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rcl_interfaces.msg import ParameterEvent
 from rclpy.clock import Clock, ClockType
 from rclpy.qos import QoSProfile
 from service_msgs.msg import ServiceEventInfo
 
-from contact_dynamics.diagrams.words import CONTACT_MODE, IMPACT, TUMBLING
-from contact_dynamics.nodes.arguments import visualizer_parser
+from contact_dynamics.diagrams.words import CONTACT_MODE, IMPACT, MANY_IMPACTS, MANY_TUMBLINGS, TOSS, TUMBLING
+from contact_dynamics.nodes import parameter_event
+from contact_dynamics.nodes.arguments import VISUALIZER_PARAMETERS, visualizer_parser
+from contact_dynamics.nodes.given_parameters import GivenParameters
 from contact_dynamics.nodes.inbox import InboxNode
-from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_unknown_parameters
-from contact_dynamics.nodes.parameters import ConfigurationError, read_server_parameters
+from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_lost_sections
+from contact_dynamics.nodes.parameter_event import changed_values
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
+from contact_dynamics.nodes.parameters import read_server_parameters
+from contact_dynamics.nodes.reconfiguring import bodies_read_otherwise, check_change
+from contact_dynamics.nodes.run_record import plain
 from contact_dynamics.nodes.running import run_node
+from contact_dynamics.nodes.state_sources import state_sources
 from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
 from contact_dynamics.nodes.topic_faults import TopicFaults
+from contact_dynamics.nodes.visualizer_parameters import read_visualizer_parameters
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.viewing.picture import Picture
-from contact_dynamics.viewing.sinks import DEFAULT_PORT, OpenRecording, Sinks, ViewerMode, raise_errors
-from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from contact_dynamics.viewing.sinks import OpenRecording, ViewerMode, raise_errors
+from contact_dynamics_interfaces.srv import (
+    PredictContactMode,
+    PredictImpact,
+    PredictImpactBatch,
+    PredictToss,
+    PredictTumbling,
+    PredictTumblingBatch,
+)
+from msg_adapters.batches import impacts_answer_from_msg, tumblings_answer_from_msg
 from msg_adapters.contact_mode import contact_mode_answer_from_msg
 from msg_adapters.impact import impact_answer_from_msg
 from msg_adapters.stamps import stamp_ns_from_msg
+from msg_adapters.toss import toss_answer_from_msg
+from msg_adapters.transforms import TransformTree
 from msg_adapters.tumbling import tumbling_answer_from_msg
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
-    from rclpy.node import Node
     from rclpy.subscription import Subscription
 
     from contact_dynamics.questions.uncertain_state import KnownState
@@ -82,16 +99,35 @@ _SHOWN: Final = (
         contact_mode_answer_from_msg,
         Picture.show_contact_modes,
     ),
+    _Shown(PredictToss, "predict_toss", TOSS, toss_answer_from_msg, Picture.show_toss),
+    _Shown(
+        PredictTumblingBatch,
+        "predict_tumbling_batch",
+        MANY_TUMBLINGS,
+        tumblings_answer_from_msg,
+        Picture.show_many,
+    ),
+    _Shown(
+        PredictImpactBatch, "predict_impact_batch", MANY_IMPACTS, impacts_answer_from_msg, Picture.show_many
+    ),
 )
 
 
 class Visualizer(InboxNode):
     """The node `contact_dynamics_visualizer`."""
 
-    def __init__(self, *, strict: bool = False, server_wait: float = 0.0, **node_options: Any) -> None:
+    def __init__(
+        self,
+        *,
+        ros_arguments: Sequence[str] = (),
+        strict: bool = False,
+        server_wait: float = 0.0,
+        **node_options: Any,
+    ) -> None:
         """Read the parameters, open the sinks, draw the scene and listen.
 
         Args:
+            ros_arguments: ROS's arguments, as `rclpy.init` was given them.
             strict: let errors in drawing raise, instead of telling each kind once.
             server_wait: s, how long to wait for the server before listening to states.
             node_options: options of `rclpy.node.Node`.
@@ -103,22 +139,35 @@ class Visualizer(InboxNode):
         """
         super().__init__(NODE_NAME, **node_options)
         raise_errors()
+        refuse_lost_sections(self, ros_arguments)
         self._strict = strict
         self._told: set[str] = set()
-        parameters = read_server_parameters(NodeParameters(self))
-        self._world = parameters.world
-        server, surface_side, self._sinks = _read_own_parameters(self)
-        refuse_unknown_parameters(self)
+        self._source = NodeParameters(
+            self, ros_arguments=ros_arguments, also_known=VISUALIZER_PARAMETERS, read_only=True
+        )
+        self._configuration = parameters = read_server_parameters(self._source)
+        own = read_visualizer_parameters(self._source)
+        server, self._sinks = own.server, own.sinks
         self._recording = OpenRecording(self._sinks, on_problem=self.get_logger().warning)
-        self._picture = Picture(self._recording.stream, self._world, surface_side=surface_side)
+        self._picture = Picture(
+            self._recording.stream,
+            parameters.world,
+            surface_side=own.surface_side,
+            predictions=own.predictions,
+        )
         self._states = _WaitingStates()
+        self._server = server
+        self._values = {name: plain(parameter.value) for name, parameter in self._parameters.items()}
+        self.create_subscription(ParameterEvent, parameter_event.TOPIC, self._follow, EVENT_QOS)
         events = [self._listen(shown, f"{server}/{shown.name}") for shown in _SHOWN]
         self._wait_for_server(server, events, server_wait)
-        subscribe_to_states(
+        self._static = TransformTree()
+        self._topics = subscribe_to_states(
             self,
-            parameters,
+            state_sources(parameters, static=self._static),
             states=self._states,
             record=lambda _topic, _taken: None,
+            offered=lambda _topic, _offers: None,
             faults=TopicFaults(self.get_logger().warning),
         )
         self.create_timer(DRAW_PERIOD_S, self.draw_states, clock=Clock(clock_type=ClockType.STEADY_TIME))
@@ -129,6 +178,7 @@ class Visualizer(InboxNode):
         self.take_messages()
         for body_name, states in self._states.take().items():
             self._guarded("states", partial(self._picture.add_states, body_name, states))
+        self._guarded("files and viewers", self._recording.tend)
 
     def close(self) -> bool:
         """Draw what is left and close the sinks. Return whether they took everything."""
@@ -164,11 +214,33 @@ class Visualizer(InboxNode):
             return
         shown.show(
             self._picture,
-            shown.from_msg(response, world=self._world),
+            shown.from_msg(response, world=self._configuration.world),
             now_ns=now_ns,
             remark=response.message,
             computation_time=response.computation_time,
         )
+
+    def _follow(self, event: ParameterEvent) -> None:
+        """Draw what the server is configured with from now on."""
+        if event.node != self._server:
+            return
+        self._values.update(changed_values(event))
+        given = GivenParameters(self._values, also_known=self._values, resolve=self._source.resolved_topic)
+        try:
+            before, after = self._configuration, read_server_parameters(given)
+            check_change(before, after)
+        except ConfigurationError:
+            return  # parameters of a body come one by one, before that which lists it
+        self.draw_states()
+        self._configuration = after
+        if bodies_read_otherwise(before, after):
+            sources = {each.full_name: each for each in state_sources(after, static=self._static)}
+            for topic in self._topics:
+                topic.source = sources[topic.name]
+        change = partial(self._picture.change_world, after.world, stamp_ns=stamp_ns_from_msg(event.stamp))
+        self._guarded("a change of the world", change)
+        names = ", ".join(each.name for each in (*after.world.bodies, *after.world.surfaces))
+        self.get_logger().info(f"draws what {self._server} is configured with now: {names}")
 
     def _guarded(self, kind: str, draw: Callable[[], None]) -> None:
         try:
@@ -210,49 +282,10 @@ class _WaitingStates(StateStore):
         return {name: sorted(states, key=lambda state: state.stamp_ns) for name, states in waiting.items()}
 
 
-def _read_own_parameters(node: Node) -> tuple[str, float, Sinks]:
-    def read(name: str, default: Any, description: str, **ranges: Any) -> Any:
-        try:
-            descriptor = ParameterDescriptor(description=description, read_only=True, **ranges)
-            return node.declare_parameter(name, default, descriptor).value
-        except Exception as error:  # noqa: BLE001  rclpy raises several unrelated types for a wrong type or range
-            message = f"{name}: {error} ({description})"
-            raise ConfigurationError(message) from None
-
-    server = read("server", "/contact_dynamics", "Full name of the server node whose answers are drawn.")
-    side = read(
-        "surface_side",
-        2.0,
-        "Side of the square that a surface is drawn as, m.",
-        floating_point_range=[FloatingPointRange(from_value=1e-3, to_value=1e4)],
-    )
-    rrd_path = read("rrd_path", "", "File to draw into, which is replaced. Empty: none.")
-    spawn = read("spawn", False, "Start rerun's viewer, unless one listens at the port already.")  # noqa: FBT003
-    serve = read("serve", False, "Serve the picture at the port, for viewers that connect.")  # noqa: FBT003
-    url = read(
-        "connect", "", "URL of a viewer to draw in, as rerun+http://127.0.0.1:9876/proxy. Empty: none."
-    )
-    port = read(
-        "port",
-        DEFAULT_PORT,
-        "Port of this machine that the viewer which is started listens at, or that the picture is served at.",
-        integer_range=[IntegerRange(from_value=1, to_value=65535)],
-    )
-    chosen = [name for name, on in (("spawn", spawn), ("serve", serve), ("connect", bool(url))) if on]
-    if len(chosen) > 1:
-        message = f"{' and '.join(chosen)}: found {len(chosen)} ways to a viewer, allowed is one"
-        raise ConfigurationError(message)
-    if not chosen and not rrd_path:
-        message = "rrd_path, spawn, serve, connect: found none, needed is somewhere to draw to"
-        raise ConfigurationError(message)
-    viewer = ViewerMode(chosen[0]) if chosen else ViewerMode.NONE
-    return server, side, Sinks(rrd_path=rrd_path, viewer=viewer, port=port, url=url)
-
-
 def main(arguments: list[str]) -> int:
     """Run the visualizer until it is told to stop; return the exit code."""
     exit_code = run_node(
-        lambda: Visualizer(server_wait=SERVER_WAIT_S),
+        lambda ros_arguments: Visualizer(ros_arguments=ros_arguments, server_wait=SERVER_WAIT_S),
         verb="visualizer",
         parser=visualizer_parser(),
         arguments=arguments,

@@ -11,16 +11,11 @@ import pytest
 from nav_msgs.msg import Odometry
 
 from changed_requests import put
+from contact_dynamics.demo.ros_domain import claim_domain
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from running_server import Client, server_and_client
 
 SERVICES = (PredictContactMode, PredictImpact, PredictTumbling)
-
-
-@pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with server_and_client(Path(tmp_path_factory.mktemp("log"))) as client:
-        yield client
 
 
 def good(service: Any) -> Any:
@@ -136,7 +131,7 @@ CASES = [
         PredictContactMode,
         put("friction_facets", [2]),
         "INVALID_FIELD",
-        "friction_facets: found 2, allowed is none",
+        "friction_facets: found 2, allowed is a whole number >= 3 and <= 32",
     ),
     (PredictContactMode, put("friction_facets", [33]), "INVALID_FIELD", "friction_facets: found 33"),
     (PredictContactMode, margin_length, "INVALID_FIELD", "margin_length: found -1.0"),
@@ -264,14 +259,33 @@ def test_absurd_sampling(client: Client, change: Callable[[Any], None], code: st
 
 
 @pytest.mark.parametrize("service", SERVICES)
+def test_what_was_found_is_quoted_in_part_if_it_is_long(client: Client, service: Any) -> None:
+    request = good(service)
+    request.state.header.frame_id = "x" * 1_000_000
+    response = client.ask(request)
+    assert response.status == response.FRAME_MISMATCH
+    assert response.message.startswith("state.header.frame_id: found 'xxx")
+    assert len(response.message) < 2100
+
+
+@pytest.mark.parametrize("service", SERVICES)
 def test_no_state_published_yet(client: Client, service: Any) -> None:
     answer = client.ask(service.Request(body_name="brick"))
     assert answer.status == answer.NO_STATE
     assert "state of 'brick': none was published yet" in answer.message
 
 
-def test_states_that_are_stale_or_make_no_sense(client: Client) -> None:
+@pytest.fixture
+def client_alone(tmp_path: Path) -> Iterator[Client]:
+    """A client of a server that no other test asks, so that states may be published."""
+    domain_id = claim_domain()
+    with server_and_client(tmp_path, domain_id=domain_id) as client:
+        yield client
+
+
+def test_states_that_are_stale_or_make_no_sense(client_alone: Client) -> None:
     """A stale state is refused with its age; one with a NaN or in another frame, or bytes, are not taken."""
+    client = client_alone
     publisher = client.publisher(Odometry, "/brick/odometry")
     nonsense = Odometry()
     nonsense.header.frame_id = "world"

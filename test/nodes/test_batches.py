@@ -2,32 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-from contact_dynamics_interfaces.msg import BodyStates
+from contact_dynamics_interfaces.msg import BodyState, BodyStates
 from contact_dynamics_interfaces.srv import (
+    PredictContactMode,
+    PredictContactModeBatch,
     PredictImpact,
     PredictImpactBatch,
     PredictTumbling,
     PredictTumblingBatch,
 )
-from running_server import Client, server_and_client
+from running_server import Client
 
 COUNT = 30
 DRAW = np.random.default_rng(30)
 POSITIONS = DRAW.normal(size=(COUNT, 3))
 VELOCITIES = DRAW.normal(size=(COUNT, 3)) - [0.0, 0.0, 1.0]
 SPINS = 5.0 * DRAW.normal(size=(COUNT, 3))
-
-
-@pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with server_and_client(Path(tmp_path_factory.mktemp("log"))) as client:
-        yield client
 
 
 def states() -> BodyStates:
@@ -97,6 +90,67 @@ def test_many_tumblings_have_the_answers_of_single_calls(client: Client) -> None
         np.testing.assert_allclose(rows(answer.states.positions)[i], alone.positions, rtol=0.0, atol=1e-14)
         turned = rows(answer.states.orientations, 4)[i] @ np.array(alone.orientations)
         assert abs(turned) == pytest.approx(1.0, abs=1e-14)
+
+
+def pushed_brick(pushes: list[float]) -> PredictContactModeBatch.Request:
+    """The brick lies flat and is pushed along x by each of these forces, N."""
+    request = PredictContactModeBatch.Request(
+        body_name="brick",
+        state_source=PredictContactModeBatch.Request.STATE_EXPLICIT,
+        forces=[number for push in pushes for number in (push, 0.0, 0.0)],
+        want_margins=True,
+        problem=PredictContactModeBatch.Request.PLANAR,
+    )
+    request.state.pose.position.z, request.plane_normal.y = 0.025, -1.0
+    return request
+
+
+@pytest.mark.parametrize("count", [5, 40])  # the server answers the first itself, a worker the second
+def test_many_wrenches_have_the_modes_of_single_calls(client: Client, count: int) -> None:
+    pushes = np.linspace(0.0, 4.0, count).tolist()
+    answer = client.ask(pushed_brick(pushes))
+    assert answer.status == answer.OK, answer.message
+    assert list(answer.mode_counts) == [1] * count
+    assert set(answer.verdicts) == {answer.UNIQUE}
+    for i in range(0, count, max(1, count // 4)):
+        single = PredictContactMode.Request(body_name="brick", want_margins=True, problem=1)
+        single.state_source, single.state = answer_state(pushes[i], single)
+        (mode,) = client.ask(single).modes
+        assert answer.modes[i] == mode.mode
+        assert answer.margins[i] == mode.margin
+        assert rows(answer.linear_accelerations)[i].tolist() == list(mode.linear_acceleration)
+    # Friction 0.3 holds 1.177 N of 0.4 kg.
+    slides = [push for push, mode in zip(pushes, answer.modes, strict=True) if mode == "rrrr"]
+    assert min(slides) == min(push for push in pushes if push > 0.3 * 0.4 * 9.80665)
+
+
+def answer_state(push: float, single: PredictContactMode.Request) -> tuple[int, BodyState]:
+    """The state of the brick, in a single request that gets the wrench and the plane too."""
+    single.applied_wrench.force.x, single.plane_normal.y = push, -1.0
+    single.state.pose.position.z = 0.025
+    return single.STATE_EXPLICIT, single.state
+
+
+def test_many_sets_of_contacts_go_in_one_call(client: Client) -> None:
+    """It tips over a foot to the left of its weight or to the right, and stays on both."""
+    request = pushed_brick([0.0])
+    request.contact_source = request.CONTACTS_EXPLICIT
+    left, right = [-0.05, 0.0, 0.0], [0.05, 0.0, 0.0]
+    request.contacts.positions = [*left, *right, *left, *right]
+    request.contacts.normals = [0.0, 0.0, 1.0] * 4
+    request.contacts.frictions, request.contacts.restitutions = [1.0] * 4, [0.0] * 4
+    request.contact_counts = [1, 1, 2]
+    answer = client.ask(request)
+    assert answer.status == answer.OK, answer.message
+    assert list(answer.modes) == ["f", "f", "ff"]
+    turns = rows(answer.angular_accelerations)[:, 1]
+    assert turns[0] == -turns[1] != 0.0
+    assert abs(turns[2]) < 1e-9
+    assert list(answer.contact_counts) == [1, 1, 2]
+    request.contact_counts = [1, 1]
+    refused = client.ask(request)
+    assert refused.status == refused.INVALID_FIELD
+    assert refused.message.startswith("contact_counts: found (1, 1), allowed is numbers >= 1 whose sum is 4")
 
 
 def test_a_row_that_is_not_allowed_is_named(client: Client) -> None:

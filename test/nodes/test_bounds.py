@@ -33,14 +33,6 @@ def fast_spin() -> Any:
     return request
 
 
-def tiny_steps() -> Any:
-    request = explicit(PredictImpact)
-    request.state.linear_velocity.x, request.state.linear_velocity.z = 0.5, -0.1
-    request.state.angular_velocity.y = 0.3
-    request.several_contacts_law, request.hold_step = request.SEQUENTIAL_IN_TIME, 1e-6
-    return request
-
-
 def thousand_contacts() -> Any:
     request = explicit(PredictImpact)
     request.state.linear_velocity.x, request.state.linear_velocity.z = 1.0, -1.0
@@ -52,13 +44,6 @@ def thousand_contacts() -> Any:
     request.contacts.positions = points.ravel().tolist()
     request.contacts.normals = [0.0, 0.0, 1.0] * 1000
     request.contacts.frictions, request.contacts.restitutions = [0.3] * 1000, [0.5] * 1000
-    return request
-
-
-def point_far_away() -> Any:
-    request = explicit(PredictTumbling)
-    request.state.pose.position.z, request.state.angular_velocity.z = 1.0, 3.0
-    request.sampling, request.plane_normal.z, request.body_point.x = request.UNTIL_PLANE, 1.0, 1e16
     return request
 
 
@@ -83,9 +68,7 @@ def explicit(service: Any) -> Any:
     ("make", "words"),
     [
         (fast_spin, "horizon: found more than 50000 steps of the search"),
-        (tiny_steps, "strike_window: found more than 50000 steps of the search"),
         (thousand_contacts, "contacts: found 1000 contacts at once"),
-        (point_far_away, "duration: found more than 50000 steps of the search"),
         (carried_under_strong_drag, "times: found 10 s, in which neighbours"),
     ],
 )

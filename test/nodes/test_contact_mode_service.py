@@ -3,25 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from contact_dynamics_interfaces.srv import PredictContactMode
-from running_server import Client, server_and_client
+from running_server import Client
 
 SLOPE = math.radians(20.0)
 NORMAL = np.array([-math.sin(SLOPE), 0.0, math.cos(SLOPE)])
 UPHILL = np.array([math.cos(SLOPE), 0.0, math.sin(SLOPE)])
 MASS, WIDTH, HEIGHT, G = 2.0, 0.4, 0.2, 9.80665
-
-
-@pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with server_and_client(Path(tmp_path_factory.mktemp("log"))) as client:
-        yield client
 
 
 def block_on_incline(mu: float) -> PredictContactMode.Request:

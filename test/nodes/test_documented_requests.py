@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,16 +11,19 @@ import yaml
 from contact_dynamics.contact_modes import ModeVerdict
 from contact_dynamics.impact import ImpactOutcome, SequenceEnd
 from contact_dynamics.motion.integrated import Method
+from contact_dynamics.toss import TossEnd
 from contact_dynamics.tumbling import Regime
 from contact_dynamics_interfaces.msg import Impact
 from contact_dynamics_interfaces.srv import (
     PredictContactMode,
+    PredictContactModeBatch,
     PredictImpact,
     PredictImpactBatch,
+    PredictToss,
     PredictTumbling,
     PredictTumblingBatch,
 )
-from running_server import ROOT, SERVICES, Client, server_and_client
+from running_server import ROOT, SERVICES, Client
 
 README = (ROOT / "contact_dynamics_interfaces" / "README.md").read_text(encoding="utf-8")
 CALL = re.compile(
@@ -30,18 +31,14 @@ CALL = re.compile(
 )
 EXAMPLES = CALL.findall(README)
 COUNTS = {
-    PredictContactMode: 7,
+    PredictContactMode: 8,
     PredictImpact: 6,
     PredictTumbling: 4,
+    PredictToss: 2,
     PredictImpactBatch: 0,
     PredictTumblingBatch: 1,
+    PredictContactModeBatch: 1,
 }
-
-
-@pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with server_and_client(Path(tmp_path_factory.mktemp("log"))) as client:
-        yield client
 
 
 def fill(msg: Any, fields: dict[str, Any]) -> Any:
@@ -75,6 +72,7 @@ def contact_mode_told(request: Any, answer: Any) -> str:
         "want_wrenches": answer.wrench_sets,
         "want_statics": answer.equilibrium,
         "want_impact": answer.impact,
+        "want_geometry_margins": answer.geometry_margins,
         "want_margins": answer.modes and answer.modes[0].margin == answer.modes[0].margin,
     }
     for field, found in asked_for.items():
@@ -117,11 +115,24 @@ def tumbling_told(request: Any, answer: Any) -> str:
     return said
 
 
+def toss_told(_request: Any, answer: Any) -> str:
+    toss = answer.toss
+    said = f"{TossEnd(toss.end).name} after {toss.end_time:.3f} on {' '.join(map(str, toss.resting_corners))}"
+    said += f": {numbers(toss.trajectory.positions[-3:])}"
+    for told in answer.distribution:
+        first = [branch for branch in told.branches if branch.strike == 1]
+        said += "; " + ", ".join(f"corner {branch.corner}" for branch in first)
+        said += f" at {told.strikes[0].time.mean[0]:.3f}"
+    return said
+
+
 TOLD = {
+    PredictToss: toss_told,
     PredictContactMode: contact_mode_told,
     PredictImpact: impact_told,
     PredictTumbling: tumbling_told,
     PredictTumblingBatch: lambda _request, answer: numbers(answer.states.positions),
+    PredictContactModeBatch: lambda _request, answer: " ".join(answer.modes),
 }
 
 

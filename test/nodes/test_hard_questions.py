@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import time
 from collections.abc import Iterator
@@ -13,9 +14,13 @@ from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 from running_server import PATIENCE_S, ROOT, Client, process
 
 DEADLINE_S = 0.4
-QUICKLY_S = 0.5  # far below what the hard questions would take, and far above what a busy machine takes
+QUICKLY_S = 2.0  # far below what the hard questions would take, and far above what a busy machine takes
+ENDS_S = 10.0  # a second on a quiet machine; to answer what waits would take a minute
 LEAVING = 200  # requests that a client leaves with
 ARGUMENTS = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", "-p", "log:=false")
+
+NAMESPACE = "/apart"  # the server of the fixture would answer what others are asked, too
+APART = ("-r", f"__ns:={NAMESPACE}")
 
 
 @pytest.fixture(scope="module")
@@ -65,6 +70,9 @@ def test_hard_questions_are_refused_in_time_and_quick_ones_are_answered_meanwhil
     assert sorted(trips)[len(trips) // 2] < QUICKLY_S
     late = next(each.result() for each in futures if each.result().status == codes.TIMEOUT)
     assert "no answer within 0.4 s" in late.message
+    assert late.message.endswith("(answer_deadline)")
+    busy = next(each.result() for each in futures if each.result().status == codes.BUSY)
+    assert busy.message.endswith("(workers and most_waiting)")
     assert late.computation_time < DEADLINE_S + QUICKLY_S
 
 
@@ -84,8 +92,8 @@ def test_a_client_that_leaves_with_requests_pending_freezes_nobody(client: Clien
 
 def test_a_server_that_a_busy_machine_stops_answers_all_the_same() -> None:
     """Stopped for 0.07 s while it sends, it once took its client for gone. Here a stop meets each moment."""
-    with process("server", *ARGUMENTS, ready="ready") as server:
-        client = Client()
+    with process("server", *ARGUMENTS, *APART, ready="ready") as server:
+        client = Client(NAMESPACE)
         try:
             long = quick()
             long.times = [0.0001 * i for i in range(20_000)]
@@ -107,8 +115,8 @@ def test_a_server_that_a_busy_machine_stops_answers_all_the_same() -> None:
 
 def test_answers_that_are_ready_while_the_server_ends_do_not_make_it_fail() -> None:
     arguments = ("-p", "answer_deadline:=3600.0", "-p", "workers:=2", "-p", "most_waiting:=1000")
-    with process("server", *ARGUMENTS, *arguments, ready="ready") as server:
-        client = Client()
+    with process("server", *ARGUMENTS, *APART, *arguments, ready="ready") as server:
+        client = Client(NAMESPACE)
         try:
             slowed = quick()
             slowed.linear_drag = 0.1
@@ -127,8 +135,8 @@ def test_answers_that_are_ready_while_the_server_ends_do_not_make_it_fail() -> N
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_the_server_ends_soon_whatever_is_being_computed(number: signal.Signals) -> None:
     arguments = ("-p", "answer_deadline:=3600.0", "-p", "workers:=1")
-    with process("server", *ARGUMENTS, *arguments, ready="ready") as server:
-        client = Client()
+    with process("server", *ARGUMENTS, *APART, *arguments, ready="ready") as server:
+        client = Client(NAMESPACE)
         try:
             for _ in range(8):
                 client.begin_to_ask(hard())
@@ -137,6 +145,20 @@ def test_the_server_ends_soon_whatever_is_being_computed(number: signal.Signals)
             begun = time.monotonic()
             server.send_signal(number)
             assert server.wait(PATIENCE_S) == 0
-            assert time.monotonic() - begun < 3.0  # a second on a quiet machine
+            assert time.monotonic() - begun < ENDS_S
         finally:
             client.close()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_to_all_processes_meets_workers_that_still_start_without_a_traceback(
+    number: signal.Signals,
+) -> None:
+    """Ctrl-C reaches all processes of a terminal, and a service manager stops all of a service."""
+    with process("server", *ARGUMENTS, *APART, ready="ready", group=True) as server:
+        # The workers need longer than the server.
+        os.killpg(server.pid, number)
+        assert server.stdout is not None
+        printed = server.stdout.read()
+        assert server.wait(PATIENCE_S) == 0
+        assert "Traceback" not in printed, printed

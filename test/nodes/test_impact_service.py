@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,15 +10,9 @@ from geometry_msgs.msg import Vector3
 
 from contact_dynamics_interfaces.msg import BodyState, Impact
 from contact_dynamics_interfaces.srv import PredictImpact
-from running_server import Client, server_and_client
+from running_server import Client
 
 G = 9.80665
-
-
-@pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with server_and_client(Path(tmp_path_factory.mktemp("log"))) as client:
-        yield client
 
 
 def numbers(vector: Vector3) -> list[float]:

@@ -33,8 +33,10 @@ from contact_dynamics.replay.verify import verify_log
 from contact_dynamics_interfaces.msg import BodyStates
 from contact_dynamics_interfaces.srv import (
     PredictContactMode,
+    PredictContactModeBatch,
     PredictImpact,
     PredictImpactBatch,
+    PredictToss,
     PredictTumbling,
     PredictTumblingBatch,
 )
@@ -109,7 +111,12 @@ def questions(number: int) -> list[Any]:
         [0.0, 0.0, 1.0],
         [0.3],
     )
+    modes = PredictContactModeBatch.Request(state_source=mode.STATE_EXPLICIT, body_name="brick")
+    modes.state, modes.forces = mode.state, [0.1 * number, 0.0, 0.0, 0.0, 0.0, 9.0]
+    toss = PredictToss.Request(body_name="brick", most_alternatives=[0], samples=5, seed=number)
+    toss.state_source, toss.state.pose.position.z = toss.STATE_EXPLICIT, 0.2
     return [
+        modes,
         tumbling,
         PredictImpact.Request(body_name="brick"),
         mode,
@@ -120,6 +127,10 @@ def questions(number: int) -> list[Any]:
         PredictContactMode.Request(body_name="brick"),  # in the air: no contact
         PredictImpactBatch.Request(body_name="brick", states=falling),  # no contact is given
         PredictTumblingBatch.Request(body_name="brick", states=falling, times=[float("inf")]),
+        PredictContactModeBatch.Request(body_name="brick"),  # in the air
+        # A worker starts for the first toss. No state that was published before would be new enough after it.
+        toss,
+        PredictToss.Request(body_name="brick", rate=[0.0]),
     ]
 
 
@@ -265,6 +276,7 @@ def test_the_run_record_has_every_parameter(session: Session) -> None:
     run = BagReader(session.folder).run()
     (node,) = yaml.safe_load((ROOT / "config" / "server.yaml").read_text(encoding="utf-8")).values()
     configured = {**node["ros__parameters"], "log_directory": str(session.folder.parent)}
+    configured["answer_deadline"] = PATIENCE_S  # as all servers of tests have it
     parameters = json.loads(run["parameters"])
     assert {name: parameters.get(name) for name in configured} == configured
     assert json.loads(run["state_topics"]) == {"body.brick.odometry_topic": STATES_TOPIC}
@@ -284,7 +296,8 @@ def test_asked_again_every_answer_is_equal_to_the_bit(session: Session) -> None:
 def test_metadata_counts_what_is_in_the_file(session: Session) -> None:
     metadata = yaml.safe_load((session.folder / "metadata.yaml").read_text(encoding="utf-8"))
     topics = metadata["rosbag2_bagfile_information"]["topics_with_message_count"]
-    assert {topic["topic_metadata"]["name"]: topic["message_count"] for topic in topics} == session.counts
+    counts = {topic["topic_metadata"]["name"]: topic["message_count"] for topic in topics}
+    assert counts == {"/parameter_events": 0} | session.counts  # nothing was changed
 
 
 def test_rerun_finds_nothing_to_complain_of(session: Session) -> None:
@@ -293,7 +306,7 @@ def test_rerun_finds_nothing_to_complain_of(session: Session) -> None:
         [str(rerun), "mcap", "check", "--full", str(session.path)],
         capture_output=True,
         text=True,
-        timeout=60.0,
+        timeout=300,
         check=False,
     )
     assert done.returncode == 0, done.stderr

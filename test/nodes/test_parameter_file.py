@@ -5,9 +5,18 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+import rclpy
+from rclpy.context import Context
+from rclpy.node import Node
 
+from contact_dynamics.nodes import server
+from contact_dynamics.nodes.given_parameters import GivenParameters
 from contact_dynamics.nodes.parameter_file import ParameterFile
-from contact_dynamics.nodes.parameters import ConfigurationError, read_server_parameters
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
+from contact_dynamics.nodes.parameter_sections import Section, check_sections, read_sections
+from contact_dynamics.nodes.parameters import read_server_parameters
+from contact_dynamics.nodes.state_sources import state_sources
+from msg_adapters.transforms import TransformTree
 
 ROOT = Path(__file__).parents[2]
 
@@ -43,8 +52,45 @@ def test_nested_names_are_joined_and_the_nodes_own_values_count_more(tmp_path: P
         ("/**:\n  ros__parameters:\n    horizon: true\n", "horizon: found True"),
         ("/**:\n  ros__parameters:\n    bodies: [cup]\n", "body.cup.mass: found None"),
         ("/**: 3\n", "found no ros__parameters"),
-        ("a: b\n", "found no parameters"),
+        ("a: b\n", "a: found no ros__parameters"),
+        ("[]\n", "found no parameters"),
+        (
+            "contact_dynamcis:\n  ros__parameters:\n    horizon: 1.0\n",
+            "found parameters of /contact_dynamcis alone",
+        ),
+        (
+            "a/contact_dynamics:\n  ros__parameters:\n    horizon: 1.0\n",
+            "Allowed are /** and /contact_dynamics",
+        ),
+        (
+            "/**:\n  ros__parameters:\n    horizn: 1.0\n",
+            "horizn: there is no such parameter; the nearest is horizon",
+        ),
+        (
+            "/**: {ros__parameters: {rate: 1.0}}\ncontact_dynamcis: {ros__parameters: {horizon: 1.0}}\n",
+            "the parameters of /contact_dynamcis do not apply to this node, whose name is /contact_dynamics",
+        ),
         ("a: [b\n", "no YAML"),
+        (
+            "/**:\n  ros__parameters:\n    horizon: 1.0\n    rate: 5.0\n    horizon: 2.0\n",
+            "server.yaml: horizon: found in lines 3 and 5, allowed is once",
+        ),
+        (
+            "/**:\n  ros__parameters:\n    body.cup.mass: 1.0\n    body: {cup: {mass: 2.0}}\n",
+            "body.cup.mass: found in lines 3 and 4",
+        ),
+        (
+            "/**:\n  ros__parameters:\n    body: {cup: {mass: 2.0}}\n    body: {cup: {sphere: [1.0]}}\n",
+            "body: found in lines 3 and 4",
+        ),
+        (
+            "/**: {ros__parameters: {a: 1}}\nx: {ros__parameters: {a: 1}}\nx: {ros__parameters: {b: 1}}\n",
+            "x: found in lines 2 and 3",
+        ),
+        (
+            '{"/**": {"ros__parameters": {"rate": 1.0,\n"rate": 2.0}}}',
+            "rate: found in lines 1 and 2",
+        ),
     ],
 )
 def test_what_is_wrong_is_named(tmp_path: Path, text: str, named: str) -> None:
@@ -58,3 +104,85 @@ def test_what_is_wrong_is_named(tmp_path: Path, text: str, named: str) -> None:
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(ConfigurationError, match=r"nowhere\.yaml: cannot be read"):
         ParameterFile(tmp_path / "nowhere.yaml")
+
+
+SECTIONS = """
+/**: {ros__parameters: {gravity: [0.0, 0.0, -1.0]}}
+/*: {ros__parameters: {horizon: 3.0}}
+/*/contact_dynamics: {ros__parameters: {rate: 7.0}}
+contact_dynamics: {ros__parameters: {state_timeout: 2.0}}
+left:
+  contact_dynamics: {ros__parameters: {state_history: 9.0}}
+"""
+
+
+@pytest.mark.parametrize("namespace", ["", "/left", "/left/arm"])
+def test_a_node_gets_the_sections_that_ros_gives_it(tmp_path: Path, namespace: str) -> None:
+    file = tmp_path / "server.yaml"
+    file.write_text(SECTIONS, encoding="utf-8")
+    context = Context()
+    rclpy.init(args=["--ros-args", "--params-file", str(file)], context=context)
+    node = Node("contact_dynamics", namespace=namespace, context=context)
+    given_by_ros = set(node._parameter_overrides)
+    node.destroy_node()
+    rclpy.shutdown(context=context)
+    sections = read_sections(file)
+    given = {
+        name for each in sections if each.is_for(f"{namespace}/contact_dynamics") for name in each.values
+    }
+    assert given == given_by_ros
+    assert check_sections(file, sections, f"{namespace}/contact_dynamics") == ""
+
+
+@pytest.mark.parametrize(
+    ("other", "is_told"),
+    [
+        ("contact_dynamcis", True),
+        ("contact_dynamics_", False),
+        ("contact_dynamics_2", False),
+        ("contact_dynamics_left", False),
+        ("contact_dynamic", True),
+        ("right/contact_dynamics", False),
+        ("contact_dynamics_visualizer", False),
+        ("controller_manager", False),
+    ],
+)
+def test_only_a_name_that_is_nearly_the_nodes_is_told(other: str, *, is_told: bool) -> None:
+    sections = [Section("/**", {}), Section(f"/{other}", {})]
+    told = check_sections(Path("stack.yaml"), sections, "/contact_dynamics")
+    assert (f"/{other}" in told) == is_told
+
+
+def test_what_others_have_twice_is_theirs(tmp_path: Path) -> None:
+    """A file of a whole stack: the names of sections differ, and the same parameter may be in several."""
+    file = tmp_path / "stack.yaml"
+    file.write_text(
+        "/**: {ros__parameters: {horizon: 1.0}}\ncontact_dynamics: {ros__parameters: {horizon: 3.0}}\n"
+        "controller: {ros__parameters: {gain: 1.0, gain: 2.0}}\n",
+        encoding="utf-8",
+    )
+    assert read_server_parameters(ParameterFile(file)).defaults.horizon == 3.0
+
+
+def test_a_server_refuses_a_file_with_a_parameter_twice(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """ROS reads the file by itself, and would take the last."""
+    file = tmp_path / "server.yaml"
+    file.write_text("/**:\n  ros__parameters:\n    log: false\n    log: true\n", encoding="utf-8")
+    assert server.main(["--params-file", str(file), "--ros-args", "-p", f"log_directory:={tmp_path}"]) == 2
+    assert f"{file}: log: found in lines 3 and 4, allowed is once" in capfd.readouterr().err
+    assert not list(tmp_path.glob("contact_dynamics_*"))
+
+
+def test_two_bodies_of_one_frame_on_one_topic_are_refused() -> None:
+    """Both would have the states of whichever the messages mean."""
+    known = {"mass": 1.0, "inertia": [1.0, 1.0, 1.0, 0.0, 0.0, 0.0], "frame": "cup", "source": "tf"}
+    values = {f"body.{body}.{name}": value for body in ("a", "b") for name, value in known.items()}
+    topics = {f"body.{body}.source_topics": ["/tf"] for body in ("a", "b")}
+    parameters = read_server_parameters(GivenParameters({"bodies": ["a", "b"], **values, **topics}))
+    with pytest.raises(
+        ConfigurationError,
+        match=r"body\.b\.frame: found 'cup', allowed is another frame than that of body\.a",
+    ):
+        state_sources(parameters, static=TransformTree())

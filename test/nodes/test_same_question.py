@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
@@ -33,7 +31,7 @@ from msg_adapters.contacts import contacts_to_msg
 from msg_adapters.geometry import mass_properties_to_msg
 from msg_adapters.impact import impact_answer_to_msg
 from msg_adapters.tumbling import tumbling_answer_to_msg
-from running_server import Client, server_and_client
+from running_server import Client
 
 # As config/server.yaml, which the server runs with, says.
 BRICK = Body(
@@ -69,12 +67,6 @@ FEET = ContactSet(
     restitutions=[0.2, 0.8],
     surfaces=("left", "right"),
 )
-
-
-@pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with server_and_client(Path(tmp_path_factory.mktemp("log"))) as client:
-        yield client
 
 
 def say_state(msg: Any, state: BodyState, body: Body) -> None:

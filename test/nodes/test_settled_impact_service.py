@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,17 +10,11 @@ import pytest
 
 from contact_dynamics_interfaces.msg import Impact
 from contact_dynamics_interfaces.srv import PredictContactMode
-from running_server import Client, server_and_client
+from running_server import Client
 
 THETA = math.radians(75.0)
 SHORT = 1e-6  # relative: what a wrench does to jammed contacts in the short time that it acts for
 PROBLEMS = ["PLANAR", "SPATIAL"]
-
-
-@pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with server_and_client(Path(tmp_path_factory.mktemp("log"))) as client:
-        yield client
 
 
 def asking(problem: str, points: list[tuple[float, float]], normals: list[float], mu: float) -> Any:

@@ -18,7 +18,7 @@ from geometry_msgs.msg import (
     TwistWithCovarianceStamped,
 )
 
-from contact_dynamics.nodes.parameters import ConfigurationError
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.nodes.state_sources import ENTRY_POINTS, adapter_of
 from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,15 +12,9 @@ from scipy.spatial.transform import Rotation
 
 from contact_dynamics_interfaces.msg import Poinsot
 from contact_dynamics_interfaces.srv import PredictTumbling
-from running_server import Client, server_and_client
+from running_server import Client
 
 G = 9.80665
-
-
-@pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with server_and_client(Path(tmp_path_factory.mktemp("log"))) as client:
-        yield client
 
 
 def spinning(

@@ -174,4 +174,4 @@ def test_a_window_that_holds_too_little_is_refused(client: Client) -> None:
     answer = client.ask(request)
     assert answer.status in {answer.INVALID_FIELD, answer.STALE_STATE}
     if answer.status == answer.INVALID_FIELD:
-        assert "fit window: found 1 states, allowed is at least 3" in answer.message
+        assert "fit_window: found 1 states, allowed is at least 3" in answer.message

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import select
 import warnings
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,7 @@ import pytest
 import rclpy
 from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from nav_msgs.msg import Odometry
+from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -23,7 +25,8 @@ with warnings.catch_warnings():
     from contact_dynamics.nodes.visualizer import Visualizer
     from viewing.drawn import STAMP_NS, Drawn, read_drawn
 
-from contact_dynamics.nodes.parameters import ConfigurationError
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
+from contact_dynamics.replay.run import main as replay
 from contact_dynamics_interfaces.msg import (
     BodyState,
     ContactMode,
@@ -35,7 +38,7 @@ from contact_dynamics_interfaces.msg import (
 )
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.stamps import stamp_to_msg
-from running_server import DOMAIN_ID, ROOT, process, server_and_client
+from running_server import DOMAIN_ID, PATIENCE_S, ROOT, process, server_and_client
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -85,6 +88,8 @@ class Bench:
         }
         self.received = 0
         for subscription in [*self.visualizer.subscriptions, *self.visualizer.inbox]:
+            if subscription.topic_name == "/parameter_events":
+                continue  # every node publishes there
             subscription.callback = self._counting(subscription.callback)
         publishers = [self.states, *self._events.values()]
         self.spin_until(lambda: all(publisher.get_subscription_count() == 1 for publisher in publishers))
@@ -283,10 +288,10 @@ def test_polhode_and_herpolhode_are_drawn_where_the_answer_carries_them(bench: B
     bench.states.publish(odometry(STAMP_NS + 8, 0.1))  # something has stopped it
     bench.spin_until(lambda: bench.received == 3)
     drawn = bench.drawn()
-    assert drawn.stamps("/poinsot/brick", "Clear:is_recursive") == [STAMP_NS + 8]
-    net = np.vstack(drawn.array("/poinsot/brick/body/ellipsoid", "LineStrips3D:strips"))
+    assert drawn.stamps("/poinsot/bodies/brick", "Clear:is_recursive") == [STAMP_NS + 8]
+    net = np.vstack(drawn.array("/poinsot/bodies/brick/body/ellipsoid", "LineStrips3D:strips"))
     np.testing.assert_allclose(net.max(axis=0), [10.0, 5.0, 4.0], rtol=1e-3)
-    assert drawn.stamps("/poinsot/brick/body", "Transform3D:quaternion") == [STAMP_NS, STAMP_NS + 7]
+    assert drawn.stamps("/poinsot/bodies/brick/body", "Transform3D:quaternion") == [STAMP_NS, STAMP_NS + 7]
 
 
 def test_flips_and_how_probable_outcomes_are_is_told(bench: Bench) -> None:
@@ -347,7 +352,7 @@ def contact_mode_answer(problem: int = SPATIAL, **fields: Any) -> PredictContact
 def test_contact_modes_are_drawn_with_every_mode_in_words(bench: Bench) -> None:
     bench.answer("predict_contact_mode", contact_mode_answer(equilibrium=2, jammed=1, wedged=1))
     drawn = bench.drawn()
-    assert drawn.last("/world/contacts/brick/points", "Points3D:labels") == ["f", "l|f"]
+    assert drawn.last("/world/contacts/brick/letters", "Points3D:labels") == ["f", "l|f"]
     assert drawn.last("/world/contacts/brick/mode_2/forces", "Arrows3D:labels") == ["2 N", "2 N"]
     text = drawn.last("/answers/newest", "TextDocument:text")[0]
     assert "does not choose: fl (0.25 N from ff), ff (0.25 N from ff); the contact" in text
@@ -376,7 +381,7 @@ def test_a_planar_answer_is_drawn_in_its_plane_with_the_map(bench: Bench) -> Non
         answer.wrench_sets.append(ModeWrenches(mode=mode, vertices=[0.0] * 6, half_spaces=a))
     bench.answer("predict_contact_mode", answer)
     drawn = bench.drawn()
-    assert drawn.last("/planar_modes/mode_1/title", "Points2D:labels") == ["fl (0.25 N from ff)"]
+    assert drawn.last("/planar_modes/mode_1/title", "LineStrips2D:labels") == ["fl (0.25 N from ff)"]
     center = center_of_mass([0.5, 0.0, 1.0], TURNED)
     first = drawn.array("/planar_modes/mode_1/contacts", "Points2D:positions")[0]
     np.testing.assert_allclose(first, [0.1 - center[0], center[2]], atol=1e-6)  # the second axis down
@@ -440,6 +445,11 @@ def test_strictly_it_raises(bench: Bench) -> None:
         ({"rrd_path": 3}, "rrd_path"),
         ({"rrd_path": "a.rrd", "port": 0}, "port"),
         ({"rrd_path": "a.rrd", "surface_side": -1.0}, "surface_side"),
+        ({"rrd_path": "a.rrd", "predictions": 0}, "predictions"),
+        ({"rrd_path": "a.rrd", "rrd_file_size": -1}, "rrd_file_size"),
+        ({"rrd_path": "a.rrd", "rrd_most_files": -1}, "rrd_most_files"),
+        ({"serve": True, "viewer_memory": "much"}, "viewer_memory: found 'much'"),
+        ({"serve": True, "web_port": 65536}, "web_port"),
     ],
 )
 def test_parameters_that_are_not_allowed_are_named(values: dict[str, Any], words: str) -> None:
@@ -462,7 +472,7 @@ def visualizer_with(**parameters: object) -> tuple[str, ...]:
 def test_a_file_that_cannot_be_written_ends_the_process_with_its_name(tmp_path: Path) -> None:
     path = tmp_path / "nowhere" / "a.rrd"
     with process("visualizer", *visualizer_with(rrd_path=path), ready="nowhere/a.rrd") as started:
-        assert started.wait(10.0) == 2
+        assert started.wait(PATIENCE_S) == 2
 
 
 def test_answers_of_a_server_are_drawn_by_a_process_beside_it(tmp_path: Path) -> None:
@@ -484,3 +494,50 @@ def test_answers_of_a_server_are_drawn_by_a_process_beside_it(tmp_path: Path) ->
     drawn = read_drawn(path)
     strip = drawn.array("/world/predicted/brick/path", "LineStrips3D:strips")[0]
     np.testing.assert_allclose(strip, np.array(answer.trajectory.positions).reshape(-1, 3), atol=1e-6)
+
+
+def height_of_the_table(path: Path) -> float:
+    """Where a picture has the surface that came while it was drawn, before states came or after."""
+    drawn = read_drawn(path)
+    patch = max(path for path, _ in drawn.values if path.startswith("/world/surfaces/table/patch"))
+    return float(drawn.array(patch, "Mesh3D:vertex_positions")[0, 2])
+
+
+def test_the_picture_follows_the_configuration_of_the_server(tmp_path: Path) -> None:
+    path = tmp_path / "drawn.rrd"
+    arguments = (
+        "--params-file",
+        str(ROOT / "config" / "server.yaml"),
+        "--ros-args",
+        "-p",
+        f"rrd_path:={path}",
+    )
+    with server_and_client(tmp_path) as client:
+        with process("visualizer", *arguments, ready="ready") as visualizer:
+            states = client.publisher(Odometry, "/brick/odometry")
+            client.spin_until(lambda: states.get_subscription_count() == 2)
+            for _ in range(10):
+                states.publish(odometry(client.node.get_clock().now().nanoseconds, 0.0))
+            setter = client.node.create_client(
+                SetParametersAtomically, "/contact_dynamics/set_parameters_atomically"
+            )
+            assert setter.wait_for_service(PATIENCE_S)
+            tables = {"surfaces": ["floor", "table"], "surface.table.point": [0.0, 0.0, 0.5]}
+            tables |= {"surface.table.friction": 0.1, "surface.table.restitution": 0.1}
+            parameters = [Parameter(name, value=value).to_parameter_msg() for name, value in tables.items()]
+
+            def is_drawn() -> bool:
+                """Set them again as long as the visualizer does not hear the server's parameter events."""
+                future = setter.call_async(SetParametersAtomically.Request(parameters=parameters))
+                client.spin_until(future.done)
+                assert future.result().result.successful
+                assert visualizer.stdout is not None
+                readable = select.select([visualizer.stdout], [], [], 2.0)[0]
+                return bool(readable) and "brick, floor, table" in visualizer.stdout.readline()
+
+            client.spin_until(is_drawn)
+        assert height_of_the_table(path) == 0.5
+        log = next(each for each in tmp_path.iterdir() if each.is_dir())
+    again = tmp_path / "again.rrd"
+    assert replay(["view", str(log), "--rrd", str(again)]) == 0
+    assert height_of_the_table(again) == 0.5

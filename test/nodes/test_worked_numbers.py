@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from contact_dynamics_interfaces.msg import Impact
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact
-from running_server import Client, server_and_client
+from running_server import Client
 
 ALPHA = math.radians(30.0)
 THETA = math.radians(75.0)
@@ -20,12 +18,6 @@ ROD = np.array(
 )  # contact relative to the centre of mass
 OUT_OF_PAGE = (0.0, -1.0, 0.0)  # seen from -y with z up, +x is to the right
 PRINTED = 6e-8  # the worked numbers are printed with 7 digits
-
-
-@pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with server_and_client(Path(tmp_path_factory.mktemp("log"))) as client:
-        yield client
 
 
 def planar_request(

@@ -3,26 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from pathlib import Path
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pytest
 
 from contact_dynamics_interfaces.srv import PredictContactMode
-from running_server import Client, server_and_client
+from running_server import Client
 
 MASS, G = 2.0, 9.80665
 WEIGHT = MASS * G
 HALF_BASE, HEIGHT, MU = 0.5, 0.25, 0.5  # of the block: its centre of mass is that high
 UP, DOWN, RIGHT, LEFT = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0), (-1.0, 0.0, 0.0)
-
-
-@pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with server_and_client(Path(tmp_path_factory.mktemp("log"))) as client:
-        yield client
 
 
 def touching(contacts: Sequence[tuple[float, float, tuple[float, ...]]], mu: float = MU) -> Any:

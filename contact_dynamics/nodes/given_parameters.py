@@ -1,0 +1,91 @@
+"""Values by the names of parameters, as the source of the server's parameters, without ROS."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
+from contact_dynamics.nodes.run_record import NODE_NAME
+from contact_dynamics.nodes.unknown_parameters import refuse_unknown
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+
+class ReadParameter(NamedTuple):
+    """A parameter that was read.
+
+    Attributes:
+        value: Its value, which may be the default.
+        description: What it means.
+        bounds: Its least and greatest value, if it has any.
+    """
+
+    value: Any
+    description: str
+    bounds: tuple[float, float] | None
+
+
+class GivenParameters:
+    """Values that are given; a `ParameterSource`.
+
+    Attributes:
+        read: The parameters that were read from it, by name.
+    """
+
+    def __init__(
+        self,
+        values: Mapping[str, Any],
+        *,
+        origin: str = "",
+        also_known: Iterable[str] = (),
+        resolve: Callable[[str, str], str] | None = None,
+    ) -> None:
+        """Take the values.
+
+        Args:
+            values: plain values by the parameters' names.
+            origin: where they come from, which begins each complaint.
+            also_known: names that may be given although nothing reads them.
+            resolve: finds the full name of a topic, as `resolved_topic`. Without it, nothing is remapped.
+        """
+        self._values = values
+        self._before = f"{origin}: " if origin else ""
+        self._also_known = frozenset(also_known)
+        self._resolve = resolve
+        self.read: dict[str, ReadParameter] = {}
+
+    def value(
+        self, name: str, default: Any, description: str, bounds: tuple[float, float] | None = None
+    ) -> Any:
+        """Return a parameter's value; see `ParameterSource`."""
+        found = self._values.get(name)
+        if found is None and not isinstance(default, type):
+            found = default
+        wanted = default if isinstance(default, type) else type(default)
+        if not isinstance(found, wanted) or (isinstance(found, bool) and wanted is not bool):
+            message = f"{self._before}{name}: found {found!r}, needed is: {description}"
+            raise ConfigurationError(message)
+        number: Any = found  # it has the default's type, which is a number where there are bounds
+        if bounds is not None and not bounds[0] <= number <= bounds[1]:
+            message = f"{self._before}{name}: found {found!r}, allowed is {bounds[0]:g} to {bounds[1]:g}"
+            raise ConfigurationError(message)
+        self.read[name] = ReadParameter(found, description, bounds)
+        return found
+
+    def resolved_topic(self, name: str, topic: str) -> str:
+        """Return the full name of a topic; see `ParameterSource`."""
+        if self._resolve is not None:
+            return self._resolve(name, topic)
+        if topic.startswith("~"):
+            return f"/{NODE_NAME}{topic[1:]}"
+        return topic if topic.startswith("/") else f"/{topic}"
+
+    def refuse_unknown(self) -> None:
+        """Refuse parameters that nothing has read; see `ParameterSource`."""
+        known = {*self.read, *self._also_known}
+        try:
+            refuse_unknown(self._values, known, lambda name: self._values.get(name, []))
+        except ConfigurationError as error:
+            message = f"{self._before}{error}"
+            raise ConfigurationError(message) from None

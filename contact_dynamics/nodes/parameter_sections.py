@@ -1,0 +1,182 @@
+"""The sections of a file of parameters: which node each is for, and which of them miss their node.
+
+ROS gives a node the parameters of all sections whose name fits its full name, and says nothing of the others.
+So a misspelled name costs all parameters of its section. This file notices that, and imports no ROS.
+"""
+
+from __future__ import annotations
+
+import difflib
+import json
+import re
+from collections import defaultdict
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
+from contact_dynamics.nodes.repeated_keys import repeated_keys
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    from contact_dynamics.nodes.repeated_keys import RepeatedKey
+
+ANY_NODE: Final = "/**"
+"""The name of a section that is for every node."""
+
+_VALUES: Final = "ros__parameters"
+_ALIKE: Final = 0.9  # the share of equal letters; a name of 16 letters with two that are swapped has 0.94
+_NUMBER: Final = re.compile(r"[_\d]+$")
+_FILE: Final = "--params-file"
+_FOR_A_NODE: Final = re.compile(r"([^:=]+):[^:=]+:=.*", re.DOTALL)
+
+
+class Section(NamedTuple):
+    """The parameters for the nodes of one name.
+
+    Attributes:
+        node: The name as ROS understands it, with a leading slash. It may have `*` and `/**`.
+        values: The values by their names, which may be nested.
+        repeated: The parameters that stand in it more than once, in words.
+    """
+
+    node: str
+    values: dict[str, Any]
+    repeated: tuple[str, ...] = ()
+
+    def is_for(self, full_name: str) -> bool:
+        """Tell whether a node of this full name gets the parameters."""
+        # The first replacement makes "(/\w+)*" of "/**", which is what that means.
+        return re.fullmatch(self.node.replace("/*", r"(/\w+)"), full_name) is not None
+
+
+def read_sections(path: Path) -> tuple[Section, ...]:
+    """Return the sections of a file.
+
+    Raises:
+        ConfigurationError: the file cannot be read, is no YAML, or has something else than sections, or one
+            of them twice.
+    """
+    content, repeated = _content(path)
+    if not isinstance(content, dict) or not content:
+        message = f"{path}: found no parameters, needed are those of {ANY_NODE} or of a node by its name"
+        raise ConfigurationError(message)
+    if twice := [str(each) for each in repeated if not each.name]:
+        message = f"{path}: {'; '.join(twice)}"
+        raise ConfigurationError(message)
+    by_section: defaultdict[str, list[str]] = defaultdict(list)
+    for each in repeated:
+        by_section["".join(map(absolute, each.section[:-1]))].append(str(each))
+    return tuple(
+        section._replace(repeated=tuple(by_section[section.node])) for section in _sections(path, content, "")
+    )
+
+
+def check_sections(path: Path, sections: Sequence[Section], full_name: str) -> str:
+    """Return a warning of a section that was probably meant for a node and misses it, or an empty text.
+
+    Args:
+        path: the file.
+        sections: its sections.
+        full_name: the name of the node with its namespace.
+
+    Raises:
+        ConfigurationError: the file has no section for the node, so that it says nothing to it, or one of
+            them has a parameter twice, of which ROS would take the last.
+    """
+    twice = [each for section in sections if section.is_for(full_name) for each in section.repeated]
+    if twice:
+        message = f"{path}: {'; '.join(twice)}"
+        raise ConfigurationError(message)
+    others = [section.node for section in sections if not section.is_for(full_name)]
+    if len(others) == len(sections):
+        nearest = _nearest(others, full_name)
+        message = (
+            f"{path}: found parameters of {' and of '.join(others)} alone, which do not apply to this node. "
+            f"Allowed are {ANY_NODE} and {full_name}, and {nearest} is the nearest to it"
+        )
+        raise ConfigurationError(message)
+    misspelled = [name for name in others if _is_misspelled(name, full_name)]
+    if not misspelled:
+        return ""
+    return (
+        f"{path}: the parameters of {' and of '.join(misspelled)} do not apply to this node, "
+        f"whose name is {full_name}"
+    )
+
+
+def files_given(arguments: Sequence[str]) -> list[str]:
+    """Return the files of parameters that ROS's arguments name."""
+    return [path for flag, path in pairwise(arguments) if flag == _FILE]
+
+
+def nodes_given(arguments: Sequence[str]) -> list[str]:
+    """Return the names of nodes in ROS's arguments of the form `-p NODE:PARAMETER:=VALUE`."""
+    pairs = pairwise(arguments)
+    found = [_FOR_A_NODE.fullmatch(text) for flag, text in pairs if flag in {"-p", "--param"}]
+    return [absolute(match[1]) for match in found if match is not None]
+
+
+def _nearest(names: Sequence[str], full_name: str) -> str:
+    return difflib.get_close_matches(full_name, names, n=1, cutoff=0.0)[0]
+
+
+def _is_misspelled(name: str, full_name: str) -> bool:
+    """Tell whether a name is nearly that of a node; several nodes may be numbered, or differ in namespace."""
+    own, wanted = name.rpartition("/")[2], full_name.rpartition("/")[2]
+    if _NUMBER.sub("", own) == _NUMBER.sub("", wanted):
+        return False
+    return difflib.SequenceMatcher(None, own, wanted).ratio() >= _ALIKE
+
+
+def _sections(path: Path, content: dict[str, Any], above: str) -> Iterator[Section]:
+    for key, inner in content.items():
+        name = f"{above}{absolute(str(key))}"
+        if isinstance(inner, dict) and isinstance(inner.get(_VALUES), dict):
+            yield Section(name, inner[_VALUES])
+        elif isinstance(inner, dict) and inner and _VALUES not in inner:
+            yield from _sections(path, inner, name)
+        else:
+            message = f"{path}: {name.lstrip('/')}: found no {_VALUES}, needed are names with values"
+            raise ConfigurationError(message)
+
+
+def absolute(name: str) -> str:
+    """Return a node's name with its leading slash."""
+    return name if name.startswith("/") else f"/{name}"
+
+
+def _content(path: Path) -> tuple[Any, tuple[RepeatedKey, ...]]:
+    """Return what a file holds, and the keys that it has more than once."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        message = f"{path}: cannot be read: {error}"
+        raise ConfigurationError(message) from None
+    try:
+        # JSON is YAML, and needs nothing that is not installed
+        return json.loads(text, object_pairs_hook=_without_repeated_keys), ()
+    except ValueError:
+        pass
+    try:
+        import yaml  # comes with ROS, and with the extra [evaluate]
+    except ImportError:
+        message = f"{path}: to read YAML, PyYAML is needed: pip install '.[evaluate]'"
+        raise ConfigurationError(message) from None
+    try:
+        loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)(text)  # the former is ten times as fast
+        root = loader.get_single_node()
+        return (None, ()) if root is None else (loader.construct_document(root), repeated_keys(root))
+    except yaml.YAMLError as error:
+        message = f"{path}: no YAML: {error}"
+        raise ConfigurationError(message) from None
+
+
+def _without_repeated_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Return what the pairs of an object hold; with a key twice, YAML's reader tells the lines."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        message = "a key stands twice"
+        raise ValueError(message)
+    return found

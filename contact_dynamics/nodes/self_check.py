@@ -1,0 +1,116 @@
+"""Finds out whether messages still reach this process: the node's self-check.
+
+A process can go deaf while everything else looks well: other nodes see it in the graph, and nothing that they
+send arrives. It happens when the files in `/dev/shm`, by which DDS hands messages over, are removed under a
+running process, as logind does when a user logs out, and it has happened on a starved machine. Within the
+process nothing shows it, since messages from itself take another way. So from time to time another process
+joins the domain for a moment, as a new client does, and sends a token. If two such processes in turn are not
+heard, the node is deaf.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+import uuid
+from typing import TYPE_CHECKING, Final
+
+from diagnostic_msgs.msg import KeyValue
+from rclpy.qos import QoSProfile
+from rclpy.serialization import deserialize_message
+
+if TYPE_CHECKING:
+    from contact_dynamics.nodes.inbox import InboxNode, Taken
+
+TOPIC: Final = "~/self_check"
+QOS: Final = QoSProfile(depth=10)
+KEY: Final = "token"
+SOON_S: Final = 10.0
+"""s. The least time between two checks, where something looks wrong."""
+
+UNHEARD_CHECKS: Final = 2
+"""So many checks in turn must fail. On a starved machine a single one may fail for want of time."""
+
+_SENDER: Final = "contact_dynamics.nodes.self_check_sender"
+
+
+class SelfCheck:
+    """The self-check of a node.
+
+    Attributes:
+        unheard: How many checks in turn failed, up to now.
+        heard: How many did not.
+        is_deaf: Whether messages do not reach the node any more.
+    """
+
+    def __init__(self, node: InboxNode, period: float | None) -> None:
+        """Begin to listen. A check begins after each ``period``, s; with None there is none."""
+        self._node = node
+        self._period = period
+        self._token = ""
+        self._sender: subprocess.Popen[str] | None = None
+        self._begun = time.monotonic()
+        self.unheard = 0
+        self.heard = 0
+        node.subscribe(KeyValue, TOPIC, self._receive, QOS)
+
+    @property
+    def is_deaf(self) -> bool:
+        """Whether messages do not reach the node any more."""
+        return self.unheard >= UNHEARD_CHECKS
+
+    def look(self, *, is_suspicious: bool) -> str:
+        """Begin or end a check if it is time to; return in words what is wrong, or nothing.
+
+        Args:
+            is_suspicious: whether something looks as if the node were deaf, so that a check is due soon.
+        """
+        if self._sender is None:
+            if self._period is not None:
+                wait = SOON_S if is_suspicious or self.unheard else self._period
+                if time.monotonic() - self._begun >= min(wait, self._period):
+                    self._begin()
+            return ""
+        code = self._sender.poll()
+        if code is None:
+            return ""
+        said = self._sender.communicate()[1].strip()
+        self._sender, token, self._token = None, self._token, ""
+        if not token:  # it was heard
+            self.unheard = 0
+            self.heard += 1
+            return ""
+        if code != 0:
+            return f"the self-check could not be made, since its process ended with {code}: {said[-200:]}"
+        self.unheard += 1
+        return "a process that joined the domain sent a message, and it was not received"
+
+    def end(self) -> None:
+        """End a check that is under way."""
+        if self._sender is not None:
+            self._sender.kill()
+            self._sender.communicate()
+            self._sender = None
+
+    def _begin(self) -> None:
+        self._begun = time.monotonic()
+        self._token = uuid.uuid4().hex
+        topic: str = self._node.resolve_topic_name(TOPIC)
+        self._sender = subprocess.Popen(  # noqa: S603  our own
+            [sys.executable, "-m", _SENDER, topic, self._token, str(self._node.context.get_domain_id())],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    def _receive(self, taken: Taken) -> None:
+        try:
+            message = deserialize_message(taken.data, KeyValue)
+        except RuntimeError:  # bytes that are no message
+            return
+        if self._token and message.value == self._token:
+            self._token = ""
+            if self._sender is not None:
+                self._sender.terminate()

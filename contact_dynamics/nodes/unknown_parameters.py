@@ -1,0 +1,50 @@
+"""Refuses parameters that are given and that nobody reads. ROS would ignore them."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from typing import TYPE_CHECKING, Final
+
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterable
+
+_OF_ROS: Final = re.compile(r"use_sim_time|start_type_description_service|qos_overrides\..*")
+_LISTED_BY: Final = {"body": "bodies", "surface": "surfaces"}
+
+
+def is_of_ros(name: str) -> bool:
+    """Tell whether a parameter is one that ROS gives every node."""
+    return _OF_ROS.fullmatch(name) is not None
+
+
+def refuse_unknown(
+    given: Iterable[str], known: Collection[str], listed: Callable[[str], Iterable[str]]
+) -> None:
+    """Refuse names of parameters that are not known.
+
+    Args:
+        given: the names.
+        known: those that somebody reads.
+        listed: returns what the parameter of a name lists, `bodies` or `surfaces`.
+
+    Raises:
+        ConfigurationError: some are unknown. The message names each, with the most similar known one.
+    """
+    unknown = sorted(name for name in given if name not in known and not is_of_ros(name))
+    if unknown:
+        raise ConfigurationError("\n".join(_unknown(name, known, listed) for name in unknown))
+
+
+def _unknown(name: str, known: Collection[str], listed: Callable[[str], Iterable[str]]) -> str:
+    kind, _, rest = name.partition(".")
+    listing = _LISTED_BY.get(kind)
+    if listing and rest:
+        own_name = rest.rpartition(".")[0] or rest
+        allowed = list(listed(listing))
+        if own_name not in allowed:
+            return f"{name}: found {kind} {own_name!r}, allowed is one that {listing} lists: {allowed}"
+    nearest = difflib.get_close_matches(name, known, n=1, cutoff=0.0)
+    return f"{name}: there is no such parameter; the nearest is {nearest[0]}"

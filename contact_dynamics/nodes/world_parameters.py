@@ -1,0 +1,201 @@
+"""The parameters of each body, with the sources of its states, and of each surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.nodes.body_shapes import DESCRIPTIONS, ShapeParameters
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
+from contact_dynamics.questions.extent import check_friction, check_mass, check_place
+from contact_dynamics.rigid_body.body import MassProperties
+from contact_dynamics.shapes.obstacle import Obstacle
+from contact_dynamics.validation import check_array, check_positive
+from contact_dynamics.world import Body, Surface
+
+if TYPE_CHECKING:
+    from contact_dynamics.nodes.parameter_reader import ConfiguredTopic, ParameterReader
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ConfiguredSource:
+    """A source of a body's states.
+
+    Attributes:
+        adapter: The name of the adapter that reads its messages.
+        topics: Its topics, in the adapter's order.
+    """
+
+    adapter: str
+    topics: tuple[ConfiguredTopic, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BodySources:
+    """The sources of a body's states.
+
+    Attributes:
+        body_name: The body.
+        frame: The body's frame, whose pose is published.
+        velocity_window: s, the time over which a velocity is found from poses.
+        sources: The sources, of which there may be several or none.
+    """
+
+    body_name: str
+    frame: str
+    velocity_window: float
+    sources: tuple[ConfiguredSource, ...]
+
+
+def read_body(reader: ParameterReader, name: str) -> tuple[Body, BodySources]:
+    """Return a body and the sources of its states.
+
+    Raises:
+        ConfigurationError: a parameter is missing or not allowed.
+    """
+    key = f"body.{name}"
+    mass = reader.read(f"{key}.mass", float, "Mass, kg.")
+    inertia = reader.read(
+        f"{key}.inertia",
+        list,
+        "Angular inertia about the centre of mass, kg m^2, in the axes of the body's frame: "
+        "ixx, iyy, izz, ixy, ixz, iyz. [0.0]: of a mass that fills the shape evenly.",
+    )
+    offset = reader.read(
+        f"{key}.center_of_mass", [0.0, 0.0, 0.0], "Centre of mass in the body's frame, m: x, y, z."
+    )
+    shape = _read_shape(reader, key)
+    body = reader.build(key, lambda: _body(name, mass, inertia, offset, shape))
+    return body, BodySources(
+        body_name=name,
+        frame=reader.name(f"{key}.frame", name, "Frame of the body, which the pose is of."),
+        velocity_window=reader.read(
+            f"{key}.velocity_window",
+            0.05,
+            "Time over which a velocity is found where poses alone are published, s.",
+            (1e-3, 10.0),
+        ),
+        sources=_read_sources(reader, key),
+    )
+
+
+def _read_sources(reader: ParameterReader, key: str) -> tuple[ConfiguredSource, ...]:
+    """Return the sources of a body's states: the usual ones, each by its topics, and one by its name."""
+    odometry = reader.topic(
+        f"{key}.odometry_topic", "Topic of the body's states as nav_msgs/Odometry. Not used if empty."
+    )
+    pose = reader.topic(
+        f"{key}.pose_topic", "Topic of the body's geometry_msgs/PoseStamped. Not used if empty."
+    )
+    twist = reader.topic(
+        f"{key}.twist_topic",
+        "Topic of the body's geometry_msgs/TwistStamped. If empty, velocities come from the poses.",
+    )
+    if twist is not None and pose is None:
+        message = f"{key}.twist_topic: found {twist.name!r}, allowed is none without a pose_topic"
+        raise ConfigurationError(message)
+    name = reader.read(f"{key}.source", "", "Name of another source of states. Not used if empty.")
+    topics = reader.topics(f"{key}.source_topics", "Topics of that source.")
+    if bool(name) != bool(topics):
+        found = f"{name!r} and {[topic.name for topic in topics]}"
+        message = f"{key}.source and {key}.source_topics: found {found}, allowed are both or none"
+        raise ConfigurationError(message)
+    sources = []
+    if odometry is not None:
+        sources.append(ConfiguredSource(adapter="odometry", topics=(odometry,)))
+    if pose is not None and twist is None:
+        sources.append(ConfiguredSource(adapter="pose", topics=(pose,)))
+    if pose is not None and twist is not None:
+        sources.append(ConfiguredSource(adapter="pose_twist", topics=(pose, twist)))
+    if name:
+        sources.append(ConfiguredSource(adapter=name, topics=topics))
+    return tuple(sources)
+
+
+def _body(name: str, mass: float, inertia: list[float], offset: list[float], shape: ShapeParameters) -> Body:
+    center_of_mass = check_array("center_of_mass", offset, (3,))
+    shape_F = shape.shape_F()
+    if inertia == [0.0]:
+        uniform = shape.uniform(check_positive("mass", mass))
+        if center_of_mass.any():
+            raise InvalidFieldError("center_of_mass", offset, "the origin, where the inertia is the shape's")
+        center_of_mass, mass_properties = uniform.p_FB_F, uniform.mass_properties
+    elif len(inertia) == 6:
+        ixx, iyy, izz, ixy, ixz, iyz = inertia
+        mass_properties = MassProperties(mass=mass, I_B=[[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
+    else:
+        allowed = "6 (ixx, iyy, izz, ixy, ixz, iyz), or [0.0]: of the shape"
+        raise InvalidFieldError("inertia", f"{len(inertia)} numbers", allowed)
+    check_mass(mass_properties)
+    check_place("center_of_mass", center_of_mass)
+    return Body(
+        name=name,
+        mass_properties=mass_properties,
+        p_FB_F=center_of_mass,
+        shape=shape_F.moved(-center_of_mass),
+    )
+
+
+def _read_shape(reader: ParameterReader, key: str) -> ShapeParameters:
+    return ShapeParameters(
+        numbers={name: reader.read(f"{key}.{name}", [0.0], text) for name, text in DESCRIPTIONS.items()},
+        rounding=reader.read(
+            f"{key}.rounding", 0.0, "Radius of a ball that rolls over the shape, m.", (0.0, 1e3)
+        ),
+        position=reader.read(
+            f"{key}.shape_position", [0.0, 0.0, 0.0], "Where the shape is in the body's frame, m: x, y, z."
+        ),
+        orientation=reader.read(
+            f"{key}.shape_orientation",
+            [0.0, 0.0, 0.0, 1.0],
+            "How the shape is turned in the body's frame: unit quaternion x, y, z, w.",
+        ),
+    )
+
+
+def read_surface(reader: ParameterReader, name: str) -> Surface | Obstacle:
+    """Return a flat, or an obstacle with corners; it raises as `read_body` does."""
+    key = f"surface.{name}"
+    point = reader.read(
+        f"{key}.point", [0.0, 0.0, 0.0], "A point of the flat, or the centre of the box, m, world: x, y, z."
+    )
+    normal = reader.read(
+        f"{key}.normal", [0.0, 0.0, 1.0], "Unit normal into the free side, world axes: x, y, z."
+    )
+    shape = ShapeParameters(
+        numbers={
+            "box": reader.read(f"{key}.box", [0.0], "Full side lengths of a box, m: x, y, z."),
+            "vertices": reader.read(
+                f"{key}.vertices", [0.0], "Corners of a convex solid or plate, from the point, m: x, y, z."
+            ),
+        },
+        rounding=0.0,
+        position=point,
+        orientation=reader.read(
+            f"{key}.orientation",
+            [0.0, 0.0, 0.0, 1.0],
+            "How box or corners are turned: unit quaternion x, y, z, w.",
+        ),
+        pose_names=("point", "orientation"),
+    )
+    friction = reader.read(f"{key}.friction", float, "Coulomb's friction coefficient with any body, >= 0.")
+    restitution = reader.read(
+        f"{key}.restitution", float, "Coefficient of restitution with any body, 0 to 1."
+    )
+
+    def build() -> Surface | Obstacle:
+        check_friction("friction", friction)
+        solid = shape.shape_F()
+        if not solid.is_empty:
+            return Obstacle(name=name, vertices_W=solid.vertices, friction=friction, restitution=restitution)
+        check_place("point", check_array("point", point, (3,)))
+        return Surface(
+            name=name,
+            p_WS_W=point,
+            normal_W=normal,
+            friction=friction,
+            restitution=restitution,
+        )
+
+    return reader.build(key, build)

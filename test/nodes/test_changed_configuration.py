@@ -1,0 +1,236 @@
+"""Parameters that change while the server serves: checked as a whole, taken at once, and logged."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+from lifecycle_msgs.msg import Transition
+from lifecycle_msgs.srv import ChangeState
+from nav_msgs.msg import Odometry
+from rcl_interfaces.srv import GetParameters, ListParameters, SetParameters, SetParametersAtomically
+from rclpy.parameter import Parameter
+
+from contact_dynamics.recording import BagReader
+from contact_dynamics.replay.verify import verify_log
+from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
+from running_server import PATIENCE_S, ROOT, SERVICES, Client, environment, process
+
+NODE = "/contact_dynamics"
+
+
+class Configured(NamedTuple):
+    """A client of a running server, and the folder that its log is in."""
+
+    client: Client
+    folder: Path
+
+    def call(self, service: Any, name: str, request: Any) -> Any:
+        """Call a service of the node that is not one of ours."""
+        caller = self.client.node.create_client(service, f"{NODE}/{name}")
+        assert caller.wait_for_service(PATIENCE_S)
+        future = caller.call_async(request)
+        self.client.spin_until(future.done)
+        self.client.node.destroy_client(caller)
+        return future.result()
+
+    def set(self, **values: Any) -> str:
+        """Set parameters at once, with "__" for a point; return why they are refused, or nothing."""
+        parameters = [
+            Parameter(name.replace("__", "."), value=value).to_parameter_msg()
+            for name, value in values.items()
+        ]
+        request = SetParametersAtomically.Request(parameters=parameters)
+        result = self.call(SetParametersAtomically, "set_parameters_atomically", request).result
+        assert result.successful == (not result.reason)
+        return str(result.reason)
+
+    def names(self) -> set[str]:
+        """The names of all parameters."""
+        return set(self.call(ListParameters, "list_parameters", ListParameters.Request()).result.names)
+
+    def double(self, name: str) -> float:
+        """The value of a parameter."""
+        (value,) = self.call(GetParameters, "get_parameters", GetParameters.Request(names=[name])).values
+        return float(value.double_value)
+
+
+@pytest.fixture
+def configured(tmp_path: Path) -> Iterator[Configured]:
+    arguments = ["--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args"]
+    arguments += ["-p", f"log_directory:={tmp_path}"]
+    with process("server", *arguments, ready="ready"):
+        client = Client()
+        try:
+            yield Configured(client, tmp_path)
+        finally:
+            client.close()
+
+
+def slide() -> PredictImpact.Request:
+    """A question about a brick that strikes the floor while it slides."""
+    request = PredictImpact.Request(body_name="brick", state_source=PredictImpact.Request.STATE_EXPLICIT)
+    request.state.pose.position.z = 0.5
+    request.state.linear_velocity.x = 3.0
+    request.state.angular_velocity.y = 2.0
+    return request
+
+
+def test_a_changed_friction_counts_from_the_next_answer_on_and_replay_reproduces_both(
+    configured: Configured,
+) -> None:
+    before = configured.client.ask(slide())
+    assert configured.set(surface__floor__friction=0.05) == ""
+    after = configured.client.ask(slide())
+    assert before.status == after.status == 0
+    assert before.contacts.frictions[0] == 0.3
+    assert after.contacts.frictions[0] == 0.05
+    assert after.impact.state_after.linear_velocity.x > before.impact.state_after.linear_velocity.x
+    assert configured.double("surface.floor.friction") == 0.05
+    assert_reproduced(configured, questions=2)
+
+
+def test_a_configuration_is_checked_as_a_whole_and_refused_as_a_whole(configured: Configured) -> None:
+    refused = configured.set(surface__floor__friction=0.1, surface__floor__restitution=1.5)
+    assert refused == "surface.floor.restitution: found 1.5, allowed is a number in [0, 1]"
+    assert configured.double("surface.floor.friction") == 0.3
+    assert configured.set(body__brick__inertia=[1.0, 0.1, 0.1, 0.0, 0.0, 0.0]).startswith(
+        "body.brick.inertia"
+    )
+    assert "the nearest is surface.floor.friction" in configured.set(surface__floor__fricton=0.1)
+    assert "allowed is 0 to 10000" in configured.set(horizon=-1.0)
+    refused = configured.set(bodies=["brick", "cup"])
+    assert refused == "body.cup.mass: found None, needed is: Mass, kg."
+    refused = configured.set(body__brick__odometry_topic="/other", log=False)
+    assert refused.startswith("log, the topics of body.brick: found a change while the server is configured")
+    assert configured.client.ask(slide()).contacts.frictions[0] == 0.3
+    assert_reproduced(configured, questions=1)
+
+
+def test_bodies_and_surfaces_come_and_go(configured: Configured) -> None:
+    names = configured.names()
+    question = PredictImpact.Request(body_name="cup", state_source=PredictImpact.Request.STATE_EXPLICIT)
+    question.state.pose.position.z = 1.0
+    assert configured.client.ask(question).status == PredictImpact.Response.UNKNOWN_BODY
+    cup = {"mass": 0.2, "inertia": [0.0], "sphere": [0.05]}
+    table = {"point": [0.0, 0.0, 0.5], "friction": 0.2, "restitution": 0.9}
+    added = {f"body__cup__{name}": value for name, value in cup.items()}
+    added |= {f"surface__table__{name}": value for name, value in table.items()}
+    assert configured.set(bodies=["brick", "cup"], surfaces=["floor", "table"], **added) == ""
+    assert configured.names() > names
+    answer = configured.client.ask(question)
+    assert answer.contacts.surface_names == ["table"]
+    assert configured.set(bodies=["brick"], surfaces=["floor"]) == ""
+    assert configured.names() == names
+    assert configured.client.ask(question).status == PredictImpact.Response.UNKNOWN_BODY
+    assert_reproduced(configured, questions=3)
+
+
+def test_states_are_read_with_the_centre_of_mass_of_their_time(configured: Configured) -> None:
+    stream = subprocess.Popen(
+        [sys.executable, str(ROOT / "test" / "nodes" / "state_stream.py"), "wall"],
+        env={**environment(), "PYTHONPATH": str(ROOT)},
+    )
+    question = PredictTumbling.Request(body_name="brick", times=[0.1])
+    try:
+        configured.client.spin_until(lambda: configured.client.ask(question).status == 0)
+        for offset in (0.01, 0.02, 0.03):
+            assert configured.set(body__brick__center_of_mass=[0.0, offset, 0.0]) == ""
+            configured.client.spin_until(lambda: configured.client.ask(question).status == 0)
+            answer = configured.client.ask(question)
+            # The brick turns about x at 3 rad/s, and its frame's origin stands still.
+            assert answer.state.linear_velocity.z == pytest.approx(3.0 * offset, abs=1e-12)
+            assert configured.set(state_timeout=0.5 + offset, gravity=[0.0, 0.0, -offset]) == ""
+    finally:
+        stream.terminate()
+        stream.wait(PATIENCE_S)
+    assert_reproduced(configured, questions=8)
+
+
+def test_fewer_states_are_kept_from_now_on(configured: Configured) -> None:
+    client = configured.client
+    states = client.publisher(Odometry, "/brick/odometry")
+    first = client.node.get_clock().now().to_msg()
+    question = PredictTumbling.Request(body_name="brick", times=[0.0], stamp=first)
+    question.state_source = question.STATE_AT_STAMP
+
+    def publish() -> None:
+        msg = Odometry(child_frame_id="brick")
+        msg.header.frame_id, msg.header.stamp = "world", client.node.get_clock().now().to_msg()
+        states.publish(msg)
+
+    msg = Odometry(child_frame_id="brick")
+    msg.header.frame_id, msg.header.stamp = "world", first
+    states.publish(msg)
+    client.spin_until(lambda: client.ask(question).status == 0)
+    assert configured.set(most_states=3, warn_every=0.0, silent_after=0.5, client_gone_for=0.0) == ""
+    for _ in range(3):
+        publish()
+    client.spin_until(lambda: client.ask(question).status == PredictTumbling.Response.NO_STATE)
+    assert "most_states: found 0" in configured.set(most_states=0)
+    assert_reproduced(configured, questions=2)
+
+
+def test_what_stays_can_change_while_the_server_is_not_configured(configured: Configured) -> None:
+    for transition in (Transition.TRANSITION_DEACTIVATE, Transition.TRANSITION_CLEANUP):
+        change(configured, transition)
+    assert configured.set(body__brick__odometry_topic="/other", surface__floor__friction=0.7) == ""
+    for transition in (Transition.TRANSITION_CONFIGURE, Transition.TRANSITION_ACTIVATE):
+        change(configured, transition)
+    node = configured.client.node
+    configured.client.spin_until(lambda: node.count_subscribers("/other") == 1)
+    configured.client.spin_until(lambda: configured.client.ready() == len(SERVICES))
+    assert configured.client.ask(slide()).contacts.frictions[0] == 0.7
+
+
+def test_ros_own_way_to_set_one_parameter_works(configured: Configured) -> None:
+    parameters = [
+        Parameter("surface.floor.restitution", value=0.9).to_parameter_msg(),
+        Parameter("surface.floor.friction", value=-0.9).to_parameter_msg(),
+    ]
+    request = SetParameters.Request(parameters=parameters)
+    taken, refused = configured.call(SetParameters, "set_parameters", request).results
+    assert taken.successful
+    assert not refused.successful
+    assert refused.reason == "surface.floor.friction: found -0.9, allowed is a number >= 0"
+
+
+def test_each_file_of_a_log_says_how_its_part_is_configured(tmp_path: Path) -> None:
+    arguments = ["--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args"]
+    arguments += ["-p", f"log_directory:={tmp_path}", "-p", "log_file_duration:=1.0"]
+    with process("server", *arguments, ready="ready"):
+        client = Client()
+        try:
+            configured = Configured(client, tmp_path)
+            frictions = [0.3, 0.1]
+            client.ask(slide())
+            assert configured.set(surface__floor__friction=0.1) == ""
+            folder = next(tmp_path.iterdir())
+            client.spin_until(lambda: client.ask(slide()) and len(list(folder.glob("*.mcap"))) > 1)
+            client.ask(slide())
+        finally:
+            client.close()
+    files = sorted(folder.glob("*.mcap"))
+    for path, friction in zip((files[0], files[-1]), frictions, strict=True):
+        assert f'"surface.floor.friction": {friction}' in BagReader(path).run()["parameters"]
+    for path in (folder, files[-1]):
+        tallies = verify_log(path).services.values()
+        assert sum(tally.equal for tally in tallies) == sum(tally.questions for tally in tallies) > 0
+
+
+def change(configured: Configured, transition: int) -> None:
+    request = ChangeState.Request(transition=Transition(id=transition))
+    assert configured.call(ChangeState, "change_state", request).success
+
+
+def assert_reproduced(configured: Configured, *, questions: int) -> None:
+    """End the server's log, and ask all of it again."""
+    for transition in (Transition.TRANSITION_DEACTIVATE, Transition.TRANSITION_CLEANUP):
+        change(configured, transition)
+    found = verify_log(next(configured.folder.iterdir()))
+    assert found.others == []
+    assert sum(tally.equal for tally in found.services.values()) >= questions

@@ -1,0 +1,55 @@
+"""Who asks and finds no state is told what became of those that came; the log, asked again, says the same."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
+
+from contact_dynamics.replay.verify import verify_log
+from contact_dynamics_interfaces.srv import PredictTumbling
+from msg_adapters.stamps import stamp_to_msg
+from running_server import ROOT, Client, process
+
+HOUR_NS = 3_600_000_000_000
+ARGUMENTS = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", "-p", "use_sim_time:=true")
+
+
+def odometry(stamp_ns: int, *, frame: str = "world") -> Odometry:
+    msg = Odometry(child_frame_id="brick")
+    msg.header.frame_id, msg.header.stamp = frame, stamp_to_msg(stamp_ns)
+    return msg
+
+
+def newest(client: Client) -> Any:
+    return client.ask(PredictTumbling.Request(body_name="brick", times=[0.0]))
+
+
+def test_no_state_says_what_became_of_those_that_came(tmp_path: Path) -> None:
+    with process("server", *ARGUMENTS, "-p", f"log_directory:={tmp_path}", ready="ready"):
+        client = Client()
+        try:
+            states = client.publisher(Odometry, "/brick/odometry")
+            clock = client.publisher(Clock, "/clock")
+
+            def wait_for(words: str) -> None:
+                client.spin_until(lambda: words in newest(client).message)
+
+            clock.publish(Clock(clock=stamp_to_msg(2 * HOUR_NS)))
+            assert newest(client).message == "state of 'brick': none was published yet"
+            states.publish(odometry(2 * HOUR_NS, frame="map"))
+            wait_for("none of 1 that came is kept; the last was refused: header.frame_id: found 'map'")
+            states.publish(b"\0\1\0\0no message at all")
+            wait_for("none of 2 that came is kept; the last was refused: data: found 24 bytes, allowed is a")
+            states.publish(odometry(4 * HOUR_NS))
+            wait_for("none of 3 that came is kept; the last was refused: stamp: found 7200.000 s ahead of")
+            states.publish(odometry(2 * HOUR_NS))
+            client.spin_until(lambda: newest(client).status == 0)
+            clock.publish(Clock(clock=stamp_to_msg(HOUR_NS)))
+            wait_for("none of 4 that came is kept; they were thrown away when the clock was set back")
+        finally:
+            client.close()
+    (log,) = tmp_path.iterdir()
+    assert verify_log(log).agrees

@@ -1,0 +1,127 @@
+"""A server that messages do not reach any more notices it, and joins the domain anew."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+from diagnostic_msgs.msg import DiagnosticArray
+from nav_msgs.msg import Odometry
+from rcl_interfaces.srv import SetParametersAtomically
+from rclpy.parameter import Parameter
+from rclpy.publisher import Publisher
+
+from contact_dynamics.recording import BagReader
+from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
+from running_server import DOMAIN_ID, ROOT, Client, process, wait_for
+
+LEAST_PORT = 7400 + 250 * DOMAIN_ID
+"""The least port of DDS in the domain of this test run."""
+
+
+def remove_ports(pid: int) -> int:
+    """Remove the files in which a process receives messages, as logind does; return how many there were."""
+    opened = [str(path.readlink()) for path in Path(f"/proc/{pid}/fd").iterdir() if path.exists()]
+    locks = [re.fullmatch(r"(.*/)fastrtps_port(\d+)_el", path) for path in opened]
+    own = [(lock[1], int(lock[2])) for lock in locks if lock is not None]
+    own = [(folder, port) for folder, port in own if LEAST_PORT <= port < LEAST_PORT + 250]
+    for folder, port in own:
+        for name in (f"fastrtps_port{port}", f"fastrtps_port{port}_el", f"sem.fastrtps_port{port}_mutex"):
+            (Path(folder) / name).unlink()
+    return len(own)
+
+
+def falling() -> PredictImpact.Request:
+    request = PredictImpact.Request(body_name="brick", state_source=PredictImpact.Request.STATE_EXPLICIT)
+    request.state.pose.position.z = 0.5
+    return request
+
+
+def set_friction(client: Client, friction: float) -> None:
+    setter = client.node.create_client(SetParametersAtomically, "/contact_dynamics/set_parameters_atomically")
+    assert setter.wait_for_service(30.0)
+    parameter = Parameter("surface.floor.friction", value=friction).to_parameter_msg()
+    future = setter.call_async(SetParametersAtomically.Request(parameters=[parameter]))
+    client.spin_until(future.done)
+    assert future.result().result.successful
+
+
+def test_a_server_whose_ports_are_removed_joins_anew_with_its_parameters(tmp_path: Path) -> None:
+    arguments = ["--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args"]
+    arguments += ["-p", f"log_directory:={tmp_path}", "-p", "self_check_period:=1.0"]
+    with process("server", *arguments, ready="ready") as server:
+        client = Client()
+        set_friction(client, 0.125)
+        client.close()
+        assert remove_ports(server.pid) == 1
+        printed = wait_for(server, "joins the domain anew") + wait_for(server, "ready")
+        assert "self_check" not in printed
+        assert "a process that joined the domain sent a message, and it was not received" in printed
+        client = Client()
+        try:
+            assert client.ask(falling()).contacts.frictions[0] == 0.125
+        finally:
+            client.close()
+    before, after = sorted(tmp_path.iterdir())
+    assert "joined_anew" not in BagReader(before).run()
+    run = BagReader(after).run()
+    assert run["joined_anew"] == "1"
+    assert json.loads(run["parameters"])["surface.floor.friction"] == 0.125
+
+
+def test_a_server_that_hears_goes_on(tmp_path: Path) -> None:
+    arguments = ["--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args"]
+    arguments += ["-p", f"log_directory:={tmp_path}", "-p", "self_check_period:=0.5"]
+    with process("server", *arguments, ready="ready"):
+        client = Client()
+        try:
+            heard: list[int] = []
+
+            def note(array: DiagnosticArray) -> None:
+                for status in array.status:
+                    values = {each.key: each.value for each in status.values}
+                    if status.name.endswith(": self-check"):
+                        heard.append(int(values["checks heard"]))
+                        # A starved machine may miss two checks once. A server that took itself for deaf
+                        # again and again would never have heard two.
+                        assert int(values["times that the server joined anew"]) <= 1
+
+            client.node.create_subscription(DiagnosticArray, "/diagnostics", note, 10)
+            client.spin_until(lambda: heard and heard[-1] >= 2)
+        finally:
+            client.close()
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_a_topic_that_falls_silent_while_somebody_publishes_is_subscribed_to_anew(tmp_path: Path) -> None:
+    arguments = ["--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args"]
+    arguments += ["-p", f"log_directory:={tmp_path}"]
+    with process("server", *arguments, ready="ready") as server:
+        client = Client()
+        try:
+            states = client.publisher(Odometry, "/brick/odometry")
+            publish(client, states)
+            question = PredictTumbling.Request(body_name="brick", times=[0.0])
+            client.spin_until(lambda: client.ask(question).status == 0)
+            (before,) = client.node.get_subscriptions_info_by_topic("/brick/odometry")
+            assert "1 publish and nothing comes, so it is subscribed to anew" in wait_for(server, "anew")
+            client.spin_until(lambda: endpoints(client) not in ([], [bytes(before.endpoint_gid)]))
+            client.spin_until(lambda: states.get_subscription_count() == 1)
+            client.wait_until_found()
+            publish(client, states)
+            client.spin_until(lambda: client.ask(question).status == 0)
+        finally:
+            client.close()
+
+
+def endpoints(client: Client) -> list[bytes]:
+    return [
+        bytes(each.endpoint_gid) for each in client.node.get_subscriptions_info_by_topic("/brick/odometry")
+    ]
+
+
+def publish(client: Client, states: Publisher) -> None:
+    msg = Odometry(child_frame_id="brick")
+    msg.header.frame_id, msg.header.stamp = "world", client.node.get_clock().now().to_msg()
+    states.publish(msg)
