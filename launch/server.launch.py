@@ -8,7 +8,7 @@ from __future__ import annotations
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, SetEnvironmentVariable
 from launch.conditions import IfCondition
-from launch.substitutions import EnvironmentVariable, LaunchConfiguration
+from launch.substitutions import EnvironmentVariable, LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
 
 from launch import LaunchDescription
@@ -19,13 +19,20 @@ DISCOVERY = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 def generate_launch_description() -> LaunchDescription:
     """Return the nodes and the arguments that configure them."""
     share = get_package_share_path("contact_dynamics")
+    namespace = LaunchConfiguration("namespace")
     parameters = LaunchConfiguration("params_file")
+    full_name = PathJoinSubstitution(["/", namespace, "contact_dynamics"])
     return LaunchDescription(
         [
             DeclareLaunchArgument(
                 "params_file",
                 default_value=str(share / "config" / "server.yaml"),
                 description="Bodies, surfaces, topics, tolerances: copy config/server.yaml and edit it.",
+            ),
+            DeclareLaunchArgument(
+                "namespace",
+                default_value="",
+                description="Namespace of the nodes, for several servers side by side, such as left_arm.",
             ),
             DeclareLaunchArgument(
                 "view", default_value="false", description="Start the visualizer and rerun's viewer."
@@ -37,12 +44,19 @@ def generate_launch_description() -> LaunchDescription:
                 description=f"Who can find the server: this machine alone, or the network. Sets {DISCOVERY}.",
             ),
             SetEnvironmentVariable(DISCOVERY, LaunchConfiguration("discovery_range")),
-            Node(package="contact_dynamics", executable="server", output="screen", parameters=[parameters]),
+            Node(
+                package="contact_dynamics",
+                executable="server",
+                namespace=namespace,
+                output="screen",
+                parameters=[parameters],
+            ),
             Node(
                 package="contact_dynamics",
                 executable="visualizer",
+                namespace=namespace,
                 output="screen",
-                parameters=[parameters, {"spawn": True}],
+                parameters=[parameters, {"spawn": True, "server": full_name}],
                 condition=IfCondition(LaunchConfiguration("view")),
             ),
         ]

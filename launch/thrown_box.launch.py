@@ -1,6 +1,6 @@
-"""Starts the server and publishes a recorded toss of its brick, about which it can then be asked.
+"""Starts the server, throws its brick as it was recorded, and a client asks about it and prints the answers.
 
-The command is `ros2 launch contact_dynamics thrown_box.launch.py`. While the brick flies:
+The command is `ros2 launch contact_dynamics thrown_box.launch.py`. To ask, too, while the brick flies:
 
     ros2 service call /contact_dynamics/predict_impact contact_dynamics_interfaces/srv/PredictImpact \
         "{body_name: brick, fit_window: 0.1}"
@@ -18,17 +18,34 @@ from launch import LaunchDescription
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Return the server's launch description, and what throws the box."""
-    server = get_package_share_path("contact_dynamics") / "launch" / "server.launch.py"
+    """Return the server's launch description, the client, and what throws the box."""
+    share = get_package_share_path("contact_dynamics")
     return LaunchDescription(
         [
             DeclareLaunchArgument(
                 "wait", default_value="5.0", description="Time until the box is thrown, s: time to ask."
             ),
-            IncludeLaunchDescription(PythonLaunchDescriptionSource(str(server))),
+            IncludeLaunchDescription(
+                PythonLaunchDescriptionSource(str(share / "launch" / "server.launch.py"))
+            ),
+            Node(
+                package="contact_dynamics",
+                executable="commentator",
+                namespace=LaunchConfiguration("namespace"),
+                arguments=["thrown_box"],
+                output="screen",
+                parameters=[LaunchConfiguration("params_file")],
+            ),
             TimerAction(
                 period=LaunchConfiguration("wait"),
-                actions=[Node(package="contact_dynamics", executable="toss_publisher", output="screen")],
+                actions=[
+                    Node(
+                        package="contact_dynamics",
+                        executable="toss_publisher",
+                        arguments=["--listeners", "2"],  # the server and the client
+                        output="screen",
+                    )
+                ],
             ),
         ]
     )

@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 import argparse
+from typing import Final
 
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING
+
+THROWN_BOX: Final = "thrown_box"
+PUSHED_BLOCK: Final = "pushed_block"
+TRAY: Final = "tray"
+"""The situations that the examples show. Each has a launch file of its name."""
 
 _RECORDING = "recording: a .csv like the package's own (the default), or measured cube tosses, .npz#INDEX"
 
@@ -39,5 +45,55 @@ def toss_publisher_parser() -> argparse.ArgumentParser:
         default=1,
         metavar="N",
         help="wait for so many subscriptions (default: %(default)s)",
+    )
+    return parser
+
+
+def block_publisher_parser() -> argparse.ArgumentParser:
+    """Return the parser of `contact-dynamics block_publisher`."""
+    parser = argparse.ArgumentParser(
+        prog="contact-dynamics block_publisher",
+        description="Publish the states of a block that a finger pushes, or whose tray tilts.",
+        epilog="The server's parameters describe the block and what it stands on. They follow --ros-args.",
+    )
+    parser.add_argument(
+        "situation",
+        nargs="?",
+        choices=(PUSHED_BLOCK, TRAY),
+        default=PUSHED_BLOCK,
+        help="what happens to the block (default: %(default)s)",
+    )
+    numbers = {
+        "--height": (0.03, "M", "height at which the finger pushes"),
+        "--rate": (1.0, "N/S", "how fast the push grows"),
+        "--tilt": (25.0, "DEGREES", "how far the tray tilts"),
+        "--degrees-per-second": (3.0, "DEGREES", "how fast the tray tilts"),
+        "--seconds": (15.0, "S", "how long to publish"),
+    }
+    for name, (default, unit, text) in numbers.items():
+        parser.add_argument(
+            name, type=float, default=default, metavar=unit, help=f"{text} (default: %(default)s)"
+        )
+    return parser
+
+
+def commentator_parser() -> argparse.ArgumentParser:
+    """Return the parser of `contact-dynamics commentator`."""
+    parser = argparse.ArgumentParser(
+        prog="contact-dynamics commentator",
+        description="Ask a running server about a body again and again, and print the answers in words.",
+    )
+    parser.add_argument(
+        "situation",
+        nargs="?",
+        choices=(THROWN_BOX, PUSHED_BLOCK, TRAY),
+        default=THROWN_BOX,
+        help="what to ask about, as it is launched (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--server",
+        default="contact_dynamics",
+        metavar="NAME",
+        help="name of the server, in this node's namespace (default: %(default)s)",
     )
     return parser

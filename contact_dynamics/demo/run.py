@@ -62,9 +62,6 @@ def main(arguments: list[str]) -> int:
             asked = _play(toss, given, folder, processes, stop)
             processes.stop()
             _tell(processes)
-    except KeyboardInterrupt:
-        print("\nstopped", file=sys.stderr)
-        return 130
     except (TimeoutError, RuntimeError) as error:
         print(f"{error}\nWhat the processes printed is in {folder}", file=sys.stderr)
         return 1

@@ -156,7 +156,7 @@ def cube(tmp_path_factory: pytest.TempPathFactory) -> Run:
     return run_demo(str(REAL_TOSSES), tmp_path_factory.mktemp("demo"))
 
 
-@pytest.fixture(params=["brick", "cube"])
+@pytest.fixture(params=["brick", pytest.param("cube", marks=pytest.mark.slow)])
 def run(request: pytest.FixtureRequest) -> Run:
     """Each of the two runs."""
     found: Run = request.getfixturevalue(request.param)
@@ -285,6 +285,7 @@ def test_the_brick_lands_and_leaves_as_predicted(brick: Run) -> None:
         assert error < 0.05 * size
 
 
+@pytest.mark.slow
 def test_the_cube_lands_and_leaves_about_as_predicted(cube: Run) -> None:
     """A real cube on a real board, by its authors' nominal constants, which the recordings differ from.
 
@@ -329,19 +330,31 @@ def test_stopped_in_the_middle_it_stops_all_and_closes_the_log(tmp_path: Path) -
         assert reader.message_count == summary.statistics.message_count
 
 
-def test_a_viewer_that_does_not_open_is_told_where_the_demo_was_started(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture(scope="module")
+def unattended(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """A demo under nohup whose terminal is closed, and which has no display for its viewer."""
+    output = tmp_path_factory.mktemp("unattended")
+    with pytest.MonkeyPatch.context() as without_display, inherited(signal.SIGHUP, signal.SIG_IGN):
+        for name in ("DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"):
+            without_display.delenv(name, raising=False)
+        with demo("--view", "--quiet", output=output) as (process, mark):
+            assert process.stdout is not None
+            assert process.stdout.readline().startswith("playing ")
+            process.send_signal(signal.SIGHUP)
+            return finished(process, mark, toss=read_toss(), output=output)
+
+
+def test_a_viewer_that_does_not_open_is_told_where_the_demo_was_started(unattended: Run) -> None:
     """At the port of rerun's viewer, where none may be open."""
-    for name in ("DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"):
-        monkeypatch.delenv(name, raising=False)
-    with demo("--view", "--quiet", output=tmp_path) as (process, mark):
-        run = finished(process, mark, toss=read_toss(), output=tmp_path)
-    assert run.exit_code == 0, run.errors
-    (told,) = run.errors.splitlines()
+    (told,) = unattended.errors.splitlines()
     assert told.startswith("visualizer: [WARN] ")
     assert "neither WAYLAND_DISPLAY nor WAYLAND_SOCKET nor DISPLAY is set" in told
-    assert run.paths[1].stat().st_size > 10_000  # the picture is in the file
+    assert unattended.paths[1].stat().st_size > 10_000  # the picture is in the file
+
+
+def test_under_nohup_a_closed_terminal_stops_nothing(unattended: Run) -> None:
+    assert unattended.exit_code == 0, unattended.errors
+    assert unattended.left_over == []
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP], ids=lambda number: number.name)
@@ -355,16 +368,6 @@ def test_stopped_at_the_start_it_stops_all(tmp_path: Path, number: signal.Signal
     assert run.exit_code == 130, run.errors
     assert run.left_over == []
     assert run.errors.strip() == "stopped"
-
-
-def test_under_nohup_a_closed_terminal_stops_nothing(tmp_path: Path) -> None:
-    with inherited(signal.SIGHUP, signal.SIG_IGN), demo(output=tmp_path) as (process, mark):
-        assert process.stdout is not None
-        assert process.stdout.readline().startswith("playing ")
-        process.send_signal(signal.SIGHUP)
-        run = finished(process, mark, toss=read_toss(), output=tmp_path)
-    assert run.exit_code == 0, run.errors
-    assert run.left_over == []
 
 
 @pytest.mark.parametrize("verb", VERBS)
