@@ -48,10 +48,5 @@ with rr.RecordingStream("contact_dynamics") as recording:
         entity = f"example_{i}"
         draw_impulse_space(recording, body, answer, entity=entity)
         name = f"r = ({x:g}, {z:g}): {outcome}"
-        height = 1.3 * float(np.abs(struck.path_W).max())
-        # Rerun's 2D views have the second coordinate downwards.
-        bounds = rrb.VisualBounds2D(x_range=(-1.25 * height, 1.25 * height), y_range=(-height, 0.2 * height))
-        views.append(
-            rrb.Spatial2DView(origin=entity, name=name, background=palette.BACKGROUND, visual_bounds=bounds)
-        )
-    recording.send_blueprint(rrb.Blueprint(rrb.Grid(*views, grid_columns=3), collapse_panels=True))
+        views.append(rrb.Spatial2DView(origin=entity, name=name, background=palette.BACKGROUND))
+    recording.send_blueprint(rrb.Blueprint(rrb.Grid(*views, grid_columns=2), collapse_panels=True))

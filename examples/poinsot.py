@@ -37,5 +37,7 @@ with rr.RecordingStream("contact_dynamics") as recording:
     set_time(recording, 0)
     draw_poinsot(recording, "body", constants, curves)
     draw_rolling(recording, "body", [motion.state_at(seconds) for seconds in times.tolist()])
-    panel = rrb.TimePanel(timeline=TIMELINE, play_state="Playing", loop_mode="All")
+    panel = rrb.TimePanel(
+        timeline=TIMELINE, play_state="Playing", loop_mode="All", state=rrb.PanelState.Collapsed
+    )
     recording.send_blueprint(rrb.Blueprint(poinsot_view(), panel, collapse_panels=True))
