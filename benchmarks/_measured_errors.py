@@ -88,6 +88,7 @@ def print_row(
         sizes = np.linalg.norm(part, axis=1)
         if quoted:
             quote(f"{quoted}.{kind}", float(sizes.mean()), unit)
+            quote(f"{quoted}.{kind}_median", float(np.median(sizes)), unit)
         text += " " + "".join(
             f"{x:8.3f}" for x in (np.median(sizes), sizes.mean(), np.percentile(sizes, 90.0))
         )

@@ -2,7 +2,8 @@
 
 It prints how many questions were answered and how fast, why others were not, how old the states in the
 answers were, what came of the states that were published, and how the memory grew.
-`python -m benchmarks.overload 120` asks for two minutes, and a second number is the rate of each body, Hz.
+`python -m benchmarks.overload --duration 120` asks for two minutes, and `--duration 3600 --rate 250` for an
+hour at another rate of each body. It tells of the memory every minute.
 
 Publisher, clients and server share the machine, so that the numbers are of all of them together. The time
 begins when each client has had its first answers. The memory still fills then: with the states of five
@@ -12,6 +13,7 @@ last third tells whether the memory grows for good.
 
 from __future__ import annotations
 
+import argparse
 import json
 import math
 import os
@@ -47,7 +49,8 @@ CLIENTS = 4
 SECONDS = 20.0
 RATE = 1000.0
 PATIENCE_S = 30.0
-ANSWER_S = 10.0  # for an answer; the server answers a client that seemed gone again after 5 s
+TELL_EVERY_S = 60.0
+ANSWER_S = 10.0  # for an answer; the server answers a client that seemed gone again after 1 s
 REASONS = ("NO_STATE", "STALE_STATE", "BUSY", "TIMEOUT")  # of the refusals that a load can cause
 DEEP = QoSProfile(depth=1000)
 ROOT = Path(__file__).parents[1]
@@ -112,8 +115,13 @@ def _watch(pid: int, seconds: float) -> dict[str, float]:
     """Return what a process took in this time."""
     begun, cpu = time.monotonic(), _cpu_s(pid)
     memory: list[tuple[float, float]] = []
+    told = 0.0
     while (elapsed := time.monotonic() - begun) < seconds:
         memory.append((elapsed, _resident_mb(pid)))
+        if elapsed >= told + TELL_EVERY_S:
+            told = elapsed
+            cores = (_cpu_s(pid) - cpu) / elapsed
+            print(f"after {elapsed:.0f} s: {memory[-1][1]:.0f} MB resident, {cores:.2f} cores", flush=True)
         time.sleep(0.5)
     return {
         "seconds": elapsed,
@@ -266,11 +274,19 @@ def _cpu_s(pid: int) -> float:
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
+def _run_as_asked() -> None:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.overload", description=__doc__)
+    parser.add_argument("--duration", type=float, default=SECONDS, help=f"s (default {SECONDS:g})")
+    parser.add_argument("--rate", type=float, default=RATE, help=f"of each body, Hz (default {RATE:g})")
+    given = parser.parse_args()
+    run(given.duration, given.rate)
+
+
 if __name__ == "__main__":
     match sys.argv[1:]:
         case ["publish", rate]:
             _publish(float(rate))
         case ["ask", seconds, index]:
             _ask(float(seconds), int(index))
-        case numbers:
-            run(*map(float, numbers))
+        case _:
+            _run_as_asked()

@@ -1,0 +1,240 @@
+"""How often measured tosses are in the regions that were predicted for them, and what predictions cost.
+
+The recordings are the published cube tosses (`measured.cube_tosses`); the environment variable CUBE_TOSSES
+names their `tosses.npz`. Parameters, their covariance and the law's own spread are calibrated on the tosses
+``fit`` of `cube_split.json`. All that is printed is of those under ``test``, to which nothing was fitted.
+
+Each toss is predicted from a fit to the first half of its first flight, before its first strike. The fit's
+covariance takes noise as white. Noise of motion capture is not, so the covariance is enlarged by
+`STATE_FACTOR` squared, which was found on the tosses under ``fit``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from benchmarks._quotes import quote
+from benchmarks.calibration import _observed
+from contact_dynamics.calibration import calibrate_observed
+from contact_dynamics.calibration.free import STANDARD, Free
+from contact_dynamics.calibration.model import Model
+from contact_dynamics.calibration.observed import surfaces_of
+from contact_dynamics.calibration.toss_uncertainty import toss_uncertainty
+from contact_dynamics.impact import RestitutionLaw
+from contact_dynamics.motion.free_fit import fit_free_motion
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rotations.many import rotation_vectors
+from contact_dynamics.toss import sampled_toss, toss
+from contact_dynamics.world import World
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from contact_dynamics.calibration import Calibration
+    from contact_dynamics.calibration.observed import Observed, Strike
+    from contact_dynamics.toss import TossDistribution, TossUncertainty
+    from contact_dynamics.toss.distribution import EventRegions, Region
+    from contact_dynamics.validation import FloatArray
+
+STATE_FACTOR: Final = 3.5
+"""Factor on the standard deviations of the fitted states."""
+
+FEWEST: Final = 6
+"""Frames that a state is fitted to, at least."""
+
+SAMPLES: Final = 200
+RESTING: Final = 20
+"""Tosses that are followed to rest."""
+
+RESTING_SAMPLES: Final = 50
+HORIZON: Final = 3.0
+
+
+class Early(NamedTuple):
+    """A toss as it is known early: a fitted state, its covariance, and its time by the recording's clock."""
+
+    observed: Observed
+    state: BodyState
+    covariance: FloatArray
+    seconds: float
+
+
+def run() -> None:
+    """Print coverage and costs, or how to get the recordings."""
+    path = Path(
+        os.environ.get("CUBE_TOSSES", Path(__file__).parents[2] / "shared/data/cube_tosses/tosses.npz")
+    )
+    if not path.is_file():
+        print("Tosses: set CUBE_TOSSES to the recordings' tosses.npz")
+        return
+    split = json.loads((Path(__file__).parent / "cube_split.json").read_text(encoding="utf-8"))
+    seen = _observed(path, split["fit"])
+    free = (*STANDARD, Free.ROUNDING, Free.SURFACE_HEIGHT)
+    model = Model(seen[0].motion.body, surfaces_of(seen[0].motion))
+    found = calibrate_observed(model, seen, free=free, with_paths=False)
+    world = World(bodies=(found.body,), surfaces=found.surfaces, gravity_W=found.gravity_W)
+    early = [one for each in _observed(path, split["test"]) if (one := _early(each, found)) is not None]
+    uncertainty = toss_uncertainty(found)
+    _strikes(early, world, uncertainty)
+    _rests(early[:: max(1, len(early) // RESTING)], world, uncertainty)
+    _costs(early[:10], world, uncertainty)
+
+
+def _early(observed: Observed, found: Calibration) -> Early | None:
+    """Return what the first half of the first flight tells, if the toss strikes right after that flight."""
+    if observed.first is None or not observed.strikes:
+        return None
+    flight, strike = observed.flights[0], observed.strikes[0]
+    if not flight.start <= strike.before.start < strike.before.stop <= flight.stop:
+        return None
+    count = (strike.before.stop - flight.start) // 2
+    if count < FEWEST:
+        return None
+    motion = observed.motion
+    states = [
+        BodyState(
+            p_WB_W=motion.p_WB_W[k],
+            q_WB=motion.q_WB[k],
+            v_WB_W=np.zeros(3),
+            w_WB_W=np.zeros(3),
+            stamp_ns=round(motion.times[k] * 1e9),
+        )
+        for k in range(flight.start, flight.start + count)
+    ]
+    states = [_about(state, found.body.p_FB_F) for state in states]
+    fit = fit_free_motion(found.body.mass_properties, states, gravity_W=found.gravity_W)
+    return Early(observed, fit.state, STATE_FACTOR**2 * fit.covariance, states[-1].stamp_ns * 1e-9)
+
+
+def _about(state: BodyState, centre: FloatArray) -> BodyState:
+    """Return a state of the tracked origin as that of the mass centre, (3,), m, body axes."""
+    offset = state.R_WB @ centre
+    return BodyState(
+        p_WB_W=state.p_WB_W + offset,
+        q_WB=state.q_WB,
+        v_WB_W=state.v_WB_W + np.cross(state.w_WB_W, offset),
+        w_WB_W=state.w_WB_W,
+        stamp_ns=state.stamp_ns,
+    )
+
+
+def _predicted(
+    one: Early, world: World, uncertainty: TossUncertainty, *, count: int = SAMPLES, to_rest: bool = False
+) -> TossDistribution:
+    return sampled_toss(
+        world.bodies[0],
+        one.state,
+        world,
+        covariance=one.covariance,
+        uncertainty=uncertainty,
+        count=count,
+        to_rest=to_rest,
+        law=RestitutionLaw.POISSON,
+        horizon=HORIZON,
+    )
+
+
+def _strikes(early: list[Early], world: World, uncertainty: TossUncertainty) -> None:
+    """Print how often the first and the second strike are in their regions."""
+    held: dict[tuple[int, str], list[FloatArray]] = {}
+    corners: dict[int, list[float]] = {1: [], 2: []}
+    for one in early:
+        told = _predicted(one, world, uncertainty)
+        strikes, flights = one.observed.strikes, one.observed.flights
+        for number, strike in enumerate(strikes[:2], start=1):
+            follows = flights[number - 1].start <= strike.before.start < flights[number - 1].stop
+            if not follows or len(told.strikes) < number:
+                break
+            for name, region, value in _values(one, strike, told.strikes[number - 1], world):
+                held.setdefault((number, name), []).append(region.holds([value])[0])
+            chance = [b.probability for b in told.branches if (b.strike, b.corner) == (number, strike.corner)]
+            corners[number].append(sum(chance))
+    print(f"Shares of measured values in the regions of 50 and 90 %, from {len(early)} early states\n")
+    print(f"{'strike':>6}  {'quantity':12} {'tosses':>6}  {'50 %':>5}  {'90 %':>5}")
+    for (number, name), rows in sorted(held.items()):
+        half, most = 100.0 * np.mean(rows, axis=0)
+        print(f"{number:>6}  {name:12} {len(rows):>6}  {half:5.0f}  {most:5.0f}")
+        quote(f"tosses.{number}.{name}.half", half, "%")
+        quote(f"tosses.{number}.{name}.most", most, "%")
+        quote(f"tosses.{number}.{name}.count", len(rows), digits=3)
+    quote("tosses.count", len(early), "", digits=3)
+    for number, shares in corners.items():
+        print(f"\nstrike {number}: the corner that struck had {100 * np.mean(shares):.0f} % on average")
+        quote(f"tosses.{number}.corner", 100.0 * float(np.mean(shares)), "%")
+
+
+def _values(
+    one: Early, strike: Strike, regions: EventRegions, world: World
+) -> list[tuple[str, Region, FloatArray]]:
+    centre = world.bodies[0].p_FB_F
+    before, after = _about(strike.meeting.before.state, centre), _about(strike.meeting.after.state, centre)
+    return [
+        ("time", regions.seconds, np.array([strike.meeting.time - one.seconds])),
+        ("place", regions.position, before.p_WB_W),
+        ("attitude", regions.turn, rotation_vectors(before.q_WB[None], regions.q_WB)[0]),
+        ("velocity", regions.velocity, after.v_WB_W),
+        ("spin", regions.spin, after.w_WB_W),
+    ]
+
+
+def _rests(early: list[Early], world: World, uncertainty: TossUncertainty) -> None:
+    """Print how often horizontal coordinates at rest are between the quantiles, and what the face had."""
+    held, faces, best = [], [], 0
+    begin = time.process_time()
+    count = 0
+    for one in early:
+        if one.observed.rest is None:
+            continue
+        told = _predicted(one, world, uncertainty, count=RESTING_SAMPLES, to_rest=True)
+        count += RESTING_SAMPLES
+        if told.rest is None:
+            continue
+        state = _about(one.observed.rest.state, world.bodies[0].p_FB_F)
+        place = state.p_WB_W[:2]
+        low, quarter, _, three, high = told.rest.positions[:, :2]
+        held += list(
+            zip((quarter <= place) & (place <= three), (low <= place) & (place <= high), strict=True)
+        )
+        up_B = state.R_WB.T @ world.surfaces[0].normal_W
+        shares = told.face_probabilities * (told.face_normals_B @ up_B > 0.9)  # cosine: it lies on that face
+        faces.append(float(shares.sum()))
+        best += int(shares[0] > 0.0)
+    spent = 1e3 * (time.process_time() - begin) / max(count, 1)
+    half, most = 100.0 * np.mean(held, axis=0)
+    print(
+        f"\nrest of {len(faces)} tosses: {half:.0f} and {most:.0f} % of the coordinates are between quantiles"
+    )
+    print("of 50 and 90 %; the face that they rest on had")
+    print(f"{100 * np.mean(faces):.0f} % on average, and was the most probable one in {best}")
+    print(f"{spent:.0f} ms of processor time for each sample that is followed to rest")
+    quote("tosses.rests", len(faces), "")
+    quote("tosses.rest.place.half", half, "%")
+    quote("tosses.rest.place.most", most, "%")
+    quote("tosses.rest.face", 100.0 * float(np.mean(faces)), "%")
+    quote("tosses.rest.best", 100.0 * best / len(faces), "%")
+    quote("tosses.cost.rest", spent, "ms")
+
+
+def _costs(early: list[Early], world: World, uncertainty: TossUncertainty) -> None:
+    """Print the processor time of the next two strikes, and of a single toss to rest."""
+    for count in (100, 300, 1000):
+        spent = [_spent(partial(_predicted, one, world, uncertainty, count=count)) for one in early]
+        print(f"next two strikes of {count} samples: {np.median(spent):.0f} ms")
+        quote(f"tosses.cost.{count}", float(np.median(spent)), "ms")
+    body = world.bodies[0]
+    spent = [_spent(partial(toss, body, one.state, world, most_alternatives=0)) for one in early]
+    print(f"a single toss to rest: {np.median(spent):.0f} ms")
+    quote("tosses.cost.single", float(np.median(spent)), "ms")
+
+
+def _spent(work: Callable[[], object]) -> float:
+    begin = time.process_time()
+    work()
+    return 1e3 * (time.process_time() - begin)
