@@ -17,6 +17,7 @@ what is in it. All of it needs NumPy and SciPy, but no ROS.
   a `SpatialContactProblem`, and ask it: ``contact_modes.contact_modes(problem)``.
 - `impact`: velocities after an impact (lecture 27): `planar_impact`, `spatial_impact`, several contacts at
   once (`several_impact`) or one after the other in time (`impact_sequence`).
+- `toss`: the whole motion of a body from a state in flight to rest (`toss.toss`).
 - `questions`: what the services answer, asked in Python: one question with all its options, one answer.
 
 `errors` has what misuse raises, and `tolerances` says what counts as zero.
@@ -32,6 +33,7 @@ from contact_dynamics import (
     questions,
     rigid_body,
     shapes,
+    toss,
     tumbling,
 )
 from contact_dynamics.contact import Contact, ContactSet, find_contacts
@@ -98,6 +100,7 @@ __all__ = [
     "several_impact",
     "shapes",
     "spatial_impact",
+    "toss",
     "tumbling",
 ]
 

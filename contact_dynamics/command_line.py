@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import sys
 from importlib import import_module
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from contact_dynamics.nodes.arguments import check_arguments
 from contact_dynamics.version import version_of_this_package
@@ -28,6 +29,9 @@ class Verb(NamedTuple):
     needs: tuple[str, ...]
     help: str
 
+
+INTERRUPTED: Final = 130
+"""The exit code after Ctrl-C, as shells have it."""
 
 _ROS: Final = ("rclpy", "geometry_msgs.msg", "nav_msgs.msg", "contact_dynamics_interfaces.srv")
 
@@ -63,6 +67,12 @@ VERBS: Final = {
         (),
         "compare predictions with what came, in logs and recorded tosses",
     ),
+    "calibrate": Verb(
+        "contact_dynamics.calibration.run",
+        "contact_dynamics.calibration.arguments:calibrate_parser",
+        (),
+        "find friction, restitution, mass centre and more from recorded tosses",
+    ),
     "recover": Verb(
         "contact_dynamics.replay.recover",
         "contact_dynamics.replay.arguments:recover_parser",
@@ -75,11 +85,29 @@ VERBS: Final = {
         ("matplotlib",),
         "draw the answers of a log as diagrams into files",
     ),
+    "cases": Verb(
+        "contact_dynamics.cases.run",
+        "contact_dynamics.cases.arguments:cases_parser",
+        (),
+        "ask questions whose exact answers are known, here and of MuJoCo",
+    ),
     "toss_publisher": Verb(
         "contact_dynamics.demo.toss_publisher",
         "contact_dynamics.demo.arguments:toss_publisher_parser",
         _ROS,
         "publish a recorded toss as a body's states",
+    ),
+    "block_publisher": Verb(
+        "contact_dynamics.demo.block_publisher",
+        "contact_dynamics.demo.arguments:block_publisher_parser",
+        _ROS,
+        "publish a block that a finger pushes, or whose tray tilts",
+    ),
+    "commentator": Verb(
+        "contact_dynamics.demo.commentator",
+        "contact_dynamics.demo.arguments:commentator_parser",
+        _ROS,
+        "ask a running server about a body, and print the answers in words",
     ),
 }
 
@@ -92,7 +120,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.parse_args(given)  # `--help` and `--version` end here, and anything else is an error
         parser.print_help()
         return 2
-    return _run(given[0], given[1:])
+    try:
+        return _run(given[0], given[1:])
+    except KeyboardInterrupt:  # nodes have handlers of their own, but only once they have begun
+        print("\nstopped", file=sys.stderr)
+        return INTERRUPTED
 
 
 def _run(name: str, arguments: list[str]) -> int:
@@ -103,8 +135,18 @@ def _run(name: str, arguments: list[str]) -> int:
     if missing:
         print(_remedy(name, missing), file=sys.stderr)
         return 3
-    exit_code: int = import_module(verb.module).main(arguments)
+    exit_code: int = _imported(verb.module).main(arguments)
     return exit_code
+
+
+def _imported(module: str) -> Any:
+    """Return a module. What it makes stays, and to search that for garbage costs a tenth of a start."""
+    gc.disable()
+    try:
+        return import_module(module)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 def _is_installed(module: str) -> bool:

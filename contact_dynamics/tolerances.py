@@ -1,4 +1,4 @@
-"""Every threshold of the physics, chapter by chapter, with its unit and the reason for its size.
+"""Every threshold of the physics stands here, by chapter, with its unit and the reason for its size.
 
 A threshold decides whether a number counts as zero, whether two things count as one, or whether an iteration
 is done. All thresholds up to a hundredth are in this file, and a test over the sources checks this. If a
@@ -299,6 +299,31 @@ NO_MOTION: Final = 1e-6
 """Relative to the applied wrench over the mass. Where contacts are uncertain, slower accelerations count as
 rest. It is ten times the tolerance of SciPy's linear programs."""
 
+PROVEN: Final = 1e-12
+"""Relative to the applied wrench, in space. A reason against letters of uncertain contacts counts from this
+on. Its terms have at most the size of `NO_MOTION` or 1, and round to less than 1e-14."""
+
+INSOLUBLE: Final = 1e-9
+"""Relative to rows and limits of size 1, in the small simplex that finds contradictions. It does not divide
+by smaller numbers, and takes smaller violations for none. A caller checks what it finds."""
+
+REASON_MARGIN: Final = 3e-7
+"""Relative to unit rows of forces, in space. Where letters of uncertain contacts are excluded, errors are
+taken for larger by this, so that rounding of some 1e-12 spoils no reason."""
+
+REASON_ROUNDING: Final = 1e-9
+"""Relative to the largest multiplier of a reason against letters of uncertain contacts. Smaller multipliers
+and directions are rounding and count as zero. The reason is checked as it then is."""
+
+SAME_ARCS: Final = 1e-9
+"""rad. Arcs of sliding that differ by less are the same, because all are halves of the same three arcs. The
+narrowest are 1e8 times as wide."""
+
+LEAST_UNCERTAINTY: Final = 1e-5
+"""Relative to unit rows, in space. Proofs about uncertain contacts take smaller errors for this, which is
+thirty times what they add to errors against rounding. With 1e-6 SciPy's linear programs told some modes apart
+no longer."""
+
 LARGEST_PLANAR_ARM: Final = 1e8
 """In radii of gyration, in the plane. If a contact is further away than this, several contacts are not
 decided about. Forces of ordinary size then round in their moments to more than wrenches are known to."""
@@ -421,6 +446,82 @@ CHATTER_HEIGHT: Final = 1e-7
 """m. Lower rebounds are not followed. This height is a hundred times `GRAZING_DEPTH`, and far below the
 roughness of surfaces."""
 
+SETTLING_HEIGHT: Final = 1e-6
+"""m. In a whole toss, a contact whose rebounds are lower stays, and a body that can only rise or slide so far
+rests. It is a hundredth of what motion capture resolves, and below the roughness of most surfaces."""
+
+SAMPLED_SETTLING_HEIGHT: Final = 1e-4
+"""m. The same in samples of an uncertain toss. It is far below how far samples are apart, which is some
+centimetres at rest, and it takes half of the time."""
+
+EXACT_SHARE: Final = 1e-12
+"""Share of the largest variance of samples that each direction has at least, so that a quantity which is
+exact in some direction has distances. It is far above the rounding of variances, 1e-16."""
+
+SAMPLED_ARRIVAL: Final = 1e-7
+"""m. A corner of a sample that is nearer to a flat has arrived. At 1 m/s this is 1e-7 s."""
+
+SAMPLED_PHASE_ERROR: Final = 1e-4
+"""m, or m/s. The error that a step of a contact phase of a sample may have, as `SAMPLED_SETTLING_HEIGHT`."""
+
+STRIKES: Final = 1e-9
+"""m/s. A contact of a whole toss that approaches faster strikes. As `VELOCITY_TOLERANCE`."""
+
+STILL_TOUCHING: Final = 1e-8
+"""m/s. A contact of a whole toss that leaves more slowly stays for contact modes to judge. It is above the
+rounding of impacts at several contacts, which end at `STRIKES`."""
+
+SLIDING_STOPPED: Final = 1e-6
+"""m/s. A contact of a whole toss that slides more slowly has stopped. Friction of 0.1 takes a microsecond for
+the rest, in which the contact slides by less than 1e-12 m."""
+
+SLIDING_DIRECTION_SPEED: Final = 1e-9
+"""m/s. At much lower speeds, the direction in which sliding begins counts, and not that of the velocity,
+whose digits are rounding."""
+
+SAME_FORCES: Final = 1e-10
+"""Ratio of singular values. Below it, combinations of contact forces cause no acceleration, and the least
+ones are taken."""
+
+FORCE_ROUNDING: Final = 1e-9
+"""Relative to the weight, or to the largest force. A contact that pulls by less may stay."""
+
+CONE_SWEEPS_CONVERGED: Final = 1e-12
+"""Relative to the largest velocity or acceleration. A sweep over the contacts that changes less is the last,
+since it is near rounding."""
+
+BEGINNING_ROUNDING: Final = 1e-7
+"""Relative to gravity. Where a contact begins to slide, its acceleration may be off the direction of friction
+by this much. Accelerations carry the rounding of forces, `FORCE_ROUNDING`, times some ten."""
+
+BEGUN_TO_SLIDE: Final = 1e-3
+"""m/s. Below this speed, a contact that begins to slide does so along its acceleration. At 1e-3 m/s, friction
+of 10 m/s^2 turns the sliding in 1e-4 s, which is as short as a step of a phase should be."""
+
+HELD_DRIFT: Final = 1e-11
+"""m, or m/s. A held contact that is off by less is left as it is. It is a hundredth of `GRAZING_DEPTH` and of
+`STRIKES`."""
+
+PHASE_ERROR: Final = 1e-7
+"""m, or m/s. The error that a step of a contact phase may have. It is a tenth of `SETTLING_HEIGHT`."""
+
+PHASE_LEAST_STEP: Final = 1e-13
+"""s. A step this short is taken whatever its error, and events are found to this time."""
+
+COMES_DOWN_FOUND: Final = 1e-12
+"""m. A corner that is below a flat by less has just come down. It is a thousandth of `GRAZING_DEPTH`."""
+
+FORCE_END_FOUND: Final = 1e-3
+"""Relative to the force that counts as none. A force that is beyond that by less has just left its cone."""
+
+LIFT_OFF_PAUSE: Final = 1e-6
+"""s. A contact that lifts off begins without speed. It is looked for again after this time, in which the body
+moves by less than 1e-11 m relative to it."""
+
+RESTING_ACCELERATION: Final = 1e-6
+"""Relative to gravity. A body with less acceleration, and hardly any velocity, rests. A cube that balances on
+an edge is off balance by less than 1e-7 of its size then."""
+
 HELD_STILL: Final = 0.01
 """Share of the speed that a step of free motion gives to a held contact. This much may be left where several
 held contacts throw each other back."""
@@ -462,11 +563,31 @@ TABLE_SMALL_PIVOT: Final = 1e-3
 TABLE_ROUNDING: Final = 1e-16
 """Relative. Doubles lose so much in a step or two."""
 
+SLOWEST_SHARED: Final = (1e-3, 1e-5)
+"""Relative to the largest acceleration. Contacts that share a load are made to slide at least so fast, first
+the one and then the other, since forces at rest would also do at zero."""
+
+ALONE_WITHIN: Final = (0.3, 0.1, 0.03, 0.01, 0.003)
+"""rad. These ranges of directions around a solution are tried, and the first is taken that has no other one.
+Instead of smaller ones it is as fast to part ranges."""
+
+NARROWEST_RANGE: Final = 1e-5
+"""rad. A range of sliding directions is not parted further if it is narrower. Then it is undecided whether
+there is a mode in it."""
+
+SAME_SLIDING: Final = 1e-3
+"""rad. Modes with the same letters may count as one where no direction of sliding differs by more. Bounds
+cannot tell them apart where the equations are nearly singular."""
+
 LETTERS_SETTLED: Final = 1e-13
 """Relative to the largest acceleration. The equations may be missed by so much in the last step."""
 
 LETTERS_REGULAR: Final = 1e-11
 """Ratio of singular values. Below it, the unknowns count as dependent, because loads are shared."""
+
+NARROWLY: Final = 1e-11
+"""Relative to the largest acceleration. Where no mode holds by `STRICT`, one must hold by this. It is a
+hundred times `LETTERS_SETTLED`."""
 
 LETTERS_NO_FORCE: Final = 1e-9
 """Relative to the largest force. Where contacts share loads, one with less force has none."""
@@ -508,3 +629,33 @@ unbalanced is not divided by rounding."""
 
 ROUND_CONE_ROUNDING: Final = 1e-13
 """Relative. A smaller remainder is rounding, and refutes nothing."""
+
+ROUND_CONE_WIDE: Final = 1e-6
+"""Relative to the load. That wide friction cones do not hold it is certain only if they leave more than this,
+because forces in them are found in many steps."""
+
+# calibration
+
+NEGLIGIBLE_GAIN: Final = 1e-4
+"""Squares of standard deviations. A calibration has converged where the next step would gain less: the
+estimate is then within a hundredth of its own standard deviation."""
+
+DERIVATIVE_STEP: Final = 1e-5
+"""Standard units of parameters. Step of numerical derivatives: the impact's rounding of 1e-13 becomes 1e-8 of
+the slope, and its curvature adds 1e-5."""
+
+SPREAD_FOUND: Final = 1e-3
+"""Relative. A variance is known to this, which is far better than its estimate from any number of strikes."""
+
+SAME_FACE: Final = 1e-6
+"""Half sizes. A corner so near to a face's plane belongs to the face. Configured corners have six digits."""
+
+LEAST_STEP_OF_SURFACE: Final = 0.01
+"""Half sizes. A surface that bends by less over the places that were touched counts as flat."""
+
+LEAST_LAW_VELOCITY: Final = 1e-3
+"""m/s. Least spread of the law of impact in fits of trajectories. Without any, a velocity after a strike
+would hang on rounding; this is below what any tracking system tells."""
+
+LEAST_LAW_SPIN: Final = 1e-2
+"""rad/s. The same for angular velocities."""

@@ -104,14 +104,14 @@ def common_length(fields: Mapping[str, FloatArray]) -> int:
     return next(iter(lengths.values()), 1)
 
 
-def check_covariance(field: str, value: ArrayLike) -> FloatArray:
-    """Return a covariance, (12, 12), made exactly symmetric.
+def check_covariance(field: str, value: ArrayLike, size: int = 12) -> FloatArray:
+    """Return a covariance, (``size``, ``size``), made exactly symmetric.
 
     Raises:
         InvalidFieldError: the matrix has another shape, is not symmetric, or has a number that is not finite,
             a negative variance, a correlation beyond 1, or a direction in which the variance is negative.
     """
-    matrix = check_array(field, value, (12, 12))
+    matrix = check_array(field, value, (size, size))
     variances = matrix.diagonal()
     if (variances < 0.0).any():
         raise InvalidFieldError(field, f"variances {variances.tolist()}", "variances >= 0")
@@ -121,7 +121,7 @@ def check_covariance(field: str, value: ArrayLike) -> FloatArray:
         raise InvalidFieldError(
             field, "a correlation with what has no variance", "zero beside a zero variance"
         )
-    correlation = np.divide(matrix, unit, out=np.zeros((12, 12)), where=unit > 0.0)
+    correlation = np.divide(matrix, unit, out=np.zeros_like(matrix), where=unit > 0.0)
     asymmetry = float(np.abs(correlation - correlation.T).max())
     if asymmetry > SYMMETRY_TOLERANCE:
         raise InvalidFieldError(field, f"correlations that differ by {asymmetry:g}", "a symmetric matrix")

@@ -1,4 +1,4 @@
-"""The world that questions are asked about: bodies with shapes, the surfaces they meet, and gravity.
+"""Questions are asked about a world: bodies with shapes, the surfaces they meet, and gravity.
 
 Surfaces are flats without end (`Surface`), and convex solids and plates (`Obstacle`). They stand still.
 """
@@ -6,7 +6,7 @@ Surfaces are flats without end (`Surface`), and convex solids and plates (`Obsta
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -16,14 +16,24 @@ from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.shapes.convex import MOST_VERTICES, NO_SHAPE, ConvexShape, box_vertices, polyhedron
 from contact_dynamics.shapes.obstacle import Obstacle
-from contact_dynamics.validation import FloatArray, check_array, check_not_negative, check_unit, check_within
+from contact_dynamics.validation import (
+    FloatArray,
+    check_array,
+    check_magnitude,
+    check_not_negative,
+    check_unit,
+    check_within,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from contact_dynamics.rigid_body.inertia import MassDistribution
 
-__all__ = ["MOST_VERTICES", "Body", "Surface", "World", "box_vertices"]
+__all__ = ["LONGEST_NAME", "MOST_VERTICES", "Body", "Surface", "World", "box_vertices"]
+
+LONGEST_NAME: Final = 256
+"""Letters that a name may have which a request or a configuration gives."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -39,8 +49,8 @@ class Body(Record):
         shape: The shape that can touch, body axes.
 
     Raises:
-        InvalidFieldError: a number is not finite, an array has another shape, or both vertices and a shape
-            are given.
+        InvalidFieldError: a number is not finite, the centre of mass is beyond `LARGEST_NUMBER`, an array has
+            another shape, or both vertices and a shape are given.
         TooLargeError: more vertices than `MOST_VERTICES`.
     """
 
@@ -65,7 +75,8 @@ class Body(Record):
 
     def __post_init__(self) -> None:
         """Check the arrays, and make corners and shape agree."""
-        object.__setattr__(self, "p_FB_F", check_array("center_of_mass", self.p_FB_F, (3,)))
+        center = check_magnitude("center_of_mass", check_array("center_of_mass", self.p_FB_F, (3,)))
+        object.__setattr__(self, "p_FB_F", center)
         if self.shape is NO_SHAPE:
             object.__setattr__(self, "shape", ConvexShape(vertices=self.vertices_B))
         elif len(self.vertices_B) > 0 and self.vertices_B is not self.shape.vertices:
@@ -118,7 +129,8 @@ class Surface(Record):
         restitution: Coefficient e, in [0, 1], between this surface and any body.
 
     Raises:
-        InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, or e outside [0, 1].
+        InvalidFieldError: a number is not finite, the point is beyond `LARGEST_NUMBER`, the normal is not
+            unit, mu < 0, or e outside [0, 1].
     """
 
     name: str
@@ -136,7 +148,7 @@ class Surface(Record):
 
     def __post_init__(self) -> None:
         """Check all fields."""
-        object.__setattr__(self, "p_WS_W", check_array("point", self.p_WS_W, (3,)))
+        object.__setattr__(self, "p_WS_W", check_magnitude("point", check_array("point", self.p_WS_W, (3,))))
         object.__setattr__(self, "normal_W", check_unit("normal", self.normal_W, 3))
         object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
         object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))

@@ -1,4 +1,4 @@
-"""Contacts that are given or found from shapes, with their curvatures, velocities and friction.
+"""Contacts are given or found from shapes. They have curvatures, velocities and friction.
 
 `contact` has one contact and sets of them, and `curvature` the shapes of both sides where they touch.
 `found` finds contacts from geometry: `on_flats` where a body meets a plane, `on_obstacles` and `overlap`

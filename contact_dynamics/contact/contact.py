@@ -1,4 +1,4 @@
-"""Contacts of a body with the world: where, along which normal, with which friction and restitution.
+"""A contact says where a body meets the world, along which normal, with which friction and restitution.
 
 A contact is a point of the body on a flat of the world, unless it has curvatures (`contact.curvature`). The
 normal points into the body. One contact is a `Contact`. Several contacts are a `ContactSet`, which holds

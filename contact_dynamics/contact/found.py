@@ -1,4 +1,4 @@
-"""Contacts found from geometry: the points of a convex body that touch the world's surfaces at a pose.
+"""This file finds the points of a convex body that touch the world's surfaces at a pose.
 
 A face or an edge that lies flush gives its extreme points as contacts: the corners of a face, the two ends of
 a cylinder's or a capsule's line. They carry every force that the whole face or edge can. A ball touches in

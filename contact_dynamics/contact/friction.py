@@ -1,4 +1,4 @@
-"""Coulomb's friction in space as a cone of forces with flat sides.
+"""Coulomb's friction in space is a cone of forces. This file gives it flat sides.
 
 Model: the contact force obeys f_n >= 0 and |f_t| <= mu f_n. The round cone is replaced by a pyramid inside
 it, with a stated number of edges.
@@ -7,6 +7,7 @@ it, with a stated number of edges.
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -40,8 +41,23 @@ def linearised_cone(
     Raises:
         InvalidFieldError: ``facets`` is not a whole number from 3 to `MOST_FACETS`.
     """
-    check_facets(facets)
-    one, two = tangents_towards(normal, towards)
-    angles = 2.0 * math.pi * np.arange(facets) / facets
-    edges: FloatArray = normal + friction * (np.outer(np.cos(angles), one) + np.outer(np.sin(angles), two))
+    return edges_in_frame(normal, friction, check_facets(facets), tangents_towards(normal, towards))
+
+
+def edges_in_frame(
+    normal: FloatArray, friction: float, facets: int, tangents: tuple[FloatArray, FloatArray]
+) -> FloatArray:
+    """Return the edges, (facets, 3), of `linearised_cone`, the first along the first tangent."""
+    cosines, sines = _circle(facets)
+    edges: FloatArray = normal + friction * (cosines * tangents[0] + sines * tangents[1])
     return edges
+
+
+@cache
+def _circle(facets: int) -> tuple[FloatArray, FloatArray]:
+    """Return cosines and sines, (facets, 1) each, of directions that are evenly spread."""
+    angles = 2.0 * math.pi * np.arange(facets)[:, None] / facets
+    cosines, sines = np.cos(angles), np.sin(angles)
+    for one in (cosines, sines):
+        one.flags.writeable = False
+    return cosines, sines

@@ -1,4 +1,4 @@
-"""Where a convex body touches a plane: the extreme points, with the body's curvature there.
+"""This file finds where a convex body touches a plane: the extreme points, with the body's curvature there.
 
 `found` says which points a face, a line and a rim have.
 """

@@ -1,4 +1,4 @@
-"""Contacts of a convex body with a convex obstacle: corners on faces, faces on corners, edges across edges.
+"""A convex body meets a convex obstacle with corners on faces, faces on corners, and edges across edges.
 
 Two convex bodies are apart if and only if a face's normal of one of them, or a cross product of two edges,
 separates them (Gottschalk, Lin and Manocha, OBBTree, SIGGRAPH 1996). The direction of the largest separation

@@ -1,4 +1,4 @@
-"""Outlines of the parts that lie in a touching plane, and the extreme points of the overlap of two outlines.
+"""This file outlines the parts that lie in a touching plane, and finds the extreme points where two overlap.
 
 An outline is a convex polygon, a line or a point. Where a body's and an obstacle's overlap, the extreme
 points are corners of either within the other, and crossings of their sides.

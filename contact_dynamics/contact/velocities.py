@@ -1,4 +1,4 @@
-"""The velocities of a body's contacts in space, with noise taken out, so that some count as at rest."""
+"""This file takes noise out of the velocities of contacts in space, so that some count as at rest."""
 
 from __future__ import annotations
 

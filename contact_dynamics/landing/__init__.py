@@ -1,4 +1,4 @@
-"""Where a flight ends: the first contact with planes and obstacles.
+"""A flight ends at the first contact with planes and obstacles.
 
 `earliest` finds the next landing of a body in its world, with all contacts there. `plane_arrival` finds the
 first time at a plane, with `rim_descent` for rims, and `obstacle_arrival` the first time at an obstacle. All

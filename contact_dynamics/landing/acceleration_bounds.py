@@ -1,4 +1,4 @@
-"""Bounds on the accelerations of a moving body's points towards a plane, which hold along its motion.
+"""This file bounds the accelerations of a moving body's points towards a plane, all along its motion.
 
 A point at r from the centre of mass has the acceleration a + w' x r + w x (w x r). Its part along a plane's
 normal n is at least -(fall + |r| turning), with

@@ -28,7 +28,13 @@ from contact_dynamics.rotations.one import conjugate, rotated
 from contact_dynamics.shapes.convex import ConvexShape
 from contact_dynamics.shapes.rim import radii_of
 from contact_dynamics.tolerances import GRAZING_DEPTH
-from contact_dynamics.validation import FloatArray, check_array, check_not_negative, check_unit
+from contact_dynamics.validation import (
+    FloatArray,
+    check_array,
+    check_magnitude,
+    check_not_negative,
+    check_unit,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -87,14 +93,14 @@ def first_contact(
     Raises:
         TooLargeError: the search takes too many steps: the body spins too fast, or is too large, for the
             horizon.
-        InvalidFieldError: an array has another shape, a number is not finite, the normal is not unit, the
-            shape has no corners or rims, the horizon is negative, or an integrated motion does not reach as
-            far as the search has to go.
+        InvalidFieldError: an array has another shape, a number is not finite or beyond `LARGEST_NUMBER`, the
+            normal is not unit, the shape has no corners or rims, the horizon is negative, or an integrated
+            motion does not reach as far as the search has to go.
     """
     search = Descent(
         motion,
         shape_B if isinstance(shape_B, ConvexShape) else ConvexShape(vertices=np.asarray(shape_B)),
-        check_array("p_WS_W", p_WS_W, (3,)),
+        check_magnitude("p_WS_W", check_array("p_WS_W", p_WS_W, (3,))),
         check_unit("normal_W", normal_W, 3),
     )
     if search.shape.is_empty:

@@ -1,7 +1,8 @@
-"""Motion under gravity, wrenches and drag: integrated, differentiated, fitted, with covariances.
+"""Motion under gravity, wrenches and drag is integrated, differentiated and fitted here, with covariances.
 
-`forces` says what acts on a body besides gravity. `integrated` computes its motion. Its function `motion_of`
-takes the closed form where no torque and no drag acts. `free_derivative` and `integrated_derivative` say how
+`forces` says what acts on a body besides gravity. `integrated` computes its motion, with the differential
+`equations` and the integrator's `steps`. Its function `motion_of` takes the closed form where no torque and
+no drag acts. `free_derivative` and `integrated_derivative` say how
 a motion changes with its first state, and `covariance` carries the covariance of that state along. `free_fit`
 and `integrated_fit` find the motion that fits some published states best. `between_states`
 interpolates, and `velocity_estimate` finds velocities from poses.

@@ -1,4 +1,4 @@
-"""The state of a body between two published ones.
+"""This file interpolates the state of a body between two published ones.
 
 Velocities are taken to change linearly from one state to the next, and the orientation to turn at a constant
 rate about a fixed axis, by the smaller of the two angles. The position is the cubic through both positions

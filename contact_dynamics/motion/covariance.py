@@ -1,4 +1,4 @@
-"""The covariance of a body's state, carried along a free or a forced motion.
+"""This file carries the covariance of a body's state along a free or a forced motion.
 
 Covariances are (12, 12), in the order position (m), rotation vector (rad, world axes, a small rotation
 applied after the attitude: R_true = Exp(theta) R), linear velocity (m/s), angular velocity (rad/s, world

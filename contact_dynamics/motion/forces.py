@@ -1,4 +1,4 @@
-"""What acts on a body besides gravity: constant wrenches, and drag (lecture 24).
+"""Besides gravity, constant wrenches and drag act on a body (lecture 24).
 
 A wrench is a force through the centre of mass and a torque about it. Drag follows the usual two laws for
 still air or water: it is linear where the flow creeps and quadratic where it is turbulent. It acts at the

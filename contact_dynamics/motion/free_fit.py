@@ -1,4 +1,4 @@
-"""The free motion that fits a short window of published states best, so that one noisy velocity does no harm.
+"""A free motion is fitted to a short window of published states, so that one noisy velocity does no harm.
 
 Model: a torque-free body in uniform gravity (`contact_dynamics.tumbling`) is seen at n times. There is white
 noise in position and orientation, and in the velocities if they are used. The path of the centre of mass is a
@@ -83,6 +83,9 @@ class FitResult(Record):
         count: Number of states.
         rounds: Number of rounds of Gauss's and Newton's method.
         converged: Whether the last round changed next to nothing.
+        position_misses_W: (count, 3), m, the positions less the fitted ones, world axes.
+        orientation_misses_W: (count, 3), rad, rotation vectors from the fitted attitudes to those of the
+            states, world axes.
     """
 
     state: BodyState
@@ -92,6 +95,8 @@ class FitResult(Record):
     count: int
     rounds: int
     converged: bool
+    position_misses_W: FloatArray
+    orientation_misses_W: FloatArray
 
 
 def fit_free_motion(
@@ -113,14 +118,14 @@ def fit_free_motion(
         TooLargeError: more than `MOST_STATES` states.
     """
     if len(states) < FEWEST_STATES:
-        raise InvalidFieldError("fit window", f"{len(states)} states", f"at least {FEWEST_STATES}")
+        raise InvalidFieldError("states", f"{len(states)} states", f"at least {FEWEST_STATES}")
     if len(states) > MOST_STATES:
-        raise TooLargeError("fit window", f"{len(states)} states", f"at most {MOST_STATES}")
+        raise TooLargeError("states", f"{len(states)} states", f"at most {MOST_STATES}")
     newest = states[-1].stamp_ns
     since_newest = [state.stamp_ns - newest for state in states]
     for earlier, later in itertools.pairwise(since_newest):
         if earlier >= later:
-            raise InvalidFieldError("fit window: stamps", f"{later - earlier} ns from one to the next", "> 0")
+            raise InvalidFieldError("states", f"stamps {later - earlier} ns apart", "> 0")
     seconds = seconds_since(0, since_newest)
     gravity = check_array("gravity_W", gravity_W, (3,))
     place = _fit_place(states, seconds, gravity, noise)
@@ -138,6 +143,8 @@ def fit_free_motion(
         count=len(states),
         rounds=spin.rounds,
         converged=spin.converged,
+        position_misses_W=place.misses_W,
+        orientation_misses_W=spin.misses_W,
     )
 
 
@@ -147,6 +154,7 @@ class _Place:
     v_W: FloatArray
     covariance: FloatArray  # (2, 2), of a coordinate and its rate
     residual: float
+    misses_W: FloatArray  # (n, 3), m
 
 
 def _fit_place(
@@ -177,6 +185,7 @@ def _fit_place(
         v_W=solution[1] / span,
         covariance=variance * scale @ inverse @ inverse.T @ scale,
         residual=math.sqrt(total / len(seconds)),
+        misses_W=misses,
     )
 
 
@@ -185,6 +194,7 @@ class _Rotation:
     motion: FreeMotion
     covariance: FloatArray  # (6, 6)
     residual: float
+    misses_W: FloatArray  # (n, 3), rad
     rounds: int
     converged: bool
 
@@ -206,7 +216,7 @@ def _fit_rotation(
         each = rotation_derivatives(motion, seconds)
         if not np.isfinite(each).all():
             raise InvalidFieldError(
-                "fit window", f"{-seconds[0]:g} s", "a window over which the motion is predictable"
+                "states", f"{-seconds[0]:g} s", "a window over which the motion is predictable"
             )
         design = by_q * each[:, :3].reshape(-1, 6)
         return np.vstack([design, by_w * each[:, 3:].reshape(-1, 6)]) if by_w else design
@@ -226,10 +236,11 @@ def _fit_rotation(
     fit = gauss_newton(
         start, misses_of=misses, derivatives_of=derivatives, moved=moved, negligible=negligible
     )
+    turns = fit.misses[:attitudes].reshape(-1, 3) / by_q
     total = float(np.square(fit.misses[:attitudes]).sum()) / by_q**2
     variance = total / (attitudes - 6) if noise is None else 1.0
     covariance = variance * fit.inverse @ fit.inverse.T
-    return _Rotation(fit.model, covariance, math.sqrt(total / len(seconds)), fit.rounds, fit.converged)
+    return _Rotation(fit.model, covariance, math.sqrt(total / len(seconds)), turns, fit.rounds, fit.converged)
 
 
 def _motion_from(body: MassProperties, q_WB: FloatArray, w_WB_W: FloatArray) -> FreeMotion:

@@ -1,4 +1,4 @@
-"""Motion of a rigid body under forces and torques besides gravity (lecture 24), integrated.
+"""This file integrates the motion of a rigid body under forces and torques besides gravity (lecture 24).
 
 The equations are Newton's and Euler's laws about the centre of mass, dp/dt = v, m dv/dt = m g + F, dL/dt = N,
 dR/dt = [w] R with w = R I^-1 R^T L. Forces may be constant in world or in body axes, drag in still air, and a
@@ -22,30 +22,28 @@ Not covered: forces that jump (each jump costs small steps), impacts, wind, lift
 from __future__ import annotations
 
 import math
-from bisect import bisect_left, bisect_right
+from bisect import bisect_left
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W
-from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.motion.equations import VARIABLES, MotionLaw
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.motion.steps import IntegratedStep, Steps
 from contact_dynamics.records import NamedInt, Record
-from contact_dynamics.rigid_body.body import BodyState, MassProperties, angular_momentum
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import make_continuous
-from contact_dynamics.rotations.one import Quaternion, conjugate, normalised, product, rotated
-from contact_dynamics.tolerances import INTEGRATION_ABSOLUTE, INTEGRATION_RELATIVE, LARGEST_NUMBER
+from contact_dynamics.tolerances import LARGEST_NUMBER
 from contact_dynamics.tumbling import FreeMotion, Sample, Trajectory, free_motion
 from contact_dynamics.tumbling.motion import check_extent
 from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_within
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
     from numpy.typing import ArrayLike
 
-    WrenchFunction: TypeAlias = Callable[[float, Sample], tuple[Sequence[float], Sequence[float]]]
+    from contact_dynamics.motion.equations import WrenchFunction
 
 MOST_STEPS: Final = 20_000
 """Largest number of steps in one direction of time. They take about 10 s, and cover about 500 revolutions."""
@@ -80,9 +78,9 @@ class ForcedMotion(Record):
     wrench: ConstantWrench
     drag: Drag
     wrench_of: WrenchFunction | None
-    law: _Law = field(repr=False)
-    ahead: _Steps = field(repr=False)
-    back: _Steps = field(repr=False)
+    law: MotionLaw = field(repr=False)
+    ahead: Steps = field(repr=False)
+    back: Steps = field(repr=False)
 
     @property
     def rotates_freely(self) -> bool:
@@ -149,30 +147,14 @@ class ForcedMotion(Record):
                 reaches.
         """
         times = check_magnitude("times", check_array("times", seconds, (None,)))
-        values = np.empty((len(times), _SIZE))
+        values = np.empty((len(times), VARIABLES))
         for side, belongs in ((self.ahead, times >= 0.0), (self.back, times < 0.0)):
             values[belongs] = side.at_many(times[belongs])
         rows = [self.law.sample(t, y) for t, y in zip(times.tolist(), values.tolist(), strict=True)]
         numbers = np.array([[*row.p_WB_W, *row.q_WB, *row.v_WB_W, *row.w_WB_W] for row in rows])
-        p_WB_W, q_WB, v_WB_W, w_WB_W = np.split(numbers.reshape(-1, _SIZE), (3, 7, 10), axis=1)
+        p_WB_W, q_WB, v_WB_W, w_WB_W = np.split(numbers.reshape(-1, VARIABLES), (3, 7, 10), axis=1)
         make_continuous(q_WB, self.state.q_WB)
         return Trajectory(seconds=times, p_WB_W=p_WB_W, q_WB=q_WB, v_WB_W=v_WB_W, w_WB_W=w_WB_W)
-
-
-class IntegratedStep(NamedTuple):
-    """One step of the integrator: all variables are polynomials of degree 7 in time.
-
-    Attributes:
-        start: Time at which the step begins, s.
-        end: Time at which it ends, s, > start.
-        variables: Function from times, (n,), s, to the variables, (13, n), that `_SIZE` explains.
-        scale: L over the last three variables, kg m^2.
-    """
-
-    start: float
-    end: float
-    variables: Callable[[FloatArray], FloatArray]
-    scale: float
 
 
 class ChosenMotion(NamedTuple):
@@ -240,7 +222,7 @@ def forced_motion(
     """
     gravity = check_array("gravity_W", gravity_W, (3,))
     check_extent(body, state, gravity)
-    law = _Law(body, state, gravity, wrench=wrench, drag=drag, wrench_of=wrench_of)
+    law = MotionLaw(body, state, gravity, wrench=wrench, drag=drag, wrench_of=wrench_of)
     law.rates(0.0, law.start)  # a function that returns nonsense is refused at once
     return ForcedMotion(
         body=body,
@@ -250,176 +232,6 @@ def forced_motion(
         drag=drag,
         wrench_of=wrench_of,
         law=law,
-        ahead=_Steps(law, math.inf, most_steps),
-        back=_Steps(law, -math.inf, most_steps),
+        ahead=Steps(law, math.inf, most_steps),
+        back=Steps(law, -math.inf, most_steps),
     )
-
-
-_SIZE: Final = 13
-"""Deviations of position (m) and velocity (m/s) from the free parabola, quaternion, L / I_max (rad/s)."""
-
-
-class _Law:
-    """The differential equations, in plain floats."""
-
-    def __init__(
-        self,
-        body: MassProperties,
-        state: BodyState,
-        gravity_W: FloatArray,
-        *,
-        wrench: ConstantWrench,
-        drag: Drag,
-        wrench_of: WrenchFunction | None,
-    ) -> None:
-        self.gravity_W = gravity_W
-        self.mass = body.mass
-        self.scale = float(np.linalg.eigvalsh(body.I_B)[-1])  # so that tolerances of L are those of a rate
-        self.inverse = (self.scale * np.linalg.inv(body.I_B)).tolist()
-        self.parabola = list(
-            zip(state.p_WB_W.tolist(), state.v_WB_W.tolist(), gravity_W.tolist(), strict=True)
-        )
-        self.force, self.torque = wrench.force.tolist(), wrench.torque.tolist()
-        self.turns = wrench.axes is WrenchAxes.BODY
-        self.drag = drag if drag != NO_DRAG else None
-        self.wrench_of = wrench_of
-        momentum = angular_momentum(body, state) / self.scale
-        self.start = np.concatenate([np.zeros(6), state.q_WB, momentum])
-
-    def sample(self, t: float, y: Sequence[float]) -> Sample:
-        """Return the body's motion for the integrator's variables."""
-        q = normalised(y[6:10])
-        (px, vx, gx), (py, vy, gy), (pz, vz, gz) = self.parabola
-        half = 0.5 * t
-        a, b, c = rotated(conjugate(q), y[10:13])
-        (ixx, ixy, ixz), (_, iyy, iyz), (_, _, izz) = self.inverse
-        w_B = (ixx * a + ixy * b + ixz * c, ixy * a + iyy * b + iyz * c, ixz * a + iyz * b + izz * c)
-        return Sample(
-            (
-                y[0] + (px + t * (vx + half * gx)),
-                y[1] + (py + t * (vy + half * gy)),
-                y[2] + (pz + t * (vz + half * gz)),
-            ),
-            q,
-            (y[3] + (vx + t * gx), y[4] + (vy + t * gy), y[5] + (vz + t * gz)),
-            rotated(q, w_B),
-        )
-
-    def rates(self, t: float, y: FloatArray) -> list[float]:
-        """Return the rates of the integrator's variables."""
-        values = y.tolist()
-        sample = self.sample(t, values)
-        q, v, w = sample.q_WB, sample.v_WB_W, sample.w_WB_W
-        fx, fy, fz = rotated(q, self.force) if self.turns else self.force
-        nx, ny, nz = rotated(q, self.torque) if self.turns else self.torque
-        if self.drag is not None:
-            drag = self.drag
-            by_v = drag.linear + drag.quadratic * _length(v)
-            by_w = drag.linear_angular + drag.quadratic_angular * _length(w)
-            fx, fy, fz = fx - by_v * v[0], fy - by_v * v[1], fz - by_v * v[2]
-            nx, ny, nz = nx - by_w * w[0], ny - by_w * w[1], nz - by_w * w[2]
-        if self.wrench_of is not None:
-            (ax, ay, az), (bx, by, bz) = _checked(self.wrench_of(t, sample))
-            fx, fy, fz, nx, ny, nz = fx + ax, fy + ay, fz + az, nx + bx, ny + by, nz + bz
-        # the rate of a quaternion that is not unit, so that its norm stays as it is
-        norm = math.sqrt(sum(x * x for x in values[6:10]))
-        spin: Quaternion = (0.5 * norm * w[0], 0.5 * norm * w[1], 0.5 * norm * w[2], 0.0)
-        m, scale = self.mass, self.scale
-        return [
-            *values[3:6],
-            fx / m,
-            fy / m,
-            fz / m,
-            *product(spin, q),
-            nx / scale,
-            ny / scale,
-            nz / scale,
-        ]
-
-
-class _Steps:
-    """The steps of the integrator in one direction of time. They are continued when a time needs it."""
-
-    def __init__(self, law: _Law, end: float, most: int) -> None:
-        self.law = law
-        self.end = end  # s, of time: inf or -inf
-        self.most = most
-        self.solver: Any = None
-        self.ends: list[float] = [0.0]  # s, |time| at the end of each step
-        self.dense: list[Any] = []  # and the interpolant of each
-
-    def at(self, seconds: float) -> FloatArray:
-        """Return the variables, (13,), at a time on this side."""
-        self._reach(abs(seconds))
-        if not self.dense:
-            return self.law.start
-        value: FloatArray = self.dense[max(bisect_left(self.ends, abs(seconds)) - 1, 0)](seconds)
-        return value
-
-    def step_at(self, seconds: float) -> IntegratedStep:
-        """Return the step that contains a time on this side."""
-        self._reach(math.nextafter(seconds, self.end))
-        step = bisect_right(self.ends, abs(seconds)) - 1
-        return IntegratedStep(self.ends[step], self.ends[step + 1], self.dense[step], self.law.scale)
-
-    def at_many(self, seconds: FloatArray) -> FloatArray:
-        """Return the variables, (n, 13), at times (n,) on this side."""
-        values = np.tile(self.law.start, (len(seconds), 1))
-        if len(seconds) == 0:
-            return values
-        self._reach(float(np.abs(seconds).max()))
-        if self.dense:
-            steps = np.maximum(np.searchsorted(self.ends, np.abs(seconds)) - 1, 0)
-            for step in np.unique(steps):
-                here = steps == step
-                values[here] = self.dense[step](seconds[here]).T
-        return values
-
-    def _reach(self, distance: float) -> None:
-        """Step until |time| is at least ``distance``."""
-        if distance <= self.ends[-1]:
-            return
-        if self.solver is None:
-            from scipy.integrate import DOP853
-
-            with np.errstate(all="ignore"):
-                self.solver = DOP853(
-                    self.law.rates,
-                    0.0,
-                    self.law.start,
-                    self.end,
-                    rtol=INTEGRATION_RELATIVE,
-                    atol=INTEGRATION_ABSOLUTE,
-                )
-        while self.ends[-1] < distance:
-            if len(self.dense) >= self.most:
-                self._refuse(distance, f"{self.most} steps of the integrator reach")
-            if self.solver.status != "running":
-                self._refuse(distance, "the motion stays within bounds")
-            with np.errstate(all="ignore"):  # what grows without bounds is seen by its steps
-                self.solver.step()
-            if self.solver.status != "failed":
-                self.dense.append(self.solver.dense_output())
-                self.ends.append(abs(self.solver.t))
-
-    def _refuse(self, distance: float, limit: str) -> None:
-        sign = math.copysign(1.0, self.end)
-        raise InvalidFieldError(
-            "times", f"{sign * distance:g} s", f"no further than {limit}: {sign * self.ends[-1]:g} s"
-        )
-
-
-def _checked(wrench: Any) -> tuple[Sequence[float], Sequence[float]]:
-    try:
-        force, torque = ([float(x) for x in vector] for vector in wrench)
-    except (TypeError, ValueError):
-        raise InvalidFieldError("wrench_of", wrench, "a function that returns two vectors") from None
-    for name, vector in (("force", force), ("torque", torque)):
-        if len(vector) != 3 or not all(map(math.isfinite, vector)):
-            raise InvalidFieldError(f"wrench_of: {name}", vector, "three finite numbers")
-    return force, torque
-
-
-def _length(vector: Sequence[float]) -> float:
-    x, y, z = vector
-    return math.sqrt(x * x + y * y + z * z)

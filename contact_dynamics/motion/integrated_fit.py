@@ -1,4 +1,4 @@
-"""The motion under torque and drag that fits a short window of published states best.
+"""This file fits a motion under torque and drag to a short window of published states.
 
 Model: a body moves under gravity, a constant wrench, drag and a user's function (`motion.integrated`), and is
 seen at n times with white noise. All twelve numbers of the newest state are found together, because a force
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from contact_dynamics.motion.integrated import WrenchFunction
+    from contact_dynamics.motion.equations import WrenchFunction
 
 PASSES: Final = 3
 """Number of passes where the noise is not known and weights come from residuals. The residuals of the free
@@ -83,6 +83,7 @@ def fit_motion(
         fit = seen.fitted(motion, assumed)
         motion = fit.model
         position, orientation = seen.residuals(motion)
+    misses = seen.misses(motion)
     return FitResult(
         state=motion.state,
         covariance=fit.inverse @ fit.inverse.T,
@@ -91,6 +92,8 @@ def fit_motion(
         count=len(states),
         rounds=fit.rounds,
         converged=fit.converged,
+        position_misses_W=misses[:, :3],
+        orientation_misses_W=misses[:, 3:6],
     )
 
 

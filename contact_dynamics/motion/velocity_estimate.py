@@ -1,4 +1,4 @@
-"""Velocities as a tracking system estimates them, from past measured poses alone.
+"""This file estimates velocities as a tracking system does, from past measured poses alone.
 
 Model: over the last few frames each coordinate of the position, and of the rotation vector relative to the
 newest orientation, is a quadratic function of time. Least squares gives the three coefficients. The velocity
@@ -58,20 +58,32 @@ def causal_velocities(
 
 def newest_velocity(times: FloatArray, p_W: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return linear and angular velocity, (3,) each, at the last of the frames, as `causal_velocities`."""
-    coordinates = np.column_stack([p_W - p_W[-1], rotation_vectors(q, q[-1])])
-    slopes = np.linalg.lstsq(_powers(times), coordinates, rcond=None)[0][1]
+    return velocity_at(times[-1], times, p_W, q)
+
+
+def velocity_at(
+    seconds: float, times: FloatArray, p_W: FloatArray, q: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return linear and angular velocity, (3,) each, at a time, s, near the frames or among them.
+
+    Frames are given as to `causal_velocities`, at least three of them. The farther the time is from the
+    frames, the more their noise counts.
+    """
+    nearest = int(np.abs(times - seconds).argmin())
+    coordinates = np.column_stack([p_W - p_W[nearest], rotation_vectors(q, q[nearest])])
+    slopes = np.linalg.lstsq(_powers(times, seconds), coordinates, rcond=None)[0][1]
     return slopes[:3], slopes[3:]
 
 
 def slope_weights(times: FloatArray) -> FloatArray:
     """Return the weights, (n,), 1/s, with which the frames enter the velocity at the last of them."""
-    weights: FloatArray = np.linalg.pinv(_powers(times))[1]
+    weights: FloatArray = np.linalg.pinv(_powers(times, times[-1]))[1]
     return weights
 
 
-def _powers(times: FloatArray) -> FloatArray:
-    ago = times - times[-1]
-    return np.column_stack([np.ones_like(ago), ago, ago * ago])
+def _powers(times: FloatArray, origin: float) -> FloatArray:
+    since = times - origin
+    return np.column_stack([np.ones_like(since), since, since * since])
 
 
 def slope_noise(*, frames: int, rate: float, noise: float) -> float:

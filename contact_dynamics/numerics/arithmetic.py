@@ -1,4 +1,4 @@
-"""The numbers in which the constants of a rotation are computed: doubles, alone or in arrays, or decimals.
+"""The constants of a rotation are computed in doubles, alone or in arrays, or in decimals.
 
 The formulas are written once for all these numbers. Long motions need extended precision: an error of one
 last bit in the rate of a phase becomes an error of radians after 1e16 rad. Near the middle axis this happens

@@ -1,4 +1,4 @@
-"""Convex hulls by Qhull. If rounding makes Qhull give up, it is asked again for rotated points.
+"""This file finds convex hulls by Qhull. If rounding makes Qhull give up, it tries again with turned points.
 
 Qhull merges facets that are nearly one. Where points are symmetric, or lie nearly in a plane, rounding can
 lead it into merges that it refuses. This happens in one rotation of a thousand or in four of five, and other

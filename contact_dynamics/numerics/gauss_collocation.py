@@ -1,4 +1,4 @@
-"""Linear differential equations y' = K(t) y to rounding, by Gauss collocation over short pieces.
+"""Gauss collocation solves linear differential equations y' = K(t) y to rounding, over short pieces.
 
 In each piece y' is a polynomial that obeys the equation at Gauss's points (Hairer, Norsett and Wanner,
 Solving Ordinary Differential Equations I, II.7). The caller chooses the pieces, so short that K changes and

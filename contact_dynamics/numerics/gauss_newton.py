@@ -1,4 +1,4 @@
-"""Nonlinear least squares by Gauss's and Newton's method, with steps that are halved until they help.
+"""Gauss's and Newton's method finds nonlinear least squares, with steps that are halved until they help.
 
 SciPy's ``least_squares`` finds the same, and the tests compare both. It is not used here for three reasons.
 An attitude is moved by a new rotation vector in each round, and SciPy's would have to start anew for

@@ -1,4 +1,4 @@
-"""Linear complementarity: find z >= 0 with w = M z + q >= 0 and z . w = 0, by Lemke's pivots.
+"""Lemke's pivots solve linear complementarity: find z >= 0 with w = M z + q >= 0 and z . w = 0.
 
 Friction makes M unsymmetric and copositive. Lemke's method then ends at a solution wherever some z >= 0 gives
 w >= 0 (Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, 4.4). Redundant contacts make ties.

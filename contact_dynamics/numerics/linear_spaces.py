@@ -1,4 +1,4 @@
-"""Orthonormal bases of the span of some vectors and of its complement, and their dimensions.
+"""This file finds orthonormal bases of the span of vectors and of its complement, and their dimensions.
 
 A few plain vectors go through Gram's and Schmidt's method. Rows of a matrix go through its singular values.
 """
@@ -81,3 +81,9 @@ def seen_and_unseen(rows: FloatArray) -> tuple[FloatArray, FloatArray]:
     sizes, basis = np.linalg.svd(rows)[1:]
     seen = int((sizes > ROW_TOLERANCE * max(1.0, sizes.max(initial=0.0))).sum())
     return basis[:seen], basis[seen:]
+
+
+def triangle_of(matrices: FloatArray) -> FloatArray:
+    """Return R of A = Q R, (..., min(m, n), n), for A, (..., m, n): the same inner products in fewer rows."""
+    triangle: FloatArray = np.asarray(np.linalg.qr(matrices, mode="r"))  # an array in this mode
+    return triangle

@@ -1,4 +1,4 @@
-"""Non-negative least squares, after Lawson and Hanson (1974, ch. 23).
+"""This file solves non-negative least squares, after Lawson and Hanson (1974, ch. 23).
 
 `least_force` chooses among the forces that balance a wrench. It returns those of least sum of squares if none
 of them is negative, as under a block on a row of feet. Otherwise it returns a solution with few forces. It

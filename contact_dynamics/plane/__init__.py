@@ -1,4 +1,4 @@
-"""Planar problems, and the way between space and a plane of motion.
+"""This chapter has planar problems, and the way between space and a plane of motion.
 
 `types` has a planar body, its velocity, contacts and wrench. `projection` turns a question in space into a
 planar one, or says by how much it is not planar. `lifting` brings a planar answer back to space, and

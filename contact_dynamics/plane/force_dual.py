@@ -1,4 +1,4 @@
-"""Lecture 26's picture of planar wrenches and accelerations: the force dual.
+"""The force dual is lecture 26's picture of planar wrenches and accelerations.
 
 Take the centre of mass as origin and the radius of gyration as unit of length. Then a wrench and the
 acceleration that it causes are the same vector. Its projection is one point, which is the force dual of the

@@ -1,4 +1,4 @@
-"""A planar problem as a problem in space with the same motion.
+"""This file turns a planar problem into a problem in space with the same motion.
 
 The body in space has equal moments of inertia about all axes. Then nothing couples its motion in the plane to
 motion out of it, and it moves in the plane as the planar body does.

@@ -1,4 +1,4 @@
-"""From a planar answer back to space: whether it holds there, and what it says of the body in space.
+"""This file says whether a planar answer holds in space, and what it says of the body there.
 
 A planar answer holds in space if every contact lies in the plane of motion, or has an equal contact at its
 mirror image on the other side. Then contact forces can balance about the axes in the plane, and mirrored

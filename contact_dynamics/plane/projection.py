@@ -1,4 +1,4 @@
-"""From space to a plane of motion and back: when a question is a planar one, and by how much it is not.
+"""This file projects questions onto a plane of motion, and says by how much they are not planar.
 
 The plane passes through the centre of mass. Look at it with its normal towards you and a contact's normal up:
 then the mode letter for *right* means to your right. Turning the plane over swaps left and right.

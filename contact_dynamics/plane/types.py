@@ -1,4 +1,4 @@
-"""The plane: a planar body, its motion and its contacts (Mason, lectures 26 and 27).
+"""These types describe a planar body, its motion and its contacts (Mason, lectures 26 and 27).
 
 Coordinates are those of the plane of motion, x and y, with the centre of mass as the origin of all positions.
 A contact's tangent is its normal turned by -90 degrees: for normal (0, 1) it is +x. *Right* is positive

@@ -1,4 +1,4 @@
-"""Rigid bodies (Mason, lectures 24 and 25): mass properties, states, momenta and energies.
+"""Rigid bodies have mass properties, states, momenta and energies (Mason, lectures 24 and 25).
 
 `body` has a body's mass properties, its state, and what follows from the two. `published_frame` converts
 between the frame that is published for a body and the one at its centre of mass. `inertia` makes mass

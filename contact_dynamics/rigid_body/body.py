@@ -1,4 +1,4 @@
-"""A rigid body: its mass properties, its state, and what follows from the two (Mason, lectures 24 and 25).
+"""A rigid body has mass properties and a state; momenta and energies follow (Mason, lectures 24 and 25).
 
 Frames: W is the world. B is the body's frame, with its origin at the centre of mass. If a published frame has
 its origin elsewhere, `published_frame` converts.

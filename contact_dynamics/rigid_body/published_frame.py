@@ -1,4 +1,4 @@
-"""Conversions between the published frame of a body and the one that the physics uses.
+"""This file converts between the published frame of a body and the one that the physics uses.
 
 F is the body's published frame. B is the frame of the physics, with the same axes and its origin at the
 centre of mass. W is the world. A published velocity belongs to F's origin, so it must be carried over to the

@@ -1,1 +1,1 @@
-"""Rotations: unit quaternions and rotation matrices, one at a time and many."""
+"""This chapter calculates with unit quaternions and rotation matrices, one at a time and many."""

@@ -1,4 +1,4 @@
-"""Many rotations at once: quaternions x, y, z, w, (n, 4), matrices, (n, 3, 3), and rotation vectors, (n, 3).
+"""Many rotations at once are quaternions x, y, z, w, (n, 4), matrices, (n, 3, 3), rotation vectors, (n, 3).
 
 A rotation vector is axis times angle, rad. It is in world axes and turns the attitude R into Exp(theta) R.
 """

@@ -1,4 +1,4 @@
-"""One rotation at a time: unit quaternions x, y, z, w, as plain tuples, and matrices, (3, 3)."""
+"""This file calculates with one rotation: a unit quaternion x, y, z, w, as a tuple, or a matrix, (3, 3)."""
 
 from __future__ import annotations
 

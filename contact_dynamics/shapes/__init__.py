@@ -1,4 +1,4 @@
-"""Shapes of bodies and of obstacles.
+"""Bodies and obstacles have convex shapes.
 
 `convex` has the shapes of bodies, from spheres to rounded polyhedra, and a function for each. An `obstacle`
 is a convex piece of the world with edges and corners. `hull_features` and `rim` have the parts of a shape

@@ -1,4 +1,4 @@
-"""Convex shapes of bodies: the hull of corners and circles, rolled over by a ball.
+"""A convex shape of a body is the hull of corners and circles, rolled over by a ball.
 
 A sphere is one point and a ball, a capsule is two points and a ball, a box is the hull of its corners, and a
 cylinder that of its two rims. Rounding makes every shape larger: the faces of `rounded(box(...), radius=r)`
@@ -20,12 +20,14 @@ import numpy as np
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.records import Record
 from contact_dynamics.rotations.one import rotation_matrix
+from contact_dynamics.tolerances import LARGEST_NUMBER
 from contact_dynamics.validation import (
     FloatArray,
     check_array,
-    check_not_negative,
+    check_magnitude,
     check_positive,
     check_unit,
+    check_within,
 )
 
 if TYPE_CHECKING:
@@ -62,7 +64,8 @@ class ConvexShape(Record):
         rounding: The ball's radius, m, >= 0.
 
     Raises:
-        InvalidFieldError: a number is not finite, a radius is negative, or an axis is not unit.
+        InvalidFieldError: a number is not finite or beyond `LARGEST_NUMBER`, a radius is negative, or an axis
+            is not unit.
         TooLargeError: there are more than `MOST_VERTICES` vertices or `MOST_RIMS` rims.
     """
 
@@ -79,14 +82,14 @@ class ConvexShape(Record):
 
     def __post_init__(self) -> None:
         """Check all fields."""
-        vertices = check_array("vertices", self.vertices, (None, 3))
+        vertices = check_magnitude("vertices", check_array("vertices", self.vertices, (None, 3)))
         if len(vertices) > MOST_VERTICES:
             raise TooLargeError("vertices", f"{len(vertices)} vertices", f"at most {MOST_VERTICES}")
         if len(self.rims) > MOST_RIMS:
             raise TooLargeError("rims", f"{len(self.rims)} rims", f"at most {MOST_RIMS}")
         object.__setattr__(self, "vertices", vertices)
         object.__setattr__(self, "rims", tuple(_checked(*rim) for rim in self.rims))
-        object.__setattr__(self, "rounding", check_not_negative("rounding", self.rounding))
+        object.__setattr__(self, "rounding", check_within("rounding", self.rounding, 0.0, LARGEST_NUMBER))
 
     @property
     def is_empty(self) -> bool:
@@ -132,7 +135,7 @@ def polygon(outline: ArrayLike) -> ConvexShape:
 
 def box(*, size: ArrayLike) -> ConvexShape:
     """Return a box of full side lengths (3,), m, each > 0."""
-    sides = [check_positive(f"size[{i}]", x) for i, x in enumerate(check_array("size", size, (3,)).tolist())]
+    sides = [_positive(f"size[{i}]", x) for i, x in enumerate(check_array("size", size, (3,)).tolist())]
     return ConvexShape(vertices=box_vertices(sides))
 
 
@@ -144,33 +147,33 @@ def box_vertices(size: ArrayLike) -> FloatArray:
 
 def sphere(*, radius: float) -> ConvexShape:
     """Return a ball of a radius, m, > 0."""
-    return ConvexShape(vertices=np.zeros((1, 3)), rounding=check_positive("radius", radius))
+    return ConvexShape(vertices=np.zeros((1, 3)), rounding=_positive("radius", radius))
 
 
 def capsule(*, radius: float, length: float) -> ConvexShape:
     """Return a rod with round ends, about z. ``length``, m, >= 0, is between the centres of its two balls."""
-    half = 0.5 * check_not_negative("length", length)
+    half = 0.5 * check_within("length", length, 0.0, LARGEST_NUMBER)
     return ConvexShape(
-        vertices=np.array([[0.0, 0.0, -half], [0.0, 0.0, half]]), rounding=check_positive("radius", radius)
+        vertices=np.array([[0.0, 0.0, -half], [0.0, 0.0, half]]), rounding=_positive("radius", radius)
     )
 
 
 def cylinder(*, radius: float, length: float) -> ConvexShape:
     """Return a cylinder about z, lengths in m. If the length is 0, it is a disc without thickness."""
-    radius, half = check_positive("radius", radius), 0.5 * check_not_negative("length", length)
+    radius, half = _positive("radius", radius), 0.5 * check_within("length", length, 0.0, LARGEST_NUMBER)
     rims = (Rim((0.0, 0.0, -half), _Z, radius), Rim((0.0, 0.0, half), _Z, radius))
     return ConvexShape(rims=rims if half > 0.0 else rims[:1])
 
 
 def cone(*, radius: float, height: float) -> ConvexShape:
     """Return a cone about z, lengths in m. Its base is at z = 0, its tip at z = ``height`` > 0."""
-    rim = Rim((0.0, 0.0, 0.0), _Z, check_positive("radius", radius))
-    return ConvexShape(vertices=np.array([[0.0, 0.0, check_positive("height", height)]]), rims=(rim,))
+    rim = Rim((0.0, 0.0, 0.0), _Z, _positive("radius", radius))
+    return ConvexShape(vertices=np.array([[0.0, 0.0, _positive("height", height)]]), rims=(rim,))
 
 
 def rounded(shape: ConvexShape, *, radius: float) -> ConvexShape:
     """Return a shape with a ball of ``radius``, m, >= 0, rolled over it. It grows by that on all sides."""
-    return replace(shape, rounding=shape.rounding + check_not_negative("radius", radius))
+    return replace(shape, rounding=shape.rounding + check_within("radius", radius, 0.0, LARGEST_NUMBER))
 
 
 _Z: Final = (0.0, 0.0, 1.0)
@@ -178,10 +181,14 @@ _Z: Final = (0.0, 0.0, 1.0)
 
 def _checked(center: ArrayLike, axis: ArrayLike, radius: float) -> Rim:
     return Rim(
-        _triple(check_array("rim center", center, (3,))),
+        _triple(check_magnitude("rim center", check_array("rim center", center, (3,)))),
         _triple(check_unit("rim axis", axis, 3)),
-        check_positive("rim radius", radius),
+        _positive("rim radius", radius),
     )
+
+
+def _positive(field: str, length: float) -> float:
+    return check_within(field, check_positive(field, length), 0.0, LARGEST_NUMBER)
 
 
 def _triple(vector: FloatArray) -> tuple[float, float, float]:

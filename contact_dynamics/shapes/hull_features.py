@@ -1,4 +1,4 @@
-"""The features of a convex hull that can touch: corners, normals of faces, directions of edges."""
+"""A convex hull touches with its corners, faces and edges. This file finds their places and directions."""
 
 from __future__ import annotations
 

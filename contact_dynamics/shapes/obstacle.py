@@ -1,4 +1,4 @@
-"""A convex piece of the world with edges and corners, such as a table's top, a box or a step."""
+"""An obstacle is a convex piece of the world with edges and corners, such as a table, a box or a step."""
 
 from __future__ import annotations
 
@@ -11,7 +11,13 @@ from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.records import Record
 from contact_dynamics.shapes.convex import MOST_VERTICES
 from contact_dynamics.shapes.hull_features import Features, hull_features
-from contact_dynamics.validation import FloatArray, check_array, check_not_negative, check_within
+from contact_dynamics.validation import (
+    FloatArray,
+    check_array,
+    check_magnitude,
+    check_not_negative,
+    check_within,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -29,7 +35,8 @@ class Obstacle(Record):
         features: Its faces, edges and corners, which follow from the vertices.
 
     Raises:
-        InvalidFieldError: a number is not finite, all corners are on a line, mu < 0, or e is outside [0, 1].
+        InvalidFieldError: a number is not finite, a corner is beyond `LARGEST_NUMBER`, all corners are on a
+            line, mu < 0, or e is outside [0, 1].
         TooLargeError: there are more than `MOST_VERTICES` corners.
     """
 
@@ -46,7 +53,7 @@ class Obstacle(Record):
 
     def __post_init__(self) -> None:
         """Check all fields and find faces and edges."""
-        vertices = check_array("vertices", self.vertices_W, (None, 3))
+        vertices = check_magnitude("vertices", check_array("vertices", self.vertices_W, (None, 3)))
         if len(vertices) > MOST_VERTICES:
             raise TooLargeError("vertices", f"{len(vertices)} vertices", f"at most {MOST_VERTICES}")
         object.__setattr__(self, "vertices_W", vertices)

@@ -1,4 +1,4 @@
-"""A rim as two orthogonal radii, from which its points and their heights follow."""
+"""Two orthogonal radii describe a rim. Its points and their heights follow from them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Phases that grow linearly with time, reduced modulo one without losing digits over any number of turns.
+"""Phases grow linearly with time. Here they lose no digits modulo one, over any number of turns.
 
 The rate and the offset are double-doubles (unevaluated sums of two doubles, 32 digits). The product of the
 rate with a time is formed together with its rounding error (Dekker 1971), and whole turns are taken off

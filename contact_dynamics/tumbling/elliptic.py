@@ -1,4 +1,4 @@
-"""The elliptic integrals that tumbling needs, without cancellation, in doubles or in decimal arithmetic.
+"""This file computes elliptic integrals without cancellation, in doubles or in decimal arithmetic.
 
 All take the complementary modulus k' = sqrt(1 - m) or Carlson's symmetric arguments, never the parameter m
 itself. Near the middle axis m equals 1 to more digits than a double has, and the difference 1 - m matters.

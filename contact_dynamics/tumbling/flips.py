@@ -1,4 +1,4 @@
-"""Flips of a body that spins near its middle axis (the Dzhanibekov effect): when, and how surely.
+"""A body that spins near its middle axis flips (the Dzhanibekov effect). This file says when, and how surely.
 
 Lecture 25, polhodes. The body spins about its middle axis for a while, turns that axis over, spins on, and
 turns it back. The middle of a flip is where the angular velocity has no component along the middle axis.

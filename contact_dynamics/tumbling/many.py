@@ -1,4 +1,4 @@
-"""Many free motions at once, each at its own time: samples of an uncertain state, or a cloud of bodies.
+"""This file follows many free motions at once, each at its own time, such as samples of an uncertain state.
 
 The formulas are those for one motion, over arrays and in doubles. Errors of attitude grow by about 1e-16 of
 the angle turned, times the motion's sensitivity. A motion that is on the separatrix to the last bit is

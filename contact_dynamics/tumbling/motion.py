@@ -1,4 +1,4 @@
-"""Free motion of a rigid body: torque-free tumbling in closed form, ballistic centre of mass (lecture 25).
+"""A free rigid body tumbles without torque, and its centre of mass flies in a parabola (lecture 25).
 
 No integrator steps through time. Any time, past or future, costs the same, and the error does not grow with
 the number of revolutions. The constants are computed in extended precision from the exact values of the

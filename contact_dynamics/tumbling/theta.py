@@ -1,4 +1,4 @@
-"""The attitude of a tumbling body about its angular momentum, as quotients of theta functions.
+"""Quotients of theta functions give the attitude of a tumbling body about its angular momentum.
 
 With the z axis along L, the Cayley-Klein parameters alpha = q_w + i q_z and beta = q_x + i q_y of the
 attitude of the principal frame are, up to a common positive factor that normalisation removes,

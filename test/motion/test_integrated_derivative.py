@@ -70,7 +70,13 @@ def brute_force(forces: dict, start: BodyState, change: np.ndarray, t: float) ->
     return stepped(BODY.mass, I_B, begin, acting, duration=t, steps=120)
 
 
-@pytest.mark.parametrize(("name", "t"), [*((name, 1.5) for name in FORCES), ("all", -0.6)])
+@pytest.mark.parametrize(
+    ("name", "t"),
+    [
+        *(pytest.param(name, 1.5, marks=() if name == "a function" else pytest.mark.slow) for name in FORCES),
+        ("all", -0.6),
+    ],
+)
 def test_differences_of_brute_force_agree(name: str, t: float) -> None:
     """Central differences of 1e-4 err by 1e-8 of the third derivative, 120 steps of the oracle by 1e-8."""
     found = forced_state_derivatives(

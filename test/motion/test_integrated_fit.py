@@ -129,7 +129,7 @@ def test_without_forces_it_is_the_free_fit_in_the_fall_that_remains() -> None:
 
 def test_misuse_is_refused_by_name() -> None:
     states = window(FORCES["drag"])
-    with pytest.raises(InvalidFieldError, match="fit window: found 2 states"):
+    with pytest.raises(InvalidFieldError, match="states: found 2 states"):
         fit_motion(BODY, states[-2:], **FORCES["drag"])
     with pytest.raises(InvalidFieldError, match="gravity"):
         fit_motion(BODY, states, gravity_W=[math.nan, 0.0, 0.0], **FORCES["drag"])

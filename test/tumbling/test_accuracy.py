@@ -91,14 +91,14 @@ def test_known_motions(name: str) -> None:
     assert max(errors(motion, [0.0, 1.0, -7.0, 1e3, -1e6, 1e9, 6e9])) <= TARGET
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(12))
 def test_drawn_motions(seed: int) -> None:
     rng = np.random.default_rng(seed)
     motion = motion_from(draw(rng))
     assert max(errors(motion, interesting_times(motion, rng))) <= TARGET
 
 
-@pytest.mark.parametrize("w", [(1e-60, 1.0, 3e-60), (0.0, -1e3, 1e-40)])
+@pytest.mark.parametrize("w", [pytest.param((1e-60, 1.0, 3e-60), marks=pytest.mark.slow), (0.0, -1e3, 1e-40)])
 def test_all_but_on_the_middle_axis(w: tuple[float, float, float]) -> None:
     """1 - m is 1e-120 and less, far beyond what input means; the doubles given are a motion all the same."""
     drawn = Draw(

@@ -59,7 +59,12 @@ def noisy_covariance(w_deviation: float, angle_deviation: float) -> np.ndarray:
 
 @pytest.mark.parametrize("name", FLIPPING)
 @pytest.mark.parametrize(
-    ("w_deviation", "angle_deviation"), [(1e-5, 0.0), (0.0, 1e-5), (3e-4, 1e-4), (3e-3, 0.0)]
+    ("w_deviation", "angle_deviation"),
+    [
+        *(pytest.param(*one, marks=pytest.mark.slow) for one in [(1e-5, 0.0), (0.0, 1e-5)]),
+        (3e-4, 1e-4),
+        pytest.param(3e-3, 0.0, marks=pytest.mark.slow),
+    ],
 )
 def test_deviations_are_those_of_noisy_states(name: str, w_deviation: float, angle_deviation: float) -> None:
     motion = motion_of(name)

@@ -1,4 +1,4 @@
-"""Mass properties of particles, shapes and meshes, their sums and principal axes (Mason, lectures 24, 25).
+"""Particles, shapes and meshes have mass properties, sums and principal axes (Mason, lectures 24 and 25).
 
 `from contact_dynamics import inertia`, then for a hammer: ``inertia.combined([inertia.cylinder(...),
 inertia.box(...).placed(p_GF_G=...)])``; `Body.of` makes a body of it for a `World`.

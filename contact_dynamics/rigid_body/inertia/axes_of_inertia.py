@@ -1,4 +1,4 @@
-"""Principal axes and moments, their order and signs, and the inertia ellipsoid (lecture 25, eq. 10 to 17).
+"""Principal moments and axes have an order, signs and an inertia ellipsoid (lecture 25, eq. 10 to 17).
 
 An inertia matrix determines its principal axes up to order and sign, and, where moments are equal, up to a
 turn. This module chooses:

@@ -111,8 +111,7 @@ class _Edges:
 def _check_indices(triangles: ArrayLike, vertices: int) -> NDArray[np.int64]:
     try:
         given = np.asarray(triangles)
-        indices = given.astype(np.int64)
-    except (TypeError, ValueError, OverflowError):
+    except (TypeError, ValueError):
         raise InvalidFieldError("triangles", triangles, "whole numbers of shape (n, 3)") from None
     if given.ndim != 2 or given.shape[1] != 3:
         raise InvalidFieldError("triangles", f"shape {given.shape}", "shape (n, 3)")
@@ -120,6 +119,7 @@ def _check_indices(triangles: ArrayLike, vertices: int) -> NDArray[np.int64]:
         raise InvalidFieldError(
             "triangles", f"numbers of type {given.dtype}", "whole numbers of an integer type"
         )
+    indices = given.astype(np.int64)
     wrong = np.flatnonzero(((indices < 0) | (indices >= vertices)).any(axis=1))
     if len(wrong):
         found = f"{indices[wrong[0]].tolist()} in triangle {wrong[0]}"

@@ -1,4 +1,4 @@
-"""Sums and differences of mass distributions, part by part (lecture 24)."""
+"""This file adds and subtracts mass distributions, part by part (lecture 24)."""
 
 from __future__ import annotations
 

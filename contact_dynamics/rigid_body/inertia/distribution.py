@@ -1,4 +1,4 @@
-"""Mass in a frame: how much, where its centre is, and its angular inertia (Mason, lectures 24 and 25).
+"""A mass distribution has a mass, a centre and an angular inertia in a frame (Mason, lectures 24 and 25).
 
 Shapes are turned into a `MassDistribution`, and several of these can be combined. It may also be a point or a
 line, whose inertia no rigid body has. Its `mass_properties` are what dynamics needs.

@@ -1,4 +1,4 @@
-"""Volume, centre and second moments of what triangles enclose: exact integrals (lecture 25, eq. 4 to 9).
+"""Triangles enclose a volume, whose centre and second moments are exact integrals (lecture 25, eq. 4 to 9).
 
 Each triangle and the origin span a tetrahedron. The sign of its volume says on which side the origin is.
 Integrals of polynomials over it have closed forms in its corners (Tonon 2004; Eberly 2002, "Polyhedral mass

@@ -1,4 +1,4 @@
-"""Principal moments and axes of an inertia matrix in extended precision (lecture 25, eq. 10 and 11).
+"""This file finds principal moments and axes in extended precision (lecture 25, eq. 10 and 11).
 
 A tumbling body turns by phases that grow with time. So an error of one last bit in a moment becomes an error
 of radians after 1e16 revolutions, and much earlier near the middle axis. The doubles of the matrix are
@@ -79,7 +79,7 @@ def _of_bytes(data: bytes) -> PrincipalFrame[Decimal]:
 
 def _diagonalise(matrix: list[list[Decimal]], axes: list[list[Decimal]]) -> None:
     """Make ``matrix`` diagonal, and turn ``axes`` (columns) with it (Golub and Van Loan, 8.5)."""
-    negligible = EXACTLY_EQUAL_MOMENTS / 10**5 * sum(matrix[i][i] for i in range(3))
+    negligible = EXACTLY_EQUAL_MOMENTS / 10**5 * sum(abs(matrix[i][i]) for i in range(3))
     for _ in range(_MOST_SWEEPS):
         if all(abs(matrix[p][q]) <= negligible for p, q in ((0, 1), (0, 2), (1, 2))):
             return

@@ -1,4 +1,4 @@
-"""Solids of uniform density in closed form.
+"""Solids of uniform density have mass properties in closed form.
 
 Each solid has axes of its own. An axis of symmetry is z. The origin is the centre. If the two ends of the
 axis differ (cone, hemisphere), the origin is the centre of the base, and the solid is on the side of +z.
@@ -17,8 +17,8 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.inertia.distribution import MassDistribution
-from contact_dynamics.rigid_body.inertia.mass_or_density import mass_of
-from contact_dynamics.validation import check_array, check_not_negative, check_positive
+from contact_dynamics.rigid_body.inertia.mass_or_density import check_length, check_length_or_none, mass_of
+from contact_dynamics.validation import check_array
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -33,7 +33,7 @@ def box(*, size: ArrayLike, mass: float | None = None, density: float | None = N
 
 def sphere(*, radius: float, mass: float | None = None, density: float | None = None) -> MassDistribution:
     """Return a ball about its centre."""
-    r = check_positive("radius", radius)
+    r = check_length("radius", radius)
     return ellipsoid(semi_axes=(r, r, r), mass=mass, density=density)
 
 
@@ -60,7 +60,7 @@ def ellipsoid(
 
 def hemisphere(*, radius: float, mass: float | None = None, density: float | None = None) -> MassDistribution:
     """Return half a ball. Its flat face is in z = 0, centred, and its dome is towards +z."""
-    r = check_positive("radius", radius)
+    r = check_length("radius", radius)
     total = mass_of(2.0 / 3.0 * math.pi * r**3, mass=mass, density=density)
     return centered(total, (r * r / 5.0, r * r / 5.0, 19.0 / 320.0 * r * r), height=0.375 * r)
 
@@ -69,7 +69,7 @@ def cylinder(
     *, radius: float, length: float, mass: float | None = None, density: float | None = None
 ) -> MassDistribution:
     """Return a circular cylinder along z, about its centre."""
-    return _tube(check_positive("radius", radius), 0.0, length, mass, density)
+    return _tube(check_length("radius", radius), 0.0, length, mass, density)
 
 
 def tube(
@@ -88,7 +88,7 @@ def capsule(
     *, radius: float, length: float, mass: float | None = None, density: float | None = None
 ) -> MassDistribution:
     """Return a cylinder along z, of that length >= 0, with a half ball on each end, about its centre."""
-    r, h = check_positive("radius", radius), check_not_negative("length", length)
+    r, h = check_length("radius", radius), check_length_or_none("length", length)
     middle, ends = h, 4.0 / 3.0 * r  # volumes over pi r^2
     total = mass_of(math.pi * r * r * (middle + ends), mass=mass, density=density)
     middle, ends = middle / (middle + ends), ends / (middle + ends)
@@ -109,8 +109,8 @@ def cone(
 
     A pointed cone's centre of mass is at a quarter of its height.
     """
-    r, t = check_positive("radius", radius), check_not_negative("top_radius", top_radius)
-    h = check_positive("height", height)
+    r, t = check_length("radius", radius), check_length_or_none("top_radius", top_radius)
+    h = check_length("height", height)
     squares = r * r + r * t + t * t
     total = mass_of(math.pi / 3.0 * h * squares, mass=mass, density=density)
     across = 0.15 * (r**4 + r**3 * t + r * r * t * t + r * t**3 + t**4) / squares
@@ -126,7 +126,7 @@ def torus(
     *, ring_radius: float, tube_radius: float, mass: float | None = None, density: float | None = None
 ) -> MassDistribution:
     """Return a torus around z: ``ring_radius`` to the middle of its tube, at least ``tube_radius``."""
-    R, a = check_positive("ring_radius", ring_radius), check_positive("tube_radius", tube_radius)
+    R, a = check_length("ring_radius", ring_radius), check_length("tube_radius", tube_radius)
     if a > R:
         raise InvalidFieldError("tube_radius", a, f"at most the ring_radius, {R:g}")
     total = mass_of(2.0 * math.pi**2 * R * a * a, mass=mass, density=density)
@@ -148,14 +148,14 @@ def centered(mass: float, spread: tuple[float, float, float], *, height: float =
 
 
 def _tube(R: float, r: float, length: float, mass: float | None, density: float | None) -> MassDistribution:
-    h = check_positive("length", length)
+    h = check_length("length", length)
     total = mass_of(math.pi * (R - r) * (R + r) * h, mass=mass, density=density)
     across = (R * R + r * r) / 4.0
     return centered(total, (across, across, h * h / 12.0))
 
 
 def _wall(outer_radius: float, inner_radius: float) -> tuple[float, float]:
-    R, r = check_positive("outer_radius", outer_radius), check_not_negative("inner_radius", inner_radius)
+    R, r = check_length("outer_radius", outer_radius), check_length_or_none("inner_radius", inner_radius)
     if r >= R:
         raise InvalidFieldError("inner_radius", r, f"less than the outer_radius, {R:g}")
     return R, r
@@ -165,4 +165,4 @@ def _lengths(field: str, value: ArrayLike) -> tuple[float, float, float]:
     x, y, z = check_array(field, value, (3,)).tolist()
     if min(x, y, z) <= 0.0:
         raise InvalidFieldError(field, [x, y, z], "three numbers > 0")
-    return x, y, z
+    return check_length(field, x), check_length(field, y), check_length(field, z)

@@ -1,4 +1,4 @@
-"""The mass of particles at fixed distances from each other (lecture 24, "Angular inertia, part three")."""
+"""Particles at fixed distances make a rigid body (lecture 24, "Angular inertia, part three")."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.inertia.distribution import MassDistribution, inertia_of_second_moments
-from contact_dynamics.validation import check_array
+from contact_dynamics.validation import check_array, check_magnitude
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -20,10 +20,11 @@ def particles(masses: ArrayLike, p_FP_F: ArrayLike) -> MassDistribution:
         p_FP_F: (n, 3), m, their places in F.
 
     Raises:
-        InvalidFieldError: a mass is negative or all are zero, a number is not finite, the lengths differ.
+        InvalidFieldError: a mass is negative or all are zero, a number is not finite or beyond 1e60, the
+            lengths differ.
     """
-    m = check_array("masses", masses, (None,))
-    points = check_array("points", p_FP_F, (len(m), 3))
+    m = check_magnitude("masses", check_array("masses", masses, (None,)))
+    points = check_magnitude("points", check_array("points", p_FP_F, (len(m), 3)))
     if (m < 0.0).any():
         raise InvalidFieldError("masses", float(m.min()), "numbers >= 0")
     total = float(m.sum())

@@ -1,4 +1,4 @@
-"""Solids bounded by triangles: closed meshes, and the convex hull of points.
+"""Triangles bound solids: closed meshes, and the convex hull of points.
 
 Density is uniform. Coordinates are in m, so scale a mesh in mm first. `closed_surface` and `mesh_parts` say
 what makes a mesh closed and well wound. `polyhedron_integrals` has the integrals.

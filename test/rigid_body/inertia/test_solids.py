@@ -162,7 +162,7 @@ def test_a_thin_wall_keeps_its_digits() -> None:
         (inertia.capsule, {"radius": 1.0, "length": -1.0, "mass": 1.0}, "length: found -1.0"),
         (inertia.torus, {"ring_radius": 1.0, "tube_radius": 1.1, "mass": 1.0}, "at most the ring_radius, 1"),
         (inertia.plate, {"size": (1.0, -1.0), "mass": 1.0}, "size: found"),
-        (inertia.sphere, {"radius": 1e200, "mass": 1.0}, "inertia: .*finite"),
+        (inertia.sphere, {"radius": 1e200, "mass": 1.0}, "radius: found 1e\\+200"),
     ],
 )
 def test_sizes_that_no_shape_has_are_refused(
