@@ -20,7 +20,7 @@ export PIP_USER := 0
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-matrix test-slow coverage lint types bench docs setup venv clean FORCE
+.PHONY: help demo test test-matrix test-slow fuzz coverage lint types bench docs setup venv clean FORCE
 
 help: ## print this
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | while IFS='	' read -r name text; do \
@@ -30,8 +30,9 @@ help: ## print this
 demo: $(MADE)/package $(MADE)/interfaces ## play a toss and compare predictions with it; VIEW=1 opens the viewer, TOSS=path plays another
 	@$(BIN)/contact-dynamics demo $(if $(VIEW),--view) $(if $(TOSS),--toss "$(TOSS)")
 
-# More than four processes gain little: the longest files of the nodes' tests each wait for processes and DDS.
-JOBS ?= $(shell n=$$(nproc 2>/dev/null || echo 1); [ "$$n" -gt 4 ] && n=4; echo $$n)
+# One process more than there are processors, because a quarter of the time goes by in waiting for processes and DDS. More
+# than four gain little: the longest files of the nodes' tests wait most.
+JOBS ?= $(shell n=$$(nproc 2>/dev/null || echo 1); [ "$$n" -gt 3 ] && n=3; echo $$((n + 1)))
 test: lint types $(MADE)/test ## lint, types and the tests; JOBS=1 runs them in one process
 	@$(BIN)/python -m pytest $(if $(filter-out 1,$(JOBS)),-n $(JOBS) --dist loadfile)
 
@@ -40,6 +41,9 @@ test-matrix: ## the physics with the oldest and newest NumPy and SciPy, on every
 
 test-slow: $(MADE)/test ## the sweeps that are too slow for `make test`
 	@HYPOTHESIS_PROFILE=explore $(BIN)/python -m pytest -m slow
+
+fuzz: $(MADE)/test ## ask 10 000 questions of all kinds, with numbers of every size
+	@$(BIN)/python -m pytest -q -n 0 -m slow test/questions/test_fuzz.py
 
 coverage: $(MADE)/test ## which lines the tests do not reach, in coverage_html/ too
 	@$(BIN)/python -m coverage erase
@@ -63,7 +67,7 @@ bench: $(MADE)/bench ## measure speed and accuracy, peers beside us; WRITE=1 ren
 # material prints an advertisement for its successor unless this is set.
 docs: $(MADE)/test ## the documents as a site with a reference, in site/
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --quiet
-	@echo "Open site/index.html in a browser."
+	@echo "Open site/index.html in a browser. To search it too: $(BIN)/python -m http.server -d site"
 
 setup: $(MADE)/package $(MADE)/interfaces ## make the environment in .venv and nothing else
 venv: setup

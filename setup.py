@@ -47,7 +47,7 @@ setup(
     ],
     python_requires=">=3.10",
     packages=find_packages(include=[f"{NAME}*", "msg_adapters*"], exclude=[f"{NAME}_interfaces*"]),
-    package_data={"": ["py.typed", "*.csv", "*.npz"]},
+    package_data={"": ["py.typed", "*.csv", "*.json", "*.npz"]},
     zip_safe=False,
     install_requires=requirements("core"),
     extras_require={

@@ -4,9 +4,13 @@ import os
 
 from hypothesis import settings
 
+from contact_dynamics.nodes.reserved_memory import keep_reserved_memory_untouched
+
 # Jazzy's message classes check their fields only where this is set, before the first of them is imported.
 os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+
+keep_reserved_memory_untouched()  # a test process joins DDS many times, and would take gigabytes
 
 # The suite draws the same examples each time, so that a change is what makes it fail.
 # HYPOTHESIS_PROFILE=explore draws new ones. No deadline: a busy machine is not a wrong answer.

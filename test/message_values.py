@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
@@ -13,7 +14,16 @@ from hypothesis import strategies as st
 from contact_dynamics.constants import ns_after
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.curvature import alike
-from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict, Refusal, RefusedMode
+from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
+from contact_dynamics.contact_modes.result import (
+    BodyStatics,
+    Certainty,
+    GeometryMargin,
+    ModeVerdict,
+    Refusal,
+    RefusedMode,
+    VerdictsWithin,
+)
 from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
 from contact_dynamics.contact_modes.spatial.result import SpatialMode
 from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
@@ -46,6 +56,10 @@ from contact_dynamics.questions import (
     SequenceStrike,
     SettledImpact,
     StruckBody,
+    TossAnswer,
+    TossPath,
+    TossQuestion,
+    TossSampling,
     TumblingAnswer,
     TumblingQuestion,
     UncertainState,
@@ -59,8 +73,20 @@ from contact_dynamics.questions.many import (
     ManyTumblingsAnswer,
     ManyTumblingsQuestion,
 )
+from contact_dynamics.questions.many_contact_modes import ManyContactModesAnswer, ManyContactModesQuestion
 from contact_dynamics.questions.subject import NEWEST, changed_body
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.toss import (
+    TossDistribution,
+    TossEnd,
+    TossEnergy,
+    TossEvent,
+    TossEventKind,
+    TossUncertainty,
+    Undecided,
+    UndecidedReason,
+)
+from contact_dynamics.toss.distribution import Branch, BranchKind, EventRegions, Ghosts, Region, RestSpread
 from contact_dynamics.tumbling import Flips, Poinsot, Regime, RollingCurves, Trajectory
 from contact_dynamics.tumbling.poinsot_construction import semi_axes
 from contact_dynamics.world import Body, World, box_vertices
@@ -446,6 +472,37 @@ def settled_impacts(draw: st.DrawFn, count: int) -> SettledImpact:
 
 
 @st.composite
+def uncertainties(draw: st.DrawFn) -> ContactUncertainty:
+    """One number for all contacts, or one for each of two or three."""
+    count = draw(st.sampled_from([2, 3]))
+    small = st.floats(1e-300, 1.5)
+    each = st.one_of(st.just(0.0), small, st.lists(small, min_size=count, max_size=count).map(tuple))
+    return ContactUncertainty(points=draw(each), normals=draw(each), frictions=draw(each))
+
+
+@st.composite
+def verdicts_within(draw: st.DrawFn) -> VerdictsWithin:
+    """With one verdict at least, since the first is that on the problem itself."""
+    return VerdictsWithin(
+        uncertainty=draw(uncertainties()),
+        verdicts=draw(st.lists(st.sampled_from(ModeVerdict), min_size=1, max_size=3).map(tuple)),
+        modes=draw(st.lists(texts, max_size=3).map(tuple)),
+        certain=draw(flags),
+        samples=draw(indices),
+    )
+
+
+geometry_margins = st.builds(
+    GeometryMargin,
+    kind=st.sampled_from(["points", "normals", "frictions"]),
+    holds_within=not_negative,
+    changes_at=odd_numbers,
+    verdict_beyond=st.sampled_from(ModeVerdict),
+    modes_beyond=st.lists(texts, max_size=2).map(tuple),
+)
+
+
+@st.composite
 def contact_mode_answers(draw: st.DrawFn, p_FB_F: np.ndarray = NO_OFFSET) -> ContactModeAnswer:
     """With no mode and several, and with all that can be asked for besides or not."""
     contacts = draw(contact_sets())
@@ -477,6 +534,9 @@ def contact_mode_answers(draw: st.DrawFn, p_FB_F: np.ndarray = NO_OFFSET) -> Con
         distance_tolerance=draw(positive),
         friction_facets=draw(indices),
         wrench_facets=draw(indices),
+        undecided_modes=draw(st.lists(texts, max_size=2).map(tuple)),
+        within=draw(some(verdicts_within())),
+        geometry_margins=draw(st.lists(geometry_margins, max_size=3).map(tuple)) or None,
     )
 
 
@@ -568,6 +628,143 @@ def many_states(draw: st.DrawFn, count: int) -> ManyStates:
     )
 
 
+def region(values: np.ndarray) -> Region:
+    """A region of one to three numbers, made of twelve or more."""
+    k = 1 + len(values) % 3
+    return Region(mean=values[:k], covariance=values[:9].reshape(3, 3)[:k, :k], radii=values[-2:])
+
+
+regions = st.integers(37, 39).flatmap(arrays).map(region)
+event_regions = arrays(75).map(
+    lambda values: EventRegions(
+        probability=float(values[0]),
+        seconds=region(values[:12]),
+        position=region(values[12:25]),
+        q_WB=values[70:74],
+        turn=region(values[25:39]),
+        velocity=region(values[39:51]),
+        spin=region(values[51:64]),
+    )
+)
+branches = st.builds(
+    Branch,
+    parent=st.integers(-1, 9),
+    strike=st.integers(1, 10),
+    kind=st.sampled_from(BranchKind),
+    surface=texts,
+    corner=st.integers(-1, 9),
+    probability=st.floats(0.0, 1.0),
+    regions=some(event_regions),
+)
+rests = st.builds(RestSpread, seconds=arrays(5), positions=arrays(5, 3), position=regions)
+
+
+@st.composite
+def toss_distributions(draw: st.DrawFn) -> TossDistribution:
+    """With up to one strike and branch and two faces and ghosts, at rest or not followed so far."""
+    states, faces = draw(many_states(draw(st.integers(0, 2)))), draw(st.integers(0, 2))
+    count = len(states)
+    return TossDistribution(
+        samples=draw(st.integers(1, 2000)),
+        strikes=draw(tuples_of(event_regions, draw(st.integers(0, 1)))),
+        branches=draw(tuples_of(branches, draw(st.integers(0, 1)))),
+        face_normals_B=draw(arrays(faces, 3)),
+        face_probabilities=draw(arrays(faces)),
+        rest=draw(some(rests)),
+        ghosts=Ghosts(
+            samples=np.array(draw(tuples_of(indices, count)), dtype=np.int64),
+            strikes=np.array(draw(tuples_of(indices, count)), dtype=np.int64),
+            p_WB_W=states.p_WB_W,
+            q_WB=states.q_WB,
+            v_WB_W=states.v_WB_W,
+            w_WB_W=states.w_WB_W,
+        ),
+    )
+
+
+@st.composite
+def toss_events(draw: st.DrawFn) -> TossEvent:
+    """At up to two contacts."""
+    n = draw(st.integers(0, 2))
+    return TossEvent(
+        seconds=draw(numbers),
+        kind=draw(st.sampled_from(TossEventKind)),
+        surfaces=draw(tuples_of(texts, n)),
+        corners=draw(tuples_of(indices, n)),
+        p_WC_W=draw(arrays(n, 3)),
+        impulse_W=draw(arrays(3)),
+        outcome=draw(some(st.sampled_from(ImpactOutcome))),
+        mode=draw(st.sampled_from(["", "f", "cf"])),
+        state=draw(states),
+    )
+
+
+@st.composite
+def toss_paths(draw: st.DrawFn) -> TossPath:
+    """With up to two events and undecided points."""
+    undecided = st.builds(
+        Undecided, seconds=numbers, reason=st.sampled_from(UndecidedReason), options=indices, taken=indices
+    )
+    energy = st.builds(
+        TossEnergy, first=numbers, lost_in_strikes=numbers, lost_in_contact=numbers, left=numbers
+    )
+    return TossPath(
+        end=draw(st.sampled_from(TossEnd)),
+        seconds=draw(numbers),
+        trajectory=draw(trajectories()),
+        events=draw(tuples_of(toss_events(), draw(st.integers(0, 2)))),
+        resting_corners=draw(tuples_of(indices, draw(st.integers(0, 4)))),
+        resting_normal_B=draw(arrays(3)),
+        energy=draw(energy),
+        undecided=draw(tuples_of(undecided, draw(st.integers(0, 2)))),
+    )
+
+
+@st.composite
+def toss_answers(draw: st.DrawFn) -> TossAnswer:
+    """With and without alternatives, fit and distribution."""
+    return TossAnswer(
+        body_name=draw(st.sampled_from(NAMES)),
+        p_FB_F=NO_OFFSET,
+        state=draw(states),
+        fit=draw(some(fits)),
+        toss=draw(toss_paths()),
+        alternatives=draw(tuples_of(toss_paths(), draw(st.integers(0, 1)))),
+        all_followed=draw(flags),
+        distribution=draw(some(toss_distributions())),
+    )
+
+
+@st.composite
+def toss_questions(draw: st.DrawFn) -> TossQuestion:
+    """From all sources of states, by all laws, with samples and without."""
+    root = draw(arrays(6, 6))
+    uncertainty = st.builds(
+        TossUncertainty,
+        covariance=st.sampled_from([np.zeros((0, 0)), root @ root.T]),
+        velocity=not_negative,
+        spin=not_negative,
+        height=not_negative,
+    )
+    sampling = st.builds(
+        TossSampling,
+        count=st.integers(1, 2000),
+        strikes=some(st.integers(1, 10)),
+        to_rest=flags,
+        seed=st.integers(0, 2**32 - 1),
+        uncertainty=uncertainty,
+    )
+    return TossQuestion(
+        body=draw(bodies()),
+        state=draw(st.one_of(published, known_states())),
+        restitution_law=draw(st.sampled_from(RestitutionLaw)),
+        horizon=draw(some(positive)),
+        rate=draw(some(positive)),
+        most_alternatives=draw(some(indices)),
+        sampling=draw(some(sampling)),
+    )
+
+
 @st.composite
 def many_tumblings_questions(draw: st.DrawFn) -> ManyTumblingsQuestion:
     """Up to three states, in the known gravity and in none."""
@@ -619,6 +816,51 @@ def many_impacts_answers(draw: st.DrawFn) -> ManyImpactsAnswer:
 
 
 @st.composite
+def many_contact_modes_questions(draw: st.DrawFn) -> ManyContactModesQuestion:
+    """Up to three candidates, with sets of contacts or without, and nothing that is not asked for many."""
+    asked = replace(
+        draw(contact_mode_questions()),
+        force_W=np.zeros(3),
+        torque_W=np.zeros(3),
+        want_wrenches=False,
+        want_statics=False,
+        want_impact=False,
+        uncertainty=EXACT_CONTACTS,
+        want_geometry_margins=False,
+    )
+    if not asked.want_margins:
+        asked = replace(asked, margin_length=None)
+    given = 0 if asked.contacts is None else len(asked.contacts)
+    counts = draw(st.sampled_from([(), (given,), (1,) * given] if given else [()]))
+    n = len(counts) if len(counts) > 1 else draw(st.integers(1, 3))
+    return ManyContactModesQuestion(
+        asked=asked, forces_W=draw(arrays(n, 3)), torques_W=draw(arrays(n, 3)), contact_counts=counts
+    )
+
+
+@st.composite
+def many_contact_modes_answers(draw: st.DrawFn) -> ManyContactModesAnswer:
+    """Up to three candidates with up to two modes each, with their margins or without."""
+    counts = draw(st.lists(st.integers(0, 2), max_size=3))
+    n, m = len(counts), sum(counts)
+    contacts = draw(contact_sets())
+    return ManyContactModesAnswer(
+        body_name=draw(st.sampled_from(NAMES)),
+        p_FB_F=NO_OFFSET,
+        state=draw(states),
+        contacts=contacts,
+        contact_counts=(len(contacts),),
+        verdicts=np.array(draw(tuples_of(st.integers(0, 4), n)), dtype=np.int64),
+        problems=np.array(draw(tuples_of(st.integers(1, 2), n)), dtype=np.int64),
+        mode_counts=np.array(counts, dtype=np.int64),
+        modes=draw(tuples_of(texts, m)),
+        accelerations_W=draw(arrays(m, 3)),
+        angular_accelerations_W=draw(arrays(m, 3)),
+        margins=draw(some(arrays(m))) if m > 0 else None,
+    )
+
+
+@st.composite
 def contact_mode_questions(draw: st.DrawFn) -> ContactModeQuestion:
     """The questions ask for each option or not, without the fields that play no part."""
     problem = draw(st.sampled_from(Problem))
@@ -643,4 +885,6 @@ def contact_mode_questions(draw: st.DrawFn) -> ContactModeQuestion:
         want_wrenches=draw(flags),
         want_statics=statics,
         want_impact=draw(flags),
+        uncertainty=draw(uncertainties()),
+        want_geometry_margins=draw(flags),
     )

@@ -14,6 +14,7 @@ import pytest
 from mypy import api
 
 from contact_dynamics import BodyState, ContactSet, MassProperties
+from contact_dynamics.questions import ContactModeQuestion
 from running_server import ROOT
 
 PAGES = ("README.md", "docs/*.md", "docs/tutorials/*.md", "contact_dynamics_interfaces/README.md")
@@ -94,6 +95,7 @@ TRIANGLE = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
 SURFACE = {"friction": 0, "restitution": 0}
 ONE_CONTACT = {"p_WC_W": [[0, 0, 0]], "normals_W": [[0, 0, 1]], "frictions": [0], "restitutions": [0]}
 LISTS: dict[str, dict[str, Any]] = {
+    "ContactUncertainty": {"points": (1e-3, 2e-3)},  # it stays a tuple, with a number for each contact
     "BodyState": AT_REST,
     "Body": {
         "name": "body",
@@ -127,6 +129,11 @@ LISTS: dict[str, dict[str, Any]] = {
         "torque_W": [0, 0, 1],
         "gravity_W": [0, 0, -1],
     },
+    "ManyContactModesQuestion": {
+        "asked": ContactModeQuestion(body="brick"),
+        "forces_W": [[0, 0, 1]],
+        "torques_W": [[0, 0, 1]],
+    },
     "AtTimes": {"times": [0, 1]},
     "AtStamps": {"stamps_ns": (0, 1)},
     "UntilPlane": {"plane_point": [0, 0, 0], "plane_normal": [0, 0, 1], "body_point": [0, 0, 0]},
@@ -138,6 +145,7 @@ LISTS: dict[str, dict[str, Any]] = {
         "torque_W": [0, 0, 0],
     },
     "UncertainState": {"state": BodyState(**AT_REST), "covariance": np.eye(12).tolist()},
+    "TossUncertainty": {"covariance": np.eye(6).tolist()},
 }
 
 

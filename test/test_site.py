@@ -12,6 +12,7 @@ import pytest
 
 from running_server import ROOT
 
+PAGES_FROM_ELSEWHERE = {"interfaces.md", "readme.md", "changelog.md", "contributing.md"}
 MENU = (ROOT / "mkdocs.yml").read_text(encoding="utf-8").partition("\nnav:\n")[2]
 
 
@@ -20,6 +21,7 @@ def test_the_menu_has_every_page() -> None:
     assert len(listed) == len(set(listed))
     written = {str(path.relative_to(ROOT / "docs")) for path in (ROOT / "docs").rglob("*.md")}
     assert written <= set(listed)
+    assert set(listed) - written == {"interface-files.md", *PAGES_FROM_ELSEWHERE}
 
 
 def test_the_reference_has_every_chapter_that_users_call() -> None:
@@ -46,3 +48,10 @@ def test_the_site_is_built_without_a_complaint(tmp_path: Path) -> None:
     readme = (tmp_path / "readme.html").read_text(encoding="utf-8")
     assert "bench:" not in readme
     assert "config/server.yaml</code></a>" not in readme
+    # The definitions of the interfaces stand on a page of their own, to which their names link.
+    definitions = (tmp_path / "interface-files.html").read_text(encoding="utf-8")
+    for path in (ROOT / "contact_dynamics_interfaces").glob("*/*.[ms]*"):
+        assert f'id="{path.stem.lower()}"' in definitions
+        assert f'href="interface-files.html#{path.stem.lower()}"' in (tmp_path / "interfaces.html").read_text(
+            encoding="utf-8"
+        )

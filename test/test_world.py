@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -14,6 +15,9 @@ from contact_dynamics.contact.contact import MOST_CONTACTS, ContactSet
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.errors import InvalidFieldError, TooLargeError, UnknownBodyError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.shapes import box, cylinder, sphere
+from contact_dynamics.shapes.convex import ConvexShape
+from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.world import MOST_VERTICES, Body, Surface, World, box_vertices
 
 STUFF = MassProperties(mass=1.0, I_B=np.eye(3))
@@ -128,3 +132,28 @@ def test_a_surface_that_makes_no_sense_is_refused(field: str, value: object) -> 
     }
     with pytest.raises(InvalidFieldError):
         Surface(**{**good, field: value})
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: ConvexShape(vertices=[[1e155, 0.0, 0.0]]), r"vertices: found 1e\+155"),
+        (lambda: sphere(radius=1e61), r"radius: found 1e\+61"),
+        (lambda: cylinder(radius=1e61, length=1.0), r"radius: found 1e\+61"),
+        (lambda: cylinder(radius=1.0, length=4e60), r"length: found 4e\+60"),
+        (lambda: box(size=[1.0, 1e61, 1.0]), r"size\[1\]: found 1e\+61"),
+        (lambda: sphere(radius=1.0).moved([0.0, 2e60, 0.0]), r"vertices: found 2e\+60"),
+        (lambda: surface("far", (0.0, 0.0, -1e61), (0.0, 0.0, 1.0)), r"point: found 1e\+61"),
+        (lambda: Body(name="b", mass_properties=STUFF, p_FB_F=[1e61, 0, 0]), r"center_of_mass: found 1e\+61"),
+        (lambda: obstacle_of_size(1e61), r"vertices: found 1e\+61"),
+    ],
+)
+def test_lengths_whose_squares_overflow_are_refused_by_name(make: Callable[[], object], words: str) -> None:
+    """Searches for a landing square them. With 1e155 m a search met a NaN, which was an internal error."""
+    with pytest.raises(InvalidFieldError, match=words):
+        make()
+
+
+def obstacle_of_size(size: float) -> Obstacle:
+    corners = [[0.0, 0.0, 0.0], [size, 0.0, 0.0], [0.0, size, 0.0]]
+    return Obstacle(name="table", vertices_W=corners, friction=0.5, restitution=0.5)

@@ -36,6 +36,7 @@ CHAPTERS = (
     "landing",
     "contact_modes",  # lecture 26
     "impact",  # lecture 27
+    "toss",  # all four lectures in one motion
     "questions",
     "diagrams",
     "msg_adapters",
@@ -45,7 +46,9 @@ CHAPTERS = (
     "nodes",
     "replay",
     "evaluation",
+    "calibration",
     "plots",
+    "cases",
     "demo",
     "command_line",
     "__main__",

@@ -25,6 +25,7 @@ CHAPTERS = (
     "landing",
     "contact_modes",
     "impact",
+    "toss",
     "questions",
 )
 MOST_ON_THE_FIRST_PAGE = 30

@@ -40,6 +40,8 @@ TELEGRAM = re.compile(
     re.MULTILINE,
 )
 """A value and a colon where a sentence begins. Fields are documented as `name: text`, by no such name."""
+STRINGS = {tokenize.STRING, getattr(tokenize, "FSTRING_MIDDLE", tokenize.STRING)}
+"""From Python 3.12 on, what stands in an f-string is a token of its own."""
 FIELD = re.compile(r"^\s+\w+: (.*)$", re.MULTILINE)
 """An entry of an `Attributes` or `Args` section."""
 
@@ -135,7 +137,7 @@ def names() -> set[str]:
         for token in tokenize.generate_tokens(io.StringIO(source).readline):
             if token.type == tokenize.NAME:
                 found.add(token.string)
-            elif token.type == tokenize.STRING and token.start[0] not in texts:
+            elif token.type in STRINGS and token.start[0] not in texts:
                 found.update(re.findall(r"\w+", token.string))
     return found
 

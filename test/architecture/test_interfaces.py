@@ -15,13 +15,28 @@ from contact_dynamics.impact import ImpactOutcome, PathEvent, RestitutionLaw, Se
 from contact_dynamics.motion.integrated import Method
 from contact_dynamics.questions import EventKind, Problem
 from contact_dynamics.questions.many import MOST_STATES
+from contact_dynamics.questions.many_contact_modes import MOST_CANDIDATES
 from contact_dynamics.questions.sample_times import MOST_SAMPLES
 from contact_dynamics.questions.tumbling import FLIPS, MOST_COVARIANCES, MOST_CURVE_POINTS
-from contact_dynamics_interfaces.msg import BodyStates, ContactSet, Impact, Poinsot, Trajectory
+from contact_dynamics.toss import TossEnd, TossEventKind, UndecidedReason
+from contact_dynamics.toss.distribution import BranchKind
+from contact_dynamics.toss.uncertainty import MOST_PARAMETERS
+from contact_dynamics_interfaces.msg import (
+    BodyStates,
+    ContactSet,
+    Impact,
+    Poinsot,
+    TossBranch,
+    TossEvent,
+    TossPath,
+    Trajectory,
+)
 from contact_dynamics_interfaces.srv import (
     PredictContactMode,
+    PredictContactModeBatch,
     PredictImpact,
     PredictImpactBatch,
+    PredictToss,
     PredictTumbling,
     PredictTumblingBatch,
 )
@@ -75,6 +90,11 @@ def constants(message: type, names: list[str]) -> dict[str, int]:
         (PathEvent, Impact),
         (SequenceEnd, Impact),
         (RestitutionLaw, PredictImpact.Request),
+        (RestitutionLaw, PredictToss.Request),
+        (TossEventKind, TossEvent),
+        (TossEnd, TossPath),
+        (UndecidedReason, TossPath),
+        (BranchKind, TossBranch),
         (Problem, PredictImpact.Request),
         (Problem, PredictContactMode.Request),
         (EventKind, PredictTumbling.Response),
@@ -96,6 +116,8 @@ def test_status_codes_are_the_same_in_all_services() -> None:
         PredictContactMode,
         PredictImpact,
         PredictTumbling,
+        PredictToss,
+        PredictContactModeBatch,
         PredictImpactBatch,
         PredictTumblingBatch,
     ):
@@ -127,6 +149,9 @@ def test_status_codes_are_the_same_in_all_services() -> None:
         (ContactSet, "surface_names", MOST_CONTACTS),
         (BodyStates, "orientations", 4 * MOST_STATES),
         (PredictImpactBatch.Response, "outcomes", MOST_STATES),
+        (PredictContactModeBatch.Request, "contact_counts", MOST_CANDIDATES),
+        (PredictContactModeBatch.Request, "torques", 3 * MOST_CANDIDATES),
+        (PredictToss.Request, "parameter_covariance", MOST_PARAMETERS**2),
         (Impact, "outcome_probabilities", len(ImpactOutcome)),
     ],
 )

@@ -30,7 +30,7 @@ def build(folder: Path, building: str) -> subprocess.CompletedProcess[str]:
         program.chmod(0o755)
     environment = {"PATH": f"{programs}:{os.environ['PATH']}", "PROGRESS_PERIOD_S": "0.2"}
     return subprocess.run(
-        [BUILD, venv], env=os.environ | environment, capture_output=True, text=True, timeout=60, check=False
+        [BUILD, venv], env=os.environ | environment, capture_output=True, text=True, timeout=300, check=False
     )
 
 

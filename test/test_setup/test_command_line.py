@@ -10,13 +10,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from contact_dynamics.command_line import VERBS
+from contact_dynamics.command_line import INTERRUPTED, VERBS, main
 from contact_dynamics.nodes.arguments import SERVER_PARAMETERS, VISUALIZER_PARAMETERS
 
 ROOT = Path(__file__).parents[2]
 BROUGHT = ("numpy", "numpy.libs", "scipy", "scipy.libs", "mcap", "lz4", "zstandard", "typing_extensions.py")
 OPTIONS = {
+    "cases": ["--list", "--published", "--without-mujoco", "NAME"],
+    "block_publisher": ["pushed_block", "tray", "--height", "--tilt", "--seconds"],
+    "commentator": ["thrown_box", "pushed_block", "tray", "--server"],
     "demo": ["--toss", "--view", "--output", "--quiet"],
+    "calibrate": ["--free", "--no-trajectories", "--yaml", "RECORDING"],
     "evaluate": ["--against", "--dask", "--results", "--rerun", "RECORDING"],
     "plot": ["--output", "--format", "--most", "LOG"],
     "recover": ["--out", "LOG"],
@@ -25,6 +29,18 @@ OPTIONS = {
     "toss_publisher": ["--toss", "--listeners"],
     "visualizer": ["--params-file", "--ros-args", *VISUALIZER_PARAMETERS],
 }
+
+MISTYPED = """
+import sys
+from contact_dynamics.command_line import main
+
+for verb in sys.argv[1:]:
+    try:
+        code = main([verb, f"--no-{verb}"])
+    except SystemExit as ended:
+        code = ended.code
+    print(f"{verb}:{code}")
+"""
 
 
 class WithoutRos:
@@ -39,13 +55,17 @@ class WithoutRos:
 
     def __call__(self, *arguments: str) -> subprocess.CompletedProcess[str]:
         """Run the command line."""
+        return self.run("-m", "contact_dynamics", *arguments)
+
+    def run(self, *arguments: str) -> subprocess.CompletedProcess[str]:
+        """Run Python."""
         return subprocess.run(
-            [sys.executable, "-S", "-m", "contact_dynamics", *arguments],  # -S: no site-packages
+            [sys.executable, "-S", *arguments],  # -S: no site-packages
             cwd=ROOT,
             env=self._environment,
             capture_output=True,
             text=True,
-            timeout=60,
+            timeout=300,
             check=False,
         )
 
@@ -67,11 +87,11 @@ def test_help_names_the_options(without_ros: WithoutRos, verb: str) -> None:
     assert [option for option in OPTIONS[verb] if option not in answer.stdout] == []
 
 
-@pytest.mark.parametrize("verb", VERBS)
-def test_a_mistyped_option_is_named_first(without_ros: WithoutRos, verb: str) -> None:
-    answer = without_ros(verb, "--nonsense")
-    assert answer.returncode == 2
-    assert "--nonsense" in answer.stderr
+def test_a_mistyped_option_is_named_first(without_ros: WithoutRos) -> None:
+    """All verbs are called in one process, each with an option of its own that it does not have."""
+    answer = without_ros.run("-c", MISTYPED, *VERBS)
+    assert answer.stdout.split() == [f"{verb}:2" for verb in VERBS], answer.stderr
+    assert [verb for verb in VERBS if f"--no-{verb}" not in answer.stderr] == []
 
 
 @pytest.mark.parametrize("verb", [name for name, verb in VERBS.items() if "rclpy" in verb.needs])
@@ -83,3 +103,27 @@ def test_what_is_missing_is_named_with_what_brings_it(without_ros: WithoutRos, v
     assert "contact_dynamics_interfaces" in answer.stderr
     assert "make setup" in answer.stderr
     assert ("[view]" in answer.stderr) == (verb in {"demo", "visualizer"})
+
+
+def test_cases_are_asked_where_mujoco_is_missing(without_ros: WithoutRos) -> None:
+    answer = without_ros("cases", "free_fall")
+    assert answer.returncode == 0, answer.stderr
+    assert "not installed" in answer.stdout
+    assert "pip install mujoco" in answer.stderr
+    assert "1 of 1 answers are exact" in answer.stdout
+
+
+def test_an_interrupted_verb_ends_without_a_traceback(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(_arguments: list[str]) -> int:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("contact_dynamics.cases.run.main", interrupted)
+    assert main(["cases"]) == INTERRUPTED
+    assert capsys.readouterr().err == "\nstopped\n"
+
+
+def test_the_readme_names_every_verb() -> None:
+    named = (ROOT / "README.md").read_text(encoding="utf-8").split("The commands are ")[1].split("--help")[0]
+    assert [verb for verb in VERBS if f"{verb}`" not in named] == []

@@ -82,7 +82,7 @@ class Checkout:
             stdout=subprocess.PIPE,
             text=True,
             check=True,
-            timeout=30,
+            timeout=300,
         ).stdout
         return calls.read_text(encoding="utf-8").splitlines() if calls.exists() else []
 

@@ -56,6 +56,7 @@ KEYS = {
     "pyarrow": None,
     "pytest": "python3-pytest",
     "rerun": None,
+    "rerun_bindings": None,  # comes with rerun
     "rosbags": "python3-rosbags-pip",
     "scipy": "python3-scipy",
     "typing_extensions": "python3-typing-extensions",
@@ -109,7 +110,7 @@ def test_what_has_no_rosdep_key_is_named_beside_the_keys() -> None:
     text = MANIFESTS[0].read_text(encoding="utf-8")
     needed = set().union(*(imported(folder)[0] for folder in ("contact_dynamics", "test")))
     assert {module for module in needed if KEYS.get(module, module) is None} == {
-        *("mpmath", "rerun"),
+        *("mpmath", "rerun", "rerun_bindings"),
         *EVALUATION,
     }
     assert "rerun-sdk" in text
@@ -276,3 +277,14 @@ def test_an_executable_is_the_verb_of_its_name(name: str) -> None:
     )
     assert answer.returncode == 0, answer.stderr
     assert name in answer.stdout
+
+
+def test_launch_files_start_executables_that_there_are() -> None:
+    for path in (ROOT / "launch").glob("*.launch.py"):
+        started = re.findall(r'executable="(\w+)"', path.read_text(encoding="utf-8"))
+        assert set(started) <= set(VERBS), path.name
+        included = re.findall(r'"launch" / "([\w.]+)"', path.read_text(encoding="utf-8"))
+        configured = re.findall(r'"([\w.]+\.yaml)"', path.read_text(encoding="utf-8"))
+        assert all((ROOT / "launch" / name).exists() for name in included), path.name
+        assert all((ROOT / "config" / name).exists() for name in configured), path.name
+        assert started or included, path.name

@@ -1,0 +1,63 @@
+"""The table of docs/limits.md and the constants of the code say the same, in both directions."""
+
+from __future__ import annotations
+
+import importlib
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+ROW = re.compile(r"^\| [^|]+ \| ([^|]+) \| `([\w.]+)\.([A-Z_]+)` \| [^|]+ \|$", re.MULTILINE)
+ROWS = ROW.findall((ROOT / "docs" / "limits.md").read_text(encoding="utf-8"))
+DECLARED = re.compile(r"^((?:MOST|LARGEST)_[A-Z_]+): Final = ", re.MULTILINE)
+CHAPTERS = ("contact", "contact_modes", "impact", "landing", "motion", "questions", "shapes", "tumbling")
+
+NOT_REFUSED = {
+    # They bound work after which a result says that it is not complete or not converged, or choose a way.
+    "contact_modes.planar.excluded.MOST_PROGRAMS",
+    "contact_modes.spatial.excluded.MOST_PROGRAMS",
+    "contact_modes.spatial.margins_of_sliding.MOST_PROBES",
+    "contact_modes.spatial.margins_of_sliding.MOST_BEGINNING",
+    "impact.in_time.sequence.MOST_HELD",
+    "impact.in_time.sequence.MOST_STRIKES",
+    "impact.several.interleavings.MOST_INCREMENTS",
+    "impact.several.orders.MOST_ORDERS",
+    "impact.several.sequential.MOST_STRIKES",
+    "impact.several.settling.MOST_JAMS",
+    "impact.several.simultaneous.MOST_SWEEPS",
+    "impact.spatial.path.MOST_STRETCHES",
+    "impact.spatial.taylor.MOST_ITERATIONS",
+    "questions.effort.MOST_QUICK_CANDIDATES",
+    "questions.effort.MOST_QUICK_CONTACTS",
+    "questions.effort.MOST_QUICK_CORNERS",
+    "questions.effort.MOST_QUICK_FITTED",
+    "questions.effort.MOST_QUICK_IMPACTS",
+    "questions.effort.MOST_QUICK_TURNS",
+    "questions.settled_impact.MOST_CONTACTS_IN_ORDERS",
+    "questions.state_store.MOST_STATES",
+    "tumbling.attitude_form.MOST_TERMS",
+}
+
+
+@pytest.mark.parametrize(("limit", "module", "name"), ROWS)
+def test_the_table_has_the_numbers_of_the_code(limit: str, module: str, name: str) -> None:
+    assert float(limit.split(maxsplit=1)[0]) == getattr(
+        importlib.import_module(f"contact_dynamics.{module}"), name
+    )
+
+
+def test_every_limit_of_the_code_is_in_the_table() -> None:
+    listed = {f"{module}.{name}" for _, module, name in ROWS}
+    assert len(listed) == len(ROWS) > 30
+    package = ROOT / "contact_dynamics"
+    files = [package / "tolerances.py", *(file for one in CHAPTERS for file in (package / one).rglob("*.py"))]
+    declared = {
+        f"{'.'.join(path.relative_to(package).with_suffix('').parts)}.{name}"
+        for path in files
+        for name in DECLARED.findall(path.read_text(encoding="utf-8"))
+    }
+    assert declared - listed - NOT_REFUSED == set()
+    assert listed - declared == set()
+    assert NOT_REFUSED - declared == set()
