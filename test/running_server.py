@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import select
 import signal
@@ -83,8 +84,13 @@ def process(
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
+        bufsize=0,
         start_new_session=group,
     )
+    assert isinstance(started.stdout, io.TextIOWrapper)
+    # Lines are read letter by letter. Otherwise a line that was read with the one before it waits in a buffer
+    # where `select` does not see it.
+    started.stdout._CHUNK_SIZE = 1  # type: ignore[attr-defined]
     try:
         if ready:
             wait_for(started, ready)

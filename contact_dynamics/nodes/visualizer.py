@@ -237,6 +237,8 @@ class Visualizer(InboxNode):
             sources = {each.full_name: each for each in state_sources(after, static=self._static)}
             for topic in self._topics:
                 topic.source = sources[topic.name]
+        if after.world.to_dict() == before.world.to_dict():
+            return  # each parameter of a change is told by an event, and many do not belong to the world
         change = partial(self._picture.change_world, after.world, stamp_ns=stamp_ns_from_msg(event.stamp))
         self._guarded("a change of the world", change)
         names = ", ".join(each.name for each in (*after.world.bodies, *after.world.surfaces))

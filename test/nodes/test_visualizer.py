@@ -38,7 +38,7 @@ from contact_dynamics_interfaces.msg import (
 )
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.stamps import stamp_to_msg
-from running_server import DOMAIN_ID, PATIENCE_S, ROOT, process, server_and_client
+from running_server import DOMAIN_ID, PATIENCE_S, ROOT, process, server_and_client, wait_for
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -524,20 +524,32 @@ def test_the_picture_follows_the_configuration_of_the_server(tmp_path: Path) -> 
             assert setter.wait_for_service(PATIENCE_S)
             tables = {"surfaces": ["floor", "table"], "surface.table.point": [0.0, 0.0, 0.5]}
             tables |= {"surface.table.friction": 0.1, "surface.table.restitution": 0.1}
-            parameters = [Parameter(name, value=value).to_parameter_msg() for name, value in tables.items()]
 
-            def is_drawn() -> bool:
-                """Set them again as long as the visualizer does not hear the server's parameter events."""
+            def configure(values: dict[str, Any]) -> None:
+                parameters = [
+                    Parameter(name, value=value).to_parameter_msg() for name, value in values.items()
+                ]
                 future = setter.call_async(SetParametersAtomically.Request(parameters=parameters))
                 client.spin_until(future.done)
                 assert future.result().result.successful
+
+            def is_drawn() -> bool:
+                """Set them again as long as the visualizer does not hear the server's parameter events."""
+                configure(tables)
                 assert visualizer.stdout is not None
                 readable = select.select([visualizer.stdout], [], [], 2.0)[0]
                 return bool(readable) and "brick, floor, table" in visualizer.stdout.readline()
 
             client.spin_until(is_drawn)
-        assert height_of_the_table(path) == 0.5
+            configure(tables)  # nothing new
+            configure({"most_states": 1000})  # nothing that is drawn
+            configure({"surface.table.point": [0.0, 0.0, 0.75]})
+            wait_for(visualizer, "brick, floor, table")
+            # What comes after all events of the changes stands in the next line.
+            configure({"surfaces": ["floor"]})
+            assert wait_for(visualizer, "configured with now").endswith("now: brick, floor\n")
+        assert height_of_the_table(path) == 0.75
         log = next(each for each in tmp_path.iterdir() if each.is_dir())
     again = tmp_path / "again.rrd"
     assert replay(["view", str(log), "--rrd", str(again)]) == 0
-    assert height_of_the_table(again) == 0.5
+    assert height_of_the_table(again) == 0.75
