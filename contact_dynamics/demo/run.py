@@ -70,7 +70,7 @@ def main(arguments: list[str]) -> int:
     print(f"\nto look at the picture: {_opening(folder / PICTURE)}")
     print(f"\nlog and picture ({asked.received} states):")
     for path in (*sorted(folder.glob("*/*.mcap")), folder / PICTURE):
-        print(path)
+        print(_from_here(path))
     return 0
 
 
