@@ -6,8 +6,7 @@ memory is limited. They come as fast as they can be drawn, so that minutes of th
 `--viewer`, rerun's viewer without a window looks at what is served, and its memory is told too.
 
 The memory grows until all limits are reached: those of what is served and of what is kept for a viewer that
-comes back. So the last half tells whether it grows for good. Each file costs some MB, since rerun keeps the
-recording by which it sends the arrangement of the views; files here are small and many.
+comes back. So the last half tells whether it grows for good.
 `python -m benchmarks.pictures --seconds 3600` draws an hour.
 """
 

@@ -12,6 +12,7 @@ from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.viewing import contact_modes, palette
 from contact_dynamics.viewing.entities import (
     ANGULAR_MOMENTUM,
+    ANGULAR_VELOCITY,
     ANSWER_LOG,
     ANSWERS,
     CONTACTS,
@@ -23,6 +24,7 @@ from contact_dynamics.viewing.entities import (
     IMPULSE_SPACE,
     IMPULSE_SPACE_IN_3D,
     LEGEND,
+    MANY,
     MODE_MAP,
     MOMENTUM,
     NEWEST_ANSWERS,
@@ -34,6 +36,8 @@ from contact_dynamics.viewing.entities import (
     SINCE_START,
     SPEED,
     TIMELINE,
+    TOSSES,
+    WHOSE,
     contacts_entity,
     trail_entity,
 )
@@ -115,32 +119,46 @@ def make_blueprint(
         body_names: names of the bodies whose trails stay in view.
         eye: the eye of the scenes. If it is None, the viewer looks at all that there is.
         shown: what there is to see, of `DIAGRAMS`, `ERROR`, `ENERGY`, and the entities `PREDICTED`,
-            `IMPACTS`, `CONTACTS` and `ANSWERS`. What is not among it has no panel.
+            `IMPACTS`, `CONTACTS`, `TOSSES`, `MANY` and `ANSWERS`. What is not among it has no panel.
     """
     pages = [_overview(_scene("Scene", body_names, eye), shown)]
     if PREDICTED in shown:
-        scene = _scene("Flight", body_names, eye, without=(IMPACTS, CONTACTS))
+        scene = _scene("Flight", body_names, eye, without=_all_but(PREDICTED))
         curves = [_height(), _speed(), *([_error()] if ERROR in shown else [])]
         pages.append(_page("Flight", scene, [_diagram(POINSOT)] if POINSOT in shown else [], curves))
     if IMPACTS in shown:
-        left: rrb.Spatial3DView | rrb.Vertical = _scene("Impact", body_names, eye, without=(CONTACTS,))
+        left: rrb.Spatial3DView | rrb.Vertical = _scene(
+            "Impact", body_names, eye, without=_all_but(IMPACTS, PREDICTED)
+        )
         spaces = [_diagram(IMPULSE_SPACE)] if IMPULSE_SPACE in shown else []
         if IMPULSE_SPACE_IN_3D in shown:
             left = rrb.Vertical(left, _diagram(IMPULSE_SPACE_IN_3D), row_shares=[3, 2])
         pages.append(_page("Impact", left, spaces, [_speed(), _told()]))
     if CONTACTS in shown:
-        scene = _scene("Contacts", body_names, eye, without=(IMPACTS, PREDICTED))
+        scene = _scene("Contacts", body_names, eye, without=_all_but(CONTACTS))
         diagrams = [_diagram(origin) for origin in (PLANAR_MODES, MODE_MAP, FORCE_DUAL) if origin in shown]
         pages.append(_page("Contact modes", scene, diagrams, [_told()]))
+    if TOSSES in shown:
+        scene = _scene("Toss", body_names, eye, without=_all_but(TOSSES))
+        pages.append(_page("Toss", scene, [], [_height(), _speed(), _told()]))
+    if MANY in shown:
+        scene = _scene("Many states", body_names, eye, without=_all_but(MANY))
+        pages.append(_page("Many states", scene, [], [_told()]))
     if ENERGY in shown:
-        scene = _scene("Motion", body_names, eye, without=(IMPACTS, CONTACTS))
-        pages.append(_page("Energy and momentum", scene, [], _conserved()))
+        scene = _scene("Motion", body_names, eye, without=_all_but(PREDICTED))
+        whose = rrb.TextDocumentView(origin=WHOSE, name="Whose curves")
+        pages.append(_page("Energy and momentum", scene, [], _of_one_body(), words=[whose]))
     return rrb.Blueprint(
         rrb.Tabs(*pages, active_tab=0),
         rrb.BlueprintPanel(state=rrb.PanelState.Collapsed),
         rrb.SelectionPanel(state=rrb.PanelState.Collapsed),
         rrb.TimePanel(state=rrb.PanelState.Collapsed, timeline=TIMELINE, play_state="Following"),
     )
+
+
+def _all_but(*drawn: str) -> list[str]:
+    """Return what is drawn of answers in the scene and belongs to other pages."""
+    return [each for each in (PREDICTED, IMPACTS, CONTACTS, TOSSES, MANY) if each not in drawn]
 
 
 def _overview(scene: rrb.Spatial3DView, shown: Collection[str]) -> rrb.Horizontal:
@@ -160,10 +178,12 @@ def _page(
     scene: rrb.Spatial3DView | rrb.Vertical,
     diagrams: Sequence[rrb.View],
     below: Sequence[rrb.View],
+    *,
+    words: Sequence[rrb.View] = (),
 ) -> rrb.Horizontal:
-    """Return a page: the scene on the left, on the right diagrams and what stands below them."""
-    shares = [3] * len(diagrams) + [2] * len(below)
-    aside = rrb.Vertical(*diagrams, *below, row_shares=shares)
+    """Return a page: the scene on the left, on the right a few words, diagrams and what stands below them."""
+    shares = [1] * len(words) + [3] * len(diagrams) + [2] * len(below)
+    aside = rrb.Vertical(*words, *diagrams, *below, row_shares=shares)
     return rrb.Horizontal(scene, aside, column_shares=[1 if diagrams else 2, 1], name=name)
 
 
@@ -202,11 +222,12 @@ def _speed() -> rrb.TimeSeriesView:
     return _curves(SPEED, "Speed of the centre of mass, m/s (thin: predicted)")
 
 
-def _conserved() -> list[rrb.View]:
+def _of_one_body() -> list[rrb.View]:
     return [
         _curves(ENERGY, "Energy, J (thin: predicted)"),
         _curves(MOMENTUM, "Momentum, kg m/s (thin: predicted)"),
         _curves(ANGULAR_MOMENTUM, "Angular momentum, kg m²/s (thin: predicted)"),
+        _curves(ANGULAR_VELOCITY, "Angular velocity, rad/s (thin: predicted)"),
     ]
 
 

@@ -20,6 +20,8 @@ SURFACES: Final = "world/surfaces"
 PREDICTED: Final = "world/predicted"
 IMPACTS: Final = "world/impact"
 CONTACTS: Final = "world/contacts"
+TOSSES: Final = "world/toss"
+MANY: Final = "world/many"
 IMPULSE_SPACE: Final = "impulse_space"
 IMPULSE_SPACE_IN_3D: Final = "impulse_space_in_3d"
 MODE_MAP: Final = "mode_map"
@@ -33,6 +35,8 @@ SPEED: Final = "speed"
 ENERGY: Final = "energy"
 MOMENTUM: Final = "momentum"
 ANGULAR_MOMENTUM: Final = "angular_momentum"
+ANGULAR_VELOCITY: Final = "angular_velocity"
+WHOSE: Final = "whose_energy"
 ERROR: Final = "error"
 ANSWERS: Final = "answers"
 ANSWER_LOG: Final = "answers/log"
@@ -67,12 +71,12 @@ def impact_entity(body_name: str) -> str:
 
 def many_entity(body_name: str) -> str:
     """Return the path of the newest answer about many states of a body."""
-    return entity("world/many", body_name or "unnamed")
+    return entity(MANY, body_name or "unnamed")
 
 
 def toss_entity(body_name: str) -> str:
     """Return the path of the newest answer about a toss of a body."""
-    return entity("world/toss", body_name or "unnamed")
+    return entity(TOSSES, body_name or "unnamed")
 
 
 def contacts_entity(body_name: str) -> str:

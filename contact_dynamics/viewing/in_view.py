@@ -12,9 +12,9 @@ import rerun as rr
 
 from contact_dynamics.constants import ns_after
 from contact_dynamics.viewing.contact_modes import LETTERS
-from contact_dynamics.viewing.entities import contacts_entity, entity, impact_entity
+from contact_dynamics.viewing.entities import WHOSE, contacts_entity, entity, impact_entity
 from contact_dynamics.viewing.impact import LABELS
-from contact_dynamics.viewing.measured import CONSERVED, set_time
+from contact_dynamics.viewing.measured import OF_ONE_BODY, set_time
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -87,12 +87,16 @@ class ConservedInView:
                 self._recording,
                 [
                     entity(quantity, self.body_name, kind)
-                    for quantity in CONSERVED
+                    for quantity in OF_ONE_BODY
                     for kind in ("measured", "predicted")
                 ],
                 stamp_ns,
             )
         self.body_name, self._until_ns = body_name, end_ns
+        if begins:
+            set_time(self._recording, stamp_ns)
+            whose = rr.TextDocument(f"The curves are those of **{body_name}**.", media_type="text/markdown")
+            self._recording.log(WHOSE, whose)
         return begins
 
 

@@ -1,7 +1,7 @@
 """Draws what was measured: a body's pose, its trail and its curves over time, for many states in one call.
 
 The curves are height and speed. If the mass properties are known, they are energy and momenta too, which do
-not change in free flight, apart from the momentum that gravity gives.
+not change in free flight, apart from the momentum that gravity gives, and the angular velocity, which does.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from contact_dynamics.diagrams.trajectory_curves import (
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import (
     ANGULAR_MOMENTUM,
+    ANGULAR_VELOCITY,
     ENERGY,
     ERROR,
     HEIGHT,
@@ -41,8 +42,8 @@ if TYPE_CHECKING:
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.validation import FloatArray
 
-CONSERVED: Final = (ENERGY, MOMENTUM, ANGULAR_MOMENTUM)
-"""The entities of the curves that need mass properties."""
+OF_ONE_BODY: Final = (ENERGY, MOMENTUM, ANGULAR_MOMENTUM, ANGULAR_VELOCITY)
+"""The entities of the curves that one body has at a time: it must have mass properties."""
 
 
 def curves_of(
@@ -56,8 +57,8 @@ def curves_of(
 
     They are the height, m, and the speed, m/s, of the centre of mass. With the mass properties of the body
     they are also its energy, J, with the potential energy in gravity, (3,), m/s^2, which is zero at the
-    origin of the world, and the sizes of its momentum, kg m/s, and of its angular momentum about the centre
-    of mass, kg m^2/s.
+    origin of the world, and the sizes of its momentum, kg m/s, of its angular momentum about the centre of
+    mass, kg m^2/s, and of its angular velocity, rad/s.
     """
     curves = {HEIGHT: trajectory.p_WB_W @ up_W, SPEED: np.linalg.norm(trajectory.v_WB_W, axis=1)}
     if body is not None:
@@ -65,6 +66,7 @@ def curves_of(
         curves[ENERGY] = energies_of(body, trajectory, gravity_W=gravity_W).total
         curves[MOMENTUM] = np.linalg.norm(momenta_of(body, trajectory), axis=1)
         curves[ANGULAR_MOMENTUM] = np.linalg.norm(angular_momenta_of(body, trajectory), axis=1)
+        curves[ANGULAR_VELOCITY] = np.linalg.norm(trajectory.w_WB_W, axis=1)
     return curves
 
 
@@ -74,7 +76,7 @@ def style_series(
     """Set colours and names of a body's curves; ``color`` is the body's own."""
     error = rr.SeriesLines(colors=color, names=f"{body_name} off its prediction", widths=2.0)
     recording.log(entity(ERROR, body_name), error, static=True)
-    for quantity in (HEIGHT, SPEED, *CONSERVED):
+    for quantity in (HEIGHT, SPEED, *OF_ONE_BODY):
         for kind, own, width in (
             ("measured", color, 4.0),
             ("predicted", palette.PREDICTED, 1.0),
@@ -113,7 +115,7 @@ def draw_states(
     _draw_curves(recording, body_name, "measured", stamps, curves)
 
 
-def draw_conserved(
+def draw_curves_of_one(
     recording: rr.RecordingStream,
     body_name: str,
     states: Sequence[BodyState],
@@ -121,12 +123,12 @@ def draw_conserved(
     body: MassProperties,
     gravity_W: FloatArray,
 ) -> None:
-    """Draw energy and momenta of measured states whose other curves are drawn already."""
+    """Draw the curves that one body has at a time, of states whose other curves are drawn already."""
     if not states:
         return
     stamps = time_column([state.stamp_ns for state in states])
     curves = curves_of(trajectory_of(states), up_W=np.zeros(3), body=body, gravity_W=gravity_W)
-    _draw_curves(recording, body_name, "measured", stamps, {name: curves[name] for name in CONSERVED})
+    _draw_curves(recording, body_name, "measured", stamps, {name: curves[name] for name in OF_ONE_BODY})
 
 
 def draw_prediction_at(

@@ -42,8 +42,10 @@ from contact_dynamics.viewing.entities import (
     ERROR,
     IMPACTS,
     LEGEND,
+    MANY,
     POINSOT,
     PREDICTED,
+    TOSSES,
     body_entity,
 )
 from contact_dynamics.viewing.impact import draw_impact
@@ -288,7 +290,7 @@ class Picture:
         if not self._framed:
             self._framed = True
             self._look_at(answer.toss.trajectory.p_WB_W)
-        self._bring_up(ANSWERS, *curves)
+        self._bring_up(TOSSES, ANSWERS, *curves)
         self._tell_answer(TOSS, name, toss_in_words(answer), remark, computation_time, stamp_ns=stamp_ns)
 
     def show_many(
@@ -306,6 +308,7 @@ class Picture:
         name = answer.body_name
         set_time(self._recording, now_ns)
         draw_many_states(self._recording, self._bodies.shape(name), answer)
+        self._bring_up(MANY, ANSWERS)
         kind = MANY_IMPACTS if isinstance(answer, ManyImpactsAnswer) else MANY_TUMBLINGS
         self._tell_answer(kind, name, many_in_words(answer), remark, computation_time, stamp_ns=now_ns)
 

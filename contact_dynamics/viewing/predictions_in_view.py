@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Final
 from contact_dynamics.constants import ns_after
 from contact_dynamics.viewing.in_view import ConservedInView
 from contact_dynamics.viewing.measured import (
-    CONSERVED,
+    OF_ONE_BODY,
     curves_of,
-    draw_conserved,
+    draw_curves_of_one,
     draw_prediction_at,
     draw_states,
     set_time,
@@ -111,7 +111,7 @@ class PredictionsInView:
             end_ns = ns_after(begin_ns, float(trajectory.seconds[-1]))
             if self._conserved.come(body_name, stamp_ns=begin_ns, end_ns=end_ns):
                 kept = self._kept_after(body_name, self._conserved_ns.get(body_name, 0))
-                draw_conserved(self._recording, body_name, kept, body=body, gravity_W=gravity_W)
+                draw_curves_of_one(self._recording, body_name, kept, body=body, gravity_W=gravity_W)
         first_ns = max(begin_ns, self._compared_ns.get(body_name, 0))
         is_compared = self._compare(body_name, self._kept_after(body_name, first_ns))
         set_time(self._recording, begin_ns)
@@ -133,7 +133,7 @@ class PredictionsInView:
             curves={
                 quantity: curve
                 for quantity, curve in prediction.curves.items()
-                if quantity not in CONSERVED or body_name == self._conserved.body_name
+                if quantity not in OF_ONE_BODY or body_name == self._conserved.body_name
             },
             begin_ns=prediction.begin_ns,
         )

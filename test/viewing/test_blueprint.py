@@ -16,10 +16,12 @@ from contact_dynamics.viewing.entities import (
     IMPACTS,
     IMPULSE_SPACE,
     IMPULSE_SPACE_IN_3D,
+    MANY,
     MODE_MAP,
     PLANAR_MODES,
     POINSOT,
     PREDICTED,
+    TOSSES,
     contacts_entity,
     entity,
     trail_entity,
@@ -63,10 +65,12 @@ def test_the_eye_is_where_the_path_bulges_to() -> None:
 HEIGHT = "Height of the centre of mass, m (thin: predicted)"
 SPEED = "Speed of the centre of mass, m/s (thin: predicted)"
 APART = "Distance of the measured from the predicted place, m"
-CONSERVED = [
+OF_ONE_BODY = [
+    "Whose curves",
     "Energy, J (thin: predicted)",
     "Momentum, kg m/s (thin: predicted)",
     "Angular momentum, kg m²/s (thin: predicted)",
+    "Angular velocity, rad/s (thin: predicted)",
 ]
 OVERVIEW = ["Scene", HEIGHT, SPEED, "Legend"]
 TOLD = ["Newest answers", "All answers"]
@@ -95,7 +99,7 @@ PAGES = {
         ],
         ["Impact"],
     ),
-    "energy": ([ENERGY], [*OVERVIEW, "Motion", *CONSERVED], ["Energy and momentum"]),
+    "energy": ([ENERGY], [*OVERVIEW, "Motion", *OF_ONE_BODY], ["Energy and momentum"]),
     "contact modes in space": (
         [ANSWERS, CONTACTS],
         [*OVERVIEW, *TOLD, "Contacts", "Newest answers"],
@@ -106,8 +110,10 @@ PAGES = {
         [*OVERVIEW, *TOLD, "Contacts", "Newest answers", *2 * ["Contact modes", "Mode map", "Force dual"]],
         ["Contact modes"],
     ),
+    "a toss": ([ANSWERS, TOSSES], [*OVERVIEW, *TOLD, "Toss", HEIGHT, SPEED, "Newest answers"], ["Toss"]),
+    "many states": ([ANSWERS, MANY], [*OVERVIEW, *TOLD, "Many states", "Newest answers"], ["Many states"]),
     "everything": (
-        [ANSWERS, PREDICTED, IMPACTS, CONTACTS, ERROR, ENERGY, *DIAGRAMS],
+        [ANSWERS, PREDICTED, IMPACTS, CONTACTS, TOSSES, MANY, ERROR, ENERGY, *DIAGRAMS],
         [
             *OVERVIEW,
             *TOLD,
@@ -128,10 +134,16 @@ PAGES = {
             "Mode map",
             "Force dual",
             "Newest answers",
+            "Toss",
+            HEIGHT,
+            SPEED,
+            "Newest answers",
+            "Many states",
+            "Newest answers",
             "Motion",
-            *CONSERVED,
+            *OF_ONE_BODY,
         ],
-        ["Flight", "Impact", "Contact modes", "Energy and momentum"],
+        ["Flight", "Impact", "Contact modes", "Toss", "Many states", "Energy and momentum"],
     ),
 }  # what there is to see, the views, the pages beside the overview
 

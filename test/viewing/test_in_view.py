@@ -73,7 +73,13 @@ def test_the_curves_stay_with_a_body_until_its_prediction_is_over(
     assert not curves.come("b", stamp_ns=end_ns + 1, end_ns=end_ns + 50)
     assert curves.body_name == "b"
     drawn = read()
-    for quantity in ("energy", "momentum", "angular_momentum"):
+    words = drawn.values["/whose_energy", "TextDocument:text"]
+    assert [stamp for stamp, _ in words] == [STAMP_NS, end_ns]
+    assert [name for name, (_, text) in zip("ab", words, strict=True) if f"**{name}**" in text[0]] == [
+        "a",
+        "b",
+    ]
+    for quantity in ("energy", "momentum", "angular_momentum", "angular_velocity"):
         for kind in ("measured", "predicted"):
             assert cleared(drawn, f"/{quantity}/a/{kind}") == [end_ns]
             assert cleared(drawn, f"/{quantity}/b/{kind}") == []

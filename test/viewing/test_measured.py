@@ -97,15 +97,17 @@ def test_energy_and_momenta_are_those_of_the_states(
     states, known, gravity_W = flight(body, state, 50), body.mass_properties, np.array([0.0, 0.0, -9.80665])
     draw_states(recording, "brick", states, before=None, up_W=UP, body=known, gravity_W=gravity_W)
     drawn = read()
-    energy, momentum, spin = (
+    energy, momentum, angular_momentum, spin = (
         drawn.series(f"/{quantity}/brick/measured", "Scalars:scalars")
-        for quantity in ("energy", "momentum", "angular_momentum")
+        for quantity in ("energy", "momentum", "angular_momentum", "angular_velocity")
     )
     R_WB = Rotation.from_quat(state.q_WB).as_matrix()
     L_W = R_WB @ known.I_B @ R_WB.T @ state.w_WB_W
     kinetic = 0.5 * known.mass * state.v_WB_W @ state.v_WB_W + 0.5 * state.w_WB_W @ L_W
     np.testing.assert_allclose(energy, kinetic + known.mass * 9.80665 * state.p_WB_W[2], rtol=1e-12)
-    np.testing.assert_allclose(spin, np.linalg.norm(L_W), rtol=1e-12)
+    np.testing.assert_allclose(angular_momentum, np.linalg.norm(L_W), rtol=1e-12)
+    np.testing.assert_allclose(spin, [np.linalg.norm(each.w_WB_W) for each in states], rtol=1e-12)
+    assert np.ptp(spin) > 0.01 * spin[0]  # it changes where the angular momentum does not
     seconds = 1e-9 * ODD_NS * np.arange(50)
     expected = known.mass * (state.v_WB_W + seconds[:, None] * gravity_W)
     np.testing.assert_allclose(momentum, np.linalg.norm(expected, axis=1), rtol=1e-12)
