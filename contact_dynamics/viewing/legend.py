@@ -53,8 +53,8 @@ centre of the acceleration.
 
 *Energy and momentum* are those of the body that was asked about, until its prediction is over. The energy
 includes the potential energy. The angular momentum is about the centre of mass. In free flight it stays, and
-the angular velocity changes. A velocity that was estimated over a window of time is wrong after a strike, until the
-window has passed.
+the angular velocity changes. A velocity that was estimated over a window of time is wrong after a strike,
+until the window has passed.
 
 *Poinsot*: in the space of angular velocities the inertia ellipsoid turns with the body and rolls on the plane
 at right angles to the angular momentum (white). Yellow: the angular velocity, which ends where they touch.
