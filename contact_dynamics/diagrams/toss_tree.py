@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -12,6 +12,10 @@ if TYPE_CHECKING:
     from contact_dynamics.toss import TossDistribution
     from contact_dynamics.toss.distribution import EventRegions
     from contact_dynamics.validation import FloatArray
+
+
+MOST_FACES: Final = 3
+"""Faces of rest that a label names. A longer one hides the labels of strikes."""
 
 
 class TreeNode(NamedTuple):
@@ -32,18 +36,6 @@ class TreeNode(NamedTuple):
     regions: EventRegions
 
 
-class RestNode(NamedTuple):
-    """A face on which samples rest.
-
-    Attributes:
-        text: Where the face is, in body axes, and the probability.
-        probability: Share of all samples.
-    """
-
-    text: str
-    probability: float
-
-
 def tree_of(told: TossDistribution) -> list[TreeNode]:
     """Return the nodes of the tree, those that others follow first."""
     nodes: list[TreeNode] = []
@@ -57,12 +49,17 @@ def tree_of(told: TossDistribution) -> list[TreeNode]:
     return nodes
 
 
-def faces_of(told: TossDistribution) -> list[RestNode]:
-    """Return the faces on which samples rest, the probable ones first."""
-    return [
-        RestNode(f"rests on its face towards {face_in_words(normal)}: {share:.0%}", share)
-        for normal, share in zip(told.face_normals_B, told.face_probabilities.tolist(), strict=True)
+def rest_in_words(told: TossDistribution) -> str:
+    """Return on which faces samples rest, the probable ones first, in at most two lines."""
+    shares = told.face_probabilities.tolist()
+    faces = [
+        f"{face_in_words(normal)}: {share:.0%}"
+        for normal, share in zip(told.face_normals_B, shares, strict=True)
     ]
+    more = ", ".join(faces[1:MOST_FACES])
+    if len(faces) > MOST_FACES:
+        more += f", others: {sum(shares[MOST_FACES:]):.0%}"
+    return f"rests on its face towards {faces[0]}" + (f"\n{more}" if more else "") if faces else ""
 
 
 def fan_of(told: TossDistribution) -> list[FloatArray]:

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 TOSS_ENDS: Final = {
-    TossEnd.RESTS: "it rests",
-    TossEnd.HORIZON: "it still moves at the horizon",
-    TossEnd.MOST_EVENTS: "the bound on the number of events was reached",
-    TossEnd.UNDECIDED: "no contact mode is consistent, and no impact settles that",
+    TossEnd.RESTS: "rests",
+    TossEnd.HORIZON: "still moves at the horizon",
+    TossEnd.MOST_EVENTS: "has more events than are followed",
+    TossEnd.UNDECIDED: "has no consistent contact mode, and no impact settles that,",
 }
-"""The words for the end of a toss."""
+"""What the body does at the end of a toss."""
 
 EVENTS: Final = {
     TossEventKind.STRIKES: "strikes",
@@ -82,7 +82,7 @@ def _distribution_in_words(told: TossDistribution) -> list[str]:
             f"{face_in_words(normal)} {share:.0%}"
             for normal, share in zip(told.face_normals_B, told.face_probabilities.tolist(), strict=True)
         ]
-        words.append(f"rests on its face towards {', '.join(faces)}")
+        words.append(f"samples rest on its face towards {', '.join(faces)}")
     return words
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.diagrams.toss_tree import faces_of, fan_of, tree_of
+from contact_dynamics.diagrams.toss_tree import fan_of, rest_in_words, tree_of
 from contact_dynamics.plots import colors
 from contact_dynamics.plots.style import legend_beside
 from contact_dynamics.rotations.one import rotation_matrix
@@ -101,7 +101,7 @@ def draw_event_tree(axes: Axes, told: TossDistribution) -> None:
         low, quarter, middle, three, high = told.rest.seconds.tolist()
         axes.plot([low, high], [-rows, -rows], color=colors.SKY, linewidth=5.0, gid="rest_90")
         axes.plot([quarter, three], [-rows, -rows], color=colors.BLUE, linewidth=5.0, gid="rest_50")
-        text = "\n".join(face.text for face in faces_of(told))
+        text = rest_in_words(told)
         axes.annotate(text, (middle, -rows), xytext=(0, 7), textcoords="offset points", ha="center")
         rows += 1
     axes.axvline(0.0, color=colors.BLACK, linewidth=0.8, zorder=0, gid="state")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
-from contact_dynamics.diagrams.toss_tree import faces_of, fan_of, tree_of
+from contact_dynamics.diagrams.toss_tree import fan_of, rest_in_words, tree_of
 from contact_dynamics.toss import TossEnd, TossEventKind
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import toss_entity
@@ -119,7 +119,7 @@ def _draw_tree(
     texts, regions = [node.text for node in nodes], [node.regions.position for node in nodes]
     if told.rest is not None:
         places.append(told.rest.position.mean)
-        texts.append("\n".join(face.text for face in faces_of(told)))
+        texts.append(rest_in_words(told))
         regions.append(told.rest.position)
     recording.log(f"{path}/nodes", rr.Points3D(places, colors=palette.AFTER_IMPACT, radii=_POINT))
     # The first strikes have the highest labels, since what follows is nearly at one place.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
@@ -13,6 +14,7 @@ pytest.importorskip("matplotlib", reason="matplotlib of requirements/test.txt is
 
 from matplotlib.figure import Figure
 
+from contact_dynamics.diagrams.toss_tree import MOST_FACES, rest_in_words
 from contact_dynamics.impact import RestitutionLaw
 from contact_dynamics.plots import draw_event_tree, save_figure
 from contact_dynamics.rigid_body.body import BodyState
@@ -24,7 +26,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-def told_toss() -> TossDistribution:
+@pytest.fixture(scope="module")
+def told() -> TossDistribution:
     """A cube that is let go nearly upright on an edge, so that either of two corners strikes first."""
     floor = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.5)
     state = BodyState(
@@ -46,8 +49,7 @@ def told_toss() -> TossDistribution:
     )
 
 
-def test_the_event_tree_in_svg_is_the_distributions(tmp_path: Path) -> None:
-    told = told_toss()
+def test_the_event_tree_in_svg_is_the_distributions(told: TossDistribution, tmp_path: Path) -> None:
     figure = Figure(figsize=(10.0, 6.0))
     axes = figure.add_subplot()
     draw_event_tree(axes, told)
@@ -85,7 +87,19 @@ def test_the_event_tree_in_svg_is_the_distributions(tmp_path: Path) -> None:
     for branch in branches:
         assert f"{branch.strike}. corner {branch.corner} strikes: {branch.probability:.0%}" in words
     assert f"what {told.samples} samples do next" in words
-    for normal, share in zip(told.face_normals_B, told.face_probabilities, strict=True):
+    assert "rests on its face towards " in words
+    for normal, share in list(zip(told.face_normals_B, told.face_probabilities, strict=True))[:MOST_FACES]:
         axis = int(np.abs(normal).argmax())
         face = f"{'-' if normal[axis] > 0.0 else '+'}{'xyz'[axis]}"  # it lies on the face that looks down
-        assert f"rests on its face towards {face}: {share:.0%}" in words
+        assert f"{face}: {share:.0%}" in words
+
+
+def test_a_label_names_the_probable_faces_and_sums_up_the_others(told: TossDistribution) -> None:
+    normals = np.vstack([np.eye(3), -np.eye(3)])[:5]
+    shares = np.array([0.5, 0.25, 0.125, 0.1, 0.025])
+    several = dataclasses.replace(told, face_normals_B=normals, face_probabilities=shares)
+    likely, *others = rest_in_words(several).splitlines()
+    assert likely == "rests on its face towards -x: 50%"
+    assert others == ["-y: 25%, -z: 12%, others: 12%"]
+    one = dataclasses.replace(told, face_normals_B=normals[:1], face_probabilities=np.ones(1))
+    assert rest_in_words(one) == "rests on its face towards -x: 100%"
