@@ -82,7 +82,7 @@ def _distribution_in_words(told: TossDistribution) -> list[str]:
             f"{face_in_words(normal)} {share:.0%}"
             for normal, share in zip(told.face_normals_B, told.face_probabilities.tolist(), strict=True)
         ]
-        words.append(f"samples rest on its face towards {', '.join(faces)}")
+        words.append(f"samples rest on the face towards {', '.join(faces)}")
     return words
 
 
