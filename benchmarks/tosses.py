@@ -14,6 +14,7 @@ from __future__ import annotations
 import json
 import os
 import time
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
@@ -83,7 +84,18 @@ def run() -> None:
     early = [one for each in _observed(path, split["test"]) if (one := _early(each, found)) is not None]
     uncertainty = toss_uncertainty(found)
     _strikes(early, world, uncertainty)
-    _rests(early[:: max(1, len(early) // RESTING)], world, uncertainty)
+    (lasting,) = found.lasting_frictions
+    print(
+        f"\nfriction {world.surfaces[0].friction:.3f} in strikes, {lasting.friction:.3f} where contact lasts"
+    )
+    quote("tosses.friction.strikes", world.surfaces[0].friction, digits=3)
+    quote("tosses.friction.lasting", lasting.friction, digits=3)
+    quote("tosses.friction.lasting_std", lasting.std, digits=1)
+    quote("tosses.friction.scatter", lasting.scatter)
+    resting = early[:: max(1, len(early) // RESTING)]
+    _rests(resting, world, uncertainty, "rest")
+    print("\nwith the friction of strikes alone:", end="")
+    _rests(resting, world, replace(uncertainty, lasting_factors=(), lasting_factor_stds=()), "strikes_alone")
     _costs(early[:10], world, uncertainty)
 
 
@@ -184,9 +196,9 @@ def _values(
     ]
 
 
-def _rests(early: list[Early], world: World, uncertainty: TossUncertainty) -> None:
+def _rests(early: list[Early], world: World, uncertainty: TossUncertainty, name: str) -> None:
     """Print how often horizontal coordinates at rest are between the quantiles, and what the face had."""
-    held, faces, best = [], [], 0
+    held, faces, off, best = [], [], [], 0
     begin = time.process_time()
     count = 0
     for one in early:
@@ -202,6 +214,9 @@ def _rests(early: list[Early], world: World, uncertainty: TossUncertainty) -> No
         held += list(
             zip((quarter <= place) & (place <= three), (low <= place) & (place <= high), strict=True)
         )
+        mean = told.rest.position.mean[:2]
+        way = mean - one.state.p_WB_W[:2]
+        off.append(float((mean - place) @ way / np.linalg.norm(way)))
         up_B = state.R_WB.T @ world.surfaces[0].normal_W
         shares = told.face_probabilities * (told.face_normals_B @ up_B > 0.9)  # cosine: it lies on that face
         faces.append(float(shares.sum()))
@@ -213,12 +228,14 @@ def _rests(early: list[Early], world: World, uncertainty: TossUncertainty) -> No
     )
     print("of 50 and 90 %; the face that they rest on had")
     print(f"{100 * np.mean(faces):.0f} % on average, and was the most probable one in {best}")
+    print(f"samples go {100 * np.mean(off):.1f} cm farther than the cube on average")
     print(f"{spent:.0f} ms of processor time for each sample that is followed to rest")
     quote("tosses.rests", len(faces), "")
-    quote("tosses.rest.place.half", half, "%")
-    quote("tosses.rest.place.most", most, "%")
-    quote("tosses.rest.face", 100.0 * float(np.mean(faces)), "%")
-    quote("tosses.rest.best", 100.0 * best / len(faces), "%")
+    quote(f"tosses.{name}.place.half", half, "%")
+    quote(f"tosses.{name}.place.most", most, "%")
+    quote(f"tosses.{name}.off", 100.0 * float(np.mean(off)), "cm")
+    quote(f"tosses.{name}.face", 100.0 * float(np.mean(faces)), "%")
+    quote(f"tosses.{name}.best", 100.0 * best / len(faces), "%")
     quote("tosses.cost.rest", spent, "ms")
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.impact import ImpactOutcome
 from contact_dynamics.questions.subject import PublishedState
 from contact_dynamics.questions.toss import TossAnswer, TossPath, TossQuestion, TossSampling
@@ -114,6 +114,11 @@ def toss_question_to_msg(question: TossQuestion, *, world: World, world_frame: s
     msg.most_alternatives = asked_optional(question.most_alternatives)
     sampling = question.sampling
     if sampling is not None:
+        if len(sampling.uncertainty.lasting_factors):
+            message = (
+                "lasting_factors: a request has one friction of each surface, for strikes and for what lasts"
+            )
+            raise NotSupportedError(message)
         msg.samples, msg.seed, msg.to_rest = sampling.count, sampling.seed, sampling.to_rest
         msg.strikes = asked_optional(sampling.strikes)
         msg.parameter_covariance = flat(sampling.uncertainty.covariance)

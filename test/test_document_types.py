@@ -145,7 +145,11 @@ LISTS: dict[str, dict[str, Any]] = {
         "torque_W": [0, 0, 0],
     },
     "UncertainState": {"state": BodyState(**AT_REST), "covariance": np.eye(12).tolist()},
-    "TossUncertainty": {"covariance": np.eye(6).tolist()},
+    "TossUncertainty": {
+        "covariance": np.eye(6).tolist(),
+        "lasting_factors": [1.5],
+        "lasting_factor_stds": [0.1],
+    },
 }
 
 

@@ -17,6 +17,7 @@ from contact_dynamics.calibration.observed import observe, surfaces_of
 from contact_dynamics.calibration.paths import Paths
 from contact_dynamics.calibration.problems import bent_surfaces, check_that_it_flies, problems_of, warnings_of
 from contact_dynamics.calibration.result import Calibration, Estimate, MeasuredGravity, Outlier
+from contact_dynamics.calibration.slides import lasting_frictions
 from contact_dynamics.calibration.strikes import strikes_of
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.body import MassProperties
@@ -96,17 +97,21 @@ def calibrate_observed(
     estimates, covariance, by_paths_covariance = _estimates(fitting, first, second)
     described = model.describe(first.values)
     gravity = _gravity(data.gravity, first.values[:3]) if Free.GRAVITY in free else None
+    gravity_W = observed[0].motion.gravity_W if gravity is None else gravity.mean_W
     left = jumps(model, first.values[None], data.strikes, data.gravity)[0]
     return Calibration(
         body=_body(model, first.values),
         surfaces=_surfaces(model, first.values),
-        gravity_W=observed[0].motion.gravity_W if gravity is None else gravity.mean_W,
+        gravity_W=gravity_W,
         estimates=estimates,
         covariance=covariance,
         by_paths_covariance=by_paths_covariance,
         undetermined=_undetermined(fitting, first),
         gravity=gravity,
         spread=first.spread,
+        lasting_frictions=lasting_frictions(
+            observed, described, gravity_W, [surface.name for surface in model.surfaces]
+        ),
         residuals=left,
         residual_stds=np.sqrt(np.einsum("nii->ni", covariances)),
         strike_recordings=data.strikes.recordings,

@@ -24,7 +24,15 @@ MOST_OUTLIERS: Final = 10
 def report(found: Calibration) -> str:
     """Return what a calibration found, in lines for the terminal."""
     return "\n".join(
-        [*_used(found), "", *_parameters(found), *_gravity(found), *_fit(found), *_doubts(found)]
+        [
+            *_used(found),
+            "",
+            *_parameters(found),
+            *_gravity(found),
+            *_fit(found),
+            *_slides(found),
+            *_doubts(found),
+        ]
     )
 
 
@@ -96,6 +104,14 @@ def _fit(found: Calibration) -> Iterator[str]:
         )
 
 
+def _slides(found: Calibration) -> Iterator[str]:
+    for each in found.lasting_frictions:
+        yield (
+            f"Friction of {each.surface} where contact lasts: {each.friction:.3g} +- {each.std:.2g}, "
+            f"from {each.slides} slides before rest, which scatter by {each.scatter:.2g}"
+        )
+
+
 def _doubts(found: Calibration) -> Iterator[str]:
     groups = (
         ("The data do not determine", found.undetermined),
@@ -129,6 +145,7 @@ def content_of(found: Calibration) -> dict[str, Any]:
         "undetermined": list(found.undetermined),
         "gravity": None if found.gravity is None else found.gravity.to_dict(),
         "spread": found.spread.to_dict(),
+        "lasting_frictions": [each.to_dict() for each in found.lasting_frictions],
         "strikes": [
             {"toss": found.observed[number].name, "residual": left.tolist(), "std": std.tolist()}
             for number, left, std in zip(

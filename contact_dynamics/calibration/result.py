@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from contact_dynamics.calibration.estimation import Spread
     from contact_dynamics.calibration.first_flights import IntArray
     from contact_dynamics.calibration.observed import Observed
+    from contact_dynamics.calibration.slides import LastingFriction
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, Surface
 
@@ -123,6 +124,7 @@ class Calibration(Record):
         undetermined: Directions in parameter space that the data do not determine, in words.
         gravity: Gravity as measured, or None without first flights.
         spread: How far residuals scatter beyond the noise of measurement.
+        lasting_frictions: The friction where contact lasts, of each surface on which enough slides are seen.
         residuals: (n, 6), m/s and rad/s, predicted less measured velocities after each strike.
         residual_stds: (n, 6), the standard deviations that they should have by the noise of measurement.
         strike_recordings: (n,), number of each strike's toss.
@@ -143,6 +145,7 @@ class Calibration(Record):
     undetermined: tuple[str, ...]
     gravity: MeasuredGravity | None
     spread: Spread
+    lasting_frictions: tuple[LastingFriction, ...]
     residuals: FloatArray
     residual_stds: FloatArray
     strike_recordings: IntArray

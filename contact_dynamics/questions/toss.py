@@ -199,6 +199,7 @@ def answer(question: TossQuestion, knowledge: Knowledge | None = None) -> TossAn
         restitution_law=question.restitution_law,
         horizon=horizon,
         most_alternatives=MOST_ALTERNATIVES if most is None else most,
+        lasting_factors=() if sampling is None else sampling.uncertainty.lasting_factors,
     )
     return TossAnswer(
         body_name=body.name,

@@ -118,7 +118,7 @@ class Branch(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class RestSpread(Record):
-    """When and where samples rest. The places are not calibrated: recorded cubes stop earlier (docs/toss.md).
+    """When and where samples rest. The places need the friction where contact lasts (docs/toss.md).
 
     Attributes:
         seconds: (5,), s, the `QUANTILES` of the time of rest.

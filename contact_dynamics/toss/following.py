@@ -219,7 +219,8 @@ class _Run(Course):
         solid = self.solid
         before = energy_of(solid, self.y)
         if len(touching) == 1:
-            self.y, one = routh(solid, self.y, touching[0], self.runs.law)
+            friction = solid.flats[touching[0][0]].friction
+            self.y, one = routh(solid, self.y, touching[0], self.runs.law, friction=friction)
             self.lost_in_strikes += before - energy_of(solid, self.y)
             self.note(TossEventKind.JAMS, touching, impulse=one.impulse, outcome=one.outcome)
             return one.outcome != ImpactOutcome.NO_IMPULSE

@@ -19,9 +19,12 @@ from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.tolerances import PHASE_ERROR
 from contact_dynamics.toss.following import Following
 from contact_dynamics.toss.solid import solid_of
+from contact_dynamics.toss.uncertainty import check_factors
 from contact_dynamics.validation import check_choice, check_positive, check_whole
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.toss.result import Toss
     from contact_dynamics.world import Body, World
@@ -46,6 +49,7 @@ def toss(
     most_events: int = MOST_EVENTS,
     most_alternatives: int = MOST_ALTERNATIVES,
     error: float = PHASE_ERROR,
+    lasting_factors: ArrayLike = (),
 ) -> Toss:
     """Return the motion of a body from a state, in flight or in contact, until it rests.
 
@@ -59,6 +63,8 @@ def toss(
         most_alternatives: How many other ways to follow at most, >= 0, where mechanics does not decide.
         error: m, m/s, > 0. The error that one step of a contact phase may have. Angles count with the body's
             reach.
+        lasting_factors: (s,), >= 0, the friction of each surface where contact lasts, relative to that of
+            its strikes. Without any, both are the same.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
@@ -67,7 +73,8 @@ def toss(
         TooLargeError: a flight takes too many steps of the search for its end.
     """
     check_choice("restitution_law", restitution_law, RestitutionLaw)
-    solid = solid_of(body, world)
+    factors = check_factors("lasting_factors", lasting_factors)
+    solid = solid_of(body, world, lasting_factors=factors)
     runs = Following(
         solid,
         body.mass_properties,

@@ -88,7 +88,8 @@ def sampled_toss(
     Raises:
         NoContactError: the body has no shape that could touch anything.
         NotSupportedError: the shape has rims, or a surface is an obstacle.
-        InvalidFieldError: the parameters' covariance has another size than the world's surfaces ask for.
+        InvalidFieldError: the parameters' covariance has another size than the world's surfaces ask for, or
+            there are not as many factors as surfaces.
     """
     solid = solid_of(body, world, settling=SAMPLED_SETTLING_HEIGHT)
     chance = np.random.default_rng(seed)
@@ -150,9 +151,13 @@ def _go_on(
         return None
     inertia, corners = samples.inertias_B[i], samples.corners_B[i]
     flats = tuple(
-        flat._replace(friction=mu, restitution=e)
-        for flat, mu, e in zip(
-            solid.flats, samples.frictions[i].tolist(), samples.restitutions[i].tolist(), strict=True
+        flat._replace(friction=mu, restitution=e, strike_friction=struck)
+        for flat, mu, e, struck in zip(
+            solid.flats,
+            samples.lasting_frictions[i].tolist(),
+            samples.restitutions[i].tolist(),
+            samples.frictions[i].tolist(),
+            strict=True,
         )
     )
     points = tuple((x, y, z) for x, y, z in corners.tolist())

@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 
 from contact_dynamics.contact.found import check_has_shape
-from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, tangents
 from contact_dynamics.tolerances import SETTLING_HEIGHT
 from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
 
 Matrix3: TypeAlias = tuple[Vector3, Vector3, Vector3]
@@ -39,8 +40,9 @@ class Flat(NamedTuple):
         normal: Unit, into the free side, world axes.
         tangents: Two unit tangents, orthogonal to each other.
         level: m, the height of the flat along its normal.
-        friction: Coulomb's mu.
+        friction: Coulomb's mu where contact lasts.
         restitution: The coefficient e.
+        strike_friction: Coulomb's mu in a strike.
     """
 
     name: str
@@ -49,6 +51,7 @@ class Flat(NamedTuple):
     level: float
     friction: float
     restitution: float
+    strike_friction: float
 
 
 class Solid(NamedTuple):
@@ -95,12 +98,22 @@ class Pose(NamedTuple):
     w: Vector3
 
 
-def solid_of(body: Body, world: World, *, settling: float = SETTLING_HEIGHT) -> Solid:
-    """Return a body and a world in plain floats. Rebounds lower than ``settling``, m, are not followed.
+def solid_of(
+    body: Body, world: World, *, settling: float = SETTLING_HEIGHT, lasting_factors: FloatArray | None = None
+) -> Solid:
+    """Return a body and a world in plain floats.
+
+    Args:
+        body: The body.
+        world: Flats, and gravity.
+        settling: m. Rebounds that are lower are not followed.
+        lasting_factors: (s,), the friction of each surface where contact lasts, relative to that of its
+            strikes, or None if both are the same.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
         NotSupportedError: the shape has rims, or a surface is an obstacle.
+        InvalidFieldError: there are not as many factors as surfaces.
     """
     check_has_shape(body)
     if body.shape.rims:
@@ -109,8 +122,9 @@ def solid_of(body: Body, world: World, *, settling: float = SETTLING_HEIGHT) -> 
             "give a rim as a polygon of corners"
         )
         raise NotSupportedError(message)
+    factors = factors_of(lasting_factors, len(world.surfaces))
     flats = []
-    for surface in world.surfaces:
+    for surface, factor in zip(world.surfaces, factors.tolist(), strict=True):
         if not isinstance(surface, Surface):
             message = (
                 f"surface {surface.name!r}: found an obstacle, allowed for a whole toss are flats without end"
@@ -120,7 +134,15 @@ def solid_of(body: Body, world: World, *, settling: float = SETTLING_HEIGHT) -> 
         normal = (x, y, z)
         level = float(surface.p_WS_W @ surface.normal_W)
         flats.append(
-            Flat(surface.name, normal, tangents(normal), level, surface.friction, surface.restitution)
+            Flat(
+                name=surface.name,
+                normal=normal,
+                tangents=tangents(normal),
+                level=level,
+                friction=factor * surface.friction,
+                restitution=surface.restitution,
+                strike_friction=surface.friction,
+            )
         )
     I_B = body.mass_properties.I_B
     corners = tuple((x, y, z) for x, y, z in body.shape.vertices.tolist())
@@ -136,6 +158,20 @@ def solid_of(body: Body, world: World, *, settling: float = SETTLING_HEIGHT) -> 
         flats=tuple(flats),
         settling=settling,
     )
+
+
+def factors_of(lasting_factors: FloatArray | None, surfaces: int) -> FloatArray:
+    """Return the factors of all surfaces, (s,). They are 1 if none is given.
+
+    Raises:
+        InvalidFieldError: there are not as many factors as surfaces.
+    """
+    if lasting_factors is None or len(lasting_factors) == 0:
+        return np.ones(surfaces)
+    if len(lasting_factors) != surfaces:
+        allowed = f"one for each of {surfaces} surfaces, or none"
+        raise InvalidFieldError("lasting_factors", f"{len(lasting_factors)} numbers", allowed)
+    return lasting_factors
 
 
 def as_rows(matrix: list[list[float]]) -> Matrix3:

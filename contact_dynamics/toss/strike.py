@@ -97,7 +97,7 @@ def strike(
             return Strikes(settled.y, struck + settled.struck, settled.staying, settled=True)
         which = touching[rates.index(fastest)] if first is None else first
         first = None
-        y, one = routh(solid, y, which, law)
+        y, one = routh(solid, y, which, law, friction=solid.flats[which[0]].strike_friction)
         struck.append(one)
     rates = approaches(solid, y, touching)
     staying = [touch for touch, rate in zip(touching, rates, strict=True) if rate <= STILL_TOUCHING]
@@ -125,7 +125,9 @@ def low_rebounds_ended(solid: Solid, y: Numbers, touching: list[Touch]) -> Strik
     return found._replace(y=without_rebounds(solid, y, found.staying)) if low else None
 
 
-def routh(solid: Solid, y: Numbers, touch: Touch, law: RestitutionLaw) -> tuple[Numbers, Struck]:
+def routh(
+    solid: Solid, y: Numbers, touch: Touch, law: RestitutionLaw, *, friction: float
+) -> tuple[Numbers, Struck]:
     """Return the state after the impact at one contact, which approaches or jams (lecture 27)."""
     pose, flat = pose_of(solid, y), solid.flats[touch[0]]
     body = responding(solid.mass, solid.inertia, y[3:7], arm_of(solid, pose, touch), pose.v, pose.w)
@@ -135,7 +137,7 @@ def routh(solid: Solid, y: Numbers, touch: Touch, law: RestitutionLaw) -> tuple[
         u1 = u2 = 0.0
     if v_n >= -STRIKES:  # it jams, without approach
         v_n = 0.0
-    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, min(flat.friction, LARGEST_FRICTION))
+    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, min(friction, LARGEST_FRICTION))
     path = trace(sliding, (u1, u2), v_n, restitution=flat.restitution, law=law)
     impulse = axes.in_world(path.impulse)
     v, w = pushed(body, impulse)

@@ -15,6 +15,7 @@ import numpy as np
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.records import Record
 from contact_dynamics.rotations.many import matrices_of, products, quaternions_of
+from contact_dynamics.toss.solid import factors_of
 from contact_dynamics.validation import FloatArray, check_array, check_not_negative
 from contact_dynamics.validation_batches import check_covariance
 
@@ -42,9 +43,14 @@ class TossUncertainty(Record):
         spin: rad/s, >= 0, the same of an angular velocity.
         height: m, >= 0, standard deviation of how far each corner is from where the shape has it, along its
             ray from the mass centre. It makes the time of a strike uncertain.
+        lasting_factors: (s,), >= 0, the friction of each surface where contact lasts, relative to that of
+            its strikes. Without any, both are the same.
+        lasting_factor_stds: (s,), >= 0, their standard deviations, from toss to toss and by what is known of
+            them. Without any, the factors are exact.
 
     Raises:
-        InvalidFieldError: the matrix is not a covariance, or a number is negative or not finite.
+        InvalidFieldError: the matrix is not a covariance, a number is negative or not finite, or there are
+            not as many standard deviations as factors.
         TooLargeError: the matrix has more than `MOST_PARAMETERS` rows.
     """
 
@@ -52,6 +58,8 @@ class TossUncertainty(Record):
     velocity: float = 0.0
     spin: float = 0.0
     height: float = 0.0
+    lasting_factors: FloatArray = field(default_factory=lambda: np.zeros(0))
+    lasting_factor_stds: FloatArray = field(default_factory=lambda: np.zeros(0))
 
     if TYPE_CHECKING:
 
@@ -62,6 +70,8 @@ class TossUncertainty(Record):
             velocity: float = ...,
             spin: float = ...,
             height: float = ...,
+            lasting_factors: ArrayLike = ...,
+            lasting_factor_stds: ArrayLike = ...,
         ) -> None:
             """Take whatever NumPy makes arrays of."""
 
@@ -74,6 +84,20 @@ class TossUncertainty(Record):
         object.__setattr__(self, "covariance", matrix)
         for name in ("velocity", "spin", "height"):
             object.__setattr__(self, name, check_not_negative(name, getattr(self, name)))
+        for name in ("lasting_factors", "lasting_factor_stds"):
+            object.__setattr__(self, name, check_factors(name, getattr(self, name)))
+        count = len(self.lasting_factors)
+        if len(self.lasting_factor_stds) not in {0, count}:
+            found = f"{len(self.lasting_factor_stds)} numbers"
+            raise InvalidFieldError("lasting_factor_stds", found, f"{count}, one for each factor, or none")
+
+
+def check_factors(field: str, values: ArrayLike) -> FloatArray:
+    """Return numbers >= 0, (s,)."""
+    factors = check_array(field, values, (None,))
+    if (factors < 0.0).any():
+        raise InvalidFieldError(field, factors, "numbers >= 0")
+    return factors
 
 
 EXACT: Final = TossUncertainty()
@@ -90,7 +114,8 @@ class Samples(NamedTuple):
         w_WB_W: (n, 3), rad/s.
         inertias_B: (n, 3, 3), kg m^2.
         corners_B: (n, k, 3), m, from each sample's mass centre.
-        frictions: (n, s), of each surface.
+        frictions: (n, s), of each surface, in strikes.
+        lasting_frictions: (n, s), where contact lasts.
         restitutions: (n, s), of each surface.
     """
 
@@ -101,6 +126,7 @@ class Samples(NamedTuple):
     inertias_B: FloatArray
     corners_B: FloatArray
     frictions: FloatArray
+    lasting_frictions: FloatArray
     restitutions: FloatArray
 
 
@@ -127,7 +153,8 @@ def draw(
         chance: Where they are drawn from.
 
     Raises:
-        InvalidFieldError: the parameters' covariance has another size than the world's surfaces ask for.
+        InvalidFieldError: the parameters' covariance has another size than the world's surfaces ask for, or
+            there are not as many factors as surfaces.
     """
     flats = [surface for surface in world.surfaces if hasattr(surface, "friction")]
     s = len(flats)
@@ -141,16 +168,28 @@ def draw(
     centre = off[:, 2 * s : 2 * s + 3]
     shift = np.einsum("nij,nj->ni", matrices_of(q), centre)
     w = state.w_WB_W + moved[:, 9:]
+    frictions = np.maximum(np.array([flat.friction for flat in flats]) + off[:, :s], 0.0)
+    corners = _corners(body, uncertainty.height, count, chance) - centre[:, None, :]
     return Samples(
         p_WB_W=state.p_WB_W + moved[:, :3] + shift,
         q_WB=q,
         v_WB_W=state.v_WB_W + moved[:, 6:9] + np.cross(w, shift),
         w_WB_W=w,
         inertias_B=body.mass_properties.I_B * np.exp(off[:, -1])[:, None, None],
-        corners_B=_corners(body, uncertainty.height, count, chance) - centre[:, None, :],
-        frictions=np.maximum(np.array([flat.friction for flat in flats]) + off[:, :s], 0.0),
+        corners_B=corners,
+        frictions=frictions,
+        lasting_frictions=frictions * _factors(uncertainty, s, count, chance),
         restitutions=np.clip(np.array([flat.restitution for flat in flats]) + off[:, s : 2 * s], 0.0, 1.0),
     )
+
+
+def _factors(uncertainty: TossUncertainty, surfaces: int, count: int, chance: Generator) -> FloatArray:
+    """Return the friction where contact lasts, relative to that of strikes, (n, s)."""
+    factors = np.tile(factors_of(uncertainty.lasting_factors, surfaces), (count, 1))
+    stds = uncertainty.lasting_factor_stds
+    if stds.any():
+        factors += stds * chance.standard_normal((count, surfaces))
+    return np.maximum(factors, 0.0)
 
 
 def _corners(body: Body, height: float, count: int, chance: Generator) -> FloatArray:

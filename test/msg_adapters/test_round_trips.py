@@ -19,6 +19,8 @@ from contact_dynamics.questions import (
     PublishedState,
 )
 from contact_dynamics.questions.subject import NEWEST
+from contact_dynamics.questions.toss import TossQuestion, TossSampling
+from contact_dynamics.toss import TossUncertainty
 from contact_dynamics.world import Body, World
 from contact_dynamics_interfaces.msg import Poinsot as PoinsotMsg
 from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
@@ -370,3 +372,10 @@ def test_a_published_state_of_the_second_body_has_the_requests_stamp() -> None:
     earlier = replace(question, other_state=PublishedState(stamp_ns=5))
     with pytest.raises(NotSupportedError, match="allowed is that of the request's stamp"):
         impact_question_to_msg(earlier, world=WORLD, world_frame="world")
+
+
+def test_a_friction_that_lasts_has_no_request() -> None:
+    sampling = TossSampling(count=1, uncertainty=TossUncertainty(lasting_factors=[1.4]))
+    question = TossQuestion(body="brick", sampling=sampling)
+    with pytest.raises(NotSupportedError, match="lasting_factors: a request has one friction"):
+        toss_question_to_msg(question, world=WORLD, world_frame="world")

@@ -82,6 +82,11 @@ def test_a_distribution_comes_with_samples() -> None:
         ),
         (lambda: TossUncertainty(covariance=-np.eye(6)), "covariance: found variances"),
         (lambda: TossUncertainty(covariance=np.zeros((5, 6))), "covariance: found"),
+        (lambda: TossUncertainty(lasting_factors=[-1.0]), "lasting_factors: found"),
+        (
+            lambda: TossUncertainty(lasting_factor_stds=[0.1]),
+            "lasting_factor_stds: found 1 numbers, allowed is 0",
+        ),
     ],
 )
 def test_what_is_not_allowed_is_named(make: Callable[[], object], message: str) -> None:
@@ -94,6 +99,23 @@ def test_a_covariance_of_another_world_is_refused() -> None:
     sampling = TossSampling(count=1, uncertainty=TossUncertainty(covariance=np.eye(8)))
     with pytest.raises(InvalidFieldError, match="covariance: found 8 rows, allowed is 6 rows"):
         ask(TossQuestion(body="cube", state=THROWN, sampling=sampling), KNOWN)
+
+
+def test_factors_of_friction_for_another_world_are_refused() -> None:
+    sampling = TossSampling(count=1, uncertainty=TossUncertainty(lasting_factors=[1.2, 1.2]))
+    with pytest.raises(
+        InvalidFieldError, match="lasting_factors: found 2 numbers, allowed is one for each of 1"
+    ):
+        ask(TossQuestion(body="cube", state=THROWN, sampling=sampling), KNOWN)
+
+
+def test_the_toss_itself_has_the_friction_that_lasts_as_its_samples_have_it() -> None:
+    factors = [1.5]
+    sampling = TossSampling(count=1, to_rest=True, uncertainty=TossUncertainty(lasting_factors=factors))
+    answer = ask(TossQuestion(body="cube", state=THROWN, sampling=sampling), KNOWN)
+    alone = toss(CUBE, THROWN, KNOWN.world, lasting_factors=factors)
+    np.testing.assert_array_equal(answer.toss.trajectory.p_WB_W[-1], alone.state.p_WB_W)
+    assert abs(alone.state.p_WB_W - toss(CUBE, THROWN, KNOWN.world).state.p_WB_W).max() > 1e-3
 
 
 def test_a_trajectory_of_too_many_samples_is_refused() -> None:

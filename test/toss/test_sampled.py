@@ -237,3 +237,19 @@ def test_a_brick_on_its_edge_falls_to_either_side() -> None:
     assert found.rest is not None
     assert (np.diff(found.rest.seconds) >= 0.0).all()
     assert set(found.ghosts.strikes.tolist()) == {0, 1, 2}
+
+
+def test_friction_that_lasts_stops_what_slides_and_strikes_have_their_own() -> None:
+    """A brick that slides flush stops after v^2 / (2 mu g); a strike before has the friction of strikes."""
+    flush = BodyState(p_WB_W=[0, 0, 0.035], q_WB=[0, 0, 0, 1], v_WB_W=[0.6, 0, 0], w_WB_W=[0, 0, 0])
+    lasting = TossUncertainty(lasting_factors=[1.5], lasting_factor_stds=[0.1])
+    found = told(flush, 300, to_rest=True, uncertainty=lasting).rest
+    assert found is not None
+    # Quantiles of 1 / factor are those of normal factors, the other way round.
+    normal = np.array([1.645, 0.674, 0.0, -0.674, -1.645])
+    expected = 0.6**2 / (2.0 * 9.80665 * 0.2 * (1.5 + 0.1 * normal))
+    np.testing.assert_allclose(found.positions[:, 0], expected, rtol=0.03)  # of 300, four standard errors
+    same, other = (told(thrown(1), strikes=1, uncertainty=each).strikes[0] for each in (EXACT, lasting))
+    np.testing.assert_array_equal(same.velocity.mean, other.velocity.mean)
+    went = toss(BRICK, flush, WORLD, lasting_factors=[1.5])
+    assert went.state.p_WB_W[0] == pytest.approx(0.6**2 / (2.0 * 9.80665 * 0.3), rel=1e-4)
