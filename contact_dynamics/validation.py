@@ -25,6 +25,8 @@ _FEW: Final = 20
 
 def check_finite(field: str, value: Any) -> float:
     """Return ``value`` as a float. If it is NaN, infinite or no number, raise `InvalidFieldError`."""
+    if type(value) is float and math.isfinite(value):  # the common case
+        return value
     try:
         number = float(value)
     except (TypeError, ValueError):

@@ -276,14 +276,18 @@ class PolyhedralCone:
 
     def _touch(self, indices: NDArray[np.int64], heights: FloatArray, lowest: FloatArray) -> None:
         """Record the rows that touch the cone and do not cut it, and on which rays they vanish."""
-        near = abs(heights[lowest < self._clear])
-        if ((near > self._same) & (near < self._clear)).any():
+        low = np.flatnonzero(lowest < self._clear)
+        if len(low) == 0:
+            return
+        sizes = abs(heights[low])
+        zero = sizes <= self._same
+        if np.count_nonzero(sizes < self._clear) > np.count_nonzero(zero):
             raise _NotClearError
-        touching = np.flatnonzero(abs(lowest) <= self._same)
-        if len(touching) == 0:
+        touching = lowest[low] >= -self._same
+        if not touching.any():
             return
         flags = np.zeros((len(self.rays), len(self.rows)), dtype=bool)
-        flags[:, indices[touching]] = (heights[touching] <= self._same).T
+        flags[:, indices[low[touching]]] = zero[touching].T
         for ray, packed in enumerate(np.packbits(flags, axis=1, bitorder="little")):
             self.tight[ray] |= int.from_bytes(packed.tobytes(), "little")
 

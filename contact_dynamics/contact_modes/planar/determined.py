@@ -226,6 +226,8 @@ def _solved(equations: list[_Equation]) -> list[Vector4] | None:
         if abs(gain) <= INDEPENDENT_EQUATIONS:
             return None
         return [(row[0] / gain, row[1] / gain, row[2] / gain, row[3] / gain)]
+    if count == 2:  # most of the others, at half the time of the table
+        return _solved_pair(*equations)
     wrenches = [wrench for _, wrench, _ in equations]
     table = [
         [*(row[0] * x + row[1] * y + row[2] * z for x, y, z in wrenches), *row] for row, _, _ in equations
@@ -245,6 +247,27 @@ def _solved(equations: list[_Equation]) -> list[Vector4] | None:
         x, y, z, height = line[count:]
         responses.append((x / line[k], y / line[k], z / line[k], height / line[k]))
     return responses
+
+
+def _solved_pair(one: _Equation, two: _Equation) -> list[Vector4] | None:
+    """Return what `_solved` does for two equations, by the same steps."""
+    first, second = one.row, two.row
+    u, v = one.wrench, two.wrench
+    a, b, c, d = dot(first[:3], u), dot(first[:3], v), dot(second[:3], u), dot(second[:3], v)
+    if abs(c) > abs(a):
+        first, second, a, b, c, d = second, first, c, d, a, b
+    if abs(a) <= INDEPENDENT_EQUATIONS:
+        return None
+    factor = c / a
+    d -= factor * b
+    if abs(d) <= INDEPENDENT_EQUATIONS:
+        return None
+    second = _combined(1.0, second, -factor, first)
+    first = _combined(1.0, first, -b / d, second)
+    return [
+        (first[0] / a, first[1] / a, first[2] / a, first[3] / a),
+        (second[0] / d, second[1] / d, second[2] / d, second[3] / d),
+    ]
 
 
 def _slope(row: ContactRow, letter: int) -> float:

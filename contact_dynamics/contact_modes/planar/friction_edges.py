@@ -62,10 +62,14 @@ def friction_edges(rows: Sequence[ContactRow], letters: Letters) -> Edges:
     """Return the edges of the forces that the letters of a mode allow."""
     positions: list[int] = []
     forces: list[Vector2] = []
+    known: dict[tuple[float, int], tuple[Vector2, ...]] = {}  # contacts often have the same friction
     for position, letter in letters:
-        for force in edge_forces(rows[position].friction, letter):
-            positions.append(position)
-            forces.append(force)
+        kind = (rows[position].friction, letter)
+        alike = known.get(kind)
+        if alike is None:
+            alike = known[kind] = edge_forces(*kind)
+        forces += alike
+        positions += (position,) * len(alike)
     if len(positions) > MANY:
         both = np.array([rows[position].N + rows[position].T for position in positions])
         sizes = np.array(forces)

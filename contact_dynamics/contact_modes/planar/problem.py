@@ -85,7 +85,8 @@ class PlanarContactProblem(Record):
         if n > MOST_PLANAR_CONTACTS:
             raise TooLargeError("contacts", f"{n} contacts", f"at most {MOST_PLANAR_CONTACTS}")
         object.__setattr__(self, "contacts", tuple(self.contacts))
-        self.uncertainty.check_count(n)
+        if self.uncertainty is not EXACT_CONTACTS:
+            self.uncertainty.check_count(n)
         for name in ("velocity_tolerance", "acceleration_tolerance"):
             object.__setattr__(self, name, check_not_negative(name, getattr(self, name)))
 
@@ -231,17 +232,19 @@ def planar_case(
         if abs(twist[2]) * reach > velocity_tolerance * rho:
             omega = twist[2] / rho
     square = omega * omega
+    moves = twist != (0.0, 0.0, 0.0)
     rows = []
-    largest = 0.0
+    largest = b_n = b_t = 0.0
     for index, v_t, N, T in touching:
         contact = contacts[index]
-        b_n = square * T[2] * rho  # T's moment arm is -r.n, N's is r.t
-        rolling = contact.gap_acceleration(dot(T, twist), omega)
-        # For a disc that rolls on a flat the two terms are opposite, and only rounding is left.
-        cancels = abs(b_n + rolling) <= ACCELERATION_TOLERANCE * abs(rolling)
-        b_n = 0.0 if cancels else b_n + rolling
-        b_t = -square * N[2] * rho
-        largest = max(largest, abs(b_n), abs(b_t))
+        if moves:
+            b_n = square * T[2] * rho  # T's moment arm is -r.n, N's is r.t
+            rolling = contact.gap_acceleration(dot(T, twist), omega)
+            # For a disc that rolls on a flat the two terms are opposite, and only rounding is left.
+            cancels = abs(b_n + rolling) <= ACCELERATION_TOLERANCE * abs(rolling)
+            b_n = 0.0 if cancels else b_n + rolling
+            b_t = -square * N[2] * rho
+            largest = max(largest, abs(b_n), abs(b_t))
         size_n, size_t = norm(N), norm(T)
         unit_n, unit_t = _divided(N, size_n), _divided(T, size_t)
         slides = float((v_t > 0.0) - (v_t < 0.0))
