@@ -219,8 +219,10 @@ class Program:
             helps = row if values[worst] < 0.0 else -row
             able = (helps > least_pivot).nonzero()[0]
             if able.size == 0:
-                least = _MOST_FORCE * float(helps.max(initial=0.0))
-                self.doubtful = bool(missed[worst] <= max(least, _CLEAR * self._noise))
+                by = float(missed[worst])
+                self.doubtful = by <= _CLEAR * self._noise or (
+                    by <= _MOST_FORCE * least_pivot and by <= _MOST_FORCE * float(helps.max(initial=0.0))
+                )
                 return False
             enters = able[(table[0, able] / helps[able]).argmin()]
             self._pivot(worst, int(enters))

@@ -192,8 +192,12 @@ def acting_edges(directions: FloatArray, count: int) -> NDArray[np.bool_]:
         count: The number of edges of a pyramid.
     """
     x, y = directions[:, 0], directions[:, 1]
-    angles = np.sort(np.arctan2(y, x), axis=1)
-    gaps = np.hstack([angles[:, 1:], angles[:, :1] + 2.0 * math.pi]) - angles
+    angles = np.arctan2(y, x)
+    angles.sort(axis=1)
+    gaps = np.empty_like(angles)
+    gaps[:, :-1] = angles[:, 1:]
+    gaps[:, -1] = angles[:, 0] + 2.0 * math.pi
+    gaps -= angles
     widest = gaps.argmax(axis=1)
     each = np.arange(len(angles))
     gap = gaps[each, widest]

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from contact_dynamics.contact_modes.spatial.options import Pyramid
     from contact_dynamics.validation import FloatArray
 
 _NARROW: Final = 0.32
@@ -55,16 +54,16 @@ class Region(NamedTuple):
 
     Attributes:
         rays: (p, p), one a row.
-        height: (p,), a combination of coordinates that is positive in the region.
+        inside: (p + 1, p), combinations of coordinates that are positive in the region: the share of each
+            ray, and a height, which is also positive on all rays.
     """
 
     rays: FloatArray
-    height: FloatArray
+    inside: FloatArray
 
     def rows(self, image: Image) -> FloatArray:
         """Return the conditions on the motion, (p + 1, 7), that it slides, within the region."""
-        inside = np.vstack([np.linalg.inv(self.rays.T), self.height])
-        inside /= np.sqrt((inside * inside).sum(axis=1))[:, None]
+        inside = self.inside / np.sqrt((self.inside * self.inside).sum(axis=1))[:, None]
         found = np.zeros((len(inside), 7))
         found[:, :-1] = inside @ image.coordinates
         found[-1, -1] = -MILDER * STRICT
@@ -77,7 +76,7 @@ class Region(NamedTuple):
         """
         if len(self.rays) == 1:
             return None
-        unit = self.rays / np.linalg.norm(self.rays, axis=1)[:, None]
+        unit = self.rays / np.sqrt((self.rays * self.rays).sum(axis=1))[:, None]
         cosines = unit @ unit.T
         one, other = divmod(int(cosines.argmin()), len(unit))
         narrow = min(_NARROW, 0.8 * math.pi / count) if len(unit) <= 3 else _NARROW_OF_MORE
@@ -85,23 +84,28 @@ class Region(NamedTuple):
             return None
         near, far = self.rays.copy(), self.rays.copy()
         near[other] = far[one] = 0.5 * (self.rays[one] + self.rays[other])
-        return Region(near, self.height), Region(far, self.height)
+        shares, of_near, of_far = self.inside, self.inside.copy(), self.inside.copy()
+        of_near[other], of_far[one] = 2.0 * shares[other], 2.0 * shares[one]
+        of_near[one] -= shares[other]
+        of_far[other] -= shares[one]
+        return Region(near, of_near), Region(far, of_far)
 
-    def acting_edges(self, image: Image, pyramids: list[Pyramid]) -> NDArray[np.bool_]:
-        """Return which edges, (m, K), of each contact's pyramid oppose some sliding in the region."""
-        return acting_edges(image.maps @ self.rays.T, len(pyramids[0].edges))
+    def acting_edges(self, image: Image, count: int) -> NDArray[np.bool_]:
+        """Return which of ``count`` edges, (m, count), of each contact's pyramid oppose some sliding here."""
+        return acting_edges(image.maps @ self.rays.T, count)
 
-    def friction(self, image: Image, pyramids: list[Pyramid]) -> FloatArray:
+    def friction(self, image: Image, tangential: FloatArray) -> FloatArray:
         """Return the power of friction on each ray, for unit normal force at each contact, (m, p).
 
         Friction acts along the edge that opposes the sliding in the middle of the region most.
+
+        Args:
+            image: The space of the region.
+            tangential: (m, K, 2), the components of each pyramid's edges along its frame.
         """
         along = image.maps @ self.rays.T  # (m, 2, p)
-        middles = along.sum(axis=2)
-        found = np.zeros((len(pyramids), len(self.rays)))
-        for i, (pyramid, middle) in enumerate(zip(pyramids, middles.tolist(), strict=True)):
-            tangential = pyramid.tangential()
-            found[i] = tangential[int((tangential @ middle).argmin())] @ along[i]
+        opposing = (tangential @ along.sum(axis=2)[:, :, None])[:, :, 0].argmin(axis=1)
+        found: FloatArray = (tangential[np.arange(len(along)), opposing][:, None, :] @ along)[:, 0]
         return found
 
 
@@ -162,4 +166,5 @@ def image_of(normals: FloatArray, frames: FloatArray) -> Image:
 def whole(dimensions: int) -> Iterator[Region]:
     """Yield regions that together cover every direction. There are none in a space of no dimensions."""
     for signs in itertools.product((1.0, -1.0), repeat=dimensions) if dimensions else ():
-        yield Region(np.diag(signs), np.array(signs) / math.sqrt(dimensions))
+        rays = np.diag(signs)  # its own inverse
+        yield Region(rays, np.concatenate([rays, [signs]]))

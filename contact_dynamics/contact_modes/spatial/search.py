@@ -100,6 +100,7 @@ class Common(NamedTuple):
         open_ones: The contacts that slide.
         pyramids: The force edges of these contacts.
         names: (m, K), the names of their edge forces.
+        tangential: (m, K, 2), the components of their edges along their frames.
         gains: (p,), the power of the applied wrench on unit coordinates; None if something moves already,
             because then the power may be negative.
     """
@@ -108,6 +109,7 @@ class Common(NamedTuple):
     open_ones: list[int]
     pyramids: list[Pyramid]
     names: NDArray[np.intp]
+    tangential: FloatArray
     gains: FloatArray | None
 
 
@@ -355,7 +357,8 @@ class Search:
             gains = image.coordinates @ (self._power - rest @ unseen)
         pyramids = [self.pyramids[i] for i in open_ones]
         names = np.array([one.first for one in pyramids])[:, None] + np.arange(len(pyramids[0].edges))
-        return Common(image, open_ones, pyramids, names, gains)
+        tangential = np.array([one.tangential() for one in pyramids])
+        return Common(image, open_ones, pyramids, names, tangential, gains)
 
     def _decide_within(
         self, region: Region, program: AnyProgram, trials: list[Option], common: Common
@@ -363,13 +366,13 @@ class Search:
         """Find the modes within a region, and return whether it may hold any, whichever contacts slide."""
         if self._goal in self._settled:
             return True
-        acting = region.acting_edges(common.image, common.pyramids)
+        acting = region.acting_edges(common.image, common.names.shape[1])
         silent = frozenset(common.names[~acting].tolist())
         further = Narrowing(zeroed=silent, rows=region.rows(common.image), tag=_REGION_TAG)
         narrower = self._solved(program.narrowed(further))
         if narrower is None or not self._dissipates(region, narrower, common):
             return False
-        halves = region.halves(len(common.pyramids[0].edges))
+        halves = region.halves(common.names.shape[1])
         if halves is not None:
             near, far = (self._decide_within(half, narrower, trials, common) for half in halves)
             return near or far
@@ -392,7 +395,7 @@ class Search:
             return True
         self.examined += 1
         weights = np.zeros((len(region.rays), self.edges.shape[1]))
-        taken = region.friction(common.image, common.pyramids)
+        taken = region.friction(common.image, common.tangential)
         for pyramid, of_contact in zip(common.pyramids, taken, strict=True):
             own = slice(pyramid.first, pyramid.first + len(pyramid.edges))
             weights[:, own] = of_contact[:, None] / self._sizes[own]
