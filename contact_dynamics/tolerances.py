@@ -630,6 +630,10 @@ unbalanced is not divided by rounding."""
 ROUND_CONE_ROUNDING: Final = 1e-13
 """Relative. A smaller remainder is rounding, and refutes nothing."""
 
+ROUND_CONE_NEAR: Final = 1e-3
+"""Relative to the load. A remainder is freed from the rounding of the forces only if it is smaller. Their
+rounding is nothing beside a larger one."""
+
 ROUND_CONE_WIDE: Final = 1e-6
 """Relative to the load. That wide friction cones do not hold it is certain only if they leave more than this,
 because forces in them are found in many steps."""

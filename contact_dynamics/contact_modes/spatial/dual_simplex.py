@@ -78,7 +78,7 @@ class Narrowing(NamedTuple):
         tag: The name of the ``rows``, < -1. They replace earlier rows with that tag, and must imply these.
     """
 
-    zeroed: Collection[int] = ()
+    zeroed: frozenset[int] = frozenset()
     raised: Collection[int] = ()
     least: float = 0.0
     rows: FloatArray | None = None
@@ -137,10 +137,13 @@ class Program:
     def narrowed(self, further: Narrowing) -> Program:
         """Return a program with further conditions."""
         zeroed, raised, least, rows, equalities, tag = further
-        keep = [k for k, name in enumerate(self._columns) if name != _DEAD and name not in zeroed]
-        columns = [self._columns[k] for k in keep]
-        keep.append(len(self._columns))
-        table = self._table.take(keep, axis=1)
+        columns, table = self._columns, self._table
+        if _DEAD in columns or not zeroed.isdisjoint(columns):
+            keep = [k for k, name in enumerate(columns) if name != _DEAD and name not in zeroed]
+            table = table.take([*keep, len(columns)], axis=1)
+            columns = [columns[k] for k in keep]
+        else:
+            columns, table = list(columns), table.copy()
         names, fixed = self._rows, self._fixed
         if tag in names:
             held = [k for k, name in enumerate(names) if name != tag]
@@ -149,9 +152,8 @@ class Program:
             fixed = fixed[held]
         else:
             names, fixed = list(names), fixed.copy()
-        for k, name in enumerate(names):
-            if name in zeroed:
-                fixed[k] = 1.0
+        for name in zeroed.intersection(names):
+            fixed[names.index(name)] = 1.0
         for name in raised:
             if name in names:
                 table[_HEAD + names.index(name), -1] -= least

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.numerics.linear_spaces import row_space
+from contact_dynamics.numerics.vectors import cross_of_two
 from contact_dynamics.tolerances import ON_PYRAMIDS_SIDE, ROW_TOLERANCE
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def misdirection(forces: FloatArray, directions: FloatArray, normals: FloatArray
     for force, way, normal in zip(forces, directions, normals, strict=True):
         friction = force - (force @ normal) * normal
         if np.any(way) and float(np.linalg.norm(friction)) > slack:
-            across = float(np.linalg.norm(np.cross(friction, way)))
+            across = float(np.linalg.norm(cross_of_two(friction, way)))
             largest = max(largest, math.atan2(across, -float(friction @ way)))
     return largest
 

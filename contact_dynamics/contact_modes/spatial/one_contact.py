@@ -73,35 +73,42 @@ def _sliding(
     G: FloatArray, b: FloatArray, normal: FloatArray, friction: float, *, sticks: bool
 ) -> list[Lettered]:
     frame = np.array(tangents_towards(normal, b))
-    b_n, b_t = float(normal @ b), frame @ b
+    b_n, (b_x, b_y) = float(normal @ b), (frame @ b).tolist()
     if abs(b_n) <= ONE_CONTACT_ZERO:
         b_n = 0.0
-    G_n, G_tn, G_tt = float(normal @ G @ normal), frame @ G @ normal, frame @ G @ frame.T
+    G_n, (G_xn, G_yn) = float(normal @ G @ normal), (frame @ G @ normal).tolist()
+    (G_xx, G_xy), (_, G_yy) = (frame @ G @ frame.T).tolist()
     size = float(np.abs(G).max()) * (1.0 + friction)
 
-    def along(angle: float) -> tuple[FloatArray, FloatArray, float]:
-        """Return a direction, the tangential and the normal acceleration for its unit normal force."""
-        d = np.array([math.cos(angle), math.sin(angle)])
-        return d, (G_tn - friction * (G_tt @ d)) / size, (G_n - friction * float(G_tn @ d)) / size
+    def along(x: float, y: float) -> tuple[float, float, float]:
+        """Return the acceleration along both tangents and the normal for a direction's unit normal force."""
+        return (
+            (G_xn - friction * (G_xx * x + G_xy * y)) / size,
+            (G_yn - friction * (G_xy * x + G_yy * y)) / size,
+            (G_n - friction * (G_xn * x + G_yn * y)) / size,
+        )
 
     def across(angle: float) -> float:
-        d, u, g = along(angle)
-        return g * float(d[0] * b_t[1] - d[1] * b_t[0]) - b_n * float(d[0] * u[1] - d[1] * u[0])
+        x, y = math.cos(angle), math.sin(angle)
+        u, v, g = along(x, y)
+        value: float = g * (x * b_y - y * b_x) - b_n * (x * v - y * u)
+        return value
 
     found = []
     for angle in _roots(across):
-        d, u, g = along(angle)
+        x, y = math.cos(angle), math.sin(angle)
+        u, v, g = along(x, y)
         if b_n != 0.0:
             press = -b_n / g if abs(g) > ONE_CONTACT_ZERO else -1.0
         elif abs(g) > ONE_CONTACT_ON_CONE:
             press = 0.0
         else:
-            turns = float(d[0] * u[1] - d[1] * u[0])
-            press = -float(d[0] * b_t[1] - d[1] * b_t[0]) / turns if abs(turns) > ONE_CONTACT_ZERO else -1.0
-        speed = float(d @ (b_t + press * u))
+            turns = x * v - y * u
+            press = -(x * b_y - y * b_x) / turns if abs(turns) > ONE_CONTACT_ZERO else -1.0
+        speed = x * (b_x + press * u) + y * (b_y + press * v)
         if press < 0.0 or speed <= 0.0 or (speed <= STRICT and sticks):
             continue
-        force = press / size * (normal - friction * (d @ frame))
+        force = press / size * (normal - friction * (x * frame[0] + y * frame[1]))
         found.append(Lettered(STAYS if speed > STRICT else STICKS, force))
         sticks |= speed <= STRICT
     return found
@@ -118,10 +125,11 @@ def _roots(function: Callable[[float], float]) -> list[float]:
         return []
     found: list[float] = []
     trial = np.abs(coefficients) > ONE_CONTACT_ZERO * largest
+    own = coefficients.tolist()
     for root in np.roots(np.where(trial, coefficients, 0.0)):
         if abs(abs(root) - 1.0) > ONE_CONTACT_ON_CIRCLE:
             continue
-        angle = _polished(function, math.atan2(root.imag, root.real), coefficients)
+        angle = _polished(function, math.atan2(root.imag, root.real), own)
         if abs(function(angle)) <= 100.0 * ONE_CONTACT_ZERO * largest and all(
             abs(math.remainder(angle - other, 2.0 * math.pi)) > ONE_CONTACT_SAME_ANGLE for other in found
         ):
@@ -129,12 +137,17 @@ def _roots(function: Callable[[float], float]) -> list[float]:
     return found
 
 
-def _polished(
-    function: Callable[[float], float], angle: float, coefficients: NDArray[np.complex128]
-) -> float:
-    orders = np.array([2.0, 1.0, 0.0, -1.0, -2.0])
+def _polished(function: Callable[[float], float], angle: float, coefficients: list[complex]) -> float:
+    of_two, of_one, _, of_minus_one, of_minus_two = coefficients
+    twice, once = 2.0 * (of_minus_two.imag - of_two.imag), of_minus_one.imag - of_one.imag
+    twice_across, once_across = -2.0 * (of_two.real + of_minus_two.real), -(of_one.real + of_minus_one.real)
     for _ in range(_POLISHING):
-        slope = float((1j * orders * coefficients * np.exp(1j * orders * angle)).sum().real)
+        slope = (
+            twice * math.cos(2.0 * angle)
+            + twice_across * math.sin(2.0 * angle)
+            + once * math.cos(angle)
+            + once_across * math.sin(angle)
+        )
         if slope == 0.0:
             break
         step = function(angle) / slope

@@ -139,9 +139,12 @@ class AccelerationMap:
         self.points = J
         # (n, 3), m/s^2, the part that a and alpha do not cause: of the points, and of contact that wanders
         # over curved sides.
-        self.turning = np.cross(w_W, np.cross(w_W, r_W)) + rolling_W
+        self.at_rest = not np.any(w_W)
+        self.turning, self.wrench = rolling_W, wrench_W
+        if not self.at_rest:
+            self.turning = np.cross(w_W, np.cross(w_W, r_W)) + rolling_W
+            self.wrench = wrench_W - np.concatenate([np.zeros(3), np.cross(w_W, inertia @ w_W)])
         self.of_forces = inverse @ J.T  # (6, 3 n)
-        self.wrench = wrench_W - np.concatenate([np.zeros(3), np.cross(w_W, inertia @ w_W)])
         self.free = inverse @ self.wrench
         self.points_free = (J @ self.free).reshape(-1, 3) + self.turning
         # In these units a motion is six accelerations, of which points of the body have about 1.
@@ -152,7 +155,6 @@ class AccelerationMap:
             float(np.abs(self.free * self.lengths).max()),
         )
         self.scale = largest if largest > 0.0 else 1.0
-        self.at_rest = not np.any(w_W)
 
 
 class SpatialCase(NamedTuple):

@@ -20,17 +20,18 @@ import numpy as np
 
 from contact_dynamics.contact_modes.spatial.careful_program import merged
 from contact_dynamics.numerics.linear_spaces import row_space
+from contact_dynamics.numerics.vectors import Vector3, combined, dot
 from contact_dynamics.tolerances import (
     ROUND_CONE_APART,
     ROUND_CONE_HELD,
     ROUND_CONE_INDEPENDENT,
+    ROUND_CONE_NEAR,
     ROUND_CONE_NO_HELP,
     ROUND_CONE_ON_CONE,
     ROUND_CONE_REACHED,
     ROUND_CONE_ROUNDING,
     ROUND_CONE_WIDE,
     ROW_TOLERANCE,
-    SMALLEST,
 )
 
 if TYPE_CHECKING:
@@ -220,7 +221,8 @@ def _nearest(demand: _Demand, normals: FloatArray, frictions: FloatArray) -> Hel
     """Return forces within the round cones whose images sum to the target, or are nearest to it."""
     images, target, sizes = demand
     load = float(np.linalg.norm(target))
-    wide = bool((frictions > _WIDE).any())
+    axes, leaning = normals.tolist(), frictions.tolist()
+    wide = any(friction > _WIDE for friction in leaning)
     owners: list[int] = []
     edges: list[FloatArray] = []
     spans, shares = np.zeros((len(target), 0)), np.zeros(0)
@@ -234,18 +236,12 @@ def _nearest(demand: _Demand, normals: FloatArray, frictions: FloatArray) -> Hel
             for i, edge, share in zip(owners, edges, shares.tolist(), strict=True):
                 forces[i] += share * edge
             return Held(forces, certain=True)
-        power = (rest / left) @ images  # (n, 3), of unit forces on what is left over
-        along = (power * normals).sum(axis=1)
-        across = power - along[:, None] * normals
-        slopes = np.sqrt((across * across).sum(axis=1))
-        slopes[slopes <= ROUND_CONE_ROUNDING * np.abs(along)] = 0.0  # rounding has no direction
-        leaning = frictions
-        if wide:  # where the remainder is inside of a cone, the force is along it, since edges hardly press
-            inside = (frictions > _WIDE) & (slopes < frictions * along)
-            leaning = np.where(inside, slopes / np.where(inside, along, 1.0), frictions)
-        best_of_each = normals + across * np.where(slopes > 0.0, leaning / (slopes + SMALLEST), 0.0)[:, None]
-        effects = np.sqrt(((images @ best_of_each[:, :, None]) ** 2).sum(axis=(1, 2)))
-        cosines = (along + leaning * slopes) / np.where(effects > 0.0, effects, 1.0)
+        power = ((rest / left) @ images).tolist()  # (n, 3), of unit forces on what is left over
+        found = [_extreme(*one) for one in zip(power, axes, leaning, strict=True)]
+        best_of_each = np.array([force for force, _ in found]).reshape(-1, 3)
+        moved = (images @ best_of_each[:, :, None])[:, :, 0]
+        effects = np.sqrt((moved * moved).sum(axis=1))
+        cosines = np.array([helps for _, helps in found]) / np.where(effects > 0.0, effects, 1.0)
         best = int(cosines.argmax()) if len(cosines) else -1
         helps = float(cosines[best]) if len(cosines) else 0.0
         if helps * _MOST_FORCE * load <= left and left > ROUND_CONE_ROUNDING * load:
@@ -254,7 +250,7 @@ def _nearest(demand: _Demand, normals: FloatArray, frictions: FloatArray) -> Hel
             break
         owners.append(best)
         edges.append(best_of_each[best] / effects[best])
-        spans = np.concatenate([spans, (images[best] @ edges[-1])[:, None]], axis=1)
+        spans = np.concatenate([spans, (moved[best] / effects[best])[:, None]], axis=1)
         shares = _shares(spans, target, np.concatenate([shares, _NOTHING]))
         if shares[-1] <= 0.0:
             break
@@ -262,8 +258,27 @@ def _nearest(demand: _Demand, normals: FloatArray, frictions: FloatArray) -> Hel
         owners, edges = [owners[k] for k in acting], [edges[k] for k in acting]
         spans, shares = spans[:, acting], shares[acting]
         rest = target - spans @ shares
-        rest = rest - spans @ np.linalg.lstsq(spans, rest, rcond=ROUND_CONE_INDEPENDENT)[0]
+        if rest @ rest <= (ROUND_CONE_NEAR * load) ** 2:
+            rest = rest - spans @ np.linalg.lstsq(spans, rest, rcond=ROUND_CONE_INDEPENDENT)[0]
     return Held(None, certain=False)
+
+
+def _extreme(power: Vector3, axis: Vector3, friction: float) -> tuple[Vector3, float]:
+    """Return the force of unit normal part in a cone that has the most power, and its power.
+
+    Args:
+        power: The power of unit forces.
+        axis: The axis of the cone.
+        friction: How far forces lean from it.
+    """
+    along = dot(power, axis)
+    x, y, z = combined(1.0, power, -along, axis)
+    slope = math.sqrt(x * x + y * y + z * z)
+    if slope <= ROUND_CONE_ROUNDING * abs(along):  # rounding has no direction
+        return axis, along
+    # Where the remainder is inside of a wide cone, the force is along it, since edges hardly press.
+    lean = slope / along if friction > _WIDE and slope < friction * along else friction
+    return combined(1.0, axis, lean / slope, (x, y, z)), along + lean * slope
 
 
 def _shares(spans: FloatArray, target: FloatArray, shares: FloatArray) -> FloatArray:

@@ -98,8 +98,7 @@ class Common(NamedTuple):
     Attributes:
         image: The space in which the regions lie.
         open_ones: The contacts that slide.
-        pyramids: The force edges of these contacts.
-        names: (m, K), the names of their edge forces.
+        names: (m, K), the names of the edge forces of these contacts.
         tangential: (m, K, 2), the components of their edges along their frames.
         gains: (p,), the power of the applied wrench on unit coordinates; None if something moves already,
             because then the power may be negative.
@@ -107,7 +106,6 @@ class Common(NamedTuple):
 
     image: Image
     open_ones: list[int]
-    pyramids: list[Pyramid]
     names: NDArray[np.intp]
     tangential: FloatArray
     gains: FloatArray | None
@@ -358,7 +356,7 @@ class Search:
         pyramids = [self.pyramids[i] for i in open_ones]
         names = np.array([one.first for one in pyramids])[:, None] + np.arange(len(pyramids[0].edges))
         tangential = np.array([one.tangential() for one in pyramids])
-        return Common(image, open_ones, pyramids, names, tangential, gains)
+        return Common(image, open_ones, names, tangential, gains)
 
     def _decide_within(
         self, region: Region, program: AnyProgram, trials: list[Option], common: Common
@@ -396,9 +394,7 @@ class Search:
         self.examined += 1
         weights = np.zeros((len(region.rays), self.edges.shape[1]))
         taken = region.friction(common.image, common.tangential)
-        for pyramid, of_contact in zip(common.pyramids, taken, strict=True):
-            own = slice(pyramid.first, pyramid.first + len(pyramid.edges))
-            weights[:, own] = of_contact[:, None] / self._sizes[own]
+        weights[:, common.names] = taken.T[:, :, None] / self._sizes[common.names]
         gains = region.rays @ common.gains
         scale = max(float(np.abs(weights).max()), float(np.abs(gains).max()))
         weights, gains = weights / scale, gains / scale

@@ -26,6 +26,7 @@ from contact_dynamics.contact_modes.spatial.problem import MOST_EDGES, search_of
 from contact_dynamics.contact_modes.spatial.round_cones import held_by_round_cones, wedged_by_round_cones
 from contact_dynamics.contact_modes.spatial.wrenches import distinct
 from contact_dynamics.errors import TooLargeError, UndecidedError
+from contact_dynamics.rotations.one import cross_matrix
 from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
@@ -93,7 +94,8 @@ def _decided(held: Held, what: str) -> bool:
 def _rows(arms: FloatArray, pyramids: list[FloatArray], length: float) -> FloatArray:
     """Return unit wrenches, (k, 6), that edge forces balance, torques divided by ``length``."""
     wrenches = [
-        np.hstack([-edges, -np.cross(arm, edges) / length]) for arm, edges in zip(arms, pyramids, strict=True)
+        np.hstack([-edges, edges @ cross_matrix(arm) / length])
+        for arm, edges in zip(arms, pyramids, strict=True)
     ]
     rows = np.vstack([np.zeros((0, 6)), *wrenches])
     unit: FloatArray = rows / np.linalg.norm(rows, axis=1)[:, None]
