@@ -29,14 +29,12 @@ from geometry_msgs.msg import Inertia
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
-from rclpy.qos import QoSProfile
 
 from benchmarks._quotes import quote
+from benchmarks._service_calls import PATIENCE_S, QOS, ROOT, SERVICES, Asker, cpu_ms, questions
 from contact_dynamics.demo.ros_domain import claim_domain
 from contact_dynamics_interfaces.msg import BodyStates
 from contact_dynamics_interfaces.srv import (
-    PredictContactMode,
-    PredictImpact,
     PredictImpactBatch,
     PredictTumbling,
     PredictTumblingBatch,
@@ -46,17 +44,6 @@ CALLS = 500
 WARM_UP = 50
 BATCH = 1000
 """States in one call of the services that take many."""
-
-QOS = QoSProfile(depth=1000)
-PATIENCE_S = 20.0
-ROOT = Path(__file__).parents[1]
-SERVICES = {
-    "predict_contact_mode": PredictContactMode,
-    "predict_impact": PredictImpact,
-    "predict_tumbling": PredictTumbling,
-    "predict_impact_batch": PredictImpactBatch,
-    "predict_tumbling_batch": PredictTumblingBatch,
-}
 
 
 def run() -> None:
@@ -102,7 +89,7 @@ def _measure(*, start_server: Callable[[], int], start_empty: Callable[[], int])
     executor.add_node(node)
     started = time.perf_counter()
     server_pid = start_server()
-    first = _Asker(node, executor, "contact_dynamics", "predict_tumbling")
+    first = Asker(node, executor, "contact_dynamics", "predict_tumbling")
     first.ask(PredictTumbling.Request(inertia=Inertia(m=1.0, ixx=1.0, iyy=1.0, izz=1.0), state_source=1))
     first_answer = time.perf_counter() - started
     quote("services.first_answer", first_answer, "s", digits=1)
@@ -115,8 +102,8 @@ def _measure(*, start_server: Callable[[], int], start_empty: Callable[[], int])
         f"   {'ratio':>6}   {'inside':>7} {'of CPU':>6}"
     )
     inside, ratios, singles = [], {}, {}
-    for title, name, request in _questions():
-        askers = [_Asker(node, executor, server, name) for server in ("contact_dynamics", "empty")]
+    for title, name, request in questions():
+        askers = [Asker(node, executor, server, name) for server in ("contact_dynamics", "empty")]
         for asker, pid in zip(askers, (server_pid, empty_pid), strict=True):
             asker.pid = pid
         _alternate(askers, request)
@@ -128,7 +115,7 @@ def _measure(*, start_server: Callable[[], int], start_empty: Callable[[], int])
         for asker in askers:
             asker.close()
     for title, name, request in _batches():
-        askers = [_Asker(node, executor, server, name) for server in ("contact_dynamics", "empty")]
+        askers = [Asker(node, executor, server, name) for server in ("contact_dynamics", "empty")]
         for asker, pid in zip(askers, (server_pid, empty_pid), strict=True):
             asker.pid = pid
         _alternate(askers, request)
@@ -151,42 +138,7 @@ def _measure(*, start_server: Callable[[], int], start_empty: Callable[[], int])
     rclpy.shutdown()
 
 
-class _Asker:
-    """A client that asks one server, and keeps the times."""
-
-    def __init__(self, node: Node, executor: SingleThreadedExecutor, server: str, name: str) -> None:
-        self._node = node
-        self._executor = executor
-        self._client = node.create_client(SERVICES[name], f"/{server}/{name}", qos_profile=QOS)
-        if not self._client.wait_for_service(PATIENCE_S):
-            raise TimeoutError(f"no service {self._client.srv_name}")
-        self.pid = 0
-        self.trips: list[float] = []  # ms
-        self.inside: list[float] = []  # ms
-        self.cpu = 0.0  # ms, of all calls that were kept
-
-    def ask(self, request: Any) -> None:
-        start = time.perf_counter()
-        future = self._client.call_async(request)
-        while not future.done():
-            self._executor.spin_once(timeout_sec=PATIENCE_S)
-        self.trips.append(1e3 * (time.perf_counter() - start))
-        answer = future.result()
-        if answer.status != answer.OK:
-            raise RuntimeError(answer.message)
-        self.inside.append(1e3 * answer.computation_time)
-
-    def forget(self) -> None:
-        """Forget all times so far."""
-        self.trips.clear()
-        self.inside.clear()
-        self.cpu = -_cpu_ms(self.pid)
-
-    def close(self) -> None:
-        self._node.destroy_client(self._client)
-
-
-def _alternate(askers: list[_Asker], request: Any) -> None:
+def _alternate(askers: list[Asker], request: Any) -> None:
     for call in range(WARM_UP + CALLS):
         if call == WARM_UP:
             for asker in askers:
@@ -194,10 +146,10 @@ def _alternate(askers: list[_Asker], request: Any) -> None:
         for asker in askers:
             asker.ask(request)
     for asker in askers:
-        asker.cpu += _cpu_ms(asker.pid)
+        asker.cpu += cpu_ms(asker.pid)
 
 
-def _line(title: str, ours: _Asker, empty: _Asker) -> str:
+def _line(title: str, ours: Asker, empty: Asker) -> str:
     trip, nothing = statistics.median(ours.trips), statistics.median(empty.trips)
     inside, cpu = statistics.median(ours.inside), ours.cpu / CALLS
     return (
@@ -206,52 +158,8 @@ def _line(title: str, ours: _Asker, empty: _Asker) -> str:
     )
 
 
-def _cpu_ms(pid: int) -> float:
-    """Return the CPU time that a process has taken, ms."""
-    fields = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rsplit(")", 1)[1].split()
-    return 1e3 * (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
 def _p99(times: list[float]) -> float:
     return statistics.quantiles(times, n=100)[98]
-
-
-def _questions() -> list[tuple[str, str, Any]]:
-    one_foot, two_feet, four_feet = (PredictContactMode.Request() for _ in range(3))
-    _on_floor(one_foot, [(-1.0, 0.0)])
-    _on_floor(two_feet, [(-1.0, 0.0), (1.0, 0.0)])
-    _on_floor(four_feet, [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
-    impact = PredictImpact.Request()
-    _on_floor(impact, [(-1.0, 0.0)])
-    impact.state.linear_velocity.z = -1.0
-    impact.state.angular_velocity.x, impact.state.angular_velocity.y = 2.0, -3.0
-    in_plane = PredictImpact.Request(problem=PredictImpact.Request.PLANAR)
-    _on_floor(in_plane, [(-1.0, 0.0)])
-    in_plane.state.linear_velocity.z, in_plane.state.angular_velocity.y = -1.0, -3.0
-    landing = PredictImpact.Request(body_name="brick", state_source=PredictImpact.Request.STATE_EXPLICIT)
-    _tossed(landing.state)
-    one, ten, many, contact = (
-        PredictTumbling.Request(body_name="brick", state_source=PredictTumbling.Request.STATE_EXPLICIT)
-        for _ in range(4)
-    )
-    for request in (one, ten, many, contact):
-        _tossed(request.state)
-    one.times = [0.1]
-    ten.times = [0.1 * i for i in range(10)]
-    many.times = [0.001 * i for i in range(1000)]
-    contact.sampling, contact.rate = contact.UNTIL_CONTACT, [100.0]
-    return [
-        ("contact mode, one contact", "predict_contact_mode", one_foot),
-        ("contact mode, box on two feet", "predict_contact_mode", two_feet),
-        ("contact mode, box on four feet", "predict_contact_mode", four_feet),
-        ("impact, one contact in the plane", "predict_impact", in_plane),
-        ("impact, one contact in space", "predict_impact", impact),
-        ("impact at the next landing", "predict_impact", landing),
-        ("tumbling, one time", "predict_tumbling", one),
-        ("tumbling, 10 times", "predict_tumbling", ten),
-        ("tumbling, 1000 times", "predict_tumbling", many),
-        ("tumbling until the first contact", "predict_tumbling", contact),
-    ]
 
 
 def _batches() -> list[tuple[str, str, Any]]:
@@ -277,22 +185,6 @@ def _batches() -> list[tuple[str, str, Any]]:
         ("impact, one contact in space", "predict_impact_batch", impacts),
         ("tumbling, one time", "predict_tumbling_batch", tumblings),
     ]
-
-
-def _on_floor(request: Any, feet: list[tuple[float, float]]) -> None:
-    """Put a body at rest on feet at x, y below its centre of mass."""
-    request.state_source, request.contact_source = request.STATE_EXPLICIT, request.CONTACTS_EXPLICIT
-    request.inertia.m = request.inertia.ixx = request.inertia.iyy = request.inertia.izz = 1.0
-    request.contacts.positions = [number for x, y in feet for number in (x, y, -1.0)]
-    request.contacts.normals = [0.0, 0.0, 1.0] * len(feet)
-    request.contacts.frictions = [0.5] * len(feet)
-    request.contacts.restitutions = [0.5] * len(feet)
-
-
-def _tossed(state: Any) -> None:
-    state.pose.position.z = 1.0
-    state.linear_velocity.x = 1.0
-    state.angular_velocity.x, state.angular_velocity.y, state.angular_velocity.z = 1.0, 6.0, 2.0
 
 
 def _serve_empty() -> None:
