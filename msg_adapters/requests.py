@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     ContactRequest: TypeAlias = (
         PredictContactMode.Request | PredictContactModeBatch.Request | PredictImpact.Request
     )
+    FittedRequest: TypeAlias = PredictImpact.Request | PredictToss.Request | PredictTumbling.Request
     Request: TypeAlias = ContactRequest | PredictToss.Request | PredictTumbling.Request
     GravityRequest: TypeAlias = (
         PredictContactMode.Request
@@ -68,9 +69,7 @@ def tumbling_question_to_msg(
         NotSupportedError: the question has no request.
     """
     msg = PredictTumbling.Request()
-    write_subject(msg, question.body, question.state, world, world_frame)
-    if isinstance(question.state, PublishedState):
-        msg.fit_window = question.state.fit_window
+    write_fitted_subject(msg, question.body, question.state, world, world_frame)
     _write_sampling(msg, question.sampling)
     write_gravity(msg, question.gravity_W)
     msg.applied_wrench = wrench_to_msg(question.wrench.force, question.wrench.torque)
@@ -88,9 +87,7 @@ def impact_question_to_msg(
 ) -> PredictImpact.Request:
     """Return the request of a question about an impact, with arguments as in `tumbling_question_to_msg`."""
     msg = PredictImpact.Request()
-    write_subject(msg, question.body, question.state, world, world_frame)
-    if isinstance(question.state, PublishedState):
-        msg.fit_window = question.state.fit_window
+    write_fitted_subject(msg, question.body, question.state, world, world_frame)
     if question.other is not None:
         _write_other(msg, question.other, question.other_state, world, world_frame)
     _write_contacts(msg, question.contacts)
@@ -141,6 +138,15 @@ def write_contact_modes(
     msg.friction_facets = asked_optional(question.friction_facets)
     msg.margin_length = asked_optional(question.margin_length)
     msg.want_margins = question.want_margins
+
+
+def write_fitted_subject(
+    msg: FittedRequest, body: Body | str, source: StateSource, world: World, world_frame: str
+) -> None:
+    """Write what `write_subject` writes, and the window of the fit to published states."""
+    write_subject(msg, body, source, world, world_frame)
+    if isinstance(source, PublishedState):
+        msg.fit_window = source.fit_window
 
 
 def write_subject(

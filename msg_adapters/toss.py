@@ -10,7 +10,6 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.impact import ImpactOutcome
-from contact_dynamics.questions.subject import PublishedState
 from contact_dynamics.questions.toss import TossAnswer, TossPath, TossQuestion, TossSampling
 from contact_dynamics.toss import (
     TossEnd,
@@ -24,12 +23,12 @@ from contact_dynamics.toss import (
 from contact_dynamics_interfaces.msg import TossEvent as TossEventMsg
 from contact_dynamics_interfaces.msg import TossPath as TossPathMsg
 from contact_dynamics_interfaces.srv import PredictToss
+from msg_adapters.asked_fields import asked_restitution_law, optional
 from msg_adapters.asked_subject import asked_subject
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
 from msg_adapters.contacts import flat, rows
 from msg_adapters.geometry import vector_from_msg, vector_to_msg
-from msg_adapters.questions import asked_restitution_law, optional
-from msg_adapters.requests import asked_optional, write_subject
+from msg_adapters.requests import asked_optional, write_fitted_subject
 from msg_adapters.toss_distribution import distribution_from_msg, distribution_to_msg
 from msg_adapters.tumbling import read_fit, trajectory_from_msg, trajectory_to_msg, write_fit
 
@@ -106,9 +105,7 @@ def toss_question_to_msg(question: TossQuestion, *, world: World, world_frame: s
         NotSupportedError: the question has no request.
     """
     msg = PredictToss.Request()
-    write_subject(msg, question.body, question.state, world, world_frame)
-    if isinstance(question.state, PublishedState):
-        msg.fit_window = question.state.fit_window
+    write_fitted_subject(msg, question.body, question.state, world, world_frame)
     msg.restitution_law = int(question.restitution_law)
     msg.horizon, msg.rate = asked_optional(question.horizon), asked_optional(question.rate)
     msg.most_alternatives = asked_optional(question.most_alternatives)
