@@ -17,6 +17,7 @@ from rclpy.node import Node
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
 from contact_dynamics.constants import NS_PER_S
+from contact_dynamics.nodes.introductions import ask_for_introductions
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 
 if TYPE_CHECKING:
@@ -61,12 +62,13 @@ class InboxNode(Node):
         return None
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
-        """Begin without any; the arguments are those of `rclpy.node.Node`."""
+        """Begin without any, and find who is there; the arguments are those of `rclpy.node.Node`."""
         self.inbox: list[Subscription] = []
         self._in_rounds: list[Subscription] = []
         self._emptied = 0.0  # when, s
         self._question_ns = 0
         super().__init__(*arguments, **options)
+        ask_for_introductions(self.context.get_domain_id())
 
     @property
     def subscriptions(self) -> Iterator[Subscription]:

@@ -24,6 +24,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes.arguments import ros_arguments
+from contact_dynamics.nodes.dds_profile import profile_of_fast_dds
 from contact_dynamics.nodes.reserved_memory import keep_reserved_memory_untouched
 from contact_dynamics.nodes.ros_log_directory import ensure_ros_log_directory
 
@@ -116,7 +117,8 @@ def _run(make_node: Callable[[], RunnableNode], args: list[str], verb: str, stop
     complete = True
     while True:
         try:
-            node = make_node()
+            with profile_of_fast_dds(rclpy.get_default_context().get_domain_id()):
+                node = make_node()
         except (ContactDynamicsError, OSError, ParameterException) as error:
             get_logger(verb).fatal(f"configuration: {error}")
             return 2

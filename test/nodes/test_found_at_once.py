@@ -1,0 +1,94 @@
+"""A node that starts again after it was killed is found, and hears, as soon as it can be."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from contact_dynamics.nodes.dds_profile import FIRST_OFFSET, PORTS, VARIABLE, profile_of_fast_dds
+from running_server import DOMAIN_ID, PATIENCE_S, ROOT, environment, process, wait_for
+
+ARGUMENTS = ["--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", "-p", "log:=false"]
+SAYS_IT_ONCE = """<?xml version="1.0" encoding="UTF-8"?>
+<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
+  <participant profile_name="says_it_once" is_default_profile="true">
+    <rtps><builtin><discovery_config>
+      <leaseDuration><sec>DURATION_INFINITY</sec></leaseDuration>
+      <leaseAnnouncement><sec>3600</sec></leaseAnnouncement>
+    </discovery_config></builtin></rtps>
+  </participant>
+</profiles>
+"""
+WAITS = """
+import sys
+import rclpy
+from contact_dynamics_interfaces.srv import PredictTumbling
+
+rclpy.init()
+node = rclpy.create_node("waits")
+client = node.create_client(PredictTumbling, "/contact_dynamics/predict_tumbling")
+print("waits", flush=True)
+print("found" if client.wait_for_service(float(sys.argv[1])) else "nobody", flush=True)
+"""
+
+
+def port(server: subprocess.Popen[str]) -> int:
+    """Return at which port a process hears messages, from the first port of the domain."""
+    opened = [str(path.readlink()) for path in Path(f"/proc/{server.pid}/fd").iterdir() if path.exists()]
+    found = [re.fullmatch(r".*/fastrtps_port(\d+)_el", path) for path in opened]
+    ports = [int(each[1]) - 7400 - 250 * DOMAIN_ID for each in found if each is not None]
+    (offset,) = [each for each in ports if 0 <= each < 250]
+    return offset
+
+
+def test_a_server_that_was_killed_comes_back_at_another_port() -> None:
+    ports = []
+    for _ in range(3):
+        with process("server", *ARGUMENTS, ready="ready") as server:
+            ports.append(port(server))
+            os.kill(server.pid, signal.SIGKILL)
+            server.wait(PATIENCE_S)
+    assert len(set(ports)) == 3
+    assert set(ports) <= set(range(FIRST_OFFSET, FIRST_OFFSET + 2 * PORTS, 2))
+
+
+def test_a_client_that_says_only_once_who_it_is_finds_a_server_that_comes_later(tmp_path: Path) -> None:
+    """It says it when it starts, when nobody hears it, and to each that joins, which mostly misses it."""
+    profile = tmp_path / "says_it_once.xml"
+    profile.write_text(SAYS_IT_ONCE, encoding="utf-8")
+    for _ in range(3):
+        with subprocess.Popen(
+            [sys.executable, "-c", WAITS, str(PATIENCE_S)],
+            cwd=ROOT,
+            env={**environment(), VARIABLE: str(profile)},
+            stdout=subprocess.PIPE,
+            text=True,
+        ) as client:
+            wait_for(client, "waits")
+            with process("server", *ARGUMENTS, ready="ready"):
+                assert client.communicate(timeout=2.0 * PATIENCE_S)[0] == "found\n"
+
+
+def test_the_environment_is_as_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(VARIABLE, raising=False)
+    with profile_of_fast_dds(DOMAIN_ID):
+        assert "<leaseAnnouncement><sec>0</sec><nanosec>500000000<" in Path(os.environ[VARIABLE]).read_text()
+    assert VARIABLE not in os.environ
+
+
+def test_the_profile_of_the_user_stays(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv(VARIABLE, "mine.xml")
+    with profile_of_fast_dds(DOMAIN_ID):
+        assert os.environ[VARIABLE] == "mine.xml"
+    assert os.environ[VARIABLE] == "mine.xml"
+    monkeypatch.delenv(VARIABLE)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "DEFAULT_FASTRTPS_PROFILES.xml").write_text(SAYS_IT_ONCE, encoding="utf-8")
+    with profile_of_fast_dds(DOMAIN_ID):
+        assert VARIABLE not in os.environ
