@@ -9,8 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from contact_dynamics import Body, BodyState, Surface, World, inertia
-from contact_dynamics.diagrams.toss_tree import faces_of
-from contact_dynamics.diagrams.toss_words import branch_in_words
+from contact_dynamics.diagrams.toss_words import branch_in_words, face_in_words
 from contact_dynamics.questions import Knowledge, TossQuestion, TossSampling, UncertainState, ask
 from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossUncertainty
@@ -52,5 +51,5 @@ def print_branches(branches: tuple[Branch, ...], parent: int) -> None:
 
 
 print_branches(told.branches, -1)
-for face in faces_of(told):
-    print(f"  {face.text}")
+for normal, share in zip(told.face_normals_B, told.face_probabilities, strict=True):
+    print(f"  rests on the face towards {face_in_words(normal)}: {share:.0%}")
