@@ -461,8 +461,13 @@ exact in some direction has distances. It is far above the rounding of variances
 SAMPLED_ARRIVAL: Final = 1e-7
 """m. A corner of a sample that is nearer to a flat has arrived. At 1 m/s this is 1e-7 s."""
 
-SAMPLED_PHASE_ERROR: Final = 1e-4
-"""m, or m/s. The error that a step of a contact phase of a sample may have, as `SAMPLED_SETTLING_HEIGHT`."""
+SAMPLED_PHASE_ERROR: Final = 1e-3
+"""m, or m/s. The error that a step of a contact phase of a sample may have. Velocities after strikes of
+recorded cubes are twenty times as uncertain."""
+
+FACE_ROUNDING: Final = 1e-9
+"""Relative to the reach, or to the face. What is outside a face by less is on its border. Corners carry 1e-16
+of rounding."""
 
 STRIKES: Final = 1e-9
 """m/s. A contact of a whole toss that approaches faster strikes. As `VELOCITY_TOLERANCE`."""

@@ -13,7 +13,7 @@ happens, and `result` has what is returned.
 
 What is not known exactly (`uncertainty`) is sampled: `sampled` is the call, and `distribution` has what it
 returns. `strikes_of_many` has the next strikes of all samples at once, and `law_spread` what the law of
-impact leaves open.
+impact leaves open. `laid_flat` ends the rattling of samples on a face.
 """
 
 from contact_dynamics.toss.distribution import TossDistribution

@@ -23,6 +23,7 @@ from contact_dynamics.tolerances import (
 from contact_dynamics.toss.course import Course
 from contact_dynamics.toss.forces import pushed_by_contacts
 from contact_dynamics.toss.holding import held_in_place
+from contact_dynamics.toss.laid_flat import laid_flat
 from contact_dynamics.toss.mode_choice import choose_mode, contacts_of, state_of
 from contact_dynamics.toss.phase import phase
 from contact_dynamics.toss.phase_ends import PhaseEnd
@@ -45,6 +46,9 @@ Kick: TypeAlias = "Callable[[Solid, Numbers, Numbers, Touch], Numbers]"
 _ROUNDS: Final = 4
 """Searches for a mode, relative to the bound on events, after which a toss ends unfinished."""
 
+_MOST_LAID: Final = 3
+"""How often a sample is laid flat. One that rattles on goes on as a toss does."""
+
 _SLOWER: Final = 0.25
 """The kinetic energy at which rest is tried again, relative to that at which the body did not rest."""
 
@@ -61,6 +65,8 @@ class Following:
         most_events: How many events are followed.
         error: The error that one step of a contact phase may have (`phase.phase`).
         kick: What changes velocities after the strike of a single contact, or None.
+        flat_after: After so many strikes, a body that only rattles on a face is laid flat (`laid_flat`). If
+            this is None, it never is.
         planes: The flats, as flights take them.
     """
 
@@ -75,11 +81,12 @@ class Following:
         most_events: int,
         error: float,
         kick: Kick | None = None,
+        flat_after: int | None = None,
     ) -> None:
         self.solid, self.properties, self.shape = solid, properties, shape
         self.law, self.horizon = law, horizon
         self.most_events, self.error = most_events, error
-        self.kick = kick
+        self.kick, self.flat_after = kick, flat_after
         self.planes = [(np.array(flat.normal), flat.level) for flat in solid.flats]
 
     def run(self, state: BodyState, ways: tuple[int, ...]) -> Toss:
@@ -101,6 +108,7 @@ class _Run(Course):
         self.runs = runs
         self.work = SearchWork()
         self.slow = math.inf  # J, rest is tried where the kinetic energy is below this
+        self.struck = self.laid = 0  # strikes, and how often it was laid flat
 
     def go(self) -> TossEnd:
         """Follow the motion, and return why it ends."""
@@ -110,6 +118,7 @@ class _Run(Course):
                 return TossEnd.MOST_EVENTS
             if self.now >= self.runs.horizon:
                 return TossEnd.HORIZON
+            touching = self._laid_flat(touching)
             if touching and min(approaches(self.solid, self.y, touching)) < -STRIKES:
                 touching = self._strike(touching)
             elif touching:
@@ -187,6 +196,7 @@ class _Run(Course):
             staying = self.touching_now(STILL_TOUCHING)
         for one in strikes.struck:
             kind = TossEventKind.SETTLES if one.outcome is None else TossEventKind.STRIKES
+            self.struck += kind == TossEventKind.STRIKES
             self.note(kind, [one.touch], impulse=one.impulse, outcome=one.outcome)
         if not strikes.settled:
             staying = self._end_low_rebounds(touching, staying, before)
@@ -281,6 +291,18 @@ class _Run(Course):
         """Return the kinetic energy, J, with which a body rises or slides by `settling` at most."""
         grip = min((self.solid.flats[touch[0]].friction for touch in touching), default=0.0)
         return self.solid.mass * norm(self.solid.gravity) * self.solid.settling * min(grip, 1.0)
+
+    def _laid_flat(self, touching: list[Touch]) -> list[Touch]:
+        """Lay a body that only rattles on a face flat on it, if it may be, and return what touches then."""
+        after = self.runs.flat_after
+        if after is None or self.struck < after or self.laid >= _MOST_LAID:
+            return touching
+        flat = laid_flat(self.solid, self.y)
+        if flat is None:
+            return touching
+        self.laid += 1
+        self.y, self.slow = flat, math.inf
+        return self.touching_now(STILL_TOUCHING)
 
     def _rests(self, touching: list[Touch]) -> bool:
         """Return whether the body has come to rest. Then its velocities are zero from now on."""

@@ -2,7 +2,8 @@
 
 The next strikes of all samples are found together (`strikes_of_many`), in a tenth of a millisecond each. If
 rest is asked for, each sample goes on by itself from there (`following`), which takes far longer. It does so
-less exactly than a single toss: rebounds below `SAMPLED_SETTLING_HEIGHT` are not followed.
+less exactly than a single toss: rebounds below `SAMPLED_SETTLING_HEIGHT` are not followed, and neither is a
+body that only rattles on a face until it rests (`laid_flat`).
 """
 
 from __future__ import annotations
@@ -170,6 +171,7 @@ def _go_on(
     )
     p, q, v, w = (rows[i] for rows in told.last)
     state = BodyState(p_WB_W=p, q_WB=q / np.linalg.norm(q), v_WB_W=v, w_WB_W=w)
+    k = int((told.corners[:, i] >= 0).sum())
     following = Following(
         mine,
         MassProperties(mass=solid.mass, I_B=inertia),
@@ -179,9 +181,9 @@ def _go_on(
         most_events=_MOST_EVENTS,
         error=SAMPLED_PHASE_ERROR,
         kick=None if spread.is_none else spread.of_one(i),
+        flat_after=len(told.seconds) - k,
     )
     course, end = following.follow(state, ())
-    k = int((told.corners[:, i] >= 0).sum())
     later = [event for event in course.events if event.kind == TossEventKind.STRIKES]
     for event in later[: len(told.seconds) - k]:
         told.seconds[k, i] = told.now[i] + event.seconds
