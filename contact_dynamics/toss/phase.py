@@ -3,7 +3,7 @@
 The mode says which contacts stick and which slide, and so what the accelerations are (`forces`). They are
 integrated in adaptive steps (`phase_step`). The mode ends where a force leaves its cone or another corner
 comes down (`phase_ends`), or where sliding stops. Steps towards the end of sliding end before it, because
-friction jumps there, and each of them leaves a tenth of the speed.
+friction jumps there, and each of them leaves a tenth of the speed at least.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ SHORT_STEP: Final = 0.02
 """s. A step may be this long where another corner would come down earlier, by its present speed. A corner
 that comes down and leaves again within it is not seen."""
 
-FIRST_STEP: Final = 0.02
+FIRST_STEP: Final = 0.03
 """s. The first step at `SAMPLED_PHASE_ERROR`, shorter for smaller errors as the order of the steps says."""
 
 _TOWARDS_STOP: Final = 0.9
@@ -124,6 +124,7 @@ def phase(
         turned = _turned(solid, y, mode)
         pushed = after if turned == mode else pushed_by_contacts(solid, y, turned)
         mode = turned
+        left = before_stop
         before_stop, stopped = _sliding(solid, y, pushed, mode)
         if stopped:
             still = tuple(one._replace(slides=one.slides and one.touch not in stopped) for one in mode)
@@ -139,6 +140,8 @@ def phase(
             low = {touch: height for touch, height in low.items() if touch in still_low}
             watched = watched_corners(solid, held, low)
         step *= min(5.0, 0.9 * size**-0.2) if size > 0.0 else 5.0
+        # Towards a stop the motion is alike at all speeds, and so are steps relative to what is left.
+        step *= min(1.0, before_stop / left) if left < math.inf else 1.0
     return Phase(PhaseEnd.STEPS, now, y, steps)
 
 
