@@ -69,23 +69,14 @@ class FlightMeeting(Record):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class MeasuredStrike(Record):
-    """One strike between two flights.
+class MeasuredStrike(FlightMeeting):
+    """One strike between two flights, at the time when their poses agree best.
 
     Attributes:
-        time: Time of the strike, s, on the recording's clock.
-        time_std: Standard deviation of that time, s.
-        before: The state at that time, from the flight that ends.
-        after: The state at that time, from the flight that begins.
+        heights: (k,), m, of the body's corners above the surface at that time, from both flights' mean.
     """
 
-    time: float
-    time_std: float
-    before: MeasuredState
-    after: MeasuredState
-    heights: (
-        FloatArray  # (k,), m, of the body's corners above the surface at that time, from both flights' mean
-    )
+    heights: FloatArray
 
     @property
     def corner(self) -> int:
