@@ -12,7 +12,8 @@ other, with flight between them. `distribution` is for uncertain states.
 - Several contacts strike in turn (`sequential`, in all `orders`) or at once (`simultaneous`), also in the
   plane (`planar`). Their impulses may also interleave in any way (`interleavings`). Contacts that do not
   approach can jam (`jamming`) until that is over (`settling`).
-- In time, `meetings` finds which contact strikes next, and `sequence` goes on from strike to strike.
+- In time, `meetings` finds which contact strikes next, and `sequence` goes on from strike to strike
+  (`strike_by_strike`).
 """
 
 from contact_dynamics.impact.distribution import (
