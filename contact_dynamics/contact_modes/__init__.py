@@ -18,11 +18,11 @@ whole box, `excluded` that no other does, and `geometry_margins` searches for th
 
 - In the plane, `one_contact` solves a single contact in closed form. For several contacts, `coincident` first
   takes those together that coincide. `enumeration` then lists the modes that kinematics allows, which are
-  faces of a `cone`, and `judgement` decides which of them mechanics allows. If the equations of a mode are
-  independent, `determined` solves them. If they are not, `wrench_cone` decides by the cone of wrenches that
-  can bring the mode about, which the `friction_edges` of the contacts span.
+  faces of a `cone` (`extreme_rays`), and `judgement` decides which of them mechanics allows. If the equations
+  of a mode are independent, `determined` solves them. If they are not, `wrench_cone` decides by the cone of
+  wrenches that can bring the mode about, which the `friction_edges` of the contacts span.
 - In space, `kinematic` gives the strings of contacting and separating, and `sliding` those with ways of
-  sliding. With mechanics, all combinations of `options` are searched (`search`, `regions`, `dual_simplex`),
+  sliding. With mechanics, all combinations of `options` are searched (`search`, `pyramid_programs`),
   and shown with exact friction (`exact_friction`) and shared forces (`least_forces`). `refusals` says why
   others are refused. The wrenches of a mode (`wrenches`, on a `cone`) come in ways of sliding
   (`ways_of_sliding`), and so do margins (`margins_of_sliding`).

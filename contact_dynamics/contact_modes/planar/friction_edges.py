@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.planar.cone import MANY
 from contact_dynamics.contact_modes.planar.enumeration import FIXED, RIGHT, Letters
 from contact_dynamics.contact_modes.planar.exact_vectors import decimal_vector
+from contact_dynamics.contact_modes.planar.extreme_rays import MANY
 from contact_dynamics.contact_modes.planar.problem import Lift, lifted
 from contact_dynamics.numerics.vectors import Vector3, dot, norm
 from contact_dynamics.tolerances import ROW_TOLERANCE

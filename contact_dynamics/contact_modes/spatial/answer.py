@@ -97,8 +97,8 @@ def spatial_contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer:
 
     Raises:
         TooLargeError: more contacts touch than `spatial.problem.MOST_DYNAMIC_CONTACTS`. Or the search takes
-            more trials than `search.MOST_EXAMINED`, which happens where hundreds of sectors are consistent
-            and ``sharpen`` is false.
+            more trials than `pyramid_programs.MOST_EXAMINED`, which happens where hundreds of sectors are
+            consistent and ``sharpen`` is false.
     """
     case = spatial_case(problem)
     if not isinstance(case, SpatialCase):
@@ -115,7 +115,7 @@ def modes_of_case(problem: SpatialContactProblem, case: SpatialCase, search: Sea
         search: The search of that case with the problem's facets (`search_of`), which nobody has run yet.
 
     Raises:
-        TooLargeError: the search takes more trials than `search.MOST_EXAMINED`.
+        TooLargeError: the search takes more trials than `pyramid_programs.MOST_EXAMINED`.
     """
     if problem.sharpen:
         found = evidenced(case, search, facets=problem.friction_facets)

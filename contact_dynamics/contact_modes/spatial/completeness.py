@@ -1,10 +1,8 @@
 """Whether a case has modes that were not found: every combination of letters is found, refuted or named.
 
-The search of the pyramids can miss a mode whose friction lies between their edges. Here each set of letters
-and directions asks for less than its modes do. A contact that slides in a range of directions has a force in
-the cone of three edges that holds all friction against them: the two at the ends, and the crossing of the
-tangents there. A contact that sticks has a pyramid around its round cone. If no forces satisfy such a linear
-program, there is no mode in the set. Otherwise the set is parted, first by letters and then by directions.
+The search of the pyramids can miss a mode whose friction lies between their edges. Here a linear program
+holds all modes of a set of letters and directions (`holding_programs`). If no forces satisfy it, there is no
+mode in the set. Otherwise the set is parted, first by letters and then by directions.
 
 This ends at solutions. Newton's method finds a solution in the set, and bounds on the derivatives around it
 say in which range of directions there is no other one (`only_solution`). Outside of that range the parting
@@ -15,50 +13,36 @@ when ranges are narrow is undecided.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Final, NamedTuple
 
-import numpy as np
-
-from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
-from contact_dynamics.contact_modes.spatial.careful_program import CarefulProgram
-from contact_dynamics.contact_modes.spatial.dual_simplex import Narrowing, Program
 from contact_dynamics.contact_modes.spatial.exact_letters import (
     forces_with_letters,
     solution_near,
 )
+from contact_dynamics.contact_modes.spatial.holding_programs import (
+    COARSE,
+    FINE,
+    UNKNOWN,
+    HoldingPrograms,
+    Ranges,
+    TooManyError,
+)
 from contact_dynamics.contact_modes.spatial.only_solution import Equations, alone_within
-from contact_dynamics.contact_modes.spatial.options import MILDER
 from contact_dynamics.contact_modes.spatial.shared_loads import sliding_together
 from contact_dynamics.tolerances import NARROWEST_RANGE, SAME_MOTION, SAME_SLIDING, STRICT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from numpy.typing import NDArray
-
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
-
-_MOST_PROGRAMS: Final = 3000
-"""The search for missed modes is given up after this many linear programs of 0.1 ms."""
-
-_CARE: Final = 10
-"""A program that is solved with care counts as so many."""
 
 _QUARTER: Final = 0.5 * math.pi
 
 _WIDE: Final = 0.1
 """rad. In wider ranges of directions the pyramids around round cones are coarse. Newton's method waits too,
 since it would mostly find solutions elsewhere."""
-
-_COARSE, _FINE = 16, 128
-"""The numbers of edges of the pyramids around round cones, whose friction is too large by 2 % and 0.03 %."""
-
-_UNKNOWN: Final = "?"
-
-_Ranges: TypeAlias = dict[int, tuple[float, float]]
-"""For contacts that slide, the first and the last direction, rad, in the frames of their pyramids."""
 
 
 class Known(NamedTuple):
@@ -105,13 +89,9 @@ class _Alone(NamedTuple):
     has_letters: bool
     within: float = -1.0
 
-    def is_in(self, ranges: _Ranges, slack: float) -> bool:
+    def is_in(self, ranges: Ranges, slack: float) -> bool:
         """Return whether all directions are in ranges, or no further outside than some slack, rad."""
         return all(_from(low - slack, self.angles[i]) <= high + slack for i, (low, high) in ranges.items())
-
-
-class _TooManyError(Exception):
-    """There are too many sets of letters and directions."""
 
 
 def completed(search: Search, known: Sequence[Known]) -> Completed:
@@ -126,8 +106,8 @@ def completed(search: Search, known: Sequence[Known]) -> Completed:
     work = _Work(search, known)
     ended = True
     try:
-        work.part(_UNKNOWN * len(search.touching))
-    except _TooManyError:
+        work.part(UNKNOWN * len(search.touching))
+    except TooManyError:
         ended = False
     return Completed(tuple(work.further), tuple(work.undecided), ended)
 
@@ -135,8 +115,8 @@ def completed(search: Search, known: Sequence[Known]) -> Completed:
 def has_none(search: Search) -> bool:
     """Return whether it is certain that a case has no mode, also none that holds narrowly."""
     try:
-        return _Work(search, (), least=0.0).refutes(_UNKNOWN * len(search.touching))
-    except _TooManyError:
+        return _Work(search, (), least=0.0).refutes(UNKNOWN * len(search.touching))
+    except TooManyError:
         return False
 
 
@@ -145,11 +125,9 @@ class _Work:
 
     def __init__(self, search: Search, known: Sequence[Known], *, least: float = STRICT) -> None:
         self._search = search
-        self._least = least  # by how much strict inequalities must hold
         self._open = [i for i, one in enumerate(search.pyramids) if one.frame is not None]
         self._at_rest = "".join(STAYS if one.frame is None else STICKS for one in search.pyramids)
-        self._around = {facets: _around_cones(search, facets) for facets in (_COARSE, _FINE)}
-        self._programs = 0
+        self._forces = HoldingPrograms(search, least).forces
         self._held = {one.letters for one in known}
         self._decided = {one.letters for one in known if not one.alone}
         self._solutions: dict[str, list[_Alone]] = {}
@@ -163,21 +141,21 @@ class _Work:
         """Return whether linear programs refute a set, parted by letters and then by directions."""
         if self._forces(letters, {}) is None:
             return True
-        at = letters.find(_UNKNOWN)
+        at = letters.find(UNKNOWN)
         if at >= 0:
             own = (SEPARATES, STAYS, STICKS) if at in self._open else (SEPARATES, STAYS)
             return all(self.refutes(letters[:at] + letter + letters[at + 1 :]) for letter in own)
         turning = [i for i in self._open if letters[i] == STAYS]
         if not turning:
-            return self._forces(letters, {}, _FINE) is None
+            return self._forces(letters, {}, FINE) is None
         return self._refutes_directions(letters, dict.fromkeys(turning, (0.0, 2.0 * math.pi)))
 
-    def _refutes_directions(self, letters: str, ranges: _Ranges) -> bool:
+    def _refutes_directions(self, letters: str, ranges: Ranges) -> bool:
         """Return whether linear programs refute letters with some ranges of directions."""
         widest = max(ranges, key=lambda i: ranges[i][1] - ranges[i][0])
         low, high = ranges[widest]
         narrow = {i: own for i, own in ranges.items() if own[1] - own[0] <= _QUARTER}
-        if self._forces(letters, narrow, _COARSE if high - low > _WIDE else _FINE) is None:
+        if self._forces(letters, narrow, COARSE if high - low > _WIDE else FINE) is None:
             return True
         middle = 0.5 * (low + high)
         return high - low > _WIDE and all(
@@ -189,7 +167,7 @@ class _Work:
         """Part a set by letters, and then by directions."""
         if letters in self._decided or letters == self._at_rest or self._forces(letters, {}) is None:
             return
-        at = letters.find(_UNKNOWN)
+        at = letters.find(UNKNOWN)
         turning = [i for i in self._open if letters[i] == STAYS]
         if at >= 0:
             for letter in (SEPARATES, STAYS, STICKS) if at in self._open else (SEPARATES, STAYS):
@@ -203,7 +181,7 @@ class _Work:
         """Find or refute a mode in which no contact begins to slide."""
         if letters in self._held or set(letters) == {SEPARATES}:
             return
-        start = self._forces(letters, {}, _FINE)
+        start = self._forces(letters, {}, FINE)
         if start is None:
             return
         forces = forces_with_letters(self._search, letters, start, shared=True)
@@ -225,7 +203,7 @@ class _Work:
             self._keep(Known(letters, forces, alone=False))
         return forces is not None
 
-    def _part_directions(self, letters: str, ranges: _Ranges, turning: list[int]) -> None:
+    def _part_directions(self, letters: str, ranges: Ranges, turning: list[int]) -> None:
         """Part the directions of contacts into quarters of the circle."""
         if len(ranges) == len(turning):
             self._decide(letters, ranges)
@@ -236,13 +214,13 @@ class _Work:
             if len(narrower) == len(turning) or self._forces(letters, narrower) is not None:
                 self._part_directions(letters, narrower, turning)
 
-    def _decide(self, letters: str, ranges: _Ranges) -> None:
+    def _decide(self, letters: str, ranges: Ranges) -> None:
         """Find or refute all modes with some letters in some ranges of directions."""
         if letters in self._decided:
             return
         widest = max(ranges, key=lambda i: ranges[i][1] - ranges[i][0])
         low, high = ranges[widest]
-        forces = self._forces(letters, ranges, _COARSE if high - low > _WIDE else _FINE)
+        forces = self._forces(letters, ranges, COARSE if high - low > _WIDE else FINE)
         if forces is None:
             return
         solution = self._inside(letters, ranges)
@@ -262,7 +240,7 @@ class _Work:
             self.undecided.append(letters)
             self._decided.add(letters)
 
-    def _inside(self, letters: str, ranges: _Ranges) -> _Alone | None:
+    def _inside(self, letters: str, ranges: Ranges) -> _Alone | None:
         """Return a solution whose directions are in all ranges."""
         others = self._solutions.get(letters, [])
         for k, one in enumerate(others):
@@ -272,7 +250,7 @@ class _Work:
                 return others[k]
         return None
 
-    def _is_close(self, letters: str, ranges: _Ranges) -> bool:
+    def _is_close(self, letters: str, ranges: Ranges) -> bool:
         """Return whether a mode's directions are hardly outside of all ranges."""
         others = self._solutions.get(letters, [])
         return any(one.has_letters and one.is_in(ranges, SAME_SLIDING) for one in others)
@@ -294,87 +272,8 @@ class _Work:
         if not mode.alone:
             self._decided.add(mode.letters)
 
-    def _forces(self, letters: str, ranges: _Ranges, facets: int = _COARSE) -> FloatArray | None:
-        """Return forces, (n, 3), that satisfy what modes in a set must, or None if there are none.
 
-        Where rounding hides that there are none, they are zero.
-        """
-        self._programs += 1
-        if self._programs > _MOST_PROGRAMS:
-            raise _TooManyError
-        search = self._search
-        edges: list[FloatArray] = []
-        zero, positive = [np.zeros((0, 7))], [np.zeros((0, 7))]
-        for i, (letter, contact) in enumerate(zip(letters, search.touching, strict=True)):
-            normal = (contact.normal @ contact.point)[None, :]
-            edges.append(self._around[facets][i])
-            if letter == SEPARATES:
-                edges[i] = edges[i][:0]
-                positive.append(normal - self._least * _CONSTANT)
-            elif letter == _UNKNOWN:
-                positive.append(normal)
-            elif letter == STICKS:
-                zero.append(contact.point)
-            else:
-                zero.append(normal)
-                if i in ranges:
-                    edges[i], rows = self._range(i, *ranges[i])
-                    positive.append(rows)
-        owners = np.repeat(np.arange(len(edges)), [len(one) for one in edges])
-        every = np.vstack(edges)
-        table = np.einsum("ijk,ik->ji", search.of_forces.reshape(6, -1, 3).transpose(1, 0, 2)[owners], every)
-        sizes = np.linalg.norm(table, axis=0)
-        every = every / sizes[:, None]  # so that the unit of mass does not matter
-        table = np.column_stack([table / sizes, search.motion[:, -1]])
-        rows = np.vstack([*zero, *positive])
-        equalities = sum(len(one) for one in zero)
-        names = range(len(every), len(every) + len(rows))
-        program = Program.stated(table, rows, names).renamed(list(range(len(every))), equalities)
-        holds = program.solve()
-        if not holds and program.doubtful:
-            self._programs += _CARE
-            careful = CarefulProgram(table, rows[:0], ()).narrowed(
-                Narrowing(rows=rows, equalities=equalities)
-            )
-            if careful.solve():
-                return _summed(careful.shares(len(every)), every, owners, len(edges))
-            return np.zeros((len(edges), 3)) if careful.doubtful else None
-        return _summed(program.shares(len(every)), every, owners, len(edges)) if holds else None
-
-    def _range(self, at: int, low: float, high: float) -> tuple[FloatArray, FloatArray]:
-        """Return edges, (3, 3), of a contact that slides in a range of directions, and conditions, (3, 7)."""
-        contact, frame = self._search.touching[at], np.array(self._search.pyramids[at].frame)
-        middle, half = 0.5 * (low + high), 0.5 * (high - low)
-        ways = np.array([(math.cos(angle), math.sin(angle)) for angle in (low, middle, high)])
-        leaning = contact.friction * np.array([1.0, 1.0 / math.cos(half), 1.0])[:, None]
-        inward = np.array([(-ways[0, 1], ways[0, 0]), ways[1], (ways[2, 1], -ways[2, 0])])
-        rows = inward @ frame @ contact.point
-        rows[1, -1] -= MILDER * self._least
-        return contact.normal - leaning * (ways @ frame), rows
-
-
-_CONSTANT: Final = np.eye(1, 7, 6)
-
-
-def _summed(shares: FloatArray, edges: FloatArray, owners: NDArray[np.intp], count: int) -> FloatArray:
-    """Return the forces, (n, 3), of shares, (k,), of edges, (k, 3), of their owners."""
-    forces = np.zeros((count, 3))
-    np.add.at(forces, owners, shares[:, None] * edges)
-    return forces
-
-
-def _around_cones(search: Search, facets: int) -> list[FloatArray]:
-    """Return the edges of each contact's forces, with pyramids around round cones."""
-    wider = 1.0 / math.cos(math.pi / facets)
-    return [
-        pyramid.edges
-        if pyramid.frame is None
-        else linearised_cone(contact.normal, wider * contact.friction, facets)
-        for contact, pyramid in zip(search.touching, search.pyramids, strict=True)
-    ]
-
-
-def _without(ranges: _Ranges, solution: _Alone) -> Iterator[_Ranges]:
+def _without(ranges: Ranges, solution: _Alone) -> Iterator[Ranges]:
     """Yield pieces that together with the range in which a solution is alone make up the ranges."""
     left = dict(ranges)
     for i, (low, high) in ranges.items():

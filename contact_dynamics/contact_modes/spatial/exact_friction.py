@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.contact_modes.spatial.options import Pyramid
-    from contact_dynamics.contact_modes.spatial.search import Touching
+    from contact_dynamics.contact_modes.spatial.pyramid_programs import Touching
     from contact_dynamics.validation import FloatArray
 
 _MOST_STEPS: Final = 12

@@ -15,7 +15,8 @@ import numpy as np
 from contact_dynamics.contact.friction import check_facets
 from contact_dynamics.contact.kinds import velocity_accelerations
 from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
-from contact_dynamics.contact_modes.spatial.search import Search, Touching
+from contact_dynamics.contact_modes.spatial.pyramid_programs import Touching
+from contact_dynamics.contact_modes.spatial.search import Search
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.numerics.vectors import point_jacobians
 from contact_dynamics.records import Record

@@ -26,56 +26,21 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
-from contact_dynamics.contact_modes.spatial.careful_program import CarefulProgram
+from contact_dynamics.contact_modes.letters import SEPARATES, STAYS
 from contact_dynamics.contact_modes.spatial.dual_simplex import Ends, Narrowing, Program
-from contact_dynamics.contact_modes.spatial.options import (
-    any_letter,
-    pyramid_of,
-    way_of_sliding,
-    ways_of_sliding,
-)
+from contact_dynamics.contact_modes.spatial.options import ways_of_sliding
+from contact_dynamics.contact_modes.spatial.pyramid_programs import CONTACT_TAG, AnyProgram, PyramidPrograms
 from contact_dynamics.contact_modes.spatial.regions import Image, Region, flat_of, whole
-from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import STRICT
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import NDArray
 
-    from contact_dynamics.contact_modes.spatial.options import Option, Pyramid
+    from contact_dynamics.contact_modes.spatial.options import Option
     from contact_dynamics.contact_modes.spatial.regions import Flat
     from contact_dynamics.validation import FloatArray
 
-MOST_EXAMINED: Final = 30_000
-"""The search is given up after this many trials of some 0.1 ms. Where the motion of a body on many feet is
-not unique, hundreds of combinations of their sectors may be consistent, and the search looks for all of
-them."""
-
-AnyProgram = Program | CarefulProgram
-
-_REGION_TAG = -2
-_CONTACT_TAG = -3
-"""The tag of contact 0. Each further contact's tag is one less."""
-
-
-class Touching(NamedTuple):
-    """A contact that neither approaches nor leaves.
-
-    Attributes:
-        normal: (3,), unit.
-        friction: Coulomb's mu.
-        sliding: (3,), m/s, its tangential velocity; zero where it is at rest.
-        point: (3, 7), its acceleration as a function of the motion.
-        free: (3,), its acceleration without contact forces.
-    """
-
-    normal: FloatArray
-    friction: float
-    sliding: FloatArray
-    point: FloatArray
-    free: FloatArray
+_REGION_TAG: Final = -2
 
 
 class Found(NamedTuple):
@@ -111,83 +76,8 @@ class Common(NamedTuple):
     gains: FloatArray | None
 
 
-class Search:
-    """The modes of touching contacts.
-
-    Motions, (a, alpha) in units that the caller chooses so that contact points' accelerations are about 1,
-    are affine functions of the edge forces.
-    """
-
-    def __init__(
-        self,
-        touching: list[Touching],
-        *,
-        of_forces: FloatArray,
-        free: FloatArray,
-        mass: FloatArray,
-        at_rest: bool,
-        facets: int,
-    ) -> None:
-        """State the problem.
-
-        Args:
-            touching: The contacts.
-            of_forces: (6, 3 n), the motion that unit contact forces cause.
-            free: (6,), the motion without contact forces.
-            mass: (6, 6), the forces and torques that unit motion needs.
-            at_rest: Whether nothing moves, so that the applied wrench has power >= 0.
-            facets: The number of edges of a friction pyramid.
-        """
-        self.touching = touching
-        self._facets = facets
-        self.pyramids: list[Pyramid] = []
-        first = 0
-        for contact in touching:
-            self.pyramids.append(
-                pyramid_of(
-                    contact.normal,
-                    contact.friction,
-                    sliding=contact.sliding,
-                    free=contact.free,
-                    facets=facets,
-                    first=first,
-                )
-            )
-            first += len(self.pyramids[-1].edges)
-        self.edges = np.zeros((3 * len(touching), first))  # the contact forces that unit edge forces are
-        for i, pyramid in enumerate(self.pyramids):
-            last = pyramid.first + len(pyramid.edges)
-            self.edges[3 * i : 3 * i + 3, pyramid.first : last] = pyramid.edges.T
-        self.of_forces = of_forces
-        motion = of_forces @ self.edges
-        sizes = np.linalg.norm(motion, axis=0)
-        sizes[sizes == 0.0] = 1.0
-        self.edges /= sizes
-        self._sizes = sizes
-        self.motion = np.column_stack([motion / sizes, free])
-        self.examined = 0  # the number of programs solved so far
-        self._first_normal = first  # the name of contact 0's normal acceleration
-        self._normals = np.array([c.normal @ c.point for c in touching]).reshape(-1, 7)
-        named = self._normals
-        names = [first + i for i in range(len(touching))]
-        self.mass = mass
-        self.at_rest = at_rest
-        self._power = mass @ free if at_rest and np.any(free) else None
-        if self._power is not None:
-            named = np.vstack([named, np.append(self._power / np.linalg.norm(self._power), 0.0)])
-            names.append(first + len(touching))
-        self._root: AnyProgram = Program.stated(self.motion, named, names)
-        self._careful_root = CarefulProgram(self.motion, named, names)
-        self.doubtful = False  # whether rounding may have hidden a mode
-        self._trials = [
-            any_letter(pyramid, contact.point, first + i)
-            for i, (contact, pyramid) in enumerate(zip(touching, self.pyramids, strict=True))
-        ]
-        self._ways: dict[tuple[int, tuple[int, int] | None], tuple[Option, ...]] = {}
-        self._found: dict[tuple[tuple[str, int], ...], Found] = {}
-        self._grouped = False
-        self._goal = ""  # the letters that are sought, where all are known
-        self._settled: set[str] = set()  # letters that need no further mode
+class Search(PyramidPrograms):
+    """The search for the modes of touching contacts."""
 
     def run(self, *, grouped: bool = False) -> list[Found]:
         """Return all modes.
@@ -196,7 +86,11 @@ class Search:
             grouped: Whether one mode represents all with the same letters, whatever their sectors, where the
                 motion of one of them is not unique. Otherwise each of them is found.
         """
+        self._ways: dict[tuple[int, tuple[int, int] | None], tuple[Option, ...]] = {}
+        self._found: dict[tuple[tuple[str, int], ...], Found] = {}
         self._grouped = grouped
+        self._goal = ""  # the letters that are sought, where all are known
+        self._settled: set[str] = set()  # letters that need no further mode
         self._search()
         if not self._found and isinstance(self._root, Program):
             self._root = self._careful_root
@@ -207,24 +101,6 @@ class Search:
         root = self._solved(self._root)
         if root is not None:
             self._decide_who_stays(root, self._trials, 0)
-
-    def allows(self, letters: str, items: Sequence[int]) -> bool:
-        """Return whether some forces bring a mode about, given its letters and items of sliding.
-
-        A contact has the item -1 if it has none.
-        """
-        program = self._root
-        for i, (letter, item) in enumerate(zip(letters, items, strict=True)):
-            separates, stays = self._trials[i].parts
-            option = stays
-            if letter == SEPARATES:
-                option = separates
-            elif item >= 0:
-                option = way_of_sliding(self.pyramids[i], self.touching[i].point, item)
-            elif letter == STICKS:
-                (option,) = stays.parts
-            program = self._narrowed(program, i, option, staying=letter != SEPARATES)
-        return self._solved(program) is not None
 
     def loaded(self, free: FloatArray) -> Search:
         """Return the search for the modes of the same contacts, with other motion without their forces."""
@@ -243,47 +119,6 @@ class Search:
             np.array([e for j, e in enumerate(p.edges) if p.first + j not in letter.zeroed]).reshape(-1, 3)
             for p, letter in zip(self.pyramids, found.letters, strict=True)
         ]
-
-    def _solved(self, program: AnyProgram) -> AnyProgram | None:
-        """Return a program that holds some edge forces, or None if none satisfy its conditions.
-
-        Where rounding may hide them, the program is solved with care. What narrows it is solved so too.
-        """
-        self._count()
-        if program.solve():
-            return program
-        if not program.doubtful:
-            return None
-        if isinstance(program, Program):
-            return self._solved(self._careful_root.narrowed(*program.asked))
-        self.doubtful = True
-        return None
-
-    def _count(self) -> None:
-        self.examined += 1
-        if self.examined > MOST_EXAMINED:
-            raise TooLargeError(
-                "contacts",
-                f"{len(self.touching)} whose modes take more than {MOST_EXAMINED} trials",
-                "fewer contacts, or other friction_facets",
-            )
-
-    def _narrowed(
-        self, program: AnyProgram, at: int, letters: Option, *, staying: bool = False
-    ) -> AnyProgram:
-        zeroed = letters.zeroed
-        if staying:
-            zeroed |= {self._first_normal + at}
-        return program.narrowed(
-            Narrowing(
-                zeroed=zeroed,
-                raised=() if letters.raised is None else (letters.raised,),
-                least=STRICT,
-                rows=letters.rows,
-                equalities=letters.equalities,
-                tag=_CONTACT_TAG - at,
-            )
-        )
 
     def _decide_who_stays(self, program: AnyProgram, trials: list[Option], at: int) -> None:
         if at == len(trials):
@@ -325,7 +160,7 @@ class Search:
 
     def _within(self, program: AnyProgram, flat: Flat) -> AnyProgram:
         rows = np.column_stack([flat.rows, np.zeros(len(flat.rows))])
-        tag = _CONTACT_TAG - len(self.touching)
+        tag = CONTACT_TAG - len(self.touching)
         return program.narrowed(Narrowing(rows=rows, equalities=len(rows), tag=tag))
 
     def _decide_flat(self, program: AnyProgram, trials: list[Option], image: Image) -> bool:

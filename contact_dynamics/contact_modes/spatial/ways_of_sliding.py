@@ -23,7 +23,8 @@ from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.options import Pyramid
-    from contact_dynamics.contact_modes.spatial.search import Search, Touching
+    from contact_dynamics.contact_modes.spatial.pyramid_programs import Touching
+    from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
 MOST_MEETINGS: Final = 10_000

@@ -1,0 +1,181 @@
+"""Touching contacts with friction pyramids, and linear programs about the forces along their edges."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.contact_modes.letters import SEPARATES, STICKS
+from contact_dynamics.contact_modes.spatial.careful_program import CarefulProgram
+from contact_dynamics.contact_modes.spatial.dual_simplex import Narrowing, Program
+from contact_dynamics.contact_modes.spatial.options import any_letter, pyramid_of, way_of_sliding
+from contact_dynamics.errors import TooLargeError
+from contact_dynamics.tolerances import STRICT
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.contact_modes.spatial.options import Option, Pyramid
+    from contact_dynamics.validation import FloatArray
+
+MOST_EXAMINED: Final = 30_000
+"""The search is given up after this many trials of some 0.1 ms. Where the motion of a body on many feet is
+not unique, hundreds of combinations of their sectors may be consistent, and the search looks for all of
+them."""
+
+AnyProgram = Program | CarefulProgram
+
+CONTACT_TAG: Final = -3
+"""The tag of contact 0. Each further contact's tag is one less."""
+
+
+class Touching(NamedTuple):
+    """A contact that neither approaches nor leaves.
+
+    Attributes:
+        normal: (3,), unit.
+        friction: Coulomb's mu.
+        sliding: (3,), m/s, its tangential velocity; zero where it is at rest.
+        point: (3, 7), its acceleration as a function of the motion.
+        free: (3,), its acceleration without contact forces.
+    """
+
+    normal: FloatArray
+    friction: float
+    sliding: FloatArray
+    point: FloatArray
+    free: FloatArray
+
+
+class PyramidPrograms:
+    """Touching contacts, and programs about their forces.
+
+    Motions, (a, alpha) in units that the caller chooses so that contact points' accelerations are about 1,
+    are affine functions of the edge forces.
+    """
+
+    def __init__(
+        self,
+        touching: list[Touching],
+        *,
+        of_forces: FloatArray,
+        free: FloatArray,
+        mass: FloatArray,
+        at_rest: bool,
+        facets: int,
+    ) -> None:
+        """State the problem.
+
+        Args:
+            touching: The contacts.
+            of_forces: (6, 3 n), the motion that unit contact forces cause.
+            free: (6,), the motion without contact forces.
+            mass: (6, 6), the forces and torques that unit motion needs.
+            at_rest: Whether nothing moves, so that the applied wrench has power >= 0.
+            facets: The number of edges of a friction pyramid.
+        """
+        self.touching = touching
+        self._facets = facets
+        self.pyramids: list[Pyramid] = []
+        first = 0
+        for contact in touching:
+            self.pyramids.append(
+                pyramid_of(
+                    contact.normal,
+                    contact.friction,
+                    sliding=contact.sliding,
+                    free=contact.free,
+                    facets=facets,
+                    first=first,
+                )
+            )
+            first += len(self.pyramids[-1].edges)
+        self.edges = np.zeros((3 * len(touching), first))  # the contact forces that unit edge forces are
+        for i, pyramid in enumerate(self.pyramids):
+            last = pyramid.first + len(pyramid.edges)
+            self.edges[3 * i : 3 * i + 3, pyramid.first : last] = pyramid.edges.T
+        self.of_forces = of_forces
+        motion = of_forces @ self.edges
+        sizes = np.linalg.norm(motion, axis=0)
+        sizes[sizes == 0.0] = 1.0
+        self.edges /= sizes
+        self._sizes = sizes
+        self.motion = np.column_stack([motion / sizes, free])
+        self.examined = 0  # the number of programs solved so far
+        self._first_normal = first  # the name of contact 0's normal acceleration
+        self._normals = np.array([c.normal @ c.point for c in touching]).reshape(-1, 7)
+        named = self._normals
+        names = [first + i for i in range(len(touching))]
+        self.mass = mass
+        self.at_rest = at_rest
+        self._power = mass @ free if at_rest and np.any(free) else None
+        if self._power is not None:
+            named = np.vstack([named, np.append(self._power / np.linalg.norm(self._power), 0.0)])
+            names.append(first + len(touching))
+        self._root: AnyProgram = Program.stated(self.motion, named, names)
+        self._careful_root = CarefulProgram(self.motion, named, names)
+        self.doubtful = False  # whether rounding may have hidden a mode
+        self._trials = [
+            any_letter(pyramid, contact.point, first + i)
+            for i, (contact, pyramid) in enumerate(zip(touching, self.pyramids, strict=True))
+        ]
+
+    def allows(self, letters: str, items: Sequence[int]) -> bool:
+        """Return whether some forces bring a mode about, given its letters and items of sliding.
+
+        A contact has the item -1 if it has none.
+        """
+        program = self._root
+        for i, (letter, item) in enumerate(zip(letters, items, strict=True)):
+            separates, stays = self._trials[i].parts
+            option = stays
+            if letter == SEPARATES:
+                option = separates
+            elif item >= 0:
+                option = way_of_sliding(self.pyramids[i], self.touching[i].point, item)
+            elif letter == STICKS:
+                (option,) = stays.parts
+            program = self._narrowed(program, i, option, staying=letter != SEPARATES)
+        return self._solved(program) is not None
+
+    def _solved(self, program: AnyProgram) -> AnyProgram | None:
+        """Return a program that holds some edge forces, or None if none satisfy its conditions.
+
+        Where rounding may hide them, the program is solved with care. What narrows it is solved so too.
+        """
+        self._count()
+        if program.solve():
+            return program
+        if not program.doubtful:
+            return None
+        if isinstance(program, Program):
+            return self._solved(self._careful_root.narrowed(*program.asked))
+        self.doubtful = True
+        return None
+
+    def _count(self) -> None:
+        self.examined += 1
+        if self.examined > MOST_EXAMINED:
+            raise TooLargeError(
+                "contacts",
+                f"{len(self.touching)} whose modes take more than {MOST_EXAMINED} trials",
+                "fewer contacts, or other friction_facets",
+            )
+
+    def _narrowed(
+        self, program: AnyProgram, at: int, letters: Option, *, staying: bool = False
+    ) -> AnyProgram:
+        zeroed = letters.zeroed
+        if staying:
+            zeroed |= {self._first_normal + at}
+        return program.narrowed(
+            Narrowing(
+                zeroed=zeroed,
+                raised=() if letters.raised is None else (letters.raised,),
+                least=STRICT,
+                rows=letters.rows,
+                equalities=letters.equalities,
+                tag=CONTACT_TAG - at,
+            )
+        )
