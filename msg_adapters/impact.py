@@ -16,7 +16,7 @@ from contact_dynamics.impact.in_time.result import SequenceEnd
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions.impact import ImpactAnswer, StruckBody
+from contact_dynamics.questions.impact_answer import ImpactAnswer, StruckBody
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.resolved_impact import ResolvedImpact, SequenceStrike
 from contact_dynamics.rigid_body.body import BodyState

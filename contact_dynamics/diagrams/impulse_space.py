@@ -26,7 +26,7 @@ from contact_dynamics.impact.spatial.one_contact import contact_inverse_inertia
 from contact_dynamics.numerics.vectors import across, tangents_near_x
 
 if TYPE_CHECKING:
-    from contact_dynamics.questions.impact import ImpactAnswer
+    from contact_dynamics.questions.impact_answer import ImpactAnswer
     from contact_dynamics.questions.resolved_impact import ResolvedImpact
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray

@@ -24,7 +24,7 @@ from contact_dynamics.diagrams.impulse_space import (
 from contact_dynamics.impact.law import PathEvent
 
 if TYPE_CHECKING:
-    from contact_dynamics.questions.impact import ImpactAnswer
+    from contact_dynamics.questions.impact_answer import ImpactAnswer
     from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.validation import FloatArray
 

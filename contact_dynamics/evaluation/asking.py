@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from contact_dynamics.evaluation.found_event import FoundEvent
     from contact_dynamics.evaluation.motion import MeasuredMotion
     from contact_dynamics.evaluation.settings import Law, Settings
-    from contact_dynamics.questions.impact import ImpactAnswer
+    from contact_dynamics.questions.impact_answer import ImpactAnswer
     from contact_dynamics.questions.knowledge import Defaults
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.world import World

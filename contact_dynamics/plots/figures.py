@@ -25,7 +25,7 @@ from contact_dynamics.plots.trajectory import (
 )
 from contact_dynamics.plots.wrenches import draw_force_dual, draw_mode_map
 from contact_dynamics.questions.contact_modes import ContactModeAnswer
-from contact_dynamics.questions.impact import ImpactAnswer
+from contact_dynamics.questions.impact_answer import ImpactAnswer
 from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
 from contact_dynamics.questions.toss import TossAnswer
 from contact_dynamics.shapes.convex import NO_SHAPE

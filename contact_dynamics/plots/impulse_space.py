@@ -13,7 +13,7 @@ from contact_dynamics.plots.style import legend_beside, lines_through_zero
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from contact_dynamics.questions.impact import ImpactAnswer
+    from contact_dynamics.questions.impact_answer import ImpactAnswer
     from contact_dynamics.rigid_body.body import MassProperties
 
 MARKERS: Final = {

@@ -12,7 +12,7 @@ from contact_dynamics.plots import colors
 from contact_dynamics.plots.impulse_space import MARKERS
 
 if TYPE_CHECKING:
-    from contact_dynamics.questions.impact import ImpactAnswer
+    from contact_dynamics.questions.impact_answer import ImpactAnswer
     from contact_dynamics.rigid_body.body import MassProperties
 
 _ROOM: Final = 8.0  # points between the numbers of an axis and its name

@@ -6,15 +6,16 @@ or a log asks the same question without ROS.
 
 Each kind has a file with its question, its answer and a function ``answer``. `tumbling` says where a free
 body will be (lectures 24, 25). `impact` says which velocities follow (lecture 27). Its question is in
-`impact_question`, and `which_impact` finds the contacts that it means. `contact_modes` says which contacts
-separate, slide or stay (lecture 26), and its question is in `contact_mode_question`. `toss` says where all
-that ends.
+`impact_question` and its answer in `impact_answer`, and `which_impact` finds the contacts that it means.
+`contact_modes` says which contacts separate, slide or stay (lecture 26), and its question is in
+`contact_mode_question`. `toss` says where all that ends.
 
 The kinds share these files: `knowledge` (the world, defaults, and in a `state_store` what was published, with
 its `arrivals`),
 `subject` (which body, in which state, which may be an `uncertain_state`), `sample_times` (when), `touching`
 (which contacts), `extent` (how large numbers may be) and `problem` (in a plane or in space).
-Answers describe every impact in the same way (`resolved_impact`). They give modes of a plane in world axes
+Answers describe every impact in the same way (`resolved_impact`, `resolving`). They give modes of a plane in
+world axes
 (`lifted_modes`), and `planar_view` leads back.
 `settled_impact` has the impact that follows an inconsistency. `many` asks about many states at once, and
 `many_contact_modes` about many wrenches or sets of contacts.
@@ -25,7 +26,7 @@ Answers describe every impact in the same way (`resolved_impact`). They give mod
 from contact_dynamics.questions.asking import ask
 from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
 from contact_dynamics.questions.contact_modes import ContactModeAnswer
-from contact_dynamics.questions.impact import ImpactAnswer, StruckBody
+from contact_dynamics.questions.impact_answer import ImpactAnswer, StruckBody
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
 from contact_dynamics.questions.knowledge import Defaults, Knowledge
 from contact_dynamics.questions.problem import Problem

@@ -13,7 +13,7 @@ from contact_dynamics.questions.tumbling import TumblingQuestion
 
 if TYPE_CHECKING:
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
-    from contact_dynamics.questions.impact import ImpactAnswer
+    from contact_dynamics.questions.impact_answer import ImpactAnswer
     from contact_dynamics.questions.knowledge import Knowledge
     from contact_dynamics.questions.toss import TossAnswer
     from contact_dynamics.questions.tumbling import TumblingAnswer

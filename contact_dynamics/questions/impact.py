@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -31,13 +31,12 @@ from contact_dynamics.plane.lifting import (
     planar_velocity,
     with_planar_velocity,
 )
-from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions.impact_answer import ImpactAnswer, StruckBody
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
 from contact_dynamics.questions.knowledge import Knowledge, or_default
 from contact_dynamics.questions.problem import Problem, planar_problem_of
-from contact_dynamics.questions.resolved_impact import (
-    Before,
-    ResolvedImpact,
+from contact_dynamics.questions.resolved_impact import Before, ResolvedImpact
+from contact_dynamics.questions.resolving import (
     pair_resolved,
     planar_resolved,
     sequence_resolved,
@@ -46,11 +45,9 @@ from contact_dynamics.questions.resolved_impact import (
     with_distribution,
     with_orders,
 )
-from contact_dynamics.questions.subject import FitQuality, Subject, covariance_of
+from contact_dynamics.questions.subject import Subject, covariance_of
 from contact_dynamics.questions.which_impact import Strike, strike_of
-from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.validation import FloatArray
 
 if TYPE_CHECKING:
     from contact_dynamics.impact import ImpactDistribution, ImpactSequence, OrderedOutcomes
@@ -62,59 +59,6 @@ SAMPLES: Final = 2000
 ms, during which a server answers nobody else."""
 
 _NO_WRENCH: Final = np.zeros(3)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class StruckBody(Record):
-    """The second body of an impact, just before it.
-
-    Attributes:
-        name: The body's name, which may be empty.
-        p_FB_F: (3,), m, its centre of mass in its published frame F.
-        state: Its state just before the impact.
-    """
-
-    name: str
-    p_FB_F: FloatArray
-    state: BodyState
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ImpactAnswer(Record):
-    """The impact, and the state and contacts just before it.
-
-    Attributes:
-        body_name: The body's name, which may be empty.
-        p_FB_F: (3,), m, its centre of mass in its published frame F.
-        state: Its state just before the impact, or before the first of several strikes in time.
-        fit: How well the motion fits the published states that the state was found from, or None without a
-            fit.
-        other: The second body just before, or None if the world is struck. Its state after the impact is in
-            ``impact``.
-        seconds_to_contact: s, from the question's state to the impact. It is zero if the body touches
-            already.
-        contacts: The contacts. For strikes in time, these are the contacts that strike or stay.
-        impact: The result of the impact.
-        problem: PLANAR or SPATIAL.
-        plane: The plane of motion, or None in space.
-        out_of_plane: m/s, the largest motion out of the plane, or NaN in space.
-        velocity_tolerance: m/s, the tolerance that was used.
-        distance_tolerance: m, the tolerance that was used.
-    """
-
-    body_name: str
-    p_FB_F: FloatArray
-    state: BodyState
-    fit: FitQuality | None
-    other: StruckBody | None
-    seconds_to_contact: float
-    contacts: ContactSet
-    impact: ResolvedImpact
-    problem: Problem
-    plane: PlaneOfMotion | None
-    out_of_plane: float
-    velocity_tolerance: float
-    distance_tolerance: float
 
 
 def answer(question: ImpactQuestion, knowledge: Knowledge | None = None) -> ImpactAnswer:

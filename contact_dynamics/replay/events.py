@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
 from contact_dynamics.questions.contact_modes import ContactModeAnswer
-from contact_dynamics.questions.impact import ImpactAnswer
+from contact_dynamics.questions.impact_answer import ImpactAnswer
 from contact_dynamics.questions.impact_question import ImpactQuestion
 from contact_dynamics.questions.many import (
     ManyImpactsAnswer,

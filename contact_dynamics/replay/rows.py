@@ -18,7 +18,7 @@ import numpy as np
 
 from contact_dynamics.constants import ns_after
 from contact_dynamics.questions.contact_modes import ContactModeAnswer
-from contact_dynamics.questions.impact import ImpactAnswer
+from contact_dynamics.questions.impact_answer import ImpactAnswer
 from contact_dynamics.questions.toss import TossAnswer
 from contact_dynamics.questions.tumbling import TumblingAnswer
 from contact_dynamics.replay.batch_rows import STATE, rows_of_batch

@@ -7,7 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.diagrams.words import CONTACT_MODE, IMPACT, MANY_IMPACTS, MANY_TUMBLINGS, TOSS, TUMBLING
-from contact_dynamics.questions.impact import ImpactAnswer
+from contact_dynamics.questions.impact_answer import ImpactAnswer
 from contact_dynamics.questions.toss import TossAnswer
 from contact_dynamics.questions.tumbling import TumblingAnswer
 from contact_dynamics.replay.events import Answered, BatchAnswer, StateCame, WorldChanged

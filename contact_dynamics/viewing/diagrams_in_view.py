@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from contact_dynamics.diagrams.planar_modes import AnswersMap
     from contact_dynamics.plane.projection import PlaneOfMotion
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
-    from contact_dynamics.questions.impact import ImpactAnswer
+    from contact_dynamics.questions.impact_answer import ImpactAnswer
     from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.planar_dual import DualInView

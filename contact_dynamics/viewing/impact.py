@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from contact_dynamics.diagrams.shape import Shape
-    from contact_dynamics.questions.impact import ImpactAnswer
+    from contact_dynamics.questions.impact_answer import ImpactAnswer
     from contact_dynamics.questions.resolved_impact import SequenceStrike
     from contact_dynamics.validation import FloatArray
 

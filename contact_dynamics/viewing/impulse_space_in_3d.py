@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.diagrams.impulse_space_in_3d import ImpulseSpaceIn3D
-    from contact_dynamics.questions.impact import ImpactAnswer
+    from contact_dynamics.questions.impact_answer import ImpactAnswer
     from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.validation import FloatArray
 

@@ -81,7 +81,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.diagrams.after_impact import AfterImpact
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
-    from contact_dynamics.questions.impact import ImpactAnswer
+    from contact_dynamics.questions.impact_answer import ImpactAnswer
     from contact_dynamics.questions.many import ManyTumblingsAnswer
     from contact_dynamics.questions.toss import TossAnswer
     from contact_dynamics.questions.tumbling import TumblingAnswer

@@ -16,7 +16,7 @@ from contact_dynamics.diagrams.impulse_space import main_contact
 from contact_dynamics.impact.law import PathEvent
 from contact_dynamics.plots.logged_answers import logged_answers
 from contact_dynamics.plots.run import NO_LOG, NOTHING_DRAWN, main
-from contact_dynamics.questions.impact import ImpactAnswer
+from contact_dynamics.questions.impact_answer import ImpactAnswer
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from replay.asked_log import about_many
 from running_server import ROOT, server_and_client

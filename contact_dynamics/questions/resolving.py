@@ -1,0 +1,254 @@
+"""Gives each result of the impact chapter the one form that it has in an answer.
+
+The chapter has separate results for one contact and for several, in the plane and in space, for one body and
+for two.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.impact import (
+    ImpactOutcome,
+    PathEvent,
+    SequenceEnd,
+    SeveralContactsLaw,
+    SeveralVerdict,
+)
+from contact_dynamics.impact.energy import created
+from contact_dynamics.plane.lifting import with_planar_velocity
+from contact_dynamics.questions.resolved_impact import Before, ResolvedImpact, SequenceStrike
+from contact_dynamics.rigid_body.body import BodyState, kinetic_energy
+from contact_dynamics.validation import FloatArray
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.impact import (
+        BodiesImpact,
+        ImpactDistribution,
+        ImpactSequence,
+        OrderedOutcomes,
+        PlanarImpact,
+        SeveralImpact,
+        SpatialImpact,
+    )
+    from contact_dynamics.plane.projection import PlanarProblem
+
+
+def spatial_resolved(impact: SpatialImpact, before: Before, other: Before | None = None) -> ResolvedImpact:
+    """Return an impact at one contact in space, of a body with the world or with another body."""
+    energy_before = kinetic_energy(before.body, before.state)
+    energy_after = kinetic_energy(before.body, impact.state)
+    if other is not None and impact.other_state is not None:
+        energy_before += kinetic_energy(other.body, other.state)
+        energy_after += kinetic_energy(other.body, impact.other_state)
+    return ResolvedImpact(
+        restitution_law=impact.restitution_law,
+        several_contacts_law=SeveralContactsLaw.SEQUENTIAL,
+        outcome=impact.outcome,
+        jams=impact.jams,
+        converged=True,
+        state=impact.state,
+        other_state=impact.other_state,
+        impulses_W=impact.impulse_W[None],
+        compression_impulses_W=impact.compression_W[None],
+        velocities_before_W=impact.velocity_before_W[None],
+        velocities_after_W=impact.velocity_after_W[None],
+        path_W=impact.path_W,
+        path_events=impact.path_events,
+        path_contacts=(0,) * len(impact.path_events),
+        kinetic_energy_before=energy_before,
+        kinetic_energy_after=energy_after,
+        creates_energy=impact.creates_energy,
+    )
+
+
+def planar_resolved(impact: PlanarImpact, problem: PlanarProblem, before: Before) -> ResolvedImpact:
+    """Return an impact at the one contact of a plane of motion. Motion out of the plane stays as it was."""
+    after = with_planar_velocity(problem, before.state, impact.velocity)
+    path = impact.path
+    (t_x, t_y), (n_x, n_y) = problem.contacts[0].tangent, problem.contacts[0].normal
+    (x_1, x_2, x_3), (y_1, y_2, y_3) = problem.plane.axes_W.tolist()
+    in_world = []
+    for t, n in (
+        impact.impulse_C,
+        impact.compression_C,
+        impact.velocity_before_C,
+        impact.velocity_after_C,
+        *(vertex for _, vertex in path),
+    ):
+        x, y = t * t_x + n * n_x, t * t_y + n * n_y
+        in_world.append((x * x_1 + y * y_1, x * x_2 + y * y_2, x * x_3 + y * y_3))
+    vectors_W = np.array(in_world)
+    return ResolvedImpact(
+        restitution_law=impact.restitution_law,
+        several_contacts_law=SeveralContactsLaw.SEQUENTIAL,
+        outcome=impact.outcome,
+        jams=impact.jams,
+        converged=True,
+        state=after,
+        impulses_W=vectors_W[:1],
+        compression_impulses_W=vectors_W[1:2],
+        velocities_before_W=vectors_W[2:3],
+        velocities_after_W=vectors_W[3:4],
+        path_W=vectors_W[4:],
+        path_events=tuple(event for event, _ in path),
+        path_contacts=(0,) * len(path),
+        kinetic_energy_before=kinetic_energy(before.body, before.state),
+        kinetic_energy_after=kinetic_energy(before.body, after),
+        creates_energy=impact.creates_energy,
+    )
+
+
+def several_resolved(impact: SeveralImpact, before: Before) -> ResolvedImpact:
+    """Return an impact at several contacts in space, of a body with the world."""
+    return _several(impact, [before], [impact.state])
+
+
+def pair_resolved(impact: BodiesImpact, before: Before, other: Before) -> ResolvedImpact:
+    """Return an impact of two bodies at several contacts in space."""
+    return _several(impact, [before, other], impact.states)
+
+
+def sequence_resolved(impact: ImpactSequence, before: Before) -> ResolvedImpact:
+    """Return one or more strikes in time. ``before`` is the body just before the first."""
+    first = impact.strikes[0].seconds
+    impulses = np.zeros((len(impact.contacts), 3))
+    velocities_before, velocities_after = np.zeros_like(impulses), np.zeros_like(impulses)
+    for strike in reversed(impact.strikes):
+        velocities_before[strike.contact] = strike.impact.velocity_before_W
+    for strike in impact.strikes:
+        impulses[strike.contact] += strike.impact.impulse_W
+        velocities_after[strike.contact] = strike.impact.velocity_after_W
+    told = _told_by(tuple((strike.contact, strike.impact) for strike in impact.strikes), len(impulses))
+    return ResolvedImpact(
+        restitution_law=impact.restitution_law,
+        several_contacts_law=SeveralContactsLaw.SEQUENTIAL,
+        outcome=told.outcome,
+        jams=told.jams,
+        converged=impact.end != SequenceEnd.MOST_STRIKES,
+        state=impact.state,
+        impulses_W=impulses,
+        compression_impulses_W=told.compression_W,
+        velocities_before_W=velocities_before,
+        velocities_after_W=velocities_after,
+        path_W=told.path_W,
+        path_events=told.path_events,
+        path_contacts=told.path_contacts,
+        kinetic_energy_before=kinetic_energy(before.body, before.state),
+        kinetic_energy_after=kinetic_energy(before.body, impact.state),
+        creates_energy=impact.creates_energy,
+        strikes=tuple(
+            SequenceStrike(
+                seconds=strike.seconds - first,
+                contact=strike.contact,
+                outcome=strike.impact.outcome,
+                p_WC_W=strike.p_WC_W,
+                impulse_W=strike.impact.impulse_W,
+                state_before=strike.state_before,
+                state_after=strike.impact.state,
+            )
+            for strike in impact.strikes
+        ),
+        end=impact.end,
+        staying=impact.staying,
+        limit_seconds=None if impact.limit_seconds is None else impact.limit_seconds - first,
+    )
+
+
+def with_orders(resolved: ResolvedImpact, outcomes: OrderedOutcomes) -> ResolvedImpact:
+    """Return an impact with the outcomes over the admissible orders of its contacts."""
+    return replace(
+        resolved,
+        orders=outcomes.orders,
+        order_velocities_W=outcomes.velocities_W,
+        orders_complete=outcomes.complete,
+        orders_not_converged=outcomes.not_converged,
+    )
+
+
+def with_distribution(resolved: ResolvedImpact, distribution: ImpactDistribution) -> ResolvedImpact:
+    """Return an impact with the covariance of the state after it and the probability of each outcome."""
+    return replace(
+        resolved,
+        covariance=distribution.covariance,
+        outcome_probabilities=distribution.probabilities,
+        miss_probability=distribution.missed,
+    )
+
+
+def _several(
+    impact: SeveralImpact | BodiesImpact, before: Sequence[Before], after: Sequence[BodyState]
+) -> ResolvedImpact:
+    energy_before = sum(kinetic_energy(one.body, one.state) for one in before)
+    energy_after = sum(kinetic_energy(one.body, state) for one, state in zip(before, after, strict=True))
+    told = _told_by(impact.strikes, len(impact.impulses_W)) if impact.strikes else _NOT_TOLD
+    return ResolvedImpact(
+        restitution_law=impact.restitution_law,
+        several_contacts_law=impact.several_contacts_law,
+        outcome=told.outcome,
+        jams=told.jams,
+        converged=impact.verdict == SeveralVerdict.RESOLVED,
+        state=after[0],
+        other_state=after[1] if len(after) > 1 else None,
+        impulses_W=impact.impulses_W,
+        compression_impulses_W=told.compression_W,
+        velocities_before_W=impact.velocities_before_W,
+        velocities_after_W=impact.velocities_after_W,
+        path_W=told.path_W,
+        path_events=told.path_events,
+        path_contacts=told.path_contacts,
+        kinetic_energy_before=energy_before,
+        kinetic_energy_after=energy_after,
+        creates_energy=created(energy_after - energy_before, energy_before),
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Told:
+    """What only a sequence has: its outcome, the split of each contact's impulse, and the paths."""
+
+    outcome: ImpactOutcome | None
+    jams: bool
+    compression_W: FloatArray
+    path_W: FloatArray
+    path_events: tuple[PathEvent, ...]
+    path_contacts: tuple[int, ...]
+
+
+_NOT_TOLD = _Told(
+    outcome=None,
+    jams=False,
+    compression_W=np.zeros((0, 3)),
+    path_W=np.zeros((0, 3)),
+    path_events=(),
+    path_contacts=(),
+)
+
+
+def _told_by(strikes: Sequence[tuple[int, SpatialImpact]], contact_count: int) -> _Told:
+    """Return what only a sequence has. Its outcome is that of the hardest strike."""
+    hardest = max(strikes, key=lambda strike: float(strike[1].impulse_W @ strike[1].impulse_W))[1]
+    so_far = np.zeros((contact_count, 3))
+    compression = np.zeros((contact_count, 3))
+    path: list[FloatArray] = []
+    events: list[PathEvent] = []
+    contacts: list[int] = []
+    for contact, strike in strikes:
+        path.append(so_far[contact] + strike.path_W)
+        events += strike.path_events
+        contacts += [contact] * len(strike.path_events)
+        so_far[contact] += strike.impulse_W
+        compression[contact] += strike.compression_W
+    return _Told(
+        outcome=hardest.outcome,
+        jams=hardest.jams,
+        compression_W=compression,
+        path_W=np.concatenate(path),
+        path_events=tuple(events),
+        path_contacts=tuple(contacts),
+    )
