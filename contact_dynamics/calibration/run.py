@@ -12,6 +12,7 @@ from contact_dynamics.calibration.plots import write_plots
 from contact_dynamics.calibration.report import content_of, report
 from contact_dynamics.calibration.server_parameters import server_parameters
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
+from contact_dynamics.evaluation.command import check_writable, run_on_recordings
 from contact_dynamics.evaluation.sources import find_sources
 from contact_dynamics.replay.progress import Progress
 
@@ -24,28 +25,14 @@ if TYPE_CHECKING:
 SOMETHING_OPEN: Final = 1
 """Exit code: the data leave something open, or a recording could not be read."""
 
-NOTHING: Final = 2
-"""Exit code: nothing could be calibrated, or an argument is wrong."""
-
 
 def main(arguments: list[str]) -> int:
     """Calibrate; return the exit code."""
-    parser = calibrate_parser()
-    given = parser.parse_args(arguments)
-    if not given.recordings:  # here, so that a mistyped option is named first
-        parser.error("found no RECORDING, needed is one at least")
-    try:
-        return _calibrate(given)
-    except (ContactDynamicsError, OSError) as error:
-        print(f"contact-dynamics calibrate: {error}", file=sys.stderr)
-        return NOTHING
+    return run_on_recordings(calibrate_parser(), arguments, _calibrate)
 
 
 def _calibrate(given: argparse.Namespace) -> int:
-    for path in (given.yaml, given.json, given.rerun):  # before the long work
-        if path is not None:
-            with path.open("ab"):
-                pass
+    check_writable(given.yaml, given.json, given.rerun)
     motions, names, refused = _motions(given)
     for name, reason in refused:
         print(f"not read: {name}: {reason}", file=sys.stderr)

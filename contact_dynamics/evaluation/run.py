@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.evaluation.arguments import evaluate_parser
+from contact_dynamics.evaluation.command import NOTHING, check_writable, run_on_recordings
 from contact_dynamics.evaluation.job import Job, code_versions, failed
 from contact_dynamics.evaluation.log_states import parameters_of
 from contact_dynamics.evaluation.plots import write_plots
@@ -31,21 +31,10 @@ if TYPE_CHECKING:
 SOME_BAD: Final = 1
 """Exit code: some recordings could not be evaluated."""
 
-NOTHING: Final = 2
-"""Exit code: none could, or an argument is wrong."""
-
 
 def main(arguments: list[str]) -> int:
     """Evaluate; return the exit code."""
-    parser = evaluate_parser()
-    given = parser.parse_args(arguments)
-    if not given.recordings:  # here, so that a mistyped option is named first
-        parser.error("found no RECORDING, needed is one at least")
-    try:
-        return _evaluate(given)
-    except (ContactDynamicsError, OSError) as error:
-        print(f"contact-dynamics evaluate: {error}", file=sys.stderr)
-        return NOTHING
+    return run_on_recordings(evaluate_parser(), arguments, _evaluate)
 
 
 def _evaluate(given: argparse.Namespace) -> int:
@@ -86,10 +75,7 @@ def _against(path: Path | None) -> Evaluation | None:
 
 def _check_writable(given: argparse.Namespace) -> None:
     """Find out before the long work whether what it is to write can be written."""
-    for path in (given.json, given.csv, given.parquet, given.rerun):
-        if path is not None:
-            with path.open("ab"):
-                pass
+    check_writable(given.json, given.csv, given.parquet, given.rerun)
     for folder in (given.plots, given.results):
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
