@@ -13,6 +13,8 @@ from launch_ros.actions import Node
 
 from launch import LaunchDescription
 
+# `tray.launch.py` is much alike. Each stands alone, since people copy a launch file and change it.
+
 
 def generate_launch_description() -> LaunchDescription:
     """Return the server's launch description, the publisher and the client."""

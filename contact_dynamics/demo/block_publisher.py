@@ -7,26 +7,22 @@ the configured surfaces.
 from __future__ import annotations
 
 import math
-import sys
 import time
 from typing import TYPE_CHECKING, Final
 
-import rclpy
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
-from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
 from contact_dynamics.constants import to_ns, to_seconds
 from contact_dynamics.demo.arguments import PUSHED_BLOCK, block_publisher_parser
 from contact_dynamics.demo.situations import PushedBlock, TiltingTray
 from contact_dynamics.demo.sprung_block import SprungBlock
-from contact_dynamics.errors import ContactDynamicsError, NotSupportedError
+from contact_dynamics.demo.until_stopped import run_until_stopped
+from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.nodes.node_parameters import NodeParameters
 from contact_dynamics.nodes.parameters import read_server_parameters
-from contact_dynamics.nodes.ros_log_directory import ensure_ros_log_directory
-from contact_dynamics.nodes.running import stop_signals
 from msg_adapters.odometry import odometry_from_body_state
 from msg_adapters.stamps import stamp_to_msg
 
@@ -103,17 +99,11 @@ class BlockPublisher(Node):
 def main(arguments: list[str]) -> int:
     """Publish one situation until it ends or the process is told to stop, and return the exit code."""
     given = block_publisher_parser().parse_args(remove_ros_args(arguments))
-    ensure_ros_log_directory()
-    with stop_signals() as stop:
-        rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
-        try:
-            BlockPublisher(_situation(given)).play(given.seconds, stop)
-        except ContactDynamicsError as error:
-            print(f"configuration: {error}", file=sys.stderr)
-            return 2
-        finally:
-            rclpy.try_shutdown()
-    return 0
+
+    def work(stop: threading.Event) -> None:
+        BlockPublisher(_situation(given)).play(given.seconds, stop)
+
+    return run_until_stopped(arguments, work)
 
 
 def _situation(given: argparse.Namespace) -> Situation:

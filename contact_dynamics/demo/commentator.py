@@ -5,31 +5,30 @@ It asks four times a second. It takes the server's parameters too, and asks abou
 
 from __future__ import annotations
 
-import sys
 import time
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import rclpy
 from geometry_msgs.msg import Vector3Stamped, WrenchStamped
 from nav_msgs.msg import Odometry
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
-from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
 from contact_dynamics.contact_modes import ModeVerdict
 from contact_dynamics.demo.arguments import PUSHED_BLOCK, THROWN_BOX, TRAY, commentator_parser
+from contact_dynamics.demo.until_stopped import run_until_stopped
 from contact_dynamics.diagrams.words import OUTCOMES, VERDICTS, mode_in_words
-from contact_dynamics.errors import ContactDynamicsError, NotSupportedError
+from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.impact import ImpactOutcome
 from contact_dynamics.nodes.node_parameters import NodeParameters
 from contact_dynamics.nodes.parameters import read_server_parameters
-from contact_dynamics.nodes.ros_log_directory import ensure_ros_log_directory
-from contact_dynamics.nodes.running import stop_signals
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact
 from msg_adapters.geometry import vector_from_msg, vector_to_msg
+
+if TYPE_CHECKING:
+    import threading
 
 QOS: Final = QoSProfile(depth=1000)
 """Deep queues, since replies can get lost otherwise when many ask at once."""
@@ -200,18 +199,12 @@ class Commentator(Node):
 def main(arguments: list[str]) -> int:
     """Comment until the states end or the process is told to stop, and return the exit code."""
     given = commentator_parser().parse_args(remove_ros_args(arguments))
-    ensure_ros_log_directory()
-    with stop_signals() as stop:
-        rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
-        try:
-            commentator = Commentator(given.situation, given.server)
-            while not (stop.is_set() or commentator.get_ready()):
-                pass
-            while not (stop.is_set() or commentator.is_over):
-                commentator.comment()
-        except ContactDynamicsError as error:
-            print(f"configuration: {error}", file=sys.stderr)
-            return 2
-        finally:
-            rclpy.try_shutdown()
-    return 0
+
+    def work(stop: threading.Event) -> None:
+        commentator = Commentator(given.situation, given.server)
+        while not (stop.is_set() or commentator.get_ready()):
+            pass
+        while not (stop.is_set() or commentator.is_over):
+            commentator.comment()
+
+    return run_until_stopped(arguments, work)
