@@ -169,11 +169,10 @@ class IndependentModes:
             x += size * unknown.wrench[0]
             y += size * unknown.wrench[1]
             z += size * unknown.wrench[2]
-        clear = (
-            (self._accuracy + SUM_ROUNDING)
-            * self._load
-            * (1.5 + sum(_size(one.response) for one in unknowns))
-        )
+        terms = 1.5
+        for unknown in unknowns:
+            terms += _size(unknown.response)
+        clear = (self._accuracy + SUM_ROUNDING) * self._load * terms
         staying = dict(letters)
         for position, row in enumerate(case.rows):
             letter = staying.get(position)

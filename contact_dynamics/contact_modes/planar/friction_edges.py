@@ -102,7 +102,7 @@ def reactions(lift: Lift | None, wrenches: Sequence[Vector3]) -> Reactions:
         return _many_reactions(lift, wrenches)
     edges, lengths, units = [], [], []
     for edge, wrench in enumerate(wrenches):
-        x, y, z = lifted(lift, wrench, 0.0)
+        x, y, z = wrench if lift is None else lifted(lift, wrench, 0.0)
         length = math.sqrt(x * x + y * y + z * z)
         if lift is None or length > ROW_TOLERANCE * norm(wrench):
             edges.append(edge)

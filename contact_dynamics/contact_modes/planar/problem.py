@@ -87,8 +87,10 @@ class PlanarContactProblem(Record):
         object.__setattr__(self, "contacts", tuple(self.contacts))
         if self.uncertainty is not EXACT_CONTACTS:
             self.uncertainty.check_count(n)
-        for name in ("velocity_tolerance", "acceleration_tolerance"):
-            object.__setattr__(self, name, check_not_negative(name, getattr(self, name)))
+        velocity = check_not_negative("velocity_tolerance", self.velocity_tolerance)
+        object.__setattr__(self, "velocity_tolerance", velocity)
+        acceleration = check_not_negative("acceleration_tolerance", self.acceleration_tolerance)
+        object.__setattr__(self, "acceleration_tolerance", acceleration)
 
     def contact_velocities(self) -> tuple[Vector2, ...]:
         """Return (v_t, v_n), m/s, of each contact, with values within the tolerance as an exact 0."""
@@ -234,10 +236,12 @@ def planar_case(
     square = omega * omega
     moves = twist != (0.0, 0.0, 0.0)
     rows = []
-    largest = b_n = b_t = 0.0
+    largest = 0.0
     for index, v_t, N, T in touching:
         contact = contacts[index]
-        if moves:
+        b_n = b_t = 0.0
+        flat = contact.body_curvature == math.inf and contact.surface_curvature == 0.0
+        if omega != 0.0 or (moves and not flat):
             b_n = square * T[2] * rho  # T's moment arm is -r.n, N's is r.t
             rolling = contact.gap_acceleration(dot(T, twist), omega)
             # For a disc that rolls on a flat the two terms are opposite, and only rounding is left.
