@@ -27,6 +27,7 @@ from contact_dynamics.nodes.arguments import ros_arguments
 from contact_dynamics.nodes.dds_profile import profile_of_fast_dds
 from contact_dynamics.nodes.reserved_memory import keep_reserved_memory_untouched
 from contact_dynamics.nodes.ros_log_directory import ensure_ros_log_directory
+from contact_dynamics.nodes.unread_output import never_wait_for_readers
 
 if TYPE_CHECKING:
     import argparse
@@ -81,6 +82,7 @@ def run_node(
         arguments: all that follows the verb.
     """
     args = ros_arguments(parser, arguments)
+    never_wait_for_readers()
     ensure_ros_log_directory()
     keep_reserved_memory_untouched()
     with stop_signals() as stop:
