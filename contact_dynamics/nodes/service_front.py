@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 from rclpy.service_introspection import ServiceIntrospectionState
 
-from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.errors import BusyError, ContactDynamicsError
 from contact_dynamics.nodes.call_times import CallTimes
 from contact_dynamics.nodes.event_bytes import EventBytes
@@ -28,6 +27,7 @@ if TYPE_CHECKING:
     from rclpy.qos import QoSProfile
 
     from contact_dynamics.nodes.call_times import Call
+    from contact_dynamics.nodes.gone_clients import GoneClients
     from contact_dynamics.nodes.inbox import InboxNode, Taken
     from contact_dynamics.nodes.services import Answer, Question, Request, Service
     from contact_dynamics.questions.knowledge import Knowledge
@@ -66,8 +66,7 @@ class ServiceFront:
 
     Attributes:
         is_active: Whether questions are answered. Otherwise they are refused.
-        gone_for: s for which a client that seemed gone gets no answers to what it asked before. One that is
-            only found late is answered what it asks from then on.
+        gone: The clients that seemed gone. One that is only found late is answered what it asks from then on.
         knowledge: What is known. It may be replaced, and counts for the questions that come later.
     """
 
@@ -79,7 +78,7 @@ class ServiceFront:
         knowledge: Knowledge,
         world_frame: str,
         workers: Workers | None,
-        gone_for: float,
+        gone: GoneClients,
         begin: Callable[[int], object],
         answered: Callable[[Response], object],
         qos: QoSProfile,
@@ -95,7 +94,7 @@ class ServiceFront:
             knowledge: what is known.
             world_frame: the frame of states and answers.
             workers: they answer what takes long. Without them, this process does.
-            gone_for: s, as the attribute.
+            gone: as the attribute.
             begin: is told when a question came, ns by the node's clock, before it is answered.
             answered: sees each response before it is sent.
             qos: the queue of requests.
@@ -116,8 +115,7 @@ class ServiceFront:
         self._event_bytes = EventBytes(f"contact_dynamics_interfaces/srv/{served.type_name}_Event")
         self._times = CallTimes(lambda: node.get_clock().now().nanoseconds)
         self.is_active = False
-        self.gone_for = gone_for
-        self._gone: dict[bytes, int] = {}  # clients, and when they seemed gone, ns since the epoch
+        self.gone = gone
         self._service = service = node.create_service(
             served.service_type, f"~/{served.name}", self._take, qos_profile=qos
         )
@@ -208,7 +206,7 @@ class ServiceFront:
 
     def _send(self, answering: _Answering) -> None:
         client = answering.call.client
-        if not self._is_open() or self._seems_gone(client, answering.header.received_timestamp):
+        if not self._is_open() or self.gone.has(client, asked_ns=answering.header.received_timestamp):
             return
         self._times.end(answering.call)
         if self._settle is not None:
@@ -219,10 +217,7 @@ class ServiceFront:
             warnings.simplefilter("always")
             self._send_response(answering.response, answering.header)
         if client and warned:
-            now_ns = time.time_ns()
-            oldest_ns = now_ns - round(self.gone_for * NS_PER_S)
-            self._gone = {each: since_ns for each, since_ns in self._gone.items() if since_ns > oldest_ns}
-            self._gone[client] = now_ns
+            self.gone.note(client)
             self._node.get_logger().warning(
                 f"{self._served.name}: an answer did not reach its client, which left or is not found yet",
                 throttle_duration_sec=_TELL_EVERY_S,
@@ -250,15 +245,6 @@ class ServiceFront:
     def _is_open(self) -> bool:
         """Return whether the node still has the service. Requests that came before may still be taken."""
         return any(each is self._service for each in self._node.services)
-
-    def _seems_gone(self, client: bytes, asked_ns: int) -> bool:
-        """Tell whether a client asked before it seemed gone, a short time ago. Who asks later is there."""
-        since_ns = self._gone.get(client)
-        return (
-            since_ns is not None
-            and asked_ns <= since_ns
-            and time.time_ns() < since_ns + round(self.gone_for * NS_PER_S)
-        )
 
     def _record_event(self, event: Taken) -> None:
         happened = self._times.of_event(event.data)

@@ -14,6 +14,7 @@ from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.nodes import parameter_event
 from contact_dynamics.nodes.diagnostics import AnswerTimes, Diagnostics
+from contact_dynamics.nodes.gone_clients import GoneClients
 from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.offered_qos import OfferedQosWatch
 from contact_dynamics.nodes.reconfiguring import CONFIGURED_ANEW, bodies_read_otherwise
@@ -185,7 +186,7 @@ class Serving:
         self._parameters = parameters
         self._faults.limits = parameters.fault_limits
         for front in self._fronts:
-            front.gone_for = parameters.client_gone_for
+            front.gone.gone_for = parameters.client_gone_for
             front.knowledge = replace(front.knowledge, world=parameters.world, defaults=parameters.defaults)
         if self._workers is not None:
             self._workers.limits = parameters.worker_limits
@@ -253,7 +254,7 @@ class Serving:
             knowledge=self._knowledge,
             world_frame=self._parameters.world_frame,
             workers=self._workers,
-            gone_for=self._parameters.client_gone_for,
+            gone=GoneClients(self._parameters.client_gone_for),
             begin=self._begin,
             answered=self._note_answer,
             qos=SERVICE_QOS,
