@@ -17,7 +17,7 @@ from __future__ import annotations
 import os
 import tempfile
 import time
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -69,14 +69,14 @@ def profile_of_fast_dds(domain_id: int) -> Iterator[None]:
         return
     nanoseconds = round(NS_PER_S * _ANNOUNCED_EVERY_S)
     text = _PROFILE.format(offset=_free_offset(domain_id), nanoseconds=nanoseconds)
-    with tempfile.NamedTemporaryFile("w", suffix=".xml") as file:
-        file.write(text)
-        file.flush()
-        os.environ[VARIABLE] = file.name
-        try:
-            yield
-        finally:
-            del os.environ[VARIABLE]
+    with ExitStack() as stack:
+        with suppress(OSError):  # where no file can be written, Fast DDS goes by its own choice
+            file = stack.enter_context(tempfile.NamedTemporaryFile("w", suffix=".xml"))
+            file.write(text)
+            file.flush()
+            os.environ[VARIABLE] = file.name
+            stack.callback(os.environ.pop, VARIABLE)
+        yield
 
 
 def _free_offset(domain_id: int) -> int:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import os
 import re
 import signal
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -40,7 +43,10 @@ print("found" if client.wait_for_service(float(sys.argv[1])) else "nobody", flus
 
 def port(server: subprocess.Popen[str]) -> int:
     """Return at which port a process hears messages, from the first port of the domain."""
-    opened = [str(path.readlink()) for path in Path(f"/proc/{server.pid}/fd").iterdir() if path.exists()]
+    opened = []
+    for path in Path(f"/proc/{server.pid}/fd").iterdir():
+        with contextlib.suppress(OSError):  # it was closed meanwhile
+            opened.append(str(path.readlink()))
     found = [re.fullmatch(r".*/fastrtps_port(\d+)_el", path) for path in opened]
     ports = [int(each[1]) - 7400 - 250 * DOMAIN_ID for each in found if each is not None]
     (offset,) = [each for each in ports if 0 <= each < 250]
@@ -80,6 +86,16 @@ def test_the_environment_is_as_before(monkeypatch: pytest.MonkeyPatch) -> None:
     with profile_of_fast_dds(DOMAIN_ID):
         assert "<leaseAnnouncement><sec>0</sec><nanosec>500000000<" in Path(os.environ[VARIABLE]).read_text()
     assert VARIABLE not in os.environ
+
+
+def test_where_no_file_can_be_written_there_is_no_profile(monkeypatch: pytest.MonkeyPatch) -> None:
+    def is_full(*_: object, **__: object) -> object:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.delenv(VARIABLE, raising=False)
+    monkeypatch.setattr(tempfile, "NamedTemporaryFile", is_full)
+    with profile_of_fast_dds(DOMAIN_ID):
+        assert VARIABLE not in os.environ
 
 
 def test_the_profile_of_the_user_stays(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
