@@ -24,17 +24,29 @@ def orthonormal(vectors: Iterable[Sequence[float]]) -> list[tuple[float, ...]]:
     """Return an orthonormal basis of the span of unit ``vectors`` (of any one dimension)."""
     basis: list[tuple[float, ...]] = []
     for vector in vectors:
-        rest = tuple(vector)
-        for _ in range(2):  # twice is enough (Kahan): the second pass removes what rounding left
-            for unit in basis:
-                part = sum(a * b for a, b in zip(rest, unit, strict=True))
-                rest = tuple(a - part * b for a, b in zip(rest, unit, strict=True))
-        size = math.sqrt(sum(a * a for a in rest))
+        rest, size = _without_all(vector, basis)
+        # Twice is enough (Kahan): the second pass removes what rounding left.
+        if basis and size > ROW_TOLERANCE:
+            rest, size = _without_all(rest, basis)
         if size > ROW_TOLERANCE:
-            basis.append(tuple(a / size for a in rest))
+            basis.append(tuple([a / size for a in rest]))
             if len(basis) == len(rest):
                 break
     return basis
+
+
+def _without_all(vector: Sequence[float], basis: list[tuple[float, ...]]) -> tuple[Sequence[float], float]:
+    """Return the part of a vector that is orthogonal to all of a basis, and its size."""
+    rest = vector
+    for unit in basis:
+        part = 0.0
+        for a, b in zip(rest, unit, strict=True):
+            part += a * b
+        rest = [a - part * b for a, b in zip(rest, unit, strict=True)]
+    square = 0.0
+    for a in rest:
+        square += a * a
+    return rest, math.sqrt(square)
 
 
 def rough_span(vectors: Iterable[Vector3], *, tolerance: float) -> list[Vector3]:

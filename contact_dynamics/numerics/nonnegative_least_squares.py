@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 
 from contact_dynamics.numerics.arithmetic import DECIMALS, within
+from contact_dynamics.numerics.vectors import array_of
 from contact_dynamics.tolerances import (
     DECIMALS_MET,
     DECIMALS_ZERO,
@@ -59,7 +60,7 @@ def least_force(columns: Sequence[Vector3], target: Vector3, absent: Sequence[Ve
     """
     if not columns:
         return []
-    matrix = np.array(columns).T
+    matrix = array_of(columns).T
     right = np.array(target)
     for direction in absent:
         right -= np.dot(direction, right) * np.array(direction)

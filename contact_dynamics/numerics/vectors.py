@@ -19,6 +19,7 @@ but the order of a pyramid's edges and the last bits of answers do. So each choi
 from __future__ import annotations
 
 import math
+from itertools import chain
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
@@ -27,6 +28,8 @@ from contact_dynamics.numerics.elementwise import Real, sign
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from contact_dynamics.validation import FloatArray
 
 Vector3: TypeAlias = tuple[float, float, float]
@@ -66,6 +69,12 @@ def opposite(a: Vector3) -> Vector3:
 def scaled(a: Vector3, factor: float) -> Vector3:
     """Return a multiple of the vector."""
     return (factor * a[0], factor * a[1], factor * a[2])
+
+
+def array_of(vectors: Sequence[Vector3]) -> FloatArray:
+    """Return the vectors as an array, (n, 3). `np.array` takes three times as long for dozens of them."""
+    flat = np.fromiter(chain.from_iterable(vectors), dtype=np.float64, count=3 * len(vectors))
+    return flat.reshape(-1, 3)
 
 
 def normalised(a: Vector3) -> Vector3:

@@ -46,15 +46,14 @@ def planar_contact_modes(problem: PlanarContactProblem) -> PlanarModeAnswer:
     body, contacts, wrench = problem.body, problem.contacts, problem.wrench
     accuracy = problem.acceleration_tolerance
     velocities = problem.contact_velocities()
-    approaching = tuple(i for i, (_, v_n) in enumerate(velocities) if v_n < 0.0)
+    approaching = tuple([i for i, (_, v_n) in enumerate(velocities) if v_n < 0.0])
     modes: list[PlanarMode] = []
     refused: list[RefusedMode] = []
     undecided = ""
     undecided_modes: list[str] = []
     a_tolerance = 0.0
     if not approaching:
-        touching = [i for i, (_, v_n) in enumerate(velocities) if v_n == 0.0]
-        if not touching:
+        if all(v_n > 0.0 for _, v_n in velocities):
             modes.append(_free_motion(problem))
         elif len(contacts) == 1:
             modes, refused, a_tolerance = single_contact_modes(
@@ -129,7 +128,10 @@ def _whatever_the_grip(
 
 
 def _spin(problem: PlanarContactProblem) -> float:
-    rho, w = problem.body.radius_of_gyration, problem.velocity.w
+    w = problem.velocity.w
+    if w == 0.0:
+        return 0.0
+    rho = problem.body.radius_of_gyration
     if all(abs(w) * contact.reach(rho) <= problem.velocity_tolerance for contact in problem.contacts):
         return 0.0
     return w

@@ -32,7 +32,7 @@ from contact_dynamics.contact_modes.planar.exact_vectors import (
     unit,
 )
 from contact_dynamics.numerics.arithmetic import DECIMALS, within
-from contact_dynamics.numerics.vectors import AXES, Vector3, cross, dot
+from contact_dynamics.numerics.vectors import AXES, Vector3, array_of, cross, dot
 from contact_dynamics.tolerances import CLEAR_ROWS, CLEAR_ROWS_OF_MANY, SAME_ROWS, SAME_SHARP_ROWS
 
 if TYPE_CHECKING:
@@ -177,19 +177,22 @@ class ExtremeRays:
 
         The rows with the extreme coordinates come next. After them, most of the others change nothing.
         """
-        matrix = np.array(self.rows)
+        matrix = array_of(self.rows)
         extreme = {*matrix.argmin(axis=0).tolist(), *matrix.argmax(axis=0).tolist()}.difference(first)
         for index in extreme:
             self._cut(self.rows[index], index)
-        waiting = np.delete(np.arange(len(matrix)), [*first, *extreme])
+        others = np.ones(len(matrix), dtype=bool)
+        others[[*first, *extreme]] = False
+        waiting = others.nonzero()[0]
         at_once = 4
         while len(waiting) > 0 and self.rays:
-            heights = matrix[waiting] @ np.array(self.rays).T
+            heights = matrix[waiting] @ array_of(self.rays).T
             lowest = heights.min(axis=1)
             self._touch(waiting, heights, lowest)
-            order = np.argsort(lowest)
-            order = order[: np.searchsorted(lowest[order], -self._same)]
-            cutting = waiting[order]
+            cutting = (lowest < -self._same).nonzero()[0]
+            if len(cutting) == 0:
+                return
+            cutting = waiting[cutting[lowest[cutting].argsort()]]
             for index in cutting[:at_once].tolist():
                 self._cut(self.rows[index], index)
             waiting = cutting[at_once:]
@@ -197,7 +200,7 @@ class ExtremeRays:
 
     def _touch(self, indices: NDArray[np.int64], heights: FloatArray, lowest: FloatArray) -> None:
         """Record the rows that touch the cone and do not cut it, and on which rays they vanish."""
-        low = np.flatnonzero(lowest < self._clear)
+        low = (lowest < self._clear).nonzero()[0]
         if len(low) == 0:
             return
         sizes = abs(heights[low])

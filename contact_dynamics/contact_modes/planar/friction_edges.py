@@ -14,7 +14,7 @@ from contact_dynamics.contact_modes.planar.enumeration import FIXED, RIGHT, Lett
 from contact_dynamics.contact_modes.planar.exact_vectors import decimal_vector
 from contact_dynamics.contact_modes.planar.extreme_rays import MANY
 from contact_dynamics.contact_modes.planar.problem import Lift, lifted
-from contact_dynamics.numerics.vectors import Vector3, dot, norm
+from contact_dynamics.numerics.vectors import Vector3, array_of, dot, norm
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
@@ -71,9 +71,10 @@ def friction_edges(rows: Sequence[ContactRow], letters: Letters) -> Edges:
         forces += alike
         positions += (position,) * len(alike)
     if len(positions) > MANY:
-        both = np.array([rows[position].N + rows[position].T for position in positions])
-        sizes = np.array(forces)
-        return Edges(positions, forces, _rows(sizes[:, 1:] * both[:, :3] + sizes[:, :1] * both[:, 3:]))
+        normals = array_of([rows[position].N for position in positions])
+        tangents = array_of([rows[position].T for position in positions])
+        f_t, f_n = np.array([*zip(*forces, strict=True)])[:, :, None]
+        return Edges(positions, forces, _rows(f_n * normals + f_t * tangents))
     wrenches = []
     for position, (f_t, f_n) in zip(positions, forces, strict=True):
         N, T = rows[position].N, rows[position].T
@@ -137,7 +138,7 @@ def sharp_reaction(N: Vector3, T: Vector3, force: Vector2) -> Vector3:
 
 
 def _many_reactions(lift: Lift | None, wrenches: Sequence[Vector3]) -> Reactions:
-    rows = np.array(wrenches)
+    rows = array_of(wrenches)
     across = rows if lift is None else np.column_stack([rows @ np.array(lift.across).T, np.zeros(len(rows))])
     lengths = _lengths(across)
     seen = np.flatnonzero(lengths > ROW_TOLERANCE * _lengths(rows))

@@ -163,23 +163,17 @@ def _contact_axes(
     u_n = (f_x * n_x + f_y * n_y) * per_mass - w * w * r_n + rolling
     force = (f_x * f_x + f_y * f_y) * per_mass + wrench.moment * alpha
     centripetal = w * w * (abs(r_t) + abs(r_n)) + abs(rolling)
+    det = per_mass * (per_mass + (r_t * r_t + r_n * r_n) * per_inertia)
+    w_t = u_t - r_n * alpha
+    w_n = u_n + r_t * alpha
+    terms = (abs(f_x) + abs(f_y)) * per_mass + (abs(r_t) + abs(r_n)) * abs(alpha) + centripetal
+    friction = min(contact.friction, LARGEST_NUMBER)
+    load = math.sqrt(force) + centripetal / math.sqrt(per_mass)
+    # By position, which is faster than by name, and the names are the same.
     axes = _ContactAxes(
-        r_t=r_t,
-        r_n=r_n,
-        per_mass=per_mass,
-        per_inertia=per_inertia,
-        det=per_mass * (per_mass + (r_t * r_t + r_n * r_n) * per_inertia),
-        w_t=u_t - r_n * alpha,
-        w_n=u_n + r_t * alpha,
-        alpha=alpha,
-        u_t=u_t,
-        u_n=u_n,
-        terms=(abs(f_x) + abs(f_y)) * per_mass + (abs(r_t) + abs(r_n)) * abs(alpha) + centripetal,
-        friction=min(contact.friction, LARGEST_NUMBER),
-        load=math.sqrt(force) + centripetal / math.sqrt(per_mass),
-        accuracy=accuracy,
+        r_t, r_n, per_mass, per_inertia, det, w_t, w_n, alpha, u_t, u_n, terms, friction, load, accuracy
     )
-    if abs(axes.w_n) <= axes.tolerance(axes.along(0.0, 1.0), axes.terms):
+    if abs(w_n) <= axes.tolerance(axes.along(0.0, 1.0), axes.terms):
         axes = axes._replace(w_n=0.0)
     return axes
 

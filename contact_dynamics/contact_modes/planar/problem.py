@@ -85,12 +85,15 @@ class PlanarContactProblem(Record):
         if n > MOST_PLANAR_CONTACTS:
             raise TooLargeError("contacts", f"{n} contacts", f"at most {MOST_PLANAR_CONTACTS}")
         object.__setattr__(self, "contacts", tuple(self.contacts))
+        # The defaults need no check. One contact is answered in microseconds, of which checks take some.
         if self.uncertainty is not EXACT_CONTACTS:
             self.uncertainty.check_count(n)
-        velocity = check_not_negative("velocity_tolerance", self.velocity_tolerance)
-        object.__setattr__(self, "velocity_tolerance", velocity)
-        acceleration = check_not_negative("acceleration_tolerance", self.acceleration_tolerance)
-        object.__setattr__(self, "acceleration_tolerance", acceleration)
+        if self.velocity_tolerance is not VELOCITY_TOLERANCE:
+            velocity = check_not_negative("velocity_tolerance", self.velocity_tolerance)
+            object.__setattr__(self, "velocity_tolerance", velocity)
+        if self.acceleration_tolerance is not ACCELERATION_TOLERANCE:
+            acceleration = check_not_negative("acceleration_tolerance", self.acceleration_tolerance)
+            object.__setattr__(self, "acceleration_tolerance", acceleration)
 
     def contact_velocities(self) -> tuple[Vector2, ...]:
         """Return (v_t, v_n), m/s, of each contact, with values within the tolerance as an exact 0."""
