@@ -40,7 +40,7 @@ without ties."""
 
 _MOST_STEPS: Final = 500
 """The largest number of steps of the primal simplex. After a fifth of them Bland's rule holds, which cannot
-cycle."""
+cycle. The dual simplex is doubtful after so many. Tens are common, and rounding can make it go in circles."""
 
 
 _CLEAR: Final = 1e3
@@ -211,7 +211,7 @@ class Program:
         table, fixed = self._table, self._fixed
         if len(fixed) == 0:
             return True
-        while True:
+        for _ in range(_MOST_STEPS):
             values = table[_HEAD:, -1]
             missed = np.maximum(-values, values * fixed)
             worst = int(missed.argmax())
@@ -228,6 +228,8 @@ class Program:
                 return False
             enters = able[(table[0, able] / helps[able]).argmin()]
             self._pivot(worst, int(enters))
+        self.doubtful = True
+        return False
 
     def _pivot(self, leaves: int, enters: int) -> None:
         """Exchange a condition's variable and a column's.

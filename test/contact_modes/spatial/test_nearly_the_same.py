@@ -57,7 +57,7 @@ def check_sticking(problem: SpatialContactProblem) -> None:
     assert np.abs(still[0].contact_accelerations_W).max() <= HELD * alone
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", [*range(12), 2077])  # the last one went in circles in a linear program
 def test_a_body_at_rest_by_construction_may_stick(seed: int) -> None:
     check_sticking(problem_of(resting(seed)))
 
