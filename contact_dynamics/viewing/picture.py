@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,10 +28,9 @@ from contact_dynamics.diagrams.words import (
 )
 from contact_dynamics.questions.many import ManyImpactsAnswer
 from contact_dynamics.tumbling.regime import Regime
-from contact_dynamics.viewing.after_impact import draw_after_impact, style_after_impact
+from contact_dynamics.viewing.after_impact import draw_after_impact
 from contact_dynamics.viewing.answers_in_words import AnswersInWords, sentence
 from contact_dynamics.viewing.blueprint import WINDOW_S, Eye, eye_on, make_blueprint
-from contact_dynamics.viewing.bodies_in_world import BodiesInWorld
 from contact_dynamics.viewing.contact_modes import draw_contact_modes
 from contact_dynamics.viewing.diagrams_in_view import DiagramsInView
 from contact_dynamics.viewing.entities import (
@@ -46,35 +44,17 @@ from contact_dynamics.viewing.entities import (
     POINSOT,
     PREDICTED,
     TOSSES,
-    body_entity,
 )
 from contact_dynamics.viewing.impact import draw_impact
 from contact_dynamics.viewing.in_view import ImpactsInView, LettersInView
 from contact_dynamics.viewing.legend import LEGEND_TEXT
 from contact_dynamics.viewing.many_states import draw_many_states
-from contact_dynamics.viewing.measured import (
-    set_time,
-    style_series,
-)
-from contact_dynamics.viewing.poinsot import (
-    clear_poinsot,
-    count_of_flight,
-    draw_poinsot,
-    draw_rolling,
-    hide_poinsot,
-)
+from contact_dynamics.viewing.measured import set_time
+from contact_dynamics.viewing.poinsot_in_view import PoinsotInView
 from contact_dynamics.viewing.predictions_in_view import PredictionsInView
-from contact_dynamics.viewing.scene import (
-    draw_axes,
-    draw_trail_style,
-    obstacle_parts,
-    surface_parts,
-    surface_path,
-)
-from contact_dynamics.viewing.scenery import Scenery
 from contact_dynamics.viewing.toss import draw_toss
 from contact_dynamics.viewing.trajectory import DEFAULT_PREDICTIONS, draw_earlier_path, draw_trajectory
-from contact_dynamics.world import Surface
+from contact_dynamics.viewing.world_in_view import WorldInView
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -87,9 +67,7 @@ if TYPE_CHECKING:
     from contact_dynamics.questions.tumbling import TumblingAnswer
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.tumbling import Trajectory
-    from contact_dynamics.tumbling.poinsot_construction import Poinsot
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.viewing.scenery import Part
     from contact_dynamics.world import World
 
 
@@ -113,9 +91,8 @@ class Picture:
         """
         self._earlier = predictions - 1
         self._recording = recording
-        self._world = world
-        self._surface_side = surface_side
-        self._bodies = BodiesInWorld(world)
+        self._world = WorldInView(recording, world, surface_side=surface_side)
+        self._bodies = self._world.bodies
         self._newest: dict[str, BodyState] = {}
         self._impacts = ImpactsInView(recording)
         self._letters = LettersInView(recording)
@@ -123,35 +100,21 @@ class Picture:
         self._awaited = AwaitedImpacts(gravity_W=world.gravity_W)
         self._told_ns: int | None = None  # stamp of the last answer
         self._diagrams = DiagramsInView(recording)
-        self._rolling: tuple[str, Poinsot] | None = None  # the body in Poinsot's picture, while it flies
+        self._poinsot = PoinsotInView(recording)
+        self._predictions = PredictionsInView(recording, self._bodies, up_W=self._world.up_W)
         self._framed = False
         self._eye: Eye | None = None
         self._shown: set[str] = set()  # what the arrangement has views of
         self._recent: deque[tuple[int, FloatArray]] = (
             deque()
         )  # stamp, ns, position, m, of the last `WINDOW_S`
-        gravity = float(np.linalg.norm(world.gravity_W))
-        self._up_W = -world.gravity_W / gravity if gravity > 0.0 else np.array([0.0, 0.0, 1.0])
-        self._predictions = PredictionsInView(recording, self._bodies, up_W=self._up_W)
-        self._scenery = Scenery(recording)
-        self._first_ns: int | None = None  # stamp of the first state
-        self._center_W: FloatArray | None = None  # the middle of what is looked at
-        self._draw_scene()
+        legend = rr.TextDocument(LEGEND_TEXT, media_type=rr.MediaType.MARKDOWN)
+        recording.log(LEGEND, legend, static=True)
+        self._arrange()
 
     def change_world(self, world: World, *, stamp_ns: int) -> None:
         """Draw other surfaces and shapes of bodies from a time on, ns."""
-        self._world = world
-        self._bodies.change(world)
-        wanted = self._surfaces()
-        gone = self._scenery.paths - wanted.keys()
-        wanted |= {body_entity(name): self._bodies.parts(name) for name in self._newest}
-        wanted |= {path: {} for path in gone - wanted.keys()}
-        for path, parts in wanted.items():
-            if self._first_ns is None:
-                self._scenery.draw(path, parts)
-            else:
-                first_ns = min(self._first_ns, stamp_ns)
-                self._scenery.change(path, parts, first_ns=first_ns, stamp_ns=stamp_ns)
+        self._world.change(world, stamp_ns=stamp_ns)
 
     def add_states(self, body_name: str, states: Sequence[BodyState]) -> None:
         """Draw measured states, in the order of their stamps."""
@@ -159,18 +122,15 @@ class Picture:
             return
         before = self._newest.get(body_name)
         if before is None:  # it was not in the picture before
-            self._scenery.draw(body_entity(body_name), self._bodies.parts(body_name))
-            draw_trail_style(self._recording, body_name, self._bodies.color(body_name))
+            self._world.add_body(body_name, stamp_ns=states[0].stamp_ns)
         gravity_W = self._world.gravity_W
         if self._predictions.add_states(body_name, states, before=before, gravity_W=gravity_W):
             self._bring_up(ERROR)
-        self._roll(body_name, states)
+        self._poinsot.add_states(body_name, states)
         for found in self._awaited.see(body_name, states):
             self._show_after_impact(found)
         self._impacts.pass_by(body_name, states[-1].stamp_ns)
         self._newest[body_name] = states[-1]
-        if self._first_ns is None:
-            self._first_ns = states[0].stamp_ns
         self._recent.extend((state.stamp_ns, state.p_WB_W) for state in states)
         while self._recent[-1][0] - self._recent[0][0] > to_ns(WINDOW_S):
             self._recent.popleft()
@@ -206,11 +166,7 @@ class Picture:
             self._framed = True
             self._look_at(trajectory.p_WB_W)  # after that the view belongs to the user
         if rotation is not None and answer.curves is not None and rotation.regime is not Regime.AT_REST:
-            if self._rolling is not None and self._rolling[0] != name:
-                hide_poinsot(self._recording, self._rolling[0])
-            draw_poinsot(self._recording, name, rotation, answer.curves)
-            draw_rolling(self._recording, name, [replace(answer.state, stamp_ns=stamp_ns)])
-            self._rolling = (name, rotation)
+            self._poinsot.come(name, rotation, answer.curves, answer.state, stamp_ns=stamp_ns)
             self._bring_up(PREDICTED, POINSOT, ANSWERS, *curves)
         self._bring_up(PREDICTED, ANSWERS, *curves)
         words = tumbling_in_words(answer)
@@ -285,7 +241,7 @@ class Picture:
         """
         stamp_ns, name = answer.state.stamp_ns or now_ns, answer.body_name
         set_time(self._recording, stamp_ns)
-        draw_toss(self._recording, self._bodies.shape(name), answer, up_W=self._up_W)
+        draw_toss(self._recording, self._bodies.shape(name), answer, up_W=self._world.up_W)
         curves = self._predict(name, answer.toss.trajectory, begin_ns=stamp_ns)
         if not self._framed:
             self._framed = True
@@ -333,30 +289,6 @@ class Picture:
         """Return the stamp of the newest measured state, or else of the last answer, if there is either."""
         return max((state.stamp_ns for state in self._newest.values()), default=self._told_ns)
 
-    def _draw_scene(self) -> None:
-        draw_axes(self._recording, self._up_W)
-        for path, parts in self._surfaces().items():
-            self._scenery.draw(path, parts)
-        for name in self._bodies.names:
-            style_series(self._recording, name, self._bodies.color(name))
-            style_after_impact(self._recording, name, self._bodies.color(name))
-        legend = rr.TextDocument(LEGEND_TEXT, media_type=rr.MediaType.MARKDOWN)
-        self._recording.log(LEGEND, legend, static=True)
-        self._arrange()
-
-    def _surfaces(self) -> dict[str, dict[str, Part]]:
-        """Return the parts of the surfaces by their paths."""
-        return {
-            surface_path(surface.name): surface_parts(
-                surface,
-                center_W=surface.p_WS_W if self._center_W is None else self._center_W,
-                side=self._surface_side,
-            )
-            if isinstance(surface, Surface)
-            else obstacle_parts(surface)
-            for surface in self._world.surfaces
-        }
-
     def _show_after_impact(self, found: AfterImpact) -> None:
         name, end_ns = found.answer.body_name, found.stamps_ns[-1]
         draw_after_impact(self._recording, self._bodies.shape(name), found, color=self._bodies.color(name))
@@ -371,16 +303,6 @@ class Picture:
         if is_compared:
             self._bring_up(ERROR)
         return [ENERGY] if has_energy else []
-
-    def _roll(self, body_name: str, states: Sequence[BodyState]) -> None:
-        if self._rolling is None or self._rolling[0] != body_name:
-            return
-        count = count_of_flight(self._rolling[1], states)
-        draw_rolling(self._recording, body_name, states[:count])
-        if count < len(states):
-            set_time(self._recording, states[count].stamp_ns)
-            clear_poinsot(self._recording, body_name)
-            self._rolling = None
 
     def _tell_answer(
         self,
@@ -397,11 +319,8 @@ class Picture:
 
     def _look_at(self, points_W: FloatArray) -> None:
         """Turn the view towards a path, and put the ground below it."""
-        center = 0.5 * (points_W.min(axis=0) + points_W.max(axis=0))
-        self._center_W = center
-        for path, parts in self._surfaces().items():
-            self._scenery.draw(path, parts)
-        self._eye = eye_on(points_W, up_W=self._up_W, margin=self._bodies.largest_size)
+        self._world.center_at(0.5 * (points_W.min(axis=0) + points_W.max(axis=0)))
+        self._eye = eye_on(points_W, up_W=self._world.up_W, margin=self._bodies.largest_size)
         self._arrange()
 
     def _bring_up(self, *shown: str) -> None:

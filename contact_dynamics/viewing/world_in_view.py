@@ -1,0 +1,105 @@
+"""The world as it stands in the scene: its axes, its surfaces, and the bodies that have come into view."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.viewing.after_impact import style_after_impact
+from contact_dynamics.viewing.bodies_in_world import BodiesInWorld
+from contact_dynamics.viewing.entities import body_entity
+from contact_dynamics.viewing.measured import style_series
+from contact_dynamics.viewing.scene import (
+    draw_axes,
+    draw_trail_style,
+    obstacle_parts,
+    surface_parts,
+    surface_path,
+)
+from contact_dynamics.viewing.scenery import Scenery
+from contact_dynamics.world import Surface
+
+if TYPE_CHECKING:
+    import rerun as rr
+
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.viewing.scenery import Part
+    from contact_dynamics.world import World
+
+
+class WorldInView:
+    """Surfaces and bodies in the scene. Both can have other forms from a time on.
+
+    Attributes:
+        bodies: How the bodies look.
+        up_W: (3,), the unit vector against gravity, or the third axis without gravity.
+    """
+
+    def __init__(self, recording: rr.RecordingStream, world: World, *, surface_side: float) -> None:
+        """Draw the surfaces of a world, as squares of ``surface_side``, m, and set how its bodies look."""
+        self._recording = recording
+        self._world = world
+        self._surface_side = surface_side
+        self._scenery = Scenery(recording)
+        self._in_scene: list[str] = []  # the bodies that are drawn
+        self._first_ns: int | None = None  # stamp of the first state
+        self._center_W: FloatArray | None = None  # the middle of what is looked at
+        self.bodies = BodiesInWorld(world)
+        gravity = float(np.linalg.norm(world.gravity_W))
+        self.up_W = -world.gravity_W / gravity if gravity > 0.0 else np.array([0.0, 0.0, 1.0])
+        draw_axes(recording, self.up_W)
+        self._draw_surfaces()
+        for name in self.bodies.names:
+            style_series(recording, name, self.bodies.color(name))
+            style_after_impact(recording, name, self.bodies.color(name))
+
+    @property
+    def gravity_W(self) -> FloatArray:
+        """The world's gravity, (3,), m/s^2."""
+        return self._world.gravity_W
+
+    def add_body(self, name: str, *, stamp_ns: int) -> None:
+        """Draw a body that has its first state at a stamp, ns."""
+        self._scenery.draw(body_entity(name), self.bodies.parts(name))
+        draw_trail_style(self._recording, name, self.bodies.color(name))
+        self._in_scene.append(name)
+        if self._first_ns is None:
+            self._first_ns = stamp_ns
+
+    def center_at(self, center_W: FloatArray) -> None:
+        """Put the ground below a point, (3,), m."""
+        self._center_W = center_W
+        self._draw_surfaces()
+
+    def change(self, world: World, *, stamp_ns: int) -> None:
+        """Draw other surfaces and shapes of bodies from a time on, ns."""
+        self._world = world
+        self.bodies.change(world)
+        wanted = self._surfaces()
+        gone = self._scenery.paths - wanted.keys()
+        wanted |= {body_entity(name): self.bodies.parts(name) for name in self._in_scene}
+        wanted |= {path: {} for path in gone - wanted.keys()}
+        for path, parts in wanted.items():
+            if self._first_ns is None:
+                self._scenery.draw(path, parts)
+            else:
+                first_ns = min(self._first_ns, stamp_ns)
+                self._scenery.change(path, parts, first_ns=first_ns, stamp_ns=stamp_ns)
+
+    def _draw_surfaces(self) -> None:
+        for path, parts in self._surfaces().items():
+            self._scenery.draw(path, parts)
+
+    def _surfaces(self) -> dict[str, dict[str, Part]]:
+        """Return the parts of the surfaces by their paths."""
+        return {
+            surface_path(surface.name): surface_parts(
+                surface,
+                center_W=surface.p_WS_W if self._center_W is None else self._center_W,
+                side=self._surface_side,
+            )
+            if isinstance(surface, Surface)
+            else obstacle_parts(surface)
+            for surface in self._world.surfaces
+        }
