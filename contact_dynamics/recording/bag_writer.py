@@ -22,8 +22,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, version
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -35,21 +34,18 @@ from contact_dynamics.recording.bag_metadata import (
     METADATA_FILE,
     BagSummary,
     FileSummary,
-    TopicSummary,
     metadata_file_text,
     metadata_lines,
 )
-from contact_dynamics.recording.cdr_stamp import event_stamp_ns, leading_stamp_ns
-from contact_dynamics.recording.definitions import TypeDefinition, find_definition
+from contact_dynamics.recording.closing import ClosedAtTheEnd
+from contact_dynamics.recording.declared_topic import DeclaredTopic, qos_yaml
+from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.recording.errors import LogExistsError, LogFailedError
 from contact_dynamics.recording.limits import UNLIMITED, LogLimits
-from contact_dynamics.recording.qos import OfferedQos, qos_lines
+from contact_dynamics.version import version_of_this_package
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
-    from types import TracebackType
-
-    from typing_extensions import Self
 
 _LATEST_NS: Final = 2**63 - 1  # rosbag2 keeps times as int64
 _SHORTEST_MESSAGE: Final = 5  # bytes: encapsulation and one of content, which even an empty message has
@@ -58,18 +54,12 @@ _METADATA_EVERY_S: Final = 5.0  # how old the counts of metadata.yaml may grow w
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Topic:
-    definition: TypeDefinition
-    qos: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class _Finished:
     summary: FileSummary
     size: int
 
 
-class BagWriter:
+class BagWriter(ClosedAtTheEnd):
     """A log that is being written, as a context manager. Methods raise `OSError` if the disk refuses."""
 
     def __init__(
@@ -89,7 +79,7 @@ class BagWriter:
             limits: when a file is finished, and which files are kept.
             on_deleted: a function that is told, in words, each time that the oldest file was deleted.
         """
-        self._run = {"version": _package_version(), **_checked_run(run or {})}
+        self._run = {"version": _version(), **_checked_run(run or {})}
         self.folder = Path(folder)
         try:
             self.folder.mkdir(parents=True)
@@ -97,7 +87,7 @@ class BagWriter:
             raise LogExistsError(f"{self.folder} exists; a log is never overwritten") from error
         self._limits = limits
         self._on_deleted = on_deleted
-        self._topics: dict[str, _Topic] = {}
+        self._topics: dict[str, DeclaredTopic] = {}
         self._finished: list[_Finished] = []
         self._deleted = 0  # files
         self._earlier_count = 0  # messages of the files before this one
@@ -110,16 +100,6 @@ class BagWriter:
         except OSError:
             self._file.close()
             raise
-
-    def __enter__(self) -> Self:
-        """Return the writer itself."""
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """Close the log."""
-        self.close()
 
     @property
     def path(self) -> Path:
@@ -148,11 +128,7 @@ class BagWriter:
         self._check_open()
         if not name.startswith("/") or name in self._topics:
             raise InvalidFieldError("topic", name, "an absolute name that is not declared yet")
-        definition = find_definition(type_name)
-        qos_yaml = _qos_yaml(qos)
-        self._file.add_topic(name, definition, qos_yaml)
-        self._topics[name] = _Topic(definition=definition, qos=qos_yaml)
-        self._metadata_due_s = 0.0
+        self._declare(DeclaredTopic(name=name, definition=find_definition(type_name), qos=qos_yaml(qos)))
 
     def set_qos(self, topic: str, qos: Any) -> None:
         """Declare another quality of service of a topic, as `add_topic` takes it, for messages from now on.
@@ -161,11 +137,7 @@ class BagWriter:
             InvalidFieldError: the topic is not declared.
         """
         self._check_open()
-        definition = self._declared(topic).definition
-        qos_yaml = _qos_yaml(qos)
-        self._file.add_topic(topic, definition, qos_yaml)
-        self._topics[topic] = _Topic(definition=definition, qos=qos_yaml)
-        self._metadata_due_s = 0.0
+        self._declare(replace(self._declared(topic), qos=qos_yaml(qos)))
 
     def write(self, topic: str, data: bytes, *, log_time_ns: int, publish_time_ns: int | None = None) -> None:
         """Append one message.
@@ -188,7 +160,7 @@ class BagWriter:
             )
         log_time = _checked_time("log_time_ns", log_time_ns)
         if publish_time_ns is None:
-            publish_time = _stamp_within(declared.definition, data, otherwise_ns=log_time)
+            publish_time = declared.stamp_ns(data, otherwise_ns=log_time)
         else:
             publish_time = _checked_time("publish_time_ns", publish_time_ns)
         if self._is_full(log_time):
@@ -197,7 +169,7 @@ class BagWriter:
 
     def change_run(self, run: Mapping[str, str]) -> None:
         """Let the files that begin from now on say that the run is made so, and not the present one."""
-        self._run = {"version": _package_version(), **_checked_run(run)}
+        self._run = {"version": _version(), **_checked_run(run)}
 
     def flush(self) -> None:
         """Bring all messages so far into the file, where a death of this process cannot take them."""
@@ -226,7 +198,12 @@ class BagWriter:
         finally:
             self._file.close()
 
-    def _declared(self, topic: str) -> _Topic:
+    def _declare(self, topic: DeclaredTopic) -> None:
+        self._file.add_topic(topic.name, topic.definition, topic.qos)
+        self._topics[topic.name] = topic
+        self._metadata_due_s = 0.0
+
+    def _declared(self, topic: str) -> DeclaredTopic:
         declared = self._topics.get(topic)
         if declared is None:
             raise InvalidFieldError("topic", topic, f"one of {sorted(self._topics)}")
@@ -270,8 +247,8 @@ class BagWriter:
         try:
             file = self._new_file(number)
             try:
-                for name, topic in self._topics.items():
-                    file.add_topic(name, topic.definition, topic.qos)
+                for topic in self._topics.values():
+                    file.add_topic(topic.name, topic.definition, topic.qos)
                 file.flush()
             except OSError:
                 file.close()
@@ -308,7 +285,7 @@ class BagWriter:
         deleted = {_DELETED_KEY: str(self._deleted)} if self._deleted else {}
         return BagSummary(
             files=files,
-            topics=[_topic_summary(name, topic) for name, topic in self._topics.items()],
+            topics=[topic.summary for topic in self._topics.values()],
             custom_data={**self._run, **deleted},
         )
 
@@ -322,34 +299,6 @@ class BagWriter:
             part.unlink(missing_ok=True)
             raise
         self._metadata_due_s = time.monotonic() + _METADATA_EVERY_S
-
-
-def _qos_yaml(qos: Any) -> tuple[str, ...]:
-    offers = qos if isinstance(qos, (list, tuple)) else [OfferedQos() if qos is None else qos]
-    return tuple(qos_lines(offers))
-
-
-def _topic_summary(name: str, topic: _Topic) -> TopicSummary:
-    definition = topic.definition
-    return TopicSummary(
-        name=name,
-        type_name=definition.type_name,
-        # rosbags refuses the whole folder if this is not its own hash of the text. It cannot be for an event,
-        # which is written out as a message. The channel has the true hash.
-        type_hash="" if definition.is_service_event else definition.type_hash,
-        qos=topic.qos,
-    )
-
-
-def _stamp_within(definition: TypeDefinition, data: bytes, *, otherwise_ns: int) -> int:
-    read: Callable[[bytes], int] | None = None
-    if definition.is_service_event:
-        read = event_stamp_ns
-    elif definition.begins_with_stamp:
-        read = leading_stamp_ns
-    if read is None:
-        return otherwise_ns
-    return max(0, read(data))  # MCAP has no time before the epoch, but the message itself keeps its stamp
 
 
 def _checked_time(field: str, value: object) -> int:
@@ -367,8 +316,8 @@ def _checked_run(run: Mapping[str, str]) -> Mapping[str, str]:
     return run
 
 
-def _package_version() -> str:
+def _version() -> str:
     try:
-        return version("contact_dynamics")
-    except PackageNotFoundError:
+        return version_of_this_package()
+    except AttributeError:  # a log needs no version
         return "unknown"

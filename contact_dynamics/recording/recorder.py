@@ -21,12 +21,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.recording.closing import ClosedAtTheEnd
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-    from types import TracebackType
-
-    from typing_extensions import Self
 
     from contact_dynamics.recording.bag_writer import BagWriter
 
@@ -68,7 +66,7 @@ class _RunChange(NamedTuple):
     run: Mapping[str, str]
 
 
-class Recorder:
+class Recorder(ClosedAtTheEnd):
     """A thread that owns a `BagWriter` whose topics are declared. It is a context manager."""
 
     def __init__(
@@ -107,16 +105,6 @@ class Recorder:
         self._on_disk = 0  # number of the messages given that are on the disk itself, or lost
         self._thread = threading.Thread(target=self._run, name="contact_dynamics log", daemon=True)
         self._thread.start()
-
-    def __enter__(self) -> Self:
-        """Return the recorder itself."""
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """Write what waits and close the log."""
-        self.close()
 
     @property
     def status(self) -> RecorderStatus:
