@@ -24,42 +24,43 @@ from contact_dynamics.toss import TossUncertainty
 from contact_dynamics.world import Body, World
 from contact_dynamics_interfaces.msg import Poinsot as PoinsotMsg
 from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
-from message_values import (
-    BRICK,
-    NO_OFFSET,
-    WORLD,
-    branches,
-    carried,
+from message_values.contact_modes import (
     contact_mode_answers,
     contact_mode_questions,
-    contact_sets,
-    event_regions,
     geometry_margins,
-    impact_answers,
-    impact_questions,
-    known_states,
+    modes_and_margins,
+    wrench_sets,
+)
+from message_values.impact import impact_answers, impact_questions, resolved_impacts
+from message_values.many import (
     many_contact_modes_answers,
     many_contact_modes_questions,
     many_impacts_answers,
     many_impacts_questions,
-    many_states,
     many_tumblings_answers,
     many_tumblings_questions,
-    modes_and_margins,
-    regions,
-    resolved_impacts,
-    rotations,
+)
+from message_values.shared import (
+    BRICK,
+    NO_OFFSET,
+    WORLD,
+    contact_sets,
+    known_states,
+    many_states,
     same,
+    trajectories,
+)
+from message_values.toss import (
+    branches,
+    event_regions,
+    regions,
     toss_answers,
     toss_distributions,
     toss_events,
     toss_paths,
     toss_questions,
-    trajectories,
-    tumbling_answers,
-    tumbling_questions,
-    wrench_sets,
 )
+from message_values.tumbling import carried, rotations, tumbling_answers, tumbling_questions
 from msg_adapters.batches import (
     body_states_from_msg,
     body_states_to_msg,

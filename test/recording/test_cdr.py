@@ -18,7 +18,9 @@ from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.recording.message_types import Message, message_types
 from contact_dynamics.replay.compare import differences
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
-from message_values import contact_mode_answers, impact_answers, tumbling_answers
+from message_values.contact_modes import contact_mode_answers
+from message_values.impact import impact_answers
+from message_values.tumbling import tumbling_answers
 from msg_adapters.contact_mode import contact_mode_answer_to_msg
 from msg_adapters.impact import impact_answer_to_msg
 from msg_adapters.tumbling import tumbling_answer_to_msg

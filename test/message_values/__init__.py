@@ -1,0 +1,1 @@
+"""Random values of all that travels in messages, by chapter."""
