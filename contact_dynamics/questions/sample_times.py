@@ -325,6 +325,8 @@ def _ascending(field: str, times: ArrayLike) -> FloatArray:
     listed = np.asarray(times)
     _check_count(field, listed.size)
     checked = check_array(field, listed, (None,))
+    if len(checked) < 2:  # as in most questions; NumPy takes long to find that nothing descends
+        return checked
     steps = np.diff(checked)
     for i in np.flatnonzero(steps < 0.0)[:1]:
         raise InvalidFieldError(
