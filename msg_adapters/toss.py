@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError, NotSupportedError
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact import ImpactOutcome
 from contact_dynamics.questions.toss import TossAnswer, TossPath, TossQuestion, TossSampling
 from contact_dynamics.toss import (
@@ -57,6 +57,7 @@ def toss_question_from_msg(request: PredictToss.Request, *, world: World, world_
         rate=optional("rate", request.rate),
         most_alternatives=optional("most_alternatives", request.most_alternatives),
         sampling=_sampling(request) if request.samples else None,
+        lasting_factors=np.array(request.lasting_factors),
     )
 
 
@@ -87,6 +88,8 @@ def _uncertainty(request: PredictToss.Request) -> TossUncertainty:
             velocity=request.velocity_spread,
             spin=request.spin_spread,
             height=request.height_spread,
+            lasting_factors=request.lasting_factors,
+            lasting_factor_stds=request.lasting_factor_stds,
         )
     except InvalidFieldError as error:
         raise InvalidFieldError(names.get(error.field, error.field), error.found, error.allowed) from None
@@ -109,18 +112,15 @@ def toss_question_to_msg(question: TossQuestion, *, world: World, world_frame: s
     msg.restitution_law = int(question.restitution_law)
     msg.horizon, msg.rate = asked_optional(question.horizon), asked_optional(question.rate)
     msg.most_alternatives = asked_optional(question.most_alternatives)
+    msg.lasting_factors = flat(question.lasting_factors)
     sampling = question.sampling
     if sampling is not None:
-        if len(sampling.uncertainty.lasting_factors):
-            message = (
-                "lasting_factors: a request has one friction of each surface, for strikes and for what lasts"
-            )
-            raise NotSupportedError(message)
         msg.samples, msg.seed, msg.to_rest = sampling.count, sampling.seed, sampling.to_rest
         msg.strikes = asked_optional(sampling.strikes)
         msg.parameter_covariance = flat(sampling.uncertainty.covariance)
         msg.velocity_spread, msg.spin_spread = sampling.uncertainty.velocity, sampling.uncertainty.spin
         msg.height_spread = sampling.uncertainty.height
+        msg.lasting_factor_stds = flat(sampling.uncertainty.lasting_factor_stds)
     return msg
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from contact_dynamics.errors import TooLargeError
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact import RestitutionLaw
 from contact_dynamics.questions.extent import check_extent
 from contact_dynamics.questions.knowledge import Knowledge, or_default
@@ -28,7 +28,7 @@ from contact_dynamics.toss import (
 )
 from contact_dynamics.toss.one_toss import HORIZON, MOST_ALTERNATIVES
 from contact_dynamics.toss.sampled import MOST_SAMPLES, MOST_STRIKES
-from contact_dynamics.toss.uncertainty import EXACT
+from contact_dynamics.toss.uncertainty import EXACT, check_factors
 from contact_dynamics.tumbling import Trajectory
 from contact_dynamics.validation import FloatArray, check_choice, check_positive, check_whole
 from contact_dynamics.world import Body
@@ -70,7 +70,7 @@ class TossSampling(Record):
         check_whole("seed", self.seed, 0, 2**32 - 1)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class TossQuestion(Record):
     """Where does a tossed body come to rest, and what happens on the way?
 
@@ -83,9 +83,13 @@ class TossQuestion(Record):
         most_alternatives: How many other ways are followed where mechanics does not decide. None means
             `toss.one_toss.MOST_ALTERNATIVES`.
         sampling: What to sample for a distribution, or None for none.
+        lasting_factors: (s,), >= 0, the friction of each known surface where contact lasts, relative to that
+            of its strikes. Without any, those of the sampling's uncertainty hold, and without these both are
+            the same.
 
     Raises:
-        InvalidFieldError: a number is out of its range, or the law is not a member of its enumeration.
+        InvalidFieldError: a number is out of its range, the law is not a member of its enumeration, or the
+            sampling's uncertainty has other factors.
     """
 
     body: Body | str
@@ -95,6 +99,7 @@ class TossQuestion(Record):
     rate: float | None = None
     most_alternatives: int | None = None
     sampling: TossSampling | None = None
+    lasting_factors: FloatArray = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         """Check the numbers and the law."""
@@ -104,6 +109,14 @@ class TossQuestion(Record):
             object.__setattr__(self, name, None if value is None else check_positive(name, value))
         if self.most_alternatives is not None:
             check_whole("most_alternatives", self.most_alternatives, 0)
+        factors = check_factors("lasting_factors", self.lasting_factors)
+        if self.sampling is not None:
+            sampled = self.sampling.uncertainty.lasting_factors
+            if len(factors) and not np.array_equal(factors, sampled):
+                allowed = "none, or those of the sampling's uncertainty"
+                raise InvalidFieldError("lasting_factors", factors.tolist(), allowed)
+            factors = sampled
+        object.__setattr__(self, "lasting_factors", factors)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -199,7 +212,7 @@ def answer(question: TossQuestion, knowledge: Knowledge | None = None) -> TossAn
         restitution_law=question.restitution_law,
         horizon=horizon,
         most_alternatives=MOST_ALTERNATIVES if most is None else most,
-        lasting_factors=() if sampling is None else sampling.uncertainty.lasting_factors,
+        lasting_factors=question.lasting_factors,
     )
     return TossAnswer(
         body_name=body.name,

@@ -27,7 +27,7 @@ DIGESTS: Final = {
     "PredictContactModeBatch": "d17cfac59f50e7c0",
     "PredictImpactBatch": "55370ec29df49426",
     "PredictTumblingBatch": "f198a921773488f5",
-    "PredictToss": "26823becea0d94f9",
+    "PredictToss": "754ae5479c39721f",
     "PredictTumbling": "d8fea09495ab8bd5",
 }
 """The digest of each service's fields (`digest`). A test compares them with the interface files."""

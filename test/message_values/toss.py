@@ -165,6 +165,8 @@ def toss_questions(draw: st.DrawFn) -> TossQuestion:
         velocity=not_negative,
         spin=not_negative,
         height=not_negative,
+        lasting_factors=st.just([1.5]),
+        lasting_factor_stds=st.sampled_from([(), [0.1]]),
     )
     sampling = st.builds(
         TossSampling,
@@ -174,6 +176,7 @@ def toss_questions(draw: st.DrawFn) -> TossQuestion:
         seed=st.integers(0, 2**32 - 1),
         uncertainty=uncertainty,
     )
+    sampled = draw(some(sampling))
     return TossQuestion(
         body=draw(bodies()),
         state=draw(st.one_of(published, known_states())),
@@ -181,5 +184,6 @@ def toss_questions(draw: st.DrawFn) -> TossQuestion:
         horizon=draw(some(positive)),
         rate=draw(some(positive)),
         most_alternatives=draw(some(indices)),
-        sampling=draw(some(sampling)),
+        sampling=sampled,
+        lasting_factors=[1.5] if sampled or draw(flags) else [],
     )

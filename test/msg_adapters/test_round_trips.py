@@ -375,8 +375,18 @@ def test_a_published_state_of_the_second_body_has_the_requests_stamp() -> None:
         impact_question_to_msg(earlier, world=WORLD, world_frame="world")
 
 
-def test_a_friction_that_lasts_has_no_request() -> None:
-    sampling = TossSampling(count=1, uncertainty=TossUncertainty(lasting_factors=[1.4]))
-    question = TossQuestion(body="brick", sampling=sampling)
-    with pytest.raises(NotSupportedError, match="lasting_factors: a request has one friction"):
-        toss_question_to_msg(question, world=WORLD, world_frame="world")
+@pytest.mark.parametrize("sampled", [False, True])
+def test_a_friction_that_lasts_stands_in_a_request_with_samples_and_without(*, sampled: bool) -> None:
+    known = TossUncertainty(lasting_factors=[1.4], lasting_factor_stds=[0.1])
+    question = (
+        TossQuestion(body="brick", sampling=TossSampling(count=1, uncertainty=known))
+        if sampled
+        else TossQuestion(body="brick", lasting_factors=[1.4])
+    )
+    msg = toss_question_to_msg(question, world=WORLD, world_frame="world")
+    read = toss_question_from_msg(msg, world=WORLD, world_frame="world")
+    np.testing.assert_array_equal(read.lasting_factors, [1.4])
+    assert (read.sampling is not None) == sampled
+    if read.sampling is not None:
+        np.testing.assert_array_equal(read.sampling.uncertainty.lasting_factors, [1.4])
+        np.testing.assert_array_equal(read.sampling.uncertainty.lasting_factor_stds, [0.1])

@@ -116,6 +116,14 @@ def test_the_toss_itself_has_the_friction_that_lasts_as_its_samples_have_it() ->
     alone = toss(CUBE, THROWN, KNOWN.world, lasting_factors=factors)
     np.testing.assert_array_equal(answer.toss.trajectory.p_WB_W[-1], alone.state.p_WB_W)
     assert abs(alone.state.p_WB_W - toss(CUBE, THROWN, KNOWN.world).state.p_WB_W).max() > 1e-3
+    unsampled = ask(TossQuestion(body="cube", state=THROWN, lasting_factors=factors), KNOWN)
+    np.testing.assert_array_equal(unsampled.toss.trajectory.p_WB_W[-1], alone.state.p_WB_W)
+
+
+def test_two_lists_of_factors_are_refused() -> None:
+    sampling = TossSampling(count=1, uncertainty=TossUncertainty(lasting_factors=[1.5]))
+    with pytest.raises(InvalidFieldError, match=r"lasting_factors: found \[1.2\], allowed is none, or those"):
+        TossQuestion(body="cube", state=THROWN, sampling=sampling, lasting_factors=[1.2])
 
 
 def test_a_trajectory_of_too_many_samples_is_refused() -> None:

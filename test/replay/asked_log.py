@@ -108,6 +108,7 @@ def about_tosses(number: int) -> list[Any]:
     sampled.state.angular_velocity.x = 4.0
     sampled.state.covariance = (1e-4 * np.eye(12)).ravel().tolist()
     sampled.velocity_spread, sampled.spin_spread, sampled.height_spread = 0.02, 0.3, 0.001
+    sampled.lasting_factors, sampled.lasting_factor_stds = [1.3], [0.1]
     return [
         PredictToss.Request(body_name="brick", most_alternatives=[0], rate=[10.0]),
         sampled,
