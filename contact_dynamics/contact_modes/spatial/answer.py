@@ -106,19 +106,23 @@ def spatial_contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer:
     return modes_of_case(problem, case, search_of(case, problem.friction_facets))
 
 
-def modes_of_case(problem: SpatialContactProblem, case: SpatialCase, search: Search) -> SpatialModeAnswer:
+def modes_of_case(
+    problem: SpatialContactProblem, case: SpatialCase, search: Search, *, beside_rest: bool = False
+) -> SpatialModeAnswer:
     """Return the answer about a problem none of whose contacts approaches.
 
     Args:
         problem: The problem.
         case: Its case (`spatial_case`).
         search: The search of that case with the problem's facets (`search_of`), which nobody has run yet.
+        beside_rest: Whether it is enough to know if a body at rest has another mode than rest. The answer
+            then need not have all modes where it has several.
 
     Raises:
         TooLargeError: the search takes more trials than `pyramid_programs.MOST_EXAMINED`.
     """
     if problem.sharpen:
-        found = evidenced(case, search, facets=problem.friction_facets)
+        found = evidenced(case, search, facets=problem.friction_facets, beside_rest=beside_rest)
     else:
         found = Evidence(found_by(case, search, sharpen=False), _DOUBT if search.doubtful else "")
         if not (found.modes or found.undecided or search.at_rest or has_none(search)):
@@ -144,15 +148,16 @@ def _answer(
     )
 
 
-def evidenced(case: SpatialCase, search: Search, *, facets: int) -> Evidence:
+def evidenced(case: SpatialCase, search: Search, *, facets: int, beside_rest: bool = False) -> Evidence:
     """Return all modes of a case, with Coulomb's round cones.
 
     Args:
         case: The body with its contacts.
         search: The search of that case.
         facets: The number of edges of its pyramids.
+        beside_rest: As `modes_of_case` has it.
     """
-    found = _sought(case, search, facets)
+    found = _sought(case, search, facets, beside_rest=beside_rest)
     exact = [pair for pair in found.modes if is_exact(pair[0])]
     others = tuple(dict.fromkeys(mode.mode for mode, _ in found.modes if not is_exact(mode)))
     turned = _TURNED.format(", ".join(others)) if others else ""
@@ -199,13 +204,17 @@ def _of_all(case: SpatialCase, letters: str) -> str:
     return "".join(every)
 
 
-def _sought(case: SpatialCase, search: Search, facets: int) -> Evidence:
+def _sought(case: SpatialCase, search: Search, facets: int, *, beside_rest: bool) -> Evidence:
     """Return the modes of a case, also those whose friction could not be turned."""
     kept = found_by(case, search, sharpen=True)
     undecided = _DOUBT if search.doubtful else ""
     slides = bool(np.any(case.sliding[case.touching]))
     if not slides and len(case.touching) == 1 and search.touching[0].friction > 0.0:
         return Evidence(_of_one_contact(case, search, kept), "")
+    if beside_rest and not slides:
+        exact = [pair for pair in by_letters(case, search, kept) if is_exact(pair[0])]
+        if not all(_all_stick(case, search, mode) for mode, _ in exact):
+            return _with_rest(case, search, Evidence(exact, undecided))
     if 2 <= len(search.touching) <= _MOST_COMPLETED and _are_oblique(search):
         found = _completed(case, search, by_letters(case, search, kept))
     else:

@@ -70,7 +70,7 @@ def spatial_statics(problem: SpatialContactProblem, *, margin_length: float | No
     wedged = _decided(wedged_by_round_cones(search), "balance with each other")
     equilibrium, jammed, room = Certainty.NO, Certainty.NO, math.nan
     if _decided(held_by_round_cones(search, np.eye(6, 7)), "balance with the wrench"):
-        answer = modes_of_case(at_rest, case, search)
+        answer = modes_of_case(at_rest, case, search, beside_rest=True)
         alone = answer.verdict == ModeVerdict.UNIQUE and answer.modes[0].motion_unique
         equilibrium = Certainty.CERTAIN if alone else Certainty.POSSIBLE
         smooth = held_by_round_cones(search, np.eye(6, 7), smooth=True)

@@ -139,6 +139,9 @@ def check_modes_and_statics(answer: SpatialModeAnswer, held: BodyStatics, draw: 
     assert held.jammed in {Certainty.NO, held.equilibrium}
     if held.equilibrium == Certainty.CERTAIN:
         assert (answer.verdict, len(answer.modes)) == (ModeVerdict.UNIQUE, 1)
+    else:  # statics stop at a second mode, and may not take one that is none
+        alone = answer.verdict == ModeVerdict.UNIQUE and answer.modes[0].motion_unique
+        assert not alone
     if math.isinf(held.stable_disturbance):
         assert held.wedged
 
