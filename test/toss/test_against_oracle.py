@@ -48,6 +48,14 @@ def as_matrices(y: np.ndarray) -> np.ndarray:
     return np.concatenate([y[:3], R.ravel(), y[7:]])
 
 
+def speeds(body: HeldBody, y: np.ndarray, corners: list[int]) -> np.ndarray:
+    """The speeds along the floor of corners of a body whose 13 numbers are y, m/s."""
+    x = as_matrices(y)
+    arms = body.corners_B[corners] @ x[3:12].reshape(3, 3).T
+    found: np.ndarray = np.linalg.norm((x[12:15] + np.cross(x[15:], arms))[:, :2], axis=1)
+    return found
+
+
 def phases(went: Toss) -> list[tuple[tuple[int, ...], str, list[PhaseStep]]]:
     """The corners, the letters and the steps of each contact phase."""
     found = []
@@ -81,28 +89,29 @@ def test_each_contact_phase_is_that_of_the_oracle(seed: int, friction: float, er
         start = np.array(steps[0].y)
         x = as_matrices(start)
         end = steps[-1].start + steps[-1].span
-        arms = body.corners_B[list(corners)] @ x[3:12].reshape(3, 3).T
-        speeds = np.linalg.norm((x[12:15] + np.cross(x[15:], arms))[:, :2], axis=1)
-        slides = np.array([letter == "c" for letter in letters])
-        if len(corners) > 3 or (slides & (speeds < 1e-2)).any():
+        sliding = [corner for corner, letter in zip(corners, letters, strict=True) if letter == "c"]
+        if len(corners) > 3 or (speeds(body, start, sliding) < 1e-2).any():
             continue  # forces are not unique, or sliding has only just begun and has no direction yet
         last = np.array(steps[-1].at(end))
         final = as_matrices(last)
-        arms = body.corners_B[list(corners)] @ final[3:12].reshape(3, 3).T
-        if (
-            slides & (np.linalg.norm((final[12:15] + np.cross(final[15:], arms))[:, :2], axis=1) < 1e-3)
-        ).any():
-            continue  # it stops sliding, where the oracle's direction is rounding
+        off_at_most = 10.0 * len(steps) * error
+        slowest = min(
+            speeds(body, np.array(step.at(step.start + share * step.span)), sliding).min(initial=np.inf)
+            for step in steps
+            for share in np.linspace(0.0, 1.0, 20)
+        )
+        if slowest < max(1e-3, off_at_most):
+            continue  # it may stop sliding within the error, and the oracle's direction is rounding there
         rows = held_motion(body, x, corners, letters, np.linspace(0.0, end - steps[0].start, 12))
         scales = np.array([1.0] * 3 + [REACH] * 9 + [1.0] * 3 + [REACH] * 3)
         off = np.abs((final - rows[-1]) * scales).max()
-        assert off <= 10.0 * len(steps) * error, (corners, letters)
+        assert off <= off_at_most, (corners, letters)
         for row in rows:
             forces = accelerations(body, row, corners, letters)[6:].reshape(-1, 3)
             weight = MASS * GRAVITY
             assert forces[:, 2].min() >= -1e-5 * weight - weight * error / REACH
             heights = row[2] + body.corners_B @ row[3:12].reshape(3, 3)[2]
-            assert heights.min() >= -2.0 * GRAZING_DEPTH - 10.0 * len(steps) * error
+            assert heights.min() >= -2.0 * GRAZING_DEPTH - off_at_most
         # A corner that was a little below already, by rounding or a low rebound, may go on so.
         before, after = (
             {touch[1]: height for height, _, touch in heights_and_rates(solid, y.tolist())}
