@@ -34,5 +34,11 @@ def sentence(
 ) -> str:
     """Return what an answer about a body says, with a remark, and how long it took, s, if that is known."""
     said = [*words, remark] if remark else words
-    took = "" if computation_time is None else f" ({computation_time * 1e3:.2g} ms)"
+    took = "" if computation_time is None else f" ({_in_ms(computation_time)})"
     return f"{body_name or 'a body'} {'; '.join(said)}{took}"
+
+
+def _in_ms(seconds: float) -> str:
+    """Return a time in ms with two digits or more, and without a power of ten."""
+    ms = seconds * 1e3
+    return f"{ms:.0f} ms" if ms >= 10.0 else f"{ms:.2g} ms"
