@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from contact_dynamics.demo.questioner import LAST_MOMENT
+from contact_dynamics.motion.velocity_estimate import WINDOW
 from contact_dynamics.rotations.many import rotation_vectors
 from contact_dynamics_interfaces.msg import Impact
 from msg_adapters.geometry import vector_from_msg
@@ -20,6 +23,10 @@ if TYPE_CHECKING:
 
 SAME_STRIKE: Final = 0.03
 """s. A predicted strike and a measured one that are closer than this are the same."""
+
+ENOUGH_FLIGHT: Final = 2.0 * WINDOW + LAST_MOMENT
+"""s. A landing after so much flight can be predicted: velocities look back over one window, and another one
+passes until the bounce is out of it. Shorter flights are left out without a word."""
 
 _AVERAGED: Final = 12  # number of frames at each end of the rest, whose means show whether the body moved
 
@@ -78,11 +85,28 @@ def print_table(toss: Toss, events: MeasuredEvents, questioner: Questioner) -> N
         print(f"\nt = {section.time:.3f} s, {section.title}")
         for row in section.rows:
             print(f"  {row.quantity:32}{row.predicted:>27}{row.measured:>27}{row.difference:>16}")
+    if missed := not_asked(events, [asked.time for asked in questioner.flights]):
+        times = ", ".join(f"{time:.3f} s" for time in missed)
+        print(f"\nNot asked in time, so not in the table: the landing at t = {times}. The machine was busy.")
     print(
         f"\nThe states that were published carry noise: {1e3 * toss.velocity_noise:.0f} mm/s and "
         f"{toss.angular_velocity_noise:.2f} rad/s in each component of their velocities.\n"
         f"They were on their way for at most {1e3 * questioner.latest:.0f} ms."
     )
+
+
+def not_asked(events: MeasuredEvents, times: list[float]) -> list[float]:
+    """Return when the body landed after enough flight, s, although nobody asked during that flight.
+
+    Args:
+        times: when somebody asked where the body will be, s.
+    """
+    strikes = [0.0, *(strike.time for strike in events.strikes)]
+    return [
+        landing
+        for start, landing in pairwise(strikes)
+        if landing - start >= ENOUGH_FLIGHT and not any(start <= time < landing for time in times)
+    ]
 
 
 def _strike_at(events: MeasuredEvents, time: float) -> MeasuredStrike | None:
