@@ -2,128 +2,42 @@
 
 from __future__ import annotations
 
-import select
 import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-import rclpy
-from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
-from nav_msgs.msg import Odometry
-from rcl_interfaces.srv import SetParametersAtomically
-from rclpy.context import Context
-from rclpy.executors import SingleThreadedExecutor
-from rclpy.node import Node
-from rclpy.parameter import Parameter
-from rclpy.qos import QoSProfile
+from geometry_msgs.msg import Vector3
 from scipy.spatial.transform import Rotation
 from service_msgs.msg import ServiceEventInfo
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore", DeprecationWarning)  # of Python 3.10, at rerun's import
-    from contact_dynamics.nodes.visualizer import Visualizer
-    from viewing.drawn import STAMP_NS, Drawn, read_drawn
+    from viewing.drawn import STAMP_NS
 
-from contact_dynamics.nodes.parameter_reader import ConfigurationError
-from contact_dynamics.replay.run import main as replay
 from contact_dynamics_interfaces.msg import (
-    BodyState,
     ContactMode,
-    ContactSet,
     Impact,
     ModeWrenches,
-    Poinsot,
-    Trajectory,
 )
-from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
-from msg_adapters.stamps import stamp_to_msg
-from running_server import DOMAIN_ID, PATIENCE_S, ROOT, process, server_and_client, wait_for
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
     from pathlib import Path
 
-CENTER = np.array([0.02, -0.01, 0.005])  # m, of mass, in the body's frame
-CONFIGURATION = {
-    "bodies": ["brick"],
-    "body.brick.mass": 0.4,
-    "body.brick.inertia": [0.00035, 0.00083, 0.00102, 0.0, 0.0, 0.0],
-    "body.brick.center_of_mass": CENTER.tolist(),
-    "body.brick.box": [0.15, 0.09, 0.05],
-    "body.brick.odometry_topic": "/brick/odometry",
-    "surfaces": ["floor"],
-    "surface.floor.friction": 0.3,
-    "surface.floor.restitution": 0.5,
-}
-TURNED = [0.1, -0.5, 0.7, 0.5]  # x, y, z, w
-SERVICES = {
-    "predict_tumbling": PredictTumbling,
-    "predict_impact": PredictImpact,
-    "predict_contact_mode": PredictContactMode,
-}
-SPATIAL = PredictContactMode.Request.SPATIAL
-PATIENCE = 300  # spins of up to 0.1 s
-
-
-class Bench:
-    """A visualizer, and a node that publishes what a server and a body would."""
-
-    def __init__(self, path: Path, *, strict: bool) -> None:
-        self.path = path
-        self._context = Context()
-        rclpy.init(context=self._context, domain_id=DOMAIN_ID)
-        values = {**CONFIGURATION, "rrd_path": str(path)}
-        overrides = [Parameter(name, value=value) for name, value in values.items()]
-        self.visualizer = Visualizer(strict=strict, context=self._context, parameter_overrides=overrides)
-        self.node = Node("outside", context=self._context)
-        self._executor = SingleThreadedExecutor(context=self._context)
-        self._executor.add_node(self.visualizer)
-        self._executor.add_node(self.node)
-        qos = QoSProfile(depth=1000)
-        self.states = self.node.create_publisher(Odometry, "/brick/odometry", qos)
-        self._events = {
-            name: self.node.create_publisher(service.Event, f"/contact_dynamics/{name}/_service_event", qos)
-            for name, service in SERVICES.items()
-        }
-        self.received = 0
-        for subscription in [*self.visualizer.subscriptions, *self.visualizer.inbox]:
-            if subscription.topic_name == "/parameter_events":
-                continue  # every node publishes there
-            subscription.callback = self._counting(subscription.callback)
-        publishers = [self.states, *self._events.values()]
-        self.spin_until(lambda: all(publisher.get_subscription_count() == 1 for publisher in publishers))
-
-    def _counting(self, callback: Callable[[Any], None]) -> Callable[[Any], None]:
-        def receive(msg: Any) -> None:
-            self.received += 1
-            callback(msg)
-
-        return receive
-
-    def spin_until(self, done: Callable[[], bool]) -> None:
-        for _ in range(PATIENCE):
-            if done():
-                return
-            self._executor.spin_once(timeout_sec=0.1)
-        pytest.fail("nothing came")
-
-    def answer(self, name: str, response: Any, kind: int = ServiceEventInfo.RESPONSE_SENT) -> None:
-        """Publish a service event, and wait until it has been received."""
-        info = ServiceEventInfo(event_type=kind, stamp=stamp_to_msg(STAMP_NS + 7))
-        self._events[name].publish(SERVICES[name].Event(info=info, response=[response]))
-        expected = self.received + 1
-        self.spin_until(lambda: self.received == expected)
-
-    def drawn(self) -> Drawn:
-        assert self.visualizer.close()
-        return read_drawn(self.path)
-
-    def end(self) -> None:
-        self._executor.shutdown()
-        self.node.destroy_node()
-        self.visualizer.destroy_node()
-        rclpy.shutdown(context=self._context)
+from nodes.visualizer_bench import (
+    CENTER,
+    SPATIAL,
+    STAMP_NS,
+    TURNED,
+    Bench,
+    body_state,
+    impact_answer,
+    odometry,
+    tumbling_answer,
+    two_contacts,
+)
 
 
 @pytest.fixture
@@ -131,74 +45,6 @@ def bench(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Bench]:
     bench = Bench(tmp_path / "drawn.rrd", strict=getattr(request, "param", True))
     yield bench
     bench.end()
-
-
-def odometry(stamp_ns: int, x: float) -> Odometry:
-    msg = Odometry(child_frame_id="brick")
-    msg.header.frame_id = "world"
-    msg.header.stamp = stamp_to_msg(stamp_ns)
-    msg.pose.pose = Pose(position=Point(x=x, y=0.0, z=1.0), orientation=quaternion(TURNED))
-    return msg
-
-
-def quaternion(numbers: list[float]) -> Quaternion:
-    x, y, z, w = numbers
-    return Quaternion(x=x, y=y, z=z, w=w)
-
-
-def body_state(stamp_ns: int = STAMP_NS, body_name: str = "brick") -> BodyState:
-    msg = BodyState(body_name=body_name)
-    msg.header.frame_id = "world"
-    msg.header.stamp = stamp_to_msg(stamp_ns)
-    msg.pose = Pose(position=Point(x=0.5, y=0.0, z=1.0), orientation=quaternion(TURNED))
-    msg.linear_velocity = Vector3(x=1.0, y=0.0, z=-2.0)
-    return msg
-
-
-def two_contacts() -> ContactSet:
-    return ContactSet(
-        positions=[0.1, 0.0, 0.0, -0.1, 0.0, 0.0],
-        normals=[0.0, 0.0, 1.0, 0.0, 0.0, 1.0],
-        frictions=[0.3, 0.3],
-        restitutions=[0.5, 0.5],
-        surface_names=["floor", "floor"],
-    )
-
-
-def tumbling_answer(stamp_ns: int = STAMP_NS) -> PredictTumbling.Response:
-    return PredictTumbling.Response(
-        state=body_state(stamp_ns),
-        trajectory=Trajectory(
-            times=[0.0, 0.1],
-            positions=[0.5, 0.0, 1.0, 0.6, 0.0, 0.8],
-            orientations=[0.0, 0.0, 0.0, 1.0, *TURNED],
-            linear_velocities=[1.0, 0.0, -2.0, 1.0, 0.0, -3.0],
-            angular_velocities=[0.0] * 6,
-        ),
-        event=PredictTumbling.Response.CONTACT,
-        event_time=0.1,
-        event_point=Point(x=0.6, y=0.0, z=0.0),
-        event_velocity=Vector3(x=3.0, y=0.0, z=-4.0),
-        event_surface="floor",
-        poinsot=Poinsot(regime=Poinsot.ABOUT_MAJOR_AXIS, principal_moments=[0.01, 0.04, 0.0625]),
-        computation_time=0.0012,
-    )
-
-
-def impact_answer(contacts: ContactSet) -> PredictImpact.Response:
-    impact = Impact(
-        outcome=Impact.STICKS_IN_COMPRESSION,
-        state_after=body_state(),
-        impulses=[0.3, 0.0, 0.4, 0.0, 0.0, 0.0],
-        path=[0.0, 0.0, 0.0, 0.3, 0.0, 0.4],
-        path_events=[Impact.START, Impact.RESTITUTION_ENDS],
-        path_contacts=[0, 0],
-        kinetic_energy_before=1.0,
-        kinetic_energy_after=0.25,
-    )
-    return PredictImpact.Response(
-        impact=impact, time_to_contact=0.05, state_before=body_state(), contacts=contacts, problem=2
-    )
 
 
 def test_a_struck_body_and_strikes_in_sequence_are_told(bench: Bench) -> None:
@@ -434,122 +280,3 @@ def test_strictly_it_raises(bench: Bench) -> None:
     broken.positions = [0.1]
     with pytest.raises(ValueError, match="positions"):
         bench.answer("predict_impact", impact_answer(broken))
-
-
-@pytest.mark.parametrize(
-    ("values", "words"),
-    [
-        ({}, "needed is somewhere to draw to"),
-        ({"spawn": True, "serve": True}, "spawn and serve: found 2 ways to a viewer"),
-        ({"serve": True, "connect": "rerun+http://127.0.0.1:1/proxy"}, "serve and connect"),
-        ({"rrd_path": 3}, "rrd_path"),
-        ({"rrd_path": "a.rrd", "port": 0}, "port"),
-        ({"rrd_path": "a.rrd", "surface_side": -1.0}, "surface_side"),
-        ({"rrd_path": "a.rrd", "predictions": 0}, "predictions"),
-        ({"rrd_path": "a.rrd", "rrd_file_size": -1}, "rrd_file_size"),
-        ({"rrd_path": "a.rrd", "rrd_most_files": -1}, "rrd_most_files"),
-        ({"serve": True, "viewer_memory": "much"}, "viewer_memory: found 'much'"),
-        ({"serve": True, "web_port": 65536}, "web_port"),
-    ],
-)
-def test_parameters_that_are_not_allowed_are_named(values: dict[str, Any], words: str) -> None:
-    context = Context()
-    rclpy.init(context=context, domain_id=DOMAIN_ID)
-    try:
-        overrides = [Parameter(name, value=value) for name, value in {**CONFIGURATION, **values}.items()]
-        with pytest.raises(ConfigurationError, match=words):
-            Visualizer(context=context, parameter_overrides=overrides)
-    finally:
-        rclpy.shutdown(context=context)
-
-
-def visualizer_with(**parameters: object) -> tuple[str, ...]:
-    """Return the arguments of a visualizer of the world that the project's file configures."""
-    assigned = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
-    return ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", *assigned)
-
-
-def test_a_file_that_cannot_be_written_ends_the_process_with_its_name(tmp_path: Path) -> None:
-    path = tmp_path / "nowhere" / "a.rrd"
-    with process("visualizer", *visualizer_with(rrd_path=path), ready="nowhere/a.rrd") as started:
-        assert started.wait(PATIENCE_S) == 2
-
-
-def test_answers_of_a_server_are_drawn_by_a_process_beside_it(tmp_path: Path) -> None:
-    path = tmp_path / "drawn.rrd"
-    state = body_state()
-    asked = PredictTumbling.Request(
-        body_name="brick", state_source=PredictTumbling.Request.STATE_EXPLICIT, state=state
-    )
-    asked.sampling, asked.rate, asked.duration = PredictTumbling.Request.AT_RATE, [100.0], [0.25]
-    with (
-        server_and_client(tmp_path / "log") as client,
-        process("visualizer", *visualizer_with(rrd_path=path), ready="ready") as started,
-    ):
-        answer = client.ask(asked)
-        assert answer.status == answer.OK, answer.message
-        # Events from before the two processes have found each other are lost: ask until one is drawn.
-        client.spin_until(lambda: client.ask(asked) and b"brick/newest_end" in path.read_bytes())
-    assert started.returncode == 0
-    drawn = read_drawn(path)
-    strip = drawn.array("/world/predicted/brick/path", "LineStrips3D:strips")[0]
-    np.testing.assert_allclose(strip, np.array(answer.trajectory.positions).reshape(-1, 3), atol=1e-6)
-
-
-def height_of_the_table(path: Path) -> float:
-    """Where a picture has the surface that came while it was drawn, before states came or after."""
-    drawn = read_drawn(path)
-    patch = max(path for path, _ in drawn.values if path.startswith("/world/surfaces/table/patch"))
-    return float(drawn.array(patch, "Mesh3D:vertex_positions")[0, 2])
-
-
-def test_the_picture_follows_the_configuration_of_the_server(tmp_path: Path) -> None:
-    path = tmp_path / "drawn.rrd"
-    arguments = (
-        "--params-file",
-        str(ROOT / "config" / "server.yaml"),
-        "--ros-args",
-        "-p",
-        f"rrd_path:={path}",
-    )
-    with server_and_client(tmp_path) as client:
-        with process("visualizer", *arguments, ready="ready") as visualizer:
-            states = client.publisher(Odometry, "/brick/odometry")
-            client.spin_until(lambda: states.get_subscription_count() == 2)
-            for _ in range(10):
-                states.publish(odometry(client.node.get_clock().now().nanoseconds, 0.0))
-            setter = client.node.create_client(
-                SetParametersAtomically, "/contact_dynamics/set_parameters_atomically"
-            )
-            assert setter.wait_for_service(PATIENCE_S)
-            tables = {"surfaces": ["floor", "table"], "surface.table.point": [0.0, 0.0, 0.5]}
-            tables |= {"surface.table.friction": 0.1, "surface.table.restitution": 0.1}
-
-            def configure(values: dict[str, Any]) -> None:
-                parameters = [
-                    Parameter(name, value=value).to_parameter_msg() for name, value in values.items()
-                ]
-                future = setter.call_async(SetParametersAtomically.Request(parameters=parameters))
-                client.spin_until(future.done)
-                assert future.result().result.successful
-
-            def is_drawn() -> bool:
-                """Set them again as long as the visualizer does not hear the server's parameter events."""
-                configure(tables)
-                assert visualizer.stdout is not None
-                readable = select.select([visualizer.stdout], [], [], 2.0)[0]
-                return bool(readable) and "brick, floor, table" in visualizer.stdout.readline()
-
-            client.spin_until(is_drawn)
-            configure(tables)  # nothing new
-            configure({"most_states": 1000})  # nothing that is drawn
-            configure({"surface.table.point": [0.0, 0.0, 0.75]})
-            wait_for(visualizer, "brick, floor, table")
-            # What comes after all events of the changes stands in the next line.
-            configure({"surfaces": ["floor"]})
-            assert wait_for(visualizer, "configured with now").endswith("now: brick, floor\n")
-        assert height_of_the_table(path) == 0.75
-        log = next(each for each in tmp_path.iterdir() if each.is_dir())
-    again = tmp_path / "again.rrd"
-    assert replay(["view", str(log), "--rrd", str(again)]) == 0
-    assert height_of_the_table(again) == 0.75

@@ -1,4 +1,4 @@
-"""One contact in space: two independent integrations, closed forms, the plane inside it, properties."""
+"""One contact in space: two independent integrations, closed forms, the plane inside it, special cases."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from contact_dynamics.contact.contact import Contact
@@ -20,59 +20,9 @@ from contact_dynamics.impact import (
     spatial_impact,
 )
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
-from contact_dynamics.rigid_body.body import BodyState, MassProperties, kinetic_energy
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from impact.spatial.drawn_problem import IDENTITY, UP, random_problem, random_rotation, solve
 from oracles import impact_increments, impact_keller
-
-UP = np.array([0.0, 0.0, 1.0])
-IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
-
-
-def random_rotation(rng: np.random.Generator) -> np.ndarray:
-    q, r = np.linalg.qr(rng.normal(size=(3, 3)))
-    q = q * np.sign(np.diag(r))
-    return q if np.linalg.det(q) > 0.0 else -q
-
-
-def random_body(rng: np.random.Generator, *, slender: float = 3.0) -> MassProperties:
-    second_moments = rng.uniform(0.0, slender, size=3) ** 2 + 0.01
-    axes = random_rotation(rng)
-    inertia = axes @ np.diag(second_moments.sum() - second_moments) @ axes.T
-    return MassProperties(mass=float(rng.uniform(0.3, 3.0)), I_B=0.5 * (inertia + inertia.T))
-
-
-def random_problem(seed: int) -> dict[str, object]:
-    """Draw a body with an approaching contact; speeds, arm and friction each in its own scale."""
-    rng = np.random.default_rng(seed)
-    body = random_body(rng)
-    quaternion = rng.normal(size=4)
-    normal = rng.normal(size=3)
-    normal /= np.linalg.norm(normal)
-    arm = rng.normal(size=3) * 10.0 ** rng.uniform(-1.0, 0.5)
-    w = rng.normal(size=3) * 10.0 ** rng.uniform(-1.0, 0.5)
-    tangential = np.cross(normal, rng.normal(size=3)) * 10.0 ** rng.uniform(-2.0, 0.5)
-    contact_velocity = tangential - normal * 10.0 ** rng.uniform(-1.0, 0.5)
-    position = rng.normal(size=3)
-    return {
-        "body": body,
-        "state": BodyState(
-            p_WB_W=position,
-            q_WB=quaternion / np.linalg.norm(quaternion),
-            v_WB_W=contact_velocity - np.cross(w, arm),
-            w_WB_W=w,
-        ),
-        "p_WC_W": position + arm,
-        "n_W": normal,
-        "friction": float(10.0 ** rng.uniform(-1.5, 0.7)),
-        "restitution": float(rng.choice([0.0, 1.0, rng.uniform()])),
-    }
-
-
-def solve(problem: dict[str, object], law: RestitutionLaw = RestitutionLaw.POISSON) -> SpatialImpact:
-    names = {"p_WC_W": "p_WC_W", "n_W": "normal_W", "friction": "friction", "restitution": "restitution"}
-    contact = Contact(**{names[name]: problem[name] for name in names})
-    rest = {name: value for name, value in problem.items() if name not in {"body", "state", *names}}
-    return spatial_impact(problem["body"], problem["state"], contact, restitution_law=law, **rest)  # type: ignore[arg-type]
-
 
 # Independent integrations.
 
@@ -375,115 +325,6 @@ def test_planes_along_the_axes_have_planar_answers_to_rounding(law: RestitutionL
     lifting = abs(flat.inverse_inertia.c - friction * abs(flat.inverse_inertia.b))
     amplified = 1.0 + flat.inverse_inertia.c / lifting if friction < 100.0 else 2.0
     assert answer.path_W == pytest.approx(vertices, abs=1e-13 * amplified * math.hypot(*flat.impulse))
-
-
-# What every answer obeys.
-
-
-@pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=50, deadline=None)
-@given(seed=st.integers(0, 2**32))
-def test_admissible(law: RestitutionLaw, seed: int) -> None:
-    problem = random_problem(seed)
-    answer = solve(problem, law)
-    normal, mu, body = problem["n_W"], problem["friction"], problem["body"]
-    i_n = float(answer.impulse_W @ normal)
-    size = float(np.linalg.norm(answer.impulse_W))
-    assert np.linalg.norm(answer.impulse_W - i_n * normal) <= mu * i_n * (1 + 1e-12) + 1e-14 * size
-    speed = float(np.linalg.norm(answer.velocity_before_W))
-    after = answer.state.velocity_of_point(problem["p_WC_W"])
-    assert after == pytest.approx(answer.velocity_after_W, abs=1e-10 * speed)
-    assert answer.velocity_after_W @ normal >= -1e-12 * speed
-    if answer.outcome.sticks:
-        sliding = answer.velocity_after_W - normal * (normal @ answer.velocity_after_W)
-        assert np.linalg.norm(sliding) <= 1e-13 * speed
-    if law is not RestitutionLaw.NEWTON:
-        assert not answer.creates_energy
-    before_energy = kinetic_energy(body, problem["state"])
-    assert kinetic_energy(body, answer.state) - before_energy == pytest.approx(
-        answer.energy_change, abs=1e-11 * max(before_energy, size * speed)
-    )
-
-
-@pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=30, deadline=None)
-@given(seed=st.integers(0, 2**32))
-def test_laws_mean_what_they_say(law: RestitutionLaw, seed: int) -> None:
-    problem = random_problem(seed)
-    answer = solve(problem, law)
-    assume(answer.path_events.count(PathEvent.COMPRESSION_ENDS) == 1)
-    normal, e = problem["n_W"], problem["restitution"]
-    if law is RestitutionLaw.POISSON:
-        assert answer.restitution_W @ normal == pytest.approx(
-            e * (answer.compression_W @ normal), rel=1e-9, abs=1e-14
-        )
-    elif law is RestitutionLaw.NEWTON:
-        assert answer.velocity_after_W @ normal == pytest.approx(
-            -e * (answer.velocity_before_W @ normal), rel=1e-9, abs=1e-12
-        )
-    at_end = (
-        problem["state"].velocity_of_point(problem["p_WC_W"])
-        + answer.inverse_inertia_W @ answer.compression_W
-    )
-    assert at_end @ normal == pytest.approx(0.0, abs=1e-10 * float(np.linalg.norm(at_end) + 1.0))
-
-
-@settings(max_examples=30, deadline=None)
-@given(seed=st.integers(0, 2**32), mirror=st.booleans())
-def test_turned_and_mirrored_problems_have_turned_and_mirrored_answers(seed: int, mirror: bool) -> None:  # noqa: FBT001
-    problem = random_problem(seed)
-    problem["friction"] = min(problem["friction"], 1.0)
-    state, body = problem["state"], problem["body"]
-    turn = random_rotation(np.random.default_rng(seed + 1))
-    if mirror:
-        turn = turn @ np.diag([1.0, 1.0, -1.0])
-    sign = np.linalg.det(turn)
-    inertia = turn @ body.inertia_in_world(state.R_WB) @ turn.T
-    image = {
-        **problem,
-        "body": MassProperties(mass=body.mass, I_B=0.5 * (inertia + inertia.T)),
-        "state": BodyState(
-            p_WB_W=turn @ state.p_WB_W,
-            q_WB=IDENTITY,
-            v_WB_W=turn @ state.v_WB_W,
-            w_WB_W=sign * (turn @ state.w_WB_W),
-        ),
-        "p_WC_W": turn @ problem["p_WC_W"],
-        "n_W": turn @ problem["n_W"],
-    }
-    answer, other = solve(problem), solve(image)
-    # Paths that pass close to a stop amplify rounding: that is the problem's, so the bound is far above
-    # rounding.
-    assert other.impulse_W == pytest.approx(
-        turn @ answer.impulse_W, abs=1e-7 * float(np.linalg.norm(answer.impulse_W))
-    )
-
-
-@pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=30, deadline=None)
-@given(seed=st.integers(0, 2**32))
-def test_mirrored_problems_have_mirrored_answers_to_the_last_bit(law: RestitutionLaw, seed: int) -> None:
-    """In a coordinate plane, since only signs change."""
-    problem = random_problem(seed)
-    state, body = problem["state"], problem["body"]
-    mirror = np.array([1.0, -1.0, 1.0])
-    image = {
-        **problem,
-        "body": MassProperties(mass=body.mass, I_B=body.I_B * np.outer(mirror, mirror)),
-        "state": BodyState(
-            p_WB_W=state.p_WB_W * mirror,
-            q_WB=state.q_WB * [-1.0, 1.0, -1.0, 1.0],
-            v_WB_W=state.v_WB_W * mirror,
-            w_WB_W=-state.w_WB_W * mirror,
-        ),
-        "p_WC_W": problem["p_WC_W"] * mirror,
-        "n_W": problem["n_W"] * mirror,
-    }
-    answer, other = solve(problem, law), solve(image, law)
-    assert other.outcome is answer.outcome
-    assert other.impulse_W.tolist() == (answer.impulse_W * mirror).tolist()
-    assert other.state.v_WB_W.tolist() == (answer.state.v_WB_W * mirror).tolist()
-    assert other.state.w_WB_W.tolist() == (-answer.state.w_WB_W * mirror).tolist()
 
 
 # Special cases by name.

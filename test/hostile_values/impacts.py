@@ -1,0 +1,196 @@
+"""Calls about impacts and tosses, and which of their arguments become hostile."""
+
+import numpy as np
+
+from contact_dynamics import (
+    BodyState,
+    PlanarContact,
+    PlanarVelocity,
+    impact,
+    impact_sequence,
+    planar_impact,
+    several_impact,
+    spatial_impact,
+)
+from contact_dynamics.impact import StrikingBodies
+from contact_dynamics.toss import toss
+from hostile_values.shared import (
+    BALL,
+    BOX,
+    CONTACT,
+    CONTACTS,
+    FALLING,
+    LEAN,
+    RESTING,
+    ROD,
+    SEVERAL,
+    STATE,
+    STRIKERS,
+    TIP,
+    WHERE,
+    WORLD,
+    Calls,
+)
+
+IMPACTS: Calls = {
+    "StrikingBodies": (StrikingBodies, STRIKERS, set()),
+    "spatial_impact": (
+        spatial_impact,
+        {**WHERE, "contact": CONTACT, "velocity_tolerance": 1e-9},
+        {"velocity_tolerance"},
+    ),
+    "several_impact": (several_impact, SEVERAL, {"velocity_tolerance"}),
+    "outcomes_over_orders": (
+        impact.outcomes_over_orders,
+        {**SEVERAL, "most_orders": 2},
+        {"velocity_tolerance", "most_orders"},
+    ),
+    "outcomes_at_once": (
+        impact.outcomes_at_once,
+        {**SEVERAL, "most_orders": 2},
+        {"velocity_tolerance", "most_orders"},
+    ),
+    "outcomes_over_interleavings": (
+        impact.outcomes_over_interleavings,
+        {**SEVERAL, "samples": 1, "seed": 0},
+        {"velocity_tolerance", "samples", "seed"},
+    ),
+    "jamming_impact": (
+        impact.jamming_impact,
+        {
+            **SEVERAL,
+            "state": RESTING,
+            "force_W": [1.0, 0.0, -9.8],
+            "torque_W": [0.1, 0.0, 0.0],
+            "plane_normal_W": [0.0, 1.0, 0.0],
+            "friction_facets": 8,
+        },
+        {"velocity_tolerance", "force_W", "torque_W", "friction_facets", "plane_normal_W"},
+    ),
+    "planar_impact": (
+        planar_impact,
+        {
+            "body": ROD,
+            "velocity": PlanarVelocity(**LEAN),
+            "contact": PlanarContact(**TIP),
+            "velocity_tolerance": 1e-9,
+        },
+        {"velocity_tolerance"},
+    ),
+    "planar_impacts": (
+        impact.planar_impacts,
+        {
+            "masses": 1.0,
+            "inertias": 0.5,
+            "v": (0.3, -1.0),
+            "w": 0.5,
+            "r": (0.2, -0.5),
+            "normals": (0.0, 1.0),
+            "frictions": 0.5,
+            "restitutions": 0.5,
+            "velocity_tolerance": 1e-9,
+        },
+        set(),
+    ),
+    "spatial_impacts": (
+        impact.spatial_impacts,
+        {
+            "bodies": StrikingBodies(**STRIKERS),
+            "normals_W": [0.0, 0.0, 1.0],
+            "frictions": 0.5,
+            "restitutions": 0.5,
+            "velocity_tolerance": 1e-9,
+        },
+        {"normals_W", "frictions", "restitutions", "velocity_tolerance"},
+    ),
+    "planar_impact_distribution": (
+        impact.planar_impact_distribution,
+        {
+            "body": ROD,
+            "velocity": PlanarVelocity(**LEAN),
+            "contact": PlanarContact(**TIP),
+            "covariance": 1e-4 * np.eye(3),
+            "samples": 10,
+            "seed": 0,
+            "velocity_tolerance": 1e-9,
+        },
+        {"covariance", "samples", "seed", "velocity_tolerance"},
+    ),
+    "spatial_impact_distribution": (
+        impact.spatial_impact_distribution,
+        {
+            **WHERE,
+            "contact": CONTACT,
+            "covariance": 1e-4 * np.eye(12),
+            "samples": 10,
+            "seed": 0,
+            "velocity_tolerance": 1e-9,
+        },
+        {"covariance", "samples", "seed", "velocity_tolerance"},
+    ),
+    "impact_sequence": (
+        impact_sequence,
+        {
+            "body": BOX,
+            "state": STATE,
+            "world": WORLD,
+            "window": 0.5,
+            "most_strikes": 3,
+            "distance_tolerance": 1e-6,
+            "velocity_tolerance": 1e-9,
+            "hold_step": None,
+        },
+        {"window", "most_strikes", "distance_tolerance", "velocity_tolerance", "hold_step"},
+    ),
+    "impact_sequence_of": (
+        impact.impact_sequence_of,
+        {
+            **WHERE,
+            "contacts": CONTACTS,
+            "gravity_W": [0.0, 0.0, -9.8],
+            "window": 0.05,
+            "most_strikes": 3,
+            "distance_tolerance": 1e-6,
+            "velocity_tolerance": 1e-9,
+            "hold_step": None,
+        },
+        {"gravity_W", "window", "most_strikes", "distance_tolerance", "velocity_tolerance", "hold_step"},
+    ),
+    "spatial_pair_impact": (
+        impact.spatial_pair_impact,
+        {
+            **WHERE,
+            "other": BALL,
+            "other_state": BodyState(**{**FALLING, "v_WB_W": [0, 0, 1]}),
+            "contact": CONTACT,
+            "velocity_tolerance": 1e-9,
+        },
+        {"velocity_tolerance"},
+    ),
+    "planar_pair_impact": (
+        impact.planar_pair_impact,
+        {
+            "body": ROD,
+            "velocity": PlanarVelocity(**LEAN),
+            "other": ROD,
+            "other_velocity": PlanarVelocity(v=(0.0, 1.0), w=0.0),
+            "contact": PlanarContact(**TIP),
+            "other_r": (0.1, 0.5),
+            "velocity_tolerance": 1e-9,
+        },
+        {"other_r", "velocity_tolerance"},
+    ),
+    "toss": (
+        toss,
+        {
+            "body": BOX,
+            "state": STATE,
+            "world": WORLD,
+            "horizon": 0.1,
+            "most_events": 3,
+            "most_alternatives": 0,
+            "error": 1e-6,
+        },
+        {"horizon", "most_events", "most_alternatives", "error"},
+    ),
+}
