@@ -99,6 +99,7 @@ def not_asked(events: MeasuredEvents, times: list[float]) -> list[float]:
     """Return when the body landed after enough flight, s, although nobody asked during that flight.
 
     Args:
+        events: what was measured.
         times: when somebody asked where the body will be, s.
     """
     strikes = [0.0, *(strike.time for strike in events.strikes)]

@@ -8,7 +8,6 @@ differs in its length or its frame, so that what is wrong with a topic is told a
 
 from __future__ import annotations
 
-import time
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -129,7 +128,7 @@ class StateTopic:
             awake_for: s, for how long this process has run without standing still.
         """
         publishers = self._publishers.look()
-        self.traffic.look(time.time_ns(), publishers, awake_for=awake_for)
+        self.traffic.look(publishers, awake_for=awake_for)
         if not (self.traffic.is_silent and publishers):
             self._anew_after = _ANEW_AFTER_S
         elif self.traffic.silence > self._anew_after:

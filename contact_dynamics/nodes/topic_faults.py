@@ -11,7 +11,6 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from contact_dynamics.constants import seconds_between
 from msg_adapters.status import short
 
 if TYPE_CHECKING:
@@ -41,6 +40,7 @@ class TopicFaults:
 
     Attributes:
         limits: When faults are told. They may be replaced.
+        clock: Returns seconds. It does not jump when somebody sets the machine's clock.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class TopicFaults:
         """Count from zero. ``tell`` takes a warning, ``clock`` returns seconds."""
         self.limits = limits or FaultLimits()
         self._tell = tell
-        self._clock = clock
+        self.clock = clock
         self._counts: Counter[tuple[str, str]] = Counter()
         self._told: dict[tuple[str, str], float] = {}
 
@@ -71,7 +71,7 @@ class TopicFaults:
         """Count faults of a kind, and warn of them, unless it has just warned of it."""
         key = (topic, kind)
         self._counts[key] += count
-        now = self._clock()
+        now = self.clock()
         told = self._told.get(key)
         if told is not None and now - told < self.limits.warn_every:
             return
@@ -103,16 +103,16 @@ class TopicTraffic:
     rate: float = 0.0
     silence: float = 0.0
     is_silent: bool = False
-    _newest_ns: int = 0
+    _newest: float = 0.0
     _number: int | None = None
     _is_steady: bool = True
-    _looked_ns: int = 0
+    _looked: float | None = None
     _received_before: int = 0
 
     def note(self, taken: Taken) -> None:
         """Note a message, and tell of those that are missing before it."""
         self.received += 1
-        self._newest_ns = taken.received_ns
+        self._newest = self.faults.clock()
         number, before = taken.number, self._number
         self._number = number
         if number is None or before is None or number == before + 1:
@@ -124,11 +124,10 @@ class TopicTraffic:
             self.lost += missing
             self.faults.add(self.topic, "lost", missing, "messages were lost before they could be taken")
 
-    def look(self, now_ns: int, publishers: int, *, awake_for: float) -> None:
+    def look(self, publishers: int, *, awake_for: float) -> None:
         """Look, once a second, at who publishes and for how long nothing came.
 
         Args:
-            now_ns: the present time, ns since the epoch.
             publishers: how many publish on the topic.
             awake_for: s, for how long this process has run without standing still.
         """
@@ -139,11 +138,11 @@ class TopicTraffic:
             )
         if not self.received:
             return
-        self.rate = (self.received - self._received_before) / max(
-            seconds_between(self._looked_ns, now_ns), 1e-9
-        )
-        self._looked_ns, self._received_before = now_ns, self.received
-        self.age = seconds_between(self._newest_ns, now_ns)
+        now = self.faults.clock()
+        if self._looked is not None:
+            self.rate = (self.received - self._received_before) / max(now - self._looked, 1e-9)
+        self._looked, self._received_before = now, self.received
+        self.age = now - self._newest
         self.silence = min(self.age, awake_for)
         was_silent, self.is_silent = self.is_silent, self.silence > self.faults.limits.silent_after
         if self.is_silent and not was_silent:

@@ -76,6 +76,9 @@ DRAW_PERIOD_S: Final = 0.05
 SERVER_WAIT_S: Final = 3.0
 """How long a start waits for a server: as long as one that is started at the same time may take."""
 
+_NICER: Final = 5
+"""By how much others go first where processors are scarce: answers must not wait for a picture."""
+
 _POLL_S: Final = 0.02
 
 
@@ -286,6 +289,7 @@ class _WaitingStates(StateStore):
 
 def main(arguments: list[str]) -> int:
     """Run the visualizer until it is told to stop; return the exit code."""
+    os.nice(_NICER)  # before other threads, which inherit it
     exit_code = run_node(
         lambda ros_arguments: Visualizer(ros_arguments=ros_arguments, server_wait=SERVER_WAIT_S),
         verb="visualizer",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import signal
 import time
 from pathlib import Path
@@ -13,7 +14,8 @@ from nav_msgs.msg import Odometry
 from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
 
-from contact_dynamics.nodes.topic_faults import FaultLimits, TopicFaults
+from contact_dynamics.nodes.inbox import Taken
+from contact_dynamics.nodes.topic_faults import FaultLimits, TopicFaults, TopicTraffic
 from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 from running_server import ROOT, Client, process, wait_for
@@ -123,6 +125,27 @@ def test_each_topic_and_kind_of_fault_has_a_throttle_of_its_own() -> None:
         "/a: message ignored: worse (1 such so far)",
         "/a: message ignored: bad (4 such so far)",
     ]
+
+
+def test_a_machine_clock_that_jumps_makes_no_topic_silent_and_no_rate_wrong() -> None:
+    now, told = [100.0], list[str]()
+    traffic = TopicTraffic(
+        topic="/a", faults=TopicFaults(told.append, clock=lambda: now[0]), one_publisher=True
+    )
+    number = 0
+    for jump_ns in (0, HOUR_NS, -HOUR_NS):
+        for _ in range(50):
+            number += 1
+            now[0] += 0.02
+            traffic.note(Taken(b"", int(1e9 * now[0]) + jump_ns, number))
+        traffic.look(1, awake_for=now[0])
+        assert traffic.age == 0.0
+        assert not traffic.is_silent
+    assert math.isclose(traffic.rate, 50.0, rel_tol=1e-9)
+    now[0] += 3.0
+    traffic.look(1, awake_for=now[0])
+    assert traffic.is_silent
+    assert told == ["/a: nothing came for 3.0 s (1 such so far)"]
 
 
 def test_what_got_lost_fell_silent_and_has_two_publishers_is_told(tmp_path: Path) -> None:
