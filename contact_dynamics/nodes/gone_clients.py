@@ -23,10 +23,17 @@ class GoneClients:
         self.gone_for = gone_for
         self._gone: dict[bytes, _Gone] = {}
 
+    @property
+    def are_none(self) -> bool:
+        """Whether no client seemed gone a short time ago."""
+        if self._gone:
+            self._forget_old(time.monotonic())
+        return not self._gone
+
     def note(self, client: bytes) -> None:
         """Note that a client seems gone, and forget those of whom that was noted long ago."""
         now = time.monotonic()
-        self._gone = {each: gone for each, gone in self._gone.items() if now < gone.noted + self.gone_for}
+        self._forget_old(now)
         self._gone[client] = _Gone(time.time_ns(), now)
 
     def has(self, client: bytes, *, asked_ns: int) -> bool:
@@ -35,3 +42,6 @@ class GoneClients:
         if gone is None or time.monotonic() >= gone.noted + self.gone_for:
             return False
         return asked_ns <= gone.since_ns
+
+    def _forget_old(self, now: float) -> None:
+        self._gone = {each: gone for each, gone in self._gone.items() if now < gone.noted + self.gone_for}

@@ -53,7 +53,7 @@ class SelfCheck:
         self._begun = time.monotonic()
         self.unheard = 0
         self.heard = 0
-        node.subscribe(KeyValue, TOPIC, self._receive, QOS)
+        self._tokens = node.subscribe(KeyValue, TOPIC, self._receive, QOS, in_rounds=False)
 
     @property
     def is_deaf(self) -> bool:
@@ -72,6 +72,7 @@ class SelfCheck:
                 if time.monotonic() - self._begun >= min(wait, self._period):
                     self._begin()
             return ""
+        self._node.empty(self._tokens)
         code = self._sender.poll()
         if code is None:
             return ""

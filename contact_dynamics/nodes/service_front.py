@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
+from rclpy.exceptions import InvalidHandle
 from rclpy.service_introspection import ServiceIntrospectionState
 
 from contact_dynamics.errors import BusyError, ContactDynamicsError
@@ -96,7 +97,7 @@ class ServiceFront:
             workers: they answer what takes long. Without them, this process does.
             gone: as the attribute.
             begin: is told when a question came, ns by the node's clock, before it is answered.
-            answered: sees each response before it is sent.
+            answered: sees each response after it was sent, so that nobody waits for it.
             qos: the queue of requests.
             event_qos: the queue of the service events.
             record: takes a service event as topic, bytes, time of the log, and time of the node's clock, if
@@ -141,7 +142,6 @@ class ServiceFront:
         call = self._times.begin()
         self._begin(call.node_clock_ns)
         self._node.note_question(call.received_ns)
-        self.take_events()  # one of them tells whose request it is
         answering = _Answering(call=call, response=response, begun=time.perf_counter())
         if self._is_open():
             self._serve(request, answering)
@@ -197,7 +197,6 @@ class ServiceFront:
             report_error(answering.response, error)
         if answering.is_done:
             answering.response.computation_time = time.perf_counter() - answering.begun
-            self._answered(answering.response)
 
     def _send_or_wait(self, answering: _Answering, header: Any) -> None:
         answering.header = header
@@ -205,10 +204,23 @@ class ServiceFront:
             self._send(answering)
 
     def _send(self, answering: _Answering) -> None:
-        client = answering.call.client
-        if not self._is_open() or self.gone.has(client, asked_ns=answering.header.received_timestamp):
+        """Send a response, unless its client left, and do only then what nobody has to wait for."""
+        if not self._is_open():
             return
-        self._times.end(answering.call)
+        if not self._is_gone(answering):
+            self._deliver(answering)
+        self.take_events()
+        self._answered(answering.response)
+
+    def _is_gone(self, answering: _Answering) -> bool:
+        if self.gone.are_none:
+            return False
+        self.take_events()  # one of them tells whose request it is
+        return self.gone.has(answering.call.client, asked_ns=answering.header.received_timestamp)
+
+    def _deliver(self, answering: _Answering) -> None:
+        call = answering.call
+        self._times.end(call)
         if self._settle is not None:
             self._log_answer(answering)
             self._settle()
@@ -216,8 +228,11 @@ class ServiceFront:
         with warnings.catch_warnings(record=True) as warned:
             warnings.simplefilter("always")
             self._send_response(answering.response, answering.header)
-        if client and warned:
-            self.gone.note(client)
+        if not warned:
+            return
+        self.take_events()
+        if call.client:
+            self.gone.note(call.client)
             self._node.get_logger().warning(
                 f"{self._served.name}: an answer did not reach its client, which left or is not found yet",
                 throttle_duration_sec=_TELL_EVERY_S,
@@ -226,6 +241,7 @@ class ServiceFront:
     def _log_answer(self, answering: _Answering) -> None:
         """Log an answer before it leaves. The event that tells of it later is not logged again."""
         call = answering.call
+        self.take_events()
         deadline = time.monotonic() + _EVENT_PATIENCE_S
         while not call.client and time.monotonic() < deadline:  # it tells whose request this is
             time.sleep(_EVENT_POLL_S)
@@ -244,7 +260,11 @@ class ServiceFront:
 
     def _is_open(self) -> bool:
         """Return whether the node still has the service. Requests that came before may still be taken."""
-        return any(each is self._service for each in self._node.services)
+        try:
+            with self._service.handle:
+                return True
+        except InvalidHandle:
+            return False
 
     def _record_event(self, event: Taken) -> None:
         happened = self._times.of_event(event.data)

@@ -15,6 +15,7 @@ from rosgraph_msgs.msg import Clock
 from contact_dynamics.nodes import parameter_event
 from contact_dynamics.nodes.diagnostics import AnswerTimes, Diagnostics
 from contact_dynamics.nodes.gone_clients import GoneClients
+from contact_dynamics.nodes.inbox import TAKE_EVERY_S
 from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.offered_qos import OfferedQosWatch
 from contact_dynamics.nodes.reconfiguring import CONFIGURED_ANEW, bodies_read_otherwise
@@ -134,6 +135,7 @@ class Serving:
         self._successions = successions
         self._looked = time.monotonic()
         self._awake_since = self._looked
+        self._took_events = 0.0
         self._fronts = [self._serve(service) for service in SERVICES]
         self._log.start()
 
@@ -192,12 +194,13 @@ class Serving:
             self._workers.limits = parameters.worker_limits
 
     def attend(self) -> None:
-        """Take the events of the answer that has just left, and look around once a second."""
-        for front in self._fronts:
-            front.take_events()
-        since_look = time.monotonic() - self._looked
+        """Take the events that wait, unless that was done a moment ago, and look around once a second."""
+        now = time.monotonic()
+        if now - self._took_events >= TAKE_EVERY_S:
+            self._take_events()
+        since_look = now - self._looked
         if since_look >= LOOK_EVERY_S:
-            self._looked = time.monotonic()
+            self._looked = now
             if since_look > STOOD_STILL_S:
                 self._awake_since = self._looked
             self._look()
@@ -206,7 +209,7 @@ class Serving:
         """End the workers, and finish the log; return in words where that is."""
         self.end_workers()
         self._node.take_messages()
-        self.attend()
+        self._take_events()
         return self._log.close()
 
     def remove(self) -> None:
@@ -223,6 +226,12 @@ class Serving:
         self._self_check.end()
         if self._workers is not None:
             self._workers.close()
+
+    def _take_events(self) -> None:
+        """Take all service events that wait, which are those of clients and of answers that left."""
+        self._took_events = time.monotonic()
+        for front in self._fronts:
+            front.take_events()
 
     def _look(self) -> None:
         """Look at topics and other nodes, and tell how everything is."""
