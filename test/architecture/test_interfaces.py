@@ -90,6 +90,7 @@ def constants(message: type, names: list[str]) -> dict[str, int]:
         (PathEvent, Impact),
         (SequenceEnd, Impact),
         (RestitutionLaw, PredictImpact.Request),
+        (RestitutionLaw, PredictImpactBatch.Request),
         (RestitutionLaw, PredictToss.Request),
         (TossEventKind, TossEvent),
         (TossEnd, TossPath),

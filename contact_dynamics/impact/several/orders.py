@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.errors import TooLargeError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import (
     OrderedOutcomes,
@@ -183,8 +183,6 @@ def outcomes_at_once(
             >= 1, or the law is the energetic one.
     """
     check_choice("restitution_law", restitution_law, RestitutionLaw)
-    if restitution_law == RestitutionLaw.ENERGETIC:
-        raise InvalidFieldError("restitution_law", "ENERGETIC", "POISSON or NEWTON for SIMULTANEOUS")
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     most_orders = check_whole("most_orders", most_orders, 1)
     touching = Touching([body], contacts, [(0, None)] * len(contacts), restitution_law, tolerance)

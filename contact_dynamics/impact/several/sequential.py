@@ -80,8 +80,6 @@ def bodies_impact(
         impulses = np.zeros((len(contacts), 3))
         for contact, impact in strikes:
             impulses[contact] += impact.impulse_W
-    elif restitution_law not in {RestitutionLaw.POISSON, RestitutionLaw.NEWTON}:
-        raise InvalidFieldError("restitution_law", restitution_law.name, "POISSON or NEWTON for SIMULTANEOUS")
     else:
         impulses, after, verdict = strike_at_once(touching, states)
     return BodiesImpact(

@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.errors import TooLargeError
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.tolerances import SAME_IMPULSES, SWEEPS_CONVERGED
 from contact_dynamics.validation import FloatArray
@@ -78,7 +78,7 @@ def simultaneous_impulses(
 
     Args:
         contacts: Normals, frictions and restitutions.
-        law: Poisson's or Newton's.
+        law: Poisson's or Newton's. No other law has a form here.
         jacobian: (n, 3, 6 k), a matrix for each contact. It takes the velocities of the k bodies (v then w
             of each) into the contact's velocity.
         inverse_mass: (6 k, 6 k), 1/kg and 1/(kg m^2), takes impulses and their moments into velocities.
@@ -89,14 +89,17 @@ def simultaneous_impulses(
 
     Raises:
         TooLargeError: there are so many contacts that `MOST_PROJECTIONS` do not settle their impulses.
+        InvalidFieldError: the law is another one.
     """
+    if law not in {RestitutionLaw.POISSON, RestitutionLaw.NEWTON}:
+        raise InvalidFieldError("restitution_law", law.name, "POISSON or NEWTON for SIMULTANEOUS")
     normals, frictions = contacts.normals_W, contacts.frictions
     approach = np.minimum(np.einsum("ij,ij->i", jacobian @ twist, normals), 0.0)
     approach[approach >= -tolerance] = 0.0
 
     none = np.zeros(len(contacts))
     # `RestitutionRule` needs a path, and there is none here. Newton's law asks for velocities, in one
-    # problem, and Poisson's for impulses, in a second one. The energetic law was refused before.
+    # problem, and Poisson's for impulses, in a second one.
     if law == RestitutionLaw.NEWTON:
         bounce = -contacts.restitutions * approach
         return _solve(
