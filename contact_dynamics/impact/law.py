@@ -60,9 +60,17 @@ class RestitutionRule:
     needs_work = False
     """Whether the work of the normal impulse must be known on the way."""
 
-    def share(self, restitution: Real) -> Real:
-        """Return the part of the amount that restitution gives back, for a coefficient e."""
+    def share(self, restitution: Real, v_n: Real) -> Real:
+        """Return the part of the amount that restitution gives back, for a coefficient e.
+
+        ``v_n``, m/s, is the normal velocity before the impact, on which e may depend.
+        """
+        del v_n
         return restitution
+
+    def final(self, restitution: Real, v_n: Real) -> Real:
+        """Return the velocity at which Newton's law ends an impact that begins with ``v_n``, m/s."""
+        return restitution * -v_n
 
     def amount(self, p: Real, work: Real) -> Real:
         """Return the amount that a normal impulse, N s, collects or gives back while it does some work, J."""
@@ -141,7 +149,8 @@ class _Energetic(RestitutionRule):
     law = RestitutionLaw.ENERGETIC
     needs_work = True
 
-    def share(self, restitution: Real) -> Real:
+    def share(self, restitution: Real, v_n: Real) -> Real:
+        del v_n
         return restitution * restitution
 
     def amount(self, p: Real, work: Real) -> Real:

@@ -39,7 +39,7 @@ def test_restitution_is_done_after_the_distance_to_its_end(law: RestitutionLaw) 
 def test_every_law_has_its_rule_and_only_the_energetic_one_asks_for_work() -> None:
     assert {law: rule.law for law, rule in RULES.items()} == {law: law for law in RestitutionLaw}
     assert [law for law, rule in RULES.items() if rule.needs_work] == [RestitutionLaw.ENERGETIC]
-    assert {law: rule.share(0.5) for law, rule in RULES.items()} == {
+    assert {law: rule.share(0.5, -2.0) for law, rule in RULES.items()} == {
         RestitutionLaw.POISSON: 0.5,
         RestitutionLaw.NEWTON: 0.5,
         RestitutionLaw.ENERGETIC: 0.25,

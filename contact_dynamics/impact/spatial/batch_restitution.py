@@ -40,8 +40,8 @@ class ManyProgress:
         self.compression = (np.zeros(count), np.zeros(count), np.zeros(count))
         self.compressing = np.ones(count, dtype=bool)
         self.over = np.zeros(count, dtype=bool)
-        self._final_velocity = restitution * -v_n
-        self._share = self.rule.share(restitution)
+        self._final_velocity = self.rule.final(restitution, v_n)
+        self._share = self.rule.share(restitution, v_n)
         self._due = np.zeros(count)  # N s or J
 
     def go_straight(

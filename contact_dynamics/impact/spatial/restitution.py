@@ -34,8 +34,8 @@ class Progress:
         self.compressing = True
         self.over = False
         self.path: list[tuple[PathEvent, Impulse]] = [(PathEvent.START, self.impulse)]
-        self.final_velocity = restitution * -v_n  # m/s, Newton's end
-        self.share = self.rule.share(restitution)
+        self.final_velocity = self.rule.final(restitution, v_n)  # m/s, Newton's end
+        self.share = self.rule.share(restitution, v_n)
         self.due = 0.0  # N s or J, what restitution still owes
 
     def go_straight(self, length: float, rates: Impulse, lifting: float) -> float:
