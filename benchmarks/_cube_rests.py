@@ -66,6 +66,8 @@ def compare(found: Calibration, seen: Sequence[Observed], unseen: Sequence[Obser
     as_is = _ours(CUBE, BOARD, published_g)
     _row("published", as_published, np.zeros(3), as_is, quoted=f"{REST}.published")
     _row("calibrated", test, body.p_FB_F, _ours(body, surface, gravity_W), quoted=f"{REST}.ours")
+    strikes_alone = _ours(body, replace(surface, lasting_factor=1.0), gravity_W)
+    _row("with one friction", test, body.p_FB_F, strikes_alone, quoted=f"{REST}.one_friction")
     training = _cases(seen, body, gravity_W)[:FITTED_TO]
     start = Setting(surface.friction, max(surface.restitution, 0.02), 1.0)
 

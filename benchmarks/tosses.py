@@ -95,7 +95,9 @@ def run() -> None:
     resting = early[:: max(1, len(early) // RESTING)]
     _rests(resting, world, uncertainty, "rest")
     print("\nwith the friction of strikes alone:", end="")
-    _rests(resting, world, replace(uncertainty, lasting_factors=(), lasting_factor_stds=()), "strikes_alone")
+    _rests(
+        resting, world, replace(uncertainty, lasting_factors=(1.0,), lasting_factor_stds=()), "strikes_alone"
+    )
     _costs(early[:10], world, uncertainty)
 
 

@@ -127,10 +127,12 @@ class Surface(Record):
         normal_W: (3,), unit, into the free side, world axes.
         friction: Coulomb's mu, >= 0, between this surface and any body.
         restitution: Coefficient e, in [0, 1], between this surface and any body.
+        lasting_factor: Friction where contact lasts, relative to mu, >= 0. Whole tosses (`toss`) take it:
+            a body may slide on a face with another friction than its corners have when they strike.
 
     Raises:
         InvalidFieldError: a number is not finite, the point is beyond `LARGEST_NUMBER`, the normal is not
-            unit, mu < 0, or e outside [0, 1].
+            unit, mu or the factor is negative, or e is outside [0, 1].
     """
 
     name: str
@@ -138,11 +140,19 @@ class Surface(Record):
     normal_W: FloatArray
     friction: float
     restitution: float
+    lasting_factor: float = 1.0
 
     if TYPE_CHECKING:
 
         def __init__(
-            self, *, name: str, p_WS_W: ArrayLike, normal_W: ArrayLike, friction: float, restitution: float
+            self,
+            *,
+            name: str,
+            p_WS_W: ArrayLike,
+            normal_W: ArrayLike,
+            friction: float,
+            restitution: float,
+            lasting_factor: float = ...,
         ) -> None:
             """Take whatever NumPy makes arrays of."""
 
@@ -152,6 +162,7 @@ class Surface(Record):
         object.__setattr__(self, "normal_W", check_unit("normal", self.normal_W, 3))
         object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
         object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
+        object.__setattr__(self, "lasting_factor", check_not_negative("lasting_factor", self.lasting_factor))
 
     def gaps(self, p_WP_W: FloatArray) -> FloatArray:
         """Return the heights, (...), m, of points, (..., 3), above the surface, negative below it."""

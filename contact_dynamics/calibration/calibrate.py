@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from contact_dynamics.calibration.estimation import Estimation
     from contact_dynamics.calibration.first_flights import Gravity
     from contact_dynamics.calibration.observed import Observed
+    from contact_dynamics.calibration.slides import LastingFriction
     from contact_dynamics.evaluation.motion import MeasuredMotion
     from contact_dynamics.validation import FloatArray
 
@@ -99,9 +100,10 @@ def calibrate_observed(
     gravity = _gravity(data.gravity, first.values[:3]) if Free.GRAVITY in free else None
     gravity_W = observed[0].motion.gravity_W if gravity is None else gravity.mean_W
     left = jumps(model, first.values[None], data.strikes, data.gravity)[0]
+    lasting = lasting_frictions(observed, described, gravity_W, [surface.name for surface in model.surfaces])
     return Calibration(
         body=_body(model, first.values),
-        surfaces=_surfaces(model, first.values),
+        surfaces=_surfaces(model, first.values, lasting),
         gravity_W=gravity_W,
         estimates=estimates,
         covariance=covariance,
@@ -109,9 +111,7 @@ def calibrate_observed(
         undetermined=_undetermined(fitting, first),
         gravity=gravity,
         spread=first.spread,
-        lasting_frictions=lasting_frictions(
-            observed, described, gravity_W, [surface.name for surface in model.surfaces]
-        ),
+        lasting_frictions=lasting,
         residuals=left,
         residual_stds=np.sqrt(np.einsum("nii->ni", covariances)),
         strike_recordings=data.strikes.recordings,
@@ -249,8 +249,10 @@ def _body(model: Model, values: FloatArray) -> Body:
     )
 
 
-def _surfaces(model: Model, values: FloatArray) -> tuple[Surface, ...]:
+def _surfaces(model: Model, values: FloatArray, lasting: Sequence[LastingFriction]) -> tuple[Surface, ...]:
+    """Return the surfaces. Where no slides are seen, the friction that lasts keeps its configured factor."""
     described = model.describe(values)
+    slid = {each.surface: each.friction for each in lasting}
     return tuple(
         Surface(
             name=surface.name,
@@ -258,6 +260,9 @@ def _surfaces(model: Model, values: FloatArray) -> tuple[Surface, ...]:
             normal_W=described.normals[k],
             friction=float(described.frictions[k]),
             restitution=float(described.restitutions[k]),
+            lasting_factor=slid[surface.name] / float(described.frictions[k])
+            if surface.name in slid and described.frictions[k] > 0.0
+            else surface.lasting_factor,
         )
         for k, surface in enumerate(model.surfaces)
     )

@@ -38,6 +38,7 @@ def server_parameters(found: Calibration) -> str:
             f"{key}.normal: {_list(surface.normal_W)}",
             f"{key}.friction: {float(surface.friction)!r}",
             f"{key}.restitution: {float(surface.restitution)!r}",
+            f"{key}.lasting_factor: {float(surface.lasting_factor)!r}",
         ]
     return "\n".join(lines) + "\n"
 

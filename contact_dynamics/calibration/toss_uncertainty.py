@@ -17,7 +17,7 @@ def toss_uncertainty(found: Calibration) -> TossUncertainty:
     """Return the covariance of what a toss depends on, and the spreads, of calibrated parameters.
 
     What was not free, or not determined, counts as exact. The friction where contact lasts has the standard
-    deviation from slide to slide, and counts as that of strikes on surfaces on which no slides are seen.
+    deviation from slide to slide, and is exact on surfaces on which no slides are seen.
     """
     names = [
         *(f"friction.{surface.name}" for surface in found.surfaces),
@@ -36,24 +36,22 @@ def toss_uncertainty(found: Calibration) -> TossUncertainty:
     ]
     covariance[np.ix_(known, known)] = found.covariance[np.ix_(columns, columns)] / np.outer(units, units)
     spread = found.spread
-    factors, stds = _lasting(found)
     return TossUncertainty(
         covariance=covariance,
         velocity=spread.velocity,
         spin=spread.spin,
         height=spread.strike_height,
-        lasting_factors=factors,
-        lasting_factor_stds=stds,
+        lasting_factors=[surface.lasting_factor for surface in found.surfaces],
+        lasting_factor_stds=_lasting_stds(found),
     )
 
 
-def _lasting(found: Calibration) -> tuple[list[float], list[float]]:
-    """Return the friction where contact lasts, relative to that of strikes, and its standard deviation."""
-    factors, stds = [1.0] * len(found.surfaces), [0.0] * len(found.surfaces)
+def _lasting_stds(found: Calibration) -> list[float]:
+    """Return standard deviations of the friction where contact lasts, relative to that of strikes."""
+    stds = [0.0] * len(found.surfaces)
     seen = {each.surface: each for each in found.lasting_frictions}
     for k, surface in enumerate(found.surfaces):
         each = seen.get(surface.name)
         if each is not None and surface.friction > 0.0:
-            factors[k] = each.friction / surface.friction
             stds[k] = math.hypot(each.scatter, each.std) / surface.friction
-    return factors, stds
+    return stds

@@ -183,9 +183,15 @@ def read_surface(reader: ParameterReader, name: str) -> Surface | Obstacle:
     restitution = reader.read(
         f"{key}.restitution", float, "Coefficient of restitution with any body, 0 to 1."
     )
+    lasting_factor = reader.read(
+        f"{key}.lasting_factor",
+        1.0,
+        "Coefficient of friction where contact lasts in whole tosses, relative to that of strikes, >= 0.",
+    )
 
     def build() -> Surface | Obstacle:
         check_friction("friction", friction)
+        check_friction("lasting_factor", lasting_factor * max(friction, 1.0))
         solid = shape.shape_F()
         if not solid.is_empty:
             return Obstacle(name=name, vertices_W=solid.vertices, friction=friction, restitution=restitution)
@@ -196,6 +202,7 @@ def read_surface(reader: ParameterReader, name: str) -> Surface | Obstacle:
             normal_W=normal,
             friction=friction,
             restitution=restitution,
+            lasting_factor=lasting_factor,
         )
 
     return reader.build(key, build)

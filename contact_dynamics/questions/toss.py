@@ -84,8 +84,8 @@ class TossQuestion(Record):
             `toss.one_toss.MOST_ALTERNATIVES`.
         sampling: What to sample for a distribution, or None for none.
         lasting_factors: (s,), >= 0, the friction of each known surface where contact lasts, relative to that
-            of its strikes. Without any, those of the sampling's uncertainty hold, and without these both are
-            the same.
+            of its strikes. Without any, those of the sampling's uncertainty hold, and without these those of
+            the surfaces.
 
     Raises:
         InvalidFieldError: a number is out of its range, the law is not a member of its enumeration, or the

@@ -64,7 +64,7 @@ def toss(
         error: m, m/s, > 0. The error that one step of a contact phase may have. Angles count with the body's
             reach.
         lasting_factors: (s,), >= 0, the friction of each surface where contact lasts, relative to that of
-            its strikes. Without any, both are the same.
+            its strikes. Without any, those of the surfaces hold.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.

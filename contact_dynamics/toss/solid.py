@@ -19,6 +19,8 @@ from contact_dynamics.tolerances import SETTLING_HEIGHT
 from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
@@ -108,7 +110,7 @@ def solid_of(
         world: Flats, and gravity.
         settling: m. Rebounds that are lower are not followed.
         lasting_factors: (s,), the friction of each surface where contact lasts, relative to that of its
-            strikes, or None if both are the same.
+            strikes. Without any, those of the surfaces hold.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
@@ -122,14 +124,15 @@ def solid_of(
             "give a rim as a polygon of corners"
         )
         raise NotSupportedError(message)
-    factors = factors_of(lasting_factors, len(world.surfaces))
-    flats = []
-    for surface, factor in zip(world.surfaces, factors.tolist(), strict=True):
-        if not isinstance(surface, Surface):
+    surfaces = [each for each in world.surfaces if isinstance(each, Surface)]
+    for each in world.surfaces:
+        if not isinstance(each, Surface):
             message = (
-                f"surface {surface.name!r}: found an obstacle, allowed for a whole toss are flats without end"
+                f"surface {each.name!r}: found an obstacle, allowed for a whole toss are flats without end"
             )
             raise NotSupportedError(message)
+    flats = []
+    for surface, factor in zip(surfaces, factors_of(lasting_factors, surfaces).tolist(), strict=True):
         x, y, z = surface.normal_W.tolist()
         normal = (x, y, z)
         level = float(surface.p_WS_W @ surface.normal_W)
@@ -160,16 +163,16 @@ def solid_of(
     )
 
 
-def factors_of(lasting_factors: FloatArray | None, surfaces: int) -> FloatArray:
-    """Return the factors of all surfaces, (s,). They are 1 if none is given.
+def factors_of(lasting_factors: FloatArray | None, surfaces: Sequence[Surface]) -> FloatArray:
+    """Return the factors of all surfaces, (s,). They are those of the surfaces if none is given.
 
     Raises:
         InvalidFieldError: there are not as many factors as surfaces.
     """
     if lasting_factors is None or len(lasting_factors) == 0:
-        return np.ones(surfaces)
-    if len(lasting_factors) != surfaces:
-        allowed = f"one for each of {surfaces} surfaces, or none"
+        return np.array([surface.lasting_factor for surface in surfaces])
+    if len(lasting_factors) != len(surfaces):
+        allowed = f"one for each of {len(surfaces)} surfaces, or none"
         raise InvalidFieldError("lasting_factors", f"{len(lasting_factors)} numbers", allowed)
     return lasting_factors
 

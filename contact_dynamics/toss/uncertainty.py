@@ -18,8 +18,11 @@ from contact_dynamics.rotations.many import matrices_of, products, quaternions_o
 from contact_dynamics.toss.solid import factors_of
 from contact_dynamics.validation import FloatArray, check_array, check_not_negative
 from contact_dynamics.validation_batches import check_covariance
+from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.random import Generator
     from numpy.typing import ArrayLike
 
@@ -44,7 +47,7 @@ class TossUncertainty(Record):
         height: m, >= 0, standard deviation of how far each corner is from where the shape has it, along its
             ray from the mass centre. It makes the time of a strike uncertain.
         lasting_factors: (s,), >= 0, the friction of each surface where contact lasts, relative to that of
-            its strikes. Without any, both are the same.
+            its strikes. Without any, those of the surfaces hold.
         lasting_factor_stds: (s,), >= 0, their standard deviations, from toss to toss and by what is known of
             them. Without any, the factors are exact.
 
@@ -156,7 +159,7 @@ def draw(
         InvalidFieldError: the parameters' covariance has another size than the world's surfaces ask for, or
             there are not as many factors as surfaces.
     """
-    flats = [surface for surface in world.surfaces if hasattr(surface, "friction")]
+    flats = [surface for surface in world.surfaces if isinstance(surface, Surface)]
     s = len(flats)
     size = len(uncertainty.covariance)
     if size not in {0, 2 * s + 4}:
@@ -178,17 +181,19 @@ def draw(
         inertias_B=body.mass_properties.I_B * np.exp(off[:, -1])[:, None, None],
         corners_B=corners,
         frictions=frictions,
-        lasting_frictions=frictions * _factors(uncertainty, s, count, chance),
+        lasting_frictions=frictions * _factors(uncertainty, flats, count, chance),
         restitutions=np.clip(np.array([flat.restitution for flat in flats]) + off[:, s : 2 * s], 0.0, 1.0),
     )
 
 
-def _factors(uncertainty: TossUncertainty, surfaces: int, count: int, chance: Generator) -> FloatArray:
+def _factors(
+    uncertainty: TossUncertainty, surfaces: Sequence[Surface], count: int, chance: Generator
+) -> FloatArray:
     """Return the friction where contact lasts, relative to that of strikes, (n, s)."""
     factors = np.tile(factors_of(uncertainty.lasting_factors, surfaces), (count, 1))
     stds = uncertainty.lasting_factor_stds
     if stds.any():
-        factors += stds * chance.standard_normal((count, surfaces))
+        factors += stds * chance.standard_normal((count, len(surfaces)))
     return np.maximum(factors, 0.0)
 
 

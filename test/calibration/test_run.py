@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +31,7 @@ needs_yaml = pytest.mark.skipif(
 def test_the_server_takes_the_parameters_as_they_are(found: Calibration, tmp_path: Path) -> None:
     """Read by the server's own reading, they describe the calibrated body and surface to the last bit."""
     path = tmp_path / "calibrated.yaml"
+    found = replace(found, surfaces=(replace(found.surfaces[0], lasting_factor=1.4),))
     path.write_text(server_parameters(found), encoding="utf-8")
     world = read_server_parameters(ParameterFile(path)).world
     body = world.body("brick")
@@ -39,10 +41,12 @@ def test_the_server_takes_the_parameters_as_they_are(found: Calibration, tmp_pat
     assert body.shape.vertices == pytest.approx(found.body.shape.vertices, abs=1e-15)
     assert world.gravity_W.tolist() == found.gravity_W.tolist()
     floor = world.surfaces[0]
-    assert (floor.name, floor.friction, floor.restitution) == (
+    calibrated = found.surfaces[0]
+    assert (floor.name, floor.friction, floor.restitution, floor.lasting_factor) == (
         "floor",
-        found.surfaces[0].friction,
-        found.surfaces[0].restitution,
+        calibrated.friction,
+        calibrated.restitution,
+        calibrated.lasting_factor,
     )
 
 

@@ -78,7 +78,9 @@ def test_slides_tell_the_friction_that_lasts_and_strikes_theirs(found: Calibrati
 def test_tosses_are_sampled_with_it(found: Calibration) -> None:
     (lasting,) = found.lasting_frictions
     known = toss_uncertainty(found)
-    assert known.lasting_factors * found.surfaces[0].friction == pytest.approx(lasting.friction)
+    (floor,) = found.surfaces
+    assert floor.lasting_factor * floor.friction == pytest.approx(lasting.friction)
+    np.testing.assert_array_equal(known.lasting_factors, [floor.lasting_factor])
     deviation = known.lasting_factor_stds * found.surfaces[0].friction
     assert deviation == pytest.approx(math.hypot(lasting.std, lasting.scatter))
 
@@ -92,10 +94,13 @@ def test_the_report_tells_it(found: Calibration) -> None:
 
 
 def test_without_slides_strikes_tell_what_is_known() -> None:
-    """Four tosses are too few, so that there is one friction."""
+    """Four tosses are too few, so that the factor stays as it is configured."""
     random = np.random.default_rng(6)
-    found = calibrate([whole_toss(random, LASTS) for _ in range(4)], with_paths=False)
-    assert found.lasting_frictions == ()
-    known = toss_uncertainty(found)
-    np.testing.assert_array_equal(known.lasting_factors, [1.0])
-    np.testing.assert_array_equal(known.lasting_factor_stds, [0.0])
+    motions = [whole_toss(random, LASTS) for _ in range(4)]
+    for configured in (1.0, 1.2):
+        world = replace(WORLD, surfaces=(replace(FLOOR, lasting_factor=configured),))
+        found = calibrate([replace(motion, world=world) for motion in motions], with_paths=False)
+        assert found.lasting_frictions == ()
+        known = toss_uncertainty(found)
+        np.testing.assert_array_equal(known.lasting_factors, [configured])
+        np.testing.assert_array_equal(known.lasting_factor_stds, [0.0])

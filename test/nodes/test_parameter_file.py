@@ -26,6 +26,7 @@ def test_the_commented_configuration_is_read_as_it_says() -> None:
     (brick,), (floor,) = parameters.world.bodies, parameters.world.surfaces
     assert (brick.name, brick.mass_properties.mass, len(brick.vertices_B)) == ("brick", 0.4, 8)
     assert (floor.name, floor.friction, floor.restitution) == ("floor", 0.3, 0.45)
+    assert floor.lasting_factor == 1.0
     (states,) = parameters.sources
     assert [topic.name for source in states.sources for topic in source.topics] == ["/brick/odometry"]
     assert parameters.defaults.velocity_tolerance == 1e-9

@@ -273,6 +273,8 @@ WRONG = [
     (drop("surface.floor.friction"), "surface.floor.friction: found nothing"),
     (put(surface__floor__friction=-0.1), "surface.floor.friction: found -0.1, allowed is a number >= 0"),
     (put(surface__floor__restitution=1.5), "surface.floor.restitution: found 1.5, allowed is"),
+    (put(surface__floor__lasting_factor=-1.0), "surface.floor.lasting_factor: found -1.0, allowed"),
+    (put(surface__floor__lasting_factor=1e20), "surface.floor.lasting_factor: found 1e+20, allowed is at"),
     (put(surface__floor__normal=[0.0, 0.0, 2.0]), "surface.floor.normal: found [0.0, 0.0, 2.0] of norm 2"),
     (put(surface__floor__point=[0.0, 0.0]), "surface.floor.point: found shape (2,)"),
     (put(surface__floor__box=[1.0, 1.0]), "surface.floor.box: found 2 numbers"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -253,3 +254,24 @@ def test_friction_that_lasts_stops_what_slides_and_strikes_have_their_own() -> N
     np.testing.assert_array_equal(same.velocity.mean, other.velocity.mean)
     went = toss(BRICK, flush, WORLD, lasting_factors=[1.5])
     assert went.state.p_WB_W[0] == pytest.approx(0.6**2 / (2.0 * 9.80665 * 0.3), rel=1e-4)
+
+
+def test_a_surface_has_a_factor_of_its_own_that_a_list_replaces() -> None:
+    flush = BodyState(p_WB_W=[0, 0, 0.035], q_WB=[0, 0, 0, 1], v_WB_W=[0.6, 0, 0], w_WB_W=[0, 0, 0])
+    world = World(surfaces=(replace(FLOOR, lasting_factor=1.5),))
+    for factors, factor in (((), 1.5), ([0.5], 0.5)):
+        end = 0.6**2 / (2.0 * 9.80665 * 0.2 * factor)
+        went = toss(BRICK, flush, world, lasting_factors=factors)
+        assert went.state.p_WB_W[0] == pytest.approx(end, rel=1e-4)
+        found = sampled_toss(
+            BRICK,
+            flush,
+            world,
+            uncertainty=TossUncertainty(lasting_factors=factors),
+            count=2,
+            to_rest=True,
+            law=RestitutionLaw.POISSON,
+            horizon=3.0,
+        )
+        assert found.rest is not None
+        np.testing.assert_allclose(found.rest.positions[:, 0], end, rtol=1e-3)
