@@ -8,6 +8,7 @@ from importlib import import_module
 from pathlib import Path
 
 from benchmarks._quotes import print_beside, write, write_documents
+from benchmarks._reliability import redraw
 
 
 def main() -> int:
@@ -35,6 +36,7 @@ def main() -> int:
         parser.error(f"found {', '.join(unknown)}, allowed are {', '.join(names)}")
     if asked.documents:
         write_documents()
+        redraw()
         return 0
     lacking = set()
     for name in chosen:
@@ -45,6 +47,7 @@ def main() -> int:
             lacking |= write(name)
     if asked.write:
         write_documents()
+        redraw()
     if lacking:
         print(
             f"not written, because documents quote what was not measured: {', '.join(sorted(lacking))}\n"

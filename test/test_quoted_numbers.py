@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any
 
@@ -179,3 +180,19 @@ def test_nothing_is_written_while_a_quoted_number_is_lacking(own_file: Path) -> 
 )
 def test_numbers_are_written_as_documents_write_them(value: float, unit: str, text: str) -> None:
     assert quotes.text_of({"value": value, "unit": unit}) == text
+
+
+def test_the_picture_of_the_shares_of_tosses_is_current(tmp_path: Path) -> None:
+    """`python -m benchmarks --documents` draws it anew."""
+    pytest.importorskip("matplotlib", reason="matplotlib of requirements/test.txt is not installed")
+    from benchmarks._reliability import FILE, reliability_figure
+    from contact_dynamics.plots import save_figure
+
+    again = tmp_path / FILE.name
+    save_figure(reliability_figure(), again)
+    words = [
+        [text.text for text in ET.parse(path).getroot().iter("{http://www.w3.org/2000/svg}text")]
+        for path in (FILE, again)
+    ]
+    assert words[0] == words[1]
+    assert f"{quotes.read()['tosses']['numbers']['tosses.1.place.half']['value']:g} %" in words[0]
