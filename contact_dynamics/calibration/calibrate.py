@@ -181,7 +181,8 @@ def _estimates(
             there = shown(float(second.values[number]))
             spread_there = scale[k] * math.sqrt(second.fit.covariance[k, k])
             moved = fit.influences[:, k] - second.fit.influences[:, k]
-            apart = scale[k] * math.sqrt(float(moved @ moved))
+            if len(moved) > 1:  # one toss has no scatter that would tell by how much the ways may differ
+                apart = scale[k] * math.sqrt(float(moved @ moved))
         estimates.append(
             Estimate(
                 name=parameter.name,
@@ -226,7 +227,7 @@ def _gravity(gravity: Gravity, center: FloatArray) -> MeasuredGravity | None:
     sizes = np.linalg.norm(each, axis=1)
     size = float(np.median(sizes))
     # the median's error is 1.25 times the mean's, and 1.4826 times the median deviation is the standard one
-    errors = 1.25 * 1.4826 / math.sqrt(count)
+    errors = 1.25 * 1.4826 / math.sqrt(count) if count > 1 else math.nan
     cosines = each @ mean / (sizes * np.linalg.norm(mean))
     return MeasuredGravity(
         mean_W=mean,

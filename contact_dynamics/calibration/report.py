@@ -40,12 +40,16 @@ def _used(found: Calibration) -> Iterator[str]:
     strikes = sum(len(each.strikes) for each in found.observed)
     yield f"Body {found.body.name!r} on {', '.join(surface.name for surface in found.surfaces) or 'nothing'}"
     yield (
-        f"{len(found.observed)} tosses: {sum(len(each.flights) for each in found.observed)} flights, "
+        f"{_tosses(len(found.observed))}: {sum(len(each.flights) for each in found.observed)} flights, "
         f"{sum(each.first is not None for each in found.observed)} first flights long enough, {strikes} "
         f"strikes of a single corner, "
         f"{sum(each.several for each in found.observed)} of several corners (not used), "
         f"{sum(each.rest is not None for each in found.observed)} rests"
     )
+
+
+def _tosses(count: int) -> str:
+    return "1 toss" if count == 1 else f"{count} tosses"
 
 
 def _parameters(found: Calibration) -> Iterator[str]:
@@ -65,7 +69,9 @@ def _row(each: Estimate) -> str:
         return text + "not determined"
     text += f"{each.value:11.5g} {each.std:9.2g}"
     if not math.isnan(each.by_paths):
-        text += f"   {each.by_paths:11.5g} {each.by_paths_std:9.2g}   ({each.disagreement:.1f} sigma apart)"
+        text += f"   {each.by_paths:11.5g} {each.by_paths_std:9.2g}"
+        if each.difference_std > 0.0:
+            text += f"   ({each.disagreement:.1f} sigma apart)"
     return f"{text} {each.unit}".rstrip()
 
 
@@ -75,6 +81,12 @@ def _gravity(found: Calibration) -> Iterator[str]:
         return
     yield ""
     components = ", ".join(f"{x:.3f}" for x in gravity.mean_W)
+    if gravity.count == 1:
+        yield (
+            f"Gravity: ({components}) m/s^2, of size {gravity.size:.4g}. "
+            "One toss does not tell how sure that is."
+        )
+        return
     yield (
         f"Gravity: ({components}) +- {gravity.mean_std:.2g} m/s^2, "
         f"of size {gravity.size:.4g} +- {gravity.size_std:.2g}"

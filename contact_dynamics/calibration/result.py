@@ -38,7 +38,8 @@ class Estimate(Record):
         std: Its standard deviation, by the scatter between tosses; NaN where the data say too little.
         by_paths: The estimate from whole trajectories through strikes; NaN if that was not asked for.
         by_paths_std: Its standard deviation.
-        difference_std: Standard deviation of the difference of both estimates, which come from the same data.
+        difference_std: Standard deviation of the difference of both estimates, which come from the same data;
+            NaN for a single toss.
         determined: Whether the data say anything of it. If not, the value is what was configured.
         at_bound: Whether it lies at the end of what is possible, such as friction 0.
     """
@@ -63,7 +64,7 @@ class Estimate(Record):
 
     @property
     def disagreement(self) -> float:
-        """Return by how many standard deviations both ways differ; 0 where only one was asked for."""
+        """Return by how many standard deviations both ways differ; 0 where that is not known."""
         if math.isnan(self.by_paths) or not self.difference_std > 0.0:
             return 0.0
         return abs(self.value - self.by_paths) / self.difference_std
@@ -92,9 +93,10 @@ class MeasuredGravity(Record):
 
     Attributes:
         mean_W: (3,), m/s^2, mean over the tosses, world axes.
-        mean_std: m/s^2, standard deviation of a component of the mean, by the scatter between tosses.
+        mean_std: m/s^2, standard deviation of a component of the mean, by the scatter between tosses; NaN for
+            a single one.
         size: m/s^2, mean size.
-        size_std: m/s^2, its standard deviation.
+        size_std: m/s^2, its standard deviation; NaN for a single toss.
         tilt: rad, median angle between a toss's gravity and the mean.
         expected_tilt: rad, the same as the noise of positions alone would make it.
         count: Number of tosses whose first flight tells gravity.

@@ -90,6 +90,18 @@ def test_the_verb_reads_the_packages_toss_and_writes_what_it_was_asked_for(
     assert json.loads(content.read_text(encoding="utf-8"))["body"]["name"] == "brick"
 
 
+def test_one_toss_does_not_tell_by_how_much_its_estimates_may_differ(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """It has no scatter between tosses. A deviation of zero would make any difference a contradiction."""
+    assert main([str(DEFAULT_RECORDING)]) in {0, 1}
+    printed = capsys.readouterr().out
+    assert "by trajectories" in printed
+    assert "One toss does not tell how sure that is." in printed
+    assert "apart" not in printed
+    assert "The two ways disagree" not in printed
+
+
 def some_rows(tmp_path: Path, rows: slice) -> str:
     """The package's toss with some of its 480 states, as a file."""
     lines = DEFAULT_RECORDING.read_text(encoding="utf-8").splitlines(keepends=True)
