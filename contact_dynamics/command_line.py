@@ -116,10 +116,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the verb that the arguments name, and return the exit code."""
     given = list(sys.argv[1:] if arguments is None else arguments)
     parser = _parser()
-    if not given or given[0] not in VERBS:
-        parser.parse_args(given)  # `--help` and `--version` end here, and anything else is an error
-        parser.print_help()
+    if not given:
+        parser.print_help(sys.stderr)
         return 2
+    if given[0] not in VERBS:
+        parser.parse_args(given)  # `--help` and `--version` end here, and anything else is an error
     try:
         return _run(given[0], given[1:])
     except KeyboardInterrupt:  # nodes have handlers of their own, but only once they have begun

@@ -13,6 +13,7 @@ def calibrate_parser() -> argparse.ArgumentParser:
     standard = ", ".join(each.value for each in STANDARD)
     parser = argparse.ArgumentParser(
         prog="contact-dynamics calibrate",
+        usage="%(prog)s [options] RECORDING [RECORDING ...]",
         description="Find out friction, restitution, mass centre, inertia and more from recorded tosses "
         "of one body: flights, strikes of single corners and rests. This needs no ROS. "
         "docs/calibrate.md explains every number.",

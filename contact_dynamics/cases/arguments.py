@@ -21,5 +21,7 @@ def cases_parser() -> argparse.ArgumentParser:
         action="store_true",
         help="compare with numbers that others published, each with its source, instead",
     )
-    parser.add_argument("--without-mujoco", action="store_true", help="do not simulate: this takes a second")
+    parser.add_argument(
+        "--without-mujoco", action="store_true", help="leave out the simulations; the rest takes a second"
+    )
     return parser

@@ -20,6 +20,7 @@ def evaluate_parser() -> argparse.ArgumentParser:
     """Return the parser of `contact-dynamics evaluate`."""
     parser = argparse.ArgumentParser(
         prog="contact-dynamics evaluate",
+        usage="%(prog)s [options] RECORDING [RECORDING ...]",
         description="Find the events in what was measured (flights, first contacts, impacts, rests, slides), "
         "ask about each as it would have been asked some time before, and compare with what came. This needs "
         "no ROS. docs/evaluate.md explains every number.",

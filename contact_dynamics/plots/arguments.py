@@ -14,6 +14,7 @@ def plot_parser() -> argparse.ArgumentParser:
     """Return the parser of `contact-dynamics plot`."""
     parser = argparse.ArgumentParser(
         prog="contact-dynamics plot",
+        usage="%(prog)s [options] --output DIR LOG",
         description="Draw the diagrams of a log's answers into files: trajectories, Poinsot's picture, "
         "impacts in impulse space, contact modes with their forces, maps of modes and force duals. It needs "
         "the log alone, no ROS and no viewer.",

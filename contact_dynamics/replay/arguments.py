@@ -36,7 +36,10 @@ def replay_parser() -> argparse.ArgumentParser:
         epilog="`contact-dynamics replay LOG` verifies. `contact-dynamics replay MODE --help` says more.",
     )
     modes = parser.add_subparsers(dest="mode", metavar="MODE", parser_class=argparse.ArgumentParser)
-    _add_verify(modes.add_parser(VERIFY, help=MODES[VERIFY], description=_sentence(MODES[VERIFY])))
+    usage = "%(prog)s [-h] [--tolerance T] LOG [LOG ...]"
+    _add_verify(
+        modes.add_parser(VERIFY, usage=usage, help=MODES[VERIFY], description=_sentence(MODES[VERIFY]))
+    )
     _add_table(modes.add_parser(TABLE, help=MODES[TABLE], description=_sentence(MODES[TABLE])))
     _add_view(modes.add_parser(VIEW, help=MODES[VIEW], description=_sentence(MODES[VIEW])))
     _add_publish(modes.add_parser(PUBLISH, help=MODES[PUBLISH], description=_sentence(MODES[PUBLISH])))
@@ -47,6 +50,7 @@ def recover_parser() -> argparse.ArgumentParser:
     """Return the parser of `contact-dynamics recover`."""
     parser = argparse.ArgumentParser(
         prog="contact-dynamics recover",
+        usage="%(prog)s [-h] [--out FOLDER] LOG",
         description="Rewrite a damaged or unfinished log into a new folder, so that every reader takes it. "
         "The damaged log stays as it is. This needs no ROS.",
         epilog="The exit code is 0 if the new log was written, whatever is lost, and 2 if it was not.",

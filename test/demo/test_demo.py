@@ -408,6 +408,30 @@ def test_help_of_the_command_names_every_verb() -> None:
         assert re.search(rf"^  {name} +{re.escape(verb.help)}$", done.stdout, re.MULTILINE)
 
 
+def test_the_command_alone_prints_its_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert all(f"\n  {name} " in printed.err for name in VERBS)
+
+
+@pytest.mark.parametrize(
+    ("verb", "usage"),
+    [
+        ("plot", "[options] --output DIR LOG"),
+        ("recover", "[-h] [--out FOLDER] LOG"),
+        ("evaluate", "[options] RECORDING [RECORDING ...]"),
+        ("calibrate", "[options] RECORDING [RECORDING ...]"),
+    ],
+)
+def test_the_usage_shows_what_must_be_given(
+    capsys: pytest.CaptureFixture[str], verb: str, usage: str
+) -> None:
+    with pytest.raises(SystemExit):
+        main([verb])
+    assert f"usage: contact-dynamics {verb} {usage}\n" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
