@@ -223,7 +223,8 @@ def warnings_of(estimates: Sequence[Estimate], *, clusters: int, by_cluster: boo
     if clusters and not by_cluster:
         found.append(
             f"{'One toss is' if clusters == 1 else f'{clusters} tosses are'} too few to see the scatter "
-            f"between tosses with {free} free parameters. The errors given assume that the law's spread is as estimated, and are probably too small."
+            f"between tosses with {free} free parameters. The errors given assume that the law's spread is "
+            "as estimated, and are probably too small."
         )
     found += [
         f"{each.name} lies at the end of what is possible, {each.value:.4g}."
