@@ -2,7 +2,7 @@
 
 `one_toss` is the call, and follows other ways where mechanics does not decide. `following` goes from event to
 event: flights in closed form, strikes (`strike`), contact phases (`phase`), and rest. `course` keeps what
-happens, and `result` has what is returned.
+happens, and `result` has what is returned. Impacts (`one_impact`) and steps are work that is `asked` for.
 
 - `solid` has the body and the flats in plain floats, and the points that touch.
 - `mode_choice` says which contact mode follows. It tries the one that goes on, corrects it, seeks pushes in
@@ -13,7 +13,9 @@ happens, and `result` has what is returned.
 
 What is not known exactly (`uncertainty`) is sampled: `sampled` is the call, and `distribution` has what it
 returns. `strikes_of_many` has the next strikes of all samples at once, and `law_spread` what the law of
-impact leaves open. `laid_flat` ends the rattling of samples on a face.
+impact leaves open. `laid_flat` ends the rattling of samples on a face. Samples on their way to rest go on
+`together`: `impacts_of_many` and `steps_of_many` do in arrays what they ask for, by the arithmetic of one,
+with `solids_of_many`.
 """
 
 from contact_dynamics.toss.distribution import TossDistribution

@@ -13,7 +13,7 @@ for the normal forces f. Of all forces that balance, the least are taken, as in 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.numerics.vectors import Vector3, dot
 from contact_dynamics.rotations.one import rows_of
@@ -23,6 +23,9 @@ from contact_dynamics.toss.solid import times, transposed_times
 if TYPE_CHECKING:
     from contact_dynamics.toss.held import Held
     from contact_dynamics.toss.solid import Numbers, Solid
+
+DIRECTION_SURE: Final = 1e6 * SLIDING_DIRECTION_SPEED
+"""m/s. A contact that slides faster has a direction of its own, to 1e-6."""
 
 
 def flush_sliding(
@@ -52,7 +55,7 @@ def flush_sliding(
         u, v = v1 - spin * t, v2 + spin * s
         if begins:
             u, v = dot(towards, t1), dot(towards, t2)
-        elif abs(u) + abs(v) < 1e6 * e:
+        elif abs(u) + abs(v) < DIRECTION_SURE:
             u, v = u + e * dot(towards, t1), v + e * dot(towards, t2)
         speed = math.sqrt(u * u + v * v)
         if speed > 0.0:

@@ -25,18 +25,20 @@ from contact_dynamics.toss.forces import pushed_by_contacts
 from contact_dynamics.toss.holding import held_in_place
 from contact_dynamics.toss.laid_flat import laid_flat
 from contact_dynamics.toss.mode_choice import choose_mode, contacts_of, state_of
+from contact_dynamics.toss.one_impact import routh
 from contact_dynamics.toss.phase import phase
 from contact_dynamics.toss.phase_ends import PhaseEnd
 from contact_dynamics.toss.result import FlightPiece, Toss, TossEnd, TossEventKind, UndecidedReason
 from contact_dynamics.toss.solid import energy_of, kinetic_energy_of, numbers_of
-from contact_dynamics.toss.strike import approaches, low_rebounds_ended, routh, strike
+from contact_dynamics.toss.strike import approaches, low_rebounds_ended, strike
 from contact_dynamics.tumbling import Precision, free_motion
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.shapes.convex import ConvexShape
+    from contact_dynamics.toss.asked import Asked, Asking
     from contact_dynamics.toss.mode_choice import Mode
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
 
@@ -91,17 +93,20 @@ class Following:
 
     def run(self, state: BodyState, ways: tuple[int, ...]) -> Toss:
         """Return the toss that takes the given ways at its first undecided points, and way 0 after that."""
-        course, end = self.follow(state, ways)
-        return course.told(end, self.law)
-
-    def follow(self, state: BodyState, ways: tuple[int, ...]) -> tuple[Course, TossEnd]:
-        """Return the same as it is known here, which samples need alone, and why it ends."""
-        course = _Run(self, state, ways)
-        return course, course.go()
+        run = Run(self, state, ways)
+        for asked in run.go():
+            asked.work()
+        return run.told(run.end, self.law)
 
 
-class _Run(Course):
-    """One toss, as far as it has come, and how it goes on."""
+class Run(Course):
+    """One toss, as far as it has come, and how it goes on.
+
+    Attributes:
+        end: Why it ends, once it has ended.
+    """
+
+    end: TossEnd
 
     def __init__(self, runs: Following, state: BodyState, ways: tuple[int, ...]) -> None:
         super().__init__(runs.solid, state, ways)
@@ -110,8 +115,11 @@ class _Run(Course):
         self.slow = math.inf  # J, rest is tried where the kinetic energy is below this
         self.struck = self.laid = 0  # strikes, and how often it was laid flat
 
-    def go(self) -> TossEnd:
-        """Follow the motion, and return why it ends."""
+    def go(self) -> Iterator[Asked]:
+        """Follow the motion to its end, and ask for the work that it takes."""
+        self.end = yield from self._to_end()
+
+    def _to_end(self) -> Asking[TossEnd]:
         touching = self.touching_now(STRIKES)
         for _ in range(_ROUNDS * self.runs.most_events):
             if len(self.events) >= self.runs.most_events:
@@ -120,7 +128,7 @@ class _Run(Course):
                 return TossEnd.HORIZON
             touching = self._laid_flat(touching)
             if touching and min(approaches(self.solid, self.y, touching)) < -STRIKES:
-                touching = self._strike(touching)
+                touching = yield from self._strike(touching)
             elif touching:
                 if self._rests(touching):
                     return TossEnd.RESTS
@@ -130,7 +138,7 @@ class _Run(Course):
                         return TossEnd.UNDECIDED
                     touching = self.touching_now(STILL_TOUCHING)
                 elif modes[0]:
-                    touching = self._follow(modes[0])
+                    touching = yield from self._follow(modes[0])
                 else:
                     self.note(TossEventKind.LIFTS_OFF, touching)
                     touching = self._fly(LIFT_OFF_PAUSE)
@@ -179,7 +187,7 @@ class _Run(Course):
 
     # Strikes
 
-    def _strike(self, touching: list[Touch]) -> list[Touch]:
+    def _strike(self, touching: list[Touch]) -> Asking[list[Touch]]:
         rates = approaches(self.solid, self.y, touching)
         striking = [
             touch for rate, touch in sorted(zip(rates, touching, strict=True)) if rate < -self._fast()
@@ -188,7 +196,7 @@ class _Run(Course):
         if len(striking) > 1:
             first = striking[self.way(UndecidedReason.STRIKE_TOGETHER, len(striking))]
         y, before = self.y, energy_of(self.solid, self.y)
-        strikes = strike(self.solid, self.y, touching, self.runs.law, first=first)
+        strikes = yield from strike(self.solid, self.y, touching, self.runs.law, first=first)
         self.y, staying = strikes.y, strikes.staying
         kick = self.runs.kick
         if kick is not None and len(touching) == 1 and not strikes.settled:
@@ -260,7 +268,7 @@ class _Run(Course):
             return [modes[way]]
         return modes
 
-    def _follow(self, mode: Mode) -> list[Touch]:
+    def _follow(self, mode: Mode) -> Asking[list[Touch]]:
         """Go on in a mode to its end, and return what touches then."""
         self.note(
             TossEventKind.NEW_MODE,
@@ -268,7 +276,7 @@ class _Run(Course):
             mode="".join("c" if one.slides else "f" for one in mode),
         )
         before = energy_of(self.solid, self.y)
-        went = phase(
+        went = yield from phase(
             self.solid,
             self.y,
             mode,

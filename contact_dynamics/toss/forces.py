@@ -75,7 +75,7 @@ def pushed_by_contacts(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> Push
     if is_flush(mode):
         sliding = flush_sliding(solid, y, mode)
         if sliding is not None:
-            return Pushed(_rates(y, sliding[0], sliding[1]), sliding[2])
+            return Pushed(rates_of(y, sliding[0], sliding[1]), sliding[2])
     free = free_accelerations(solid, y)
     pose = free.pose
     # Each equation has a direction with its moment about the centre of mass, and each unknown has a force
@@ -118,7 +118,7 @@ def pushed_by_contacts(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> Push
         t_x, t_y, t_z = t_x + size * u, t_y + size * v, t_z + size * w
     if len(mode) == 2 and not (mode[0].slides or mode[1].slides) and mode[0].touch[0] == mode[1].touch[0]:
         forces = _shared_along_edge(solid, pose, mode, forces)
-    return Pushed(_rates(y, (a_x, a_y, a_z), (t_x, t_y, t_z)), forces)
+    return Pushed(rates_of(y, (a_x, a_y, a_z), (t_x, t_y, t_z)), forces)
 
 
 def _shared_along_edge(
@@ -148,8 +148,8 @@ def _shared_along_edge(
     return shared
 
 
-def _rates(y: Numbers, a: Vector3, alpha: Vector3) -> Numbers:
-    """Return the rates of the 13 numbers."""
+def rates_of(y: Numbers, a: Vector3, alpha: Vector3) -> Numbers:
+    """Return the rates of the 13 numbers from the accelerations, m/s^2 and rad/s^2."""
     q_x, q_y, q_z, q_w = y[3], y[4], y[5], y[6]
     w_x, w_y, w_z = y[10], y[11], y[12]
     return [

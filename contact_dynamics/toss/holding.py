@@ -13,7 +13,7 @@ from contact_dynamics.numerics.vectors import normalised as normalised_vector
 from contact_dynamics.rotations.one import normalised, product
 from contact_dynamics.tolerances import HELD_DRIFT, SLIDING_STOPPED
 from contact_dynamics.toss.forces import least_solution
-from contact_dynamics.toss.solid import arm_of, height_of, pose_of, times, velocity_of
+from contact_dynamics.toss.solid import arm_of, pose_of, times, velocity_of
 
 if TYPE_CHECKING:
     from contact_dynamics.toss.held import Held
@@ -25,23 +25,24 @@ def held_in_place(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> Numbers:
     q = normalised(y[3:7])
     y = [*y[:3], *q, *y[7:]]
     pose = pose_of(solid, y)
-    heights = [height_of(solid, pose, one.touch) for one in mode]
+    arms = [arm_of(solid, pose, one.touch) for one in mode]
+    normals = [solid.flats[one.touch[0]].normal for one in mode]
+    heights = [
+        dot(pose.position, n) + dot(arm, n) - solid.flats[one.touch[0]].level
+        for one, arm, n in zip(mode, arms, normals, strict=True)
+    ]
     if max(map(abs, heights), default=0.0) > HELD_DRIFT:
-        rows = [
-            (normal, cross(arm_of(solid, pose, touch), normal))
-            for touch in (one.touch for one in mode)
-            for normal in (solid.flats[touch[0]].normal,)
-        ]
+        rows = [(n, cross(arm, n)) for arm, n in zip(arms, normals, strict=True)]
         shift, turn = _least_change(solid, pose.inverse, rows, heights)
         for k in range(3):
             y[k] -= shift[k]
         y[3:7] = product(normalised((-0.5 * turn[0], -0.5 * turn[1], -0.5 * turn[2], 1.0)), q)
         pose = pose_of(solid, y)
+        arms = [arm_of(solid, pose, one.touch) for one in mode]
     rows, speeds = [], []
-    for touch, slides, _, _ in mode:
-        flat, arm = solid.flats[touch[0]], arm_of(solid, pose, touch)
+    for one, arm, n in zip(mode, arms, normals, strict=True):
         velocity = velocity_of(pose, arm)
-        for axis in (flat.normal,) if slides else (flat.normal, *flat.tangents):
+        for axis in (n,) if one.slides else (n, *solid.flats[one.touch[0]].tangents):
             rows.append((axis, cross(arm, axis)))
             speeds.append(dot(velocity, axis))
     if max(map(abs, speeds), default=0.0) > HELD_DRIFT:

@@ -44,6 +44,7 @@ class LawSpread:
         self._sizes = np.array([uncertainty.velocity] * 3 + [uncertainty.spin] * 3)
         self._chance = chance
         self._first = np.zeros(count)  # m/s, by how much the first strike changed the velocity
+        self._own: list[Generator] = []
         self.is_none = not self._sizes.any()
 
     def changes(self, which: NDArray[np.intp], jumps: FloatArray) -> FloatArray:
@@ -61,14 +62,19 @@ class LawSpread:
         return changes
 
     def of_one(self, i: int) -> Kick:
-        """Return what changes the velocities of one sample after a strike of a single contact."""
+        """Return what changes the velocities of one sample after a strike of a single contact.
+
+        Each sample has numbers of its own, so that it does not matter which one goes on first.
+        """
+        self._own = self._own or self._chance.spawn(len(self._first))
+        chance = self._own[i]
 
         def kick(solid: Solid, before: Numbers, after: Numbers, touch: Touch) -> Numbers:
             jump = float(np.linalg.norm(np.subtract(after[7:10], before[7:10])))
             first = self._first[i] = self._first[i] or jump
             share = min(jump / (FULL * first), 1.0) if first > 0.0 else 1.0
-            size = share * float(_tails(self._chance, 1)[0])
-            changes = (self._chance.standard_normal(6) * self._sizes * size).tolist()
+            size = share * float(_tails(chance, 1)[0])
+            changes = (chance.standard_normal(6) * self._sizes * size).tolist()
             y = [*after[:7], *(x + change for x, change in zip(after[7:], changes, strict=True))]
             return _turned_back(solid, y, touch)
 

@@ -180,8 +180,8 @@ def _correction(
     n = flat.normal
     least = -FORCE_ROUNDING * solid.mass * (1.0 + norm(solid.gravity))
     slowest = BEGINNING_ROUNDING * (1.0 + norm(solid.gravity))
-    acceleration = moved.at(solid, first.touch, arm_of(solid, moved.pose, first.touch))
     if one is None or force is None:
+        acceleration = moved.at(solid, first.touch, arm_of(solid, moved.pose, first.touch))
         return first if dot(n, acceleration) < -slowest else None
     pressing = dot(force, n)
     if pressing < least:
@@ -191,7 +191,7 @@ def _correction(
         holds = flat.friction * pressing - norm(across) >= least
         return one if holds else _beginning(one.touch, opposite(normalised(across)))
     if not first.slides:
-        begins = without(acceleration, n)
+        begins = without(moved.at(solid, first.touch, arm_of(solid, moved.pose, first.touch)), n)
         if dot(begins, one.towards) < -slowest:
             return first
         if norm(cross(begins, one.towards)) > slowest:

@@ -27,7 +27,7 @@ from contact_dynamics.toss.held import Held, sliding_direction
 from contact_dynamics.toss.holding import held_in_place
 from contact_dynamics.toss.mode_choice import corrected
 from contact_dynamics.toss.phase_ends import PhaseEnd, first_end, low_corners, watched_corners
-from contact_dynamics.toss.phase_step import INTERPOLANT, PhaseStep, one_step, scales_of, within
+from contact_dynamics.toss.phase_step import INTERPOLANT, AskedStep, PhaseStep, scales_of, within
 from contact_dynamics.toss.solid import (
     arm_of,
     heights_and_rates,
@@ -37,6 +37,7 @@ from contact_dynamics.toss.solid import (
 )
 
 if TYPE_CHECKING:
+    from contact_dynamics.toss.asked import Asking
     from contact_dynamics.toss.solid import Numbers, Pose, Solid, Touch
 
 MOST_PHASE_STEPS: Final = 20_000
@@ -80,7 +81,7 @@ def phase(
     until: float,
     slow: float = 0.0,
     error: float = PHASE_ERROR,
-) -> Phase:
+) -> Asking[Phase]:
     """Return the motion in a mode, from a state to the end of the mode.
 
     Args:
@@ -105,11 +106,13 @@ def phase(
     for _ in range(MOST_PHASE_STEPS):
         longest = _before_arrival(solid, y, held)
         step = min(step, longest, until - now, before_stop)
-        trial, size, stages, after = one_step(solid, y, pushed, mode, span=step, scales=scales, error=error)
+        asked = AskedStep(solid, y, pushed, mode, span=step, scales=scales, error=error)
+        yield asked
+        trial, size, after = asked.trial, asked.size, asked.after
         if size > 1.0 and step > PHASE_LEAST_STEP:
             step *= max(0.2, 0.9 * size**-0.2)
             continue
-        done = PhaseStep(now, step, np.array(y), stages.T @ INTERPOLANT, step)
+        done = PhaseStep(now, step, np.array(y), asked.stages.T @ INTERPOLANT, step)
         found = first_end(
             solid, done, mode, after=after, trial=trial, watched=watched, least_force=least_force
         )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.toss.flush import is_flush
 from contact_dynamics.toss.forces import Pushed, pushed_by_contacts
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from contact_dynamics.toss.solid import Numbers, Solid
     from contact_dynamics.validation import FloatArray
 
-_A: Final = tuple(
+STAGES: Final = tuple(
     np.array(row)
     for row in (
         [1 / 5],
@@ -28,7 +29,7 @@ _A: Final = tuple(
         [35 / 384, 0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84],
     )
 )
-_E: Final = np.array([-71 / 57600, 0, 71 / 16695, -71 / 1920, 17253 / 339200, -22 / 525, 1 / 40])
+ERRORS: Final = np.array([-71 / 57600, 0, 71 / 16695, -71 / 1920, 17253 / 339200, -22 / 525, 1 / 40])
 INTERPOLANT: Final = np.array(
     [
         [1, -8048581381 / 2820520608, 8663915743 / 2820520608, -12715105075 / 11282082432],
@@ -79,24 +80,71 @@ def scales_of(solid: Solid) -> FloatArray:
     return np.array([1.0] * 3 + [2.0 * reach] * 4 + [1.0] * 3 + [reach] * 3)
 
 
-def one_step(
-    solid: Solid,
-    y: Numbers,
-    pushed: Pushed,
-    mode: tuple[Held, ...],
-    *,
-    span: float,
-    scales: FloatArray,
-    error: float,
-) -> tuple[Numbers, float, FloatArray, Pushed]:
-    """Return the state after a step, its error by the allowed one, the rates, (7, 13), and the forces."""
-    begin = np.array(y)
-    stages = np.empty((7, 13))
-    stages[0] = pushed.rates
-    trial, last = y, pushed
-    for k, row in enumerate(_A, start=1):
-        trial = (begin + span * (row @ stages[:k])).tolist()
-        last = pushed_by_contacts(solid, trial, mode)
-        stages[k] = last.rates
-    size = float(np.abs((_E @ stages) * scales).max()) * span / error
-    return trial, size, stages, last
+class AskedStep:
+    """One step, as a piece of work.
+
+    Attributes:
+        solid: The body and the flats.
+        y: The state at its beginning.
+        pushed: The rates and forces there.
+        mode: The contacts that are held.
+        span: s, its length.
+        scales: What the 13 numbers are multiplied with (`scales_of`).
+        error: m, m/s. The error that it may have.
+        trial: The state at its end, once the work is done.
+        size: Its error, by the allowed one.
+        stages: (7, 13), the rates at the stages.
+        after: The rates and forces at its end.
+    """
+
+    __slots__ = (
+        "after",
+        "error",
+        "mode",
+        "pushed",
+        "scales",
+        "size",
+        "solid",
+        "span",
+        "stages",
+        "trial",
+        "y",
+    )
+
+    trial: Numbers
+    size: float
+    stages: FloatArray
+    after: Pushed
+
+    def __init__(
+        self,
+        solid: Solid,
+        y: Numbers,
+        pushed: Pushed,
+        mode: tuple[Held, ...],
+        *,
+        span: float,
+        scales: FloatArray,
+        error: float,
+    ) -> None:
+        self.solid, self.y, self.pushed, self.mode = solid, y, pushed, mode
+        self.span, self.scales, self.error = span, scales, error
+
+    @property
+    def kind(self) -> tuple[str, int] | None:
+        """Steps of so many contacts can be done together if all of them slide."""
+        mode = self.mode
+        if not all(one.slides and not one.begins for one in mode) or (len(mode) > 2 and not is_flush(mode)):
+            return None
+        return ("step", len(mode))
+
+    def work(self) -> None:
+        """Do this step alone."""
+        begin = np.array(self.y)
+        self.stages = stages = np.empty((7, 13))
+        stages[0] = self.pushed.rates
+        for k, row in enumerate(STAGES, start=1):
+            self.trial = (begin + self.span * (row @ stages[:k])).tolist()
+            self.after = pushed_by_contacts(self.solid, self.trial, self.mode)
+            stages[k] = self.after.rates
+        self.size = float(np.abs((ERRORS @ stages) * self.scales).max()) * self.span / self.error

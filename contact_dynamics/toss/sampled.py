@@ -1,7 +1,8 @@
 """Samples of a toss that is not known exactly, followed through the next strikes or to rest.
 
 The next strikes of all samples are found together (`strikes_of_many`), in a tenth of a millisecond each. If
-rest is asked for, each sample goes on by itself from there (`following`), which takes far longer. It does so
+rest is asked for, each sample goes on from there as a toss does (`following`), and has its impacts and the
+steps of its sliding done in arrays with those of others (`together`). That takes far longer. It is done
 less exactly than a single toss: rebounds below `SAMPLED_SETTLING_HEIGHT` are not followed, and neither is a
 body that only rattles on a face until it rests (`laid_flat`).
 """
@@ -27,11 +28,12 @@ from contact_dynamics.toss.distribution import (
     regions_of,
     rest_of,
 )
-from contact_dynamics.toss.following import Following
+from contact_dynamics.toss.following import Following, Run
 from contact_dynamics.toss.law_spread import LawSpread
 from contact_dynamics.toss.result import TossEnd, TossEventKind
 from contact_dynamics.toss.solid import as_rows, solid_of
 from contact_dynamics.toss.strikes_of_many import ManyStrikes, SampleEnd, strikes_of_many
+from contact_dynamics.toss.together import together
 from contact_dynamics.toss.uncertainty import EXACT, Samples, TossUncertainty, draw
 
 if TYPE_CHECKING:
@@ -103,10 +105,15 @@ def sampled_toss(
     )
     rests: dict[int, _Rest] = {}
     if to_rest:
-        for i in range(count):
-            went = _go_on(solid, samples, told, spread, i, law=law, horizon=horizon)
-            if went is not None:
-                rests[i] = went
+        runs = {
+            i: _begun(solid, samples, told, spread, i, law=law, horizon=horizon)
+            for i in np.flatnonzero(told.now < horizon).tolist()
+        }
+        together([run.go() for run in runs.values()])
+        for i, run in runs.items():
+            _tell(told, i, run)
+            if run.end == TossEnd.RESTS:
+                rests[i] = _Rest(float(told.now[i]) + run.now, run.y, run.resting_normal_B())
     faces, shares = _faces([each.normal_B for each in rests.values()], count)
     rest = None
     if rests:
@@ -137,7 +144,7 @@ class _Rest(NamedTuple):
     normal_B: Vector3
 
 
-def _go_on(
+def _begun(
     solid: Solid,
     samples: Samples,
     told: ManyStrikes,
@@ -146,10 +153,8 @@ def _go_on(
     *,
     law: RestitutionLaw,
     horizon: float,
-) -> _Rest | None:
-    """Follow one sample, tell of strikes that the tree still lacks, and return how it rests if it does."""
-    if told.now[i] >= horizon:
-        return None
+) -> Run:
+    """Return the toss that one sample goes on with."""
     inertia, corners = samples.inertias_B[i], samples.corners_B[i]
     flats = tuple(
         flat._replace(friction=mu, restitution=e, strike_friction=struck)
@@ -171,7 +176,6 @@ def _go_on(
     )
     p, q, v, w = (rows[i] for rows in told.last)
     state = BodyState(p_WB_W=p, q_WB=q / np.linalg.norm(q), v_WB_W=v, w_WB_W=w)
-    k = int((told.corners[:, i] >= 0).sum())
     following = Following(
         mine,
         MassProperties(mass=solid.mass, I_B=inertia),
@@ -181,10 +185,15 @@ def _go_on(
         most_events=_MOST_EVENTS,
         error=SAMPLED_PHASE_ERROR,
         kick=None if spread.is_none else spread.of_one(i),
-        flat_after=len(told.seconds) - k,
+        flat_after=len(told.seconds) - int((told.corners[:, i] >= 0).sum()),
     )
-    course, end = following.follow(state, ())
-    later = [event for event in course.events if event.kind == TossEventKind.STRIKES]
+    return Run(following, state, ())
+
+
+def _tell(told: ManyStrikes, i: int, run: Run) -> None:
+    """Tell of the strikes of one sample that the tree still lacks."""
+    k = int((told.corners[:, i] >= 0).sum())
+    later = [event for event in run.events if event.kind == TossEventKind.STRIKES]
     for event in later[: len(told.seconds) - k]:
         told.seconds[k, i] = told.now[i] + event.seconds
         ((told.surfaces[k, i], told.corners[k, i]),) = event.touching
@@ -192,9 +201,6 @@ def _go_on(
         told.v_WB_W[k, i], told.w_WB_W[k, i] = event.y[7:10], event.y[10:]
         k += 1
     told.ends[i] = SampleEnd.FOLLOWED if k == len(told.seconds) else SampleEnd.ENDS
-    if end != TossEnd.RESTS:
-        return None
-    return _Rest(float(told.now[i]) + course.now, course.y, course.resting_normal_B())
 
 
 def _marginals(told: ManyStrikes, count: int) -> list[EventRegions]:

@@ -14,10 +14,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
-from contact_dynamics.impact.spatial.path import trace
-from contact_dynamics.impact.spatial.response import contact_axes, pushed, responding
-from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
 from contact_dynamics.numerics.vectors import cross, dot, norm
 from contact_dynamics.tolerances import STILL_TOUCHING, STRIKES
 from contact_dynamics.toss.cone_forces import Site, cone_forces
@@ -25,29 +21,17 @@ from contact_dynamics.toss.forces import pushed_by_contacts
 from contact_dynamics.toss.held import Held
 from contact_dynamics.toss.holding import held_in_place, without_rebounds
 from contact_dynamics.toss.mode_choice import choose_mode
+from contact_dynamics.toss.one_impact import AskedImpact, Struck
 from contact_dynamics.toss.solid import arm_of, pose_of, times, velocity_of
 
 if TYPE_CHECKING:
-    from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
+    from contact_dynamics.impact.law import RestitutionLaw
     from contact_dynamics.numerics.vectors import Vector3
+    from contact_dynamics.toss.asked import Asking
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
 
 MOST_STRIKES_AT_ONCE: Final = 500
 """Strikes of one instant after which the contacts count as not settled by them."""
-
-
-class Struck(NamedTuple):
-    """One strike.
-
-    Attributes:
-        touch: The contact.
-        impulse: N s, on the body, world axes.
-        outcome: What the contact did, or None if it was settled without restitution, together with others.
-    """
-
-    touch: Touch
-    impulse: Vector3
-    outcome: ImpactOutcome | None
 
 
 class Strikes(NamedTuple):
@@ -76,7 +60,7 @@ def approaches(solid: Solid, y: Numbers, touching: list[Touch]) -> list[float]:
 
 def strike(
     solid: Solid, y: Numbers, touching: list[Touch], law: RestitutionLaw, *, first: Touch | None = None
-) -> Strikes:
+) -> Asking[Strikes]:
     """Return the state after all strikes of contacts that touch at one instant.
 
     Args:
@@ -97,8 +81,10 @@ def strike(
             return Strikes(settled.y, struck + settled.struck, settled.staying, settled=True)
         which = touching[rates.index(fastest)] if first is None else first
         first = None
-        y, one = routh(solid, y, which, law, friction=solid.flats[which[0]].strike_friction)
-        struck.append(one)
+        impact = AskedImpact(solid, y, which, law)
+        yield impact
+        y = impact.after
+        struck.append(impact.struck)
     rates = approaches(solid, y, touching)
     staying = [touch for touch, rate in zip(touching, rates, strict=True) if rate <= STILL_TOUCHING]
     return Strikes(y, struck, staying, settled=False)
@@ -123,25 +109,6 @@ def low_rebounds_ended(solid: Solid, y: Numbers, touching: list[Touch]) -> Strik
         if rate > STILL_TOUCHING and touch in found.staying
     ]
     return found._replace(y=without_rebounds(solid, y, found.staying)) if low else None
-
-
-def routh(
-    solid: Solid, y: Numbers, touch: Touch, law: RestitutionLaw, *, friction: float
-) -> tuple[Numbers, Struck]:
-    """Return the state after the impact at one contact, which approaches or jams (lecture 27)."""
-    pose, flat = pose_of(solid, y), solid.flats[touch[0]]
-    body = responding(solid.mass, solid.inertia, y[3:7], arm_of(solid, pose, touch), pose.v, pose.w)
-    axes = contact_axes(body, None, flat.normal)
-    u1, u2, v_n = axes.components(velocity_of(pose, body.r))
-    if math.hypot(u1, u2) <= STRIKES:
-        u1 = u2 = 0.0
-    if v_n >= -STRIKES:  # it jams, without approach
-        v_n = 0.0
-    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, min(friction, LARGEST_FRICTION))
-    path = trace(sliding, (u1, u2), v_n, restitution=flat.restitution, law=law)
-    impulse = axes.in_world(path.impulse)
-    v, w = pushed(body, impulse)
-    return [*y[:7], *v, *w], Struck(touch, impulse, path.outcome)
 
 
 def _settled(solid: Solid, y: Numbers, touching: list[Touch], rates: list[float]) -> Strikes | None:
