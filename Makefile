@@ -75,29 +75,33 @@ venv: setup
 clean: ## remove what make made: the environment, the tools' caches, the demo's output
 	@setup/clean.sh $(VENV)
 
-# Each file in $(MADE) says that a step is done. Its prerequisites are what makes the step necessary again.
+# Each file in $(MADE) says that a step is done. Its prerequisites are what makes the step necessary again. Its time is when the
+# step began, so that a prerequisite that changes during the step makes it necessary again too.
 
 $(MADE)/python: FORCE
 	@setup/make_venv.sh $(VENV) $(if $(filter-out undefined,$(origin PYTHON)),"$(PYTHON)")
 
 RUN := $(addprefix requirements/,core.txt view.txt jazzy.txt build.txt)
 $(MADE)/wheels: $(RUN) requirements/constraints.txt $(MADE)/python
+	@touch $@.begun
 	@echo "Installing ROS 2 Jazzy and what else runs (about 1 GB; a minute or two)."
 	@$(INSTALL) -c requirements/constraints.txt $(addprefix -r ,$(RUN))
-	@touch $@
+	@mv $@.begun $@
 
 INTERFACES := contact_dynamics_interfaces
 # The folders themselves are listed too, because their time changes when a file is removed.
 $(MADE)/interfaces: $(addprefix $(INTERFACES)/,CMakeLists.txt package.xml msg srv) $(wildcard $(INTERFACES)/*/*.msg $(INTERFACES)/*/*.srv) \
                     cmake/wheel_paths.cmake setup/build_interfaces.sh $(MADE)/wheels
+	@touch $@.begun
 	@setup/build_interfaces.sh $(VENV)
-	@touch $@
+	@mv $@.begun $@
 
 # The package is installed in place, so a change of the sources works at once. pip leaves out its data files then, so they
 # are linked to where ROS looks for them. They are linked one by one, because `ros2 launch` does not follow a linked folder.
 SHARE := $(VENV)/share/contact_dynamics
 INDEX := $(VENV)/share/ament_index/resource_index/packages
 $(MADE)/package: setup.py package.xml pyproject.toml Makefile $(wildcard config launch config/*.yaml launch/*.launch.py) $(MADE)/wheels
+	@touch $@.begun
 	@$(INSTALL) --no-deps --no-build-isolation --editable .
 	@rm -rf $(SHARE)
 	@mkdir -p $(SHARE)/config $(SHARE)/launch $(INDEX)
@@ -106,14 +110,16 @@ $(MADE)/package: setup.py package.xml pyproject.toml Makefile $(wildcard config 
 	@ln -sf "$(CURDIR)"/launch/*.launch.py $(SHARE)/launch/
 	@ln -sf "$(CURDIR)"/resource/contact_dynamics $(INDEX)/
 	@ln -sfn "$(CURDIR)"/executables $(VENV)/lib/contact_dynamics
-	@touch $@
+	@mv $@.begun $@
 
 $(MADE)/test: requirements/test.txt requirements/docs.txt $(MADE)/package $(MADE)/interfaces
+	@touch $@.begun
 	@echo "Installing what the tests need."
 	@$(INSTALL) -c requirements/constraints.txt -r requirements/test.txt -r requirements/docs.txt
-	@touch $@
+	@mv $@.begun $@
 
 $(MADE)/bench: requirements/bench.txt $(MADE)/test
+	@touch $@.begun
 	@echo "Installing what the benchmarks need."
 	@$(INSTALL) -c requirements/constraints.txt -r requirements/bench.txt
-	@touch $@
+	@mv $@.begun $@

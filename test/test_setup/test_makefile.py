@@ -150,6 +150,18 @@ def test_an_interface_that_goes_is_noticed(checkout: Checkout) -> None:
     assert kinds(checkout.make("setup")) == ["interfaces"]
 
 
+def test_an_interface_that_changes_while_it_is_built_is_built_again(checkout: Checkout) -> None:
+    interface = "contact_dynamics_interfaces/srv/Ask.srv"
+    script = "setup/build_interfaces.sh"
+    checkout.write(script, f"#!/bin/sh\necho {BUILD} >>calls\nsleep 0.1\necho new >{interface}\nsleep 0.1")
+    checkout.write(interface, "changed")
+    assert kinds(checkout.make("setup")) == ["interfaces"]
+    checkout.write(script, f"#!/bin/sh\necho {BUILD} >>calls")
+    checkout.age([checkout.folder / script], seconds=100)
+    assert kinds(checkout.make("setup")) == ["interfaces"]
+    assert checkout.make("setup") == []
+
+
 def test_a_step_that_failed_is_done_again(checkout: Checkout) -> None:
     checkout.write("setup/build_interfaces.sh", "#!/bin/sh\nexit 1")
     with pytest.raises(subprocess.CalledProcessError):
