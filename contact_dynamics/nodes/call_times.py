@@ -26,8 +26,8 @@ class EventTimes(NamedTuple):
 
     Attributes:
         log_time_ns: The time on this machine's clock.
-        publish_time_ns: The time on the node's clock, which is the present time of the question, or None to
-            take the event's own.
+        publish_time_ns: The time on the node's clock. That of a request is the present time of the question.
+            None takes the event's own.
         is_logged: Whether the log has it already.
     """
 
@@ -98,5 +98,5 @@ class CallTimes:
                     return EventTimes(call.received_ns, max(0, call.node_clock_ns))  # MCAP has no time before
         elif info.event_type is EventType.RESPONSE_SENT and key in self._answered:
             answered = self._answered.pop(key)
-            return EventTimes(answered.sent_ns, is_logged=answered.is_logged)
-        return EventTimes(time.time_ns())
+            return EventTimes(answered.sent_ns, max(0, info.stamp_ns), answered.is_logged)
+        return EventTimes(time.time_ns(), max(0, info.stamp_ns))

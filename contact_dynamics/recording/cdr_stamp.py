@@ -11,8 +11,7 @@ from __future__ import annotations
 
 import enum
 import struct
-from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.errors import InvalidFieldError
@@ -31,8 +30,10 @@ class EventType(enum.IntEnum):
     RESPONSE_RECEIVED = 3
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EventInfo:
+_EVENT_TYPES: Final = tuple(EventType)
+
+
+class EventInfo(NamedTuple):
     """The head of a service event: who asked, and when.
 
     Attributes:
@@ -57,16 +58,9 @@ def leading_stamp_ns(data: bytes) -> int:
 def event_info(data: bytes) -> EventInfo:
     """Return the head of a serialised service event."""
     kind, seconds, nanoseconds, gid, sequence_number = _unpack(_EVENT_INFO, data)
-    try:
-        event_type = EventType(kind)
-    except ValueError:
-        raise InvalidFieldError("event_type", kind, "0 to 3") from None
-    return EventInfo(
-        event_type=event_type,
-        stamp_ns=seconds * NS_PER_S + nanoseconds,
-        client_gid=gid,
-        sequence_number=sequence_number,
-    )
+    if kind >= len(_EVENT_TYPES):
+        raise InvalidFieldError("event_type", kind, "0 to 3")
+    return EventInfo(_EVENT_TYPES[kind], seconds * NS_PER_S + nanoseconds, gid, sequence_number)
 
 
 def event_stamp_ns(data: bytes) -> int:
