@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codeop
 import re
 import subprocess
 import sys
@@ -81,3 +82,15 @@ def test_the_code_in_the_documents(page: str, tmp_path: Path) -> None:
         printed = run(block, folder=tmp_path, code=True)
         for expected in re.findall(r"#> (.*)", block):
             assert expected in printed
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_the_code_in_the_documents_can_be_pasted_into_a_prompt(page: str) -> None:
+    """Python's prompt ends a loop or a function at an empty line, and up to 3.12 nowhere else."""
+    for block in BLOCK.findall((ROOT / page).read_text(encoding="utf-8")):
+        pending: list[str] = []
+        for line in [*block.splitlines(), ""]:
+            pending.append(line)
+            if codeop.compile_command("\n".join(pending)) is not None:
+                pending = []
+        assert not "".join(pending).strip()
