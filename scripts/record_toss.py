@@ -168,7 +168,8 @@ def record(motion: Motion) -> Toss:
     v_W, w_W = causal_velocities(motion.times, p_W, q, frames=window)
     kept = slice(window - 1, None)
     return Toss(
-        source=f"MuJoCo {mujoco.__version__} with the noise of motion capture, by scripts/record_toss.py",
+        source=f"a toss by MuJoCo {mujoco.__version__} with the noise of motion capture, "
+        "by scripts/record_toss.py",
         body=Body(
             name="brick",
             mass_properties=MassProperties(mass=MASS, I_B=box_inertia()),
@@ -217,7 +218,7 @@ def write_truth(path: Path, motion: Motion) -> None:
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-PROSE: Final = """A brick of 15 x 9 x 5 cm tossed by hand onto a floor: free flight, bounces, rest.
+PROSE: Final = """A simulated toss of a brick of 15 x 9 x 5 cm onto a floor: free flight, bounces, rest.
 
 Written by scripts/record_toss.py, which says how the motion and the noise of the measurement are modelled. Do
 not edit.
