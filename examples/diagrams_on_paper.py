@@ -47,7 +47,7 @@ figure = Figure(figsize=(11, 5), layout="constrained")
 chart = DirectionChart(length=block.radius_of_gyration, resolution=600)
 draw_mode_map(figure.add_subplot(), wrench_sets(problem), chart, applied=problem.wrench, change=margin.change)
 save_figure(figure, folder / "mode_map.svg")
-print(f"{answer.modes[0].mode}, {margin.margin:.2f} N from {' or '.join(margin.modes_beyond)}")
+print(f"the block in the tray: {margin.mode}, {margin.margin:.2f} N from {' or '.join(margin.modes_beyond)}")
 
 # Lecture 25: the ellipsoid of a tumbling plate rolls on its plane.
 plate = Body(name="plate", mass_properties=MassProperties(mass=0.2, I_B=np.diag([1.0e-4, 2.0e-4, 2.6e-4])))
@@ -57,3 +57,4 @@ if motion.poinsot is not None and motion.curves is not None:  # they are None un
     figure = Figure(figsize=(8, 6), layout="constrained")
     draw_poinsot(figure.add_subplot(projection="3d"), motion.poinsot, motion.curves, motion.state)
     save_figure(figure, folder / "poinsot.svg")
+print(f"the diagrams are in {folder.resolve()}: impulse_space.svg, mode_map.svg, poinsot.svg")

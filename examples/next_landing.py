@@ -22,10 +22,12 @@ tossed = BodyState(
 landing = next_landing(box, tossed, World(bodies=(box,), surfaces=(floor,)), horizon=2.0)
 if landing is None:
     raise SystemExit("it does not land within 2 s")
-print(f"in {landing.seconds:.6f} s at {landing.contacts.p_WC_W[0]}, at {landing.velocities_W[0]} m/s")
+corner, velocity = landing.contacts.p_WC_W[0].round(4) + 0.0, landing.velocities_W[0].round(3)
+print(f"a corner strikes after {landing.seconds:.4f} s, at {corner} m, with {velocity} m/s")
 
 impact = spatial_impact(box.mass_properties, landing.state, landing.contacts[0])
-print(f"the contact {impact.outcome.name.lower().replace('_', ' ')}; impulse {impact.impulse_W} N s")
-print(
-    f"then v = {impact.state.v_WB_W} m/s, w = {impact.state.w_WB_W} rad/s; {-impact.energy_change:.3f} J lost"
-)
+outcome = impact.outcome.name.lower().replace("_", " ")
+print(f"its contact {outcome}, with an impulse of {impact.impulse_W.round(3)} N s")
+after = impact.state
+print(f"the box then has v = {after.v_WB_W.round(3)} m/s and w = {after.w_WB_W.round(2)} rad/s", end="")
+print(f", and has lost {-impact.energy_change:.3f} J")

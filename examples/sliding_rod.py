@@ -9,7 +9,7 @@ from contact_dynamics import (
     PlanarWrench,
     planar_impact,
 )
-from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes
+from contact_dynamics.contact_modes import PlanarContactProblem, Refusal, contact_modes
 
 rod = PlanarBody(mass=1.0, inertia=1.0)
 theta = math.radians(75.0)
@@ -24,13 +24,21 @@ answer = contact_modes(
     PlanarContactProblem(body=rod, velocity=sliding, contacts=[contact], wrench=PlanarWrench(f=(0.0, -9.81)))
 )
 print(f"sliding left under gravity: {answer.verdict.name.lower()}")
+units = {
+    Refusal.PENETRATES: "m/s^2 of normal acceleration",
+    Refusal.NO_SOLUTION: "1/kg of normal acceleration for each N of normal force",
+}
 for refused in answer.refused:
-    print(f"  {refused.mode}: {refused.refusal.name.lower()}, {refused.amount:.4f}")
+    name = refused.refusal.name.lower().replace("_", " ")
+    print(f"  {refused.mode}: {name}, {refused.amount:.4f} {units[refused.refusal]}")
 impact = planar_impact(rod, sliding, contact)
-print(f"  as an impact: {impact.outcome.name.lower()}, v = {impact.velocity.v}, w = {impact.velocity.w:.4f}")
+(x, y), w = impact.velocity.v, impact.velocity.w
+outcome = impact.outcome.name.lower().replace("_", " ")
+print(f"  as an impact: it {outcome}, v = ({x:.4f}, {y:.4f}) m/s, w = {w:.4f} rad/s")
 
 at_rest = PlanarContactProblem(body=rod, contacts=[contact], wrench=PlanarWrench(f=(-1.0, 0.0)))
 answer = contact_modes(at_rest)
 print(f"at rest, pulled along the wall: {answer.verdict.name.lower()}")
 for mode in answer.modes:
-    print(f"  {mode.mode}: force (t, n) = {mode.contact_forces[0]}, acceleration {mode.acceleration}")
+    (t, n), (x, y) = mode.contact_forces[0], mode.acceleration[:2]
+    print(f"  {mode.mode}: force (t, n) = ({t:.4f}, {n:.4f}) N, acceleration ({x:.4f}, {y:.4f}) m/s^2")

@@ -56,7 +56,8 @@ print(f"{len(modes)} of 4^{len(contacts)} strings are possible: {', '.join(one.m
 
 answer = contact_modes(problem)
 (margin,) = mode_margins(problem, answer)
-print(f"{applied} brings about {margin.mode}; {margin.margin:.3f} N more: {' or '.join(margin.modes_beyond)}")
+beyond = " or ".join(margin.modes_beyond)
+print(f"the applied wrench brings about {margin.mode}, and {margin.margin:.3f} N more bring about {beyond}")
 
 outline = np.vstack([outer, inner[::-1], outer[:1]]) - mass_centre
 tray = np.array([[-0.16, 0.0], [0.0, 0.0], [0.0, 0.11]]) - mass_centre
