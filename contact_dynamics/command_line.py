@@ -164,7 +164,7 @@ def _remedy(verb: str, missing: list[str]) -> str:
     if "rerun" in missing:
         lines.append("rerun: the extra [view] brings it. In the project's folder: pip install '.[view]'")
     if "matplotlib" in missing:
-        lines.append("matplotlib: the extra [plot] brings it. In the project's folder: pip install '.[plot]'")
+        lines.append("matplotlib: `pip install matplotlib` brings it. So does the project's extra [plot].")
     if set(missing) - {"rerun", "matplotlib"}:
         lines.append(
             "ROS 2 Jazzy and the project's interface package. With an installed ROS: source it, and a\n"

@@ -82,6 +82,7 @@ def commentator_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="contact-dynamics commentator",
         description="Ask a running server about a body again and again, and print the answers in words.",
+        epilog="The server's parameters name the body and the topic of its states. They follow --ros-args.",
     )
     parser.add_argument(
         "situation",
