@@ -80,7 +80,7 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
         "logs",
         nargs="*",
         metavar="LOG",
-        help="folder of a log of the server, one of its files, or a folder of such folders",
+        help="folder of a log of the server, one of its files, or a folder in which logs are looked for",
     )
     parser.add_argument(
         "--tolerance",

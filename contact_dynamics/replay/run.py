@@ -26,7 +26,7 @@ from contact_dynamics.replay.verify import verify_log
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
 DIFFERENT: Final = 1
 """This exit code says that an answer differs, that a call cannot be read, or that a viewer failed."""
@@ -150,10 +150,18 @@ def _view(given: argparse.Namespace) -> int:
 
 
 def logs_in(path: Path) -> list[Path]:
-    """Return a log, or the logs whose folders are in a folder, by name."""
+    """Return a log, or the logs whose folders are in a folder at any depth, by name."""
     if not path.is_dir() or _is_bag(path):
         return [path]
-    return sorted(folder for folder in path.iterdir() if folder.is_dir() and _is_bag(folder)) or [path]
+    return list(_logs_below(path)) or [path]
+
+
+def _logs_below(path: Path) -> Iterator[Path]:
+    for folder in sorted(inner for inner in path.iterdir() if inner.is_dir()):
+        if _is_bag(folder):
+            yield folder
+        elif not folder.is_symlink():  # a link can lead back
+            yield from _logs_below(folder)
 
 
 def _is_bag(folder: Path) -> bool:

@@ -186,6 +186,18 @@ def test_a_log_of_another_kind_is_refused_by_name(
     assert "predict_tumbling" in printed.out  # the others are asked all the same
 
 
+def test_logs_are_found_in_folders_of_folders(
+    asked: Asked, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As the demo leaves them: a folder for each run, and the log's folder in it. A link may lead back."""
+    run = tmp_path / "logs" / "run"
+    run.mkdir(parents=True)
+    (run / "back").symlink_to(tmp_path / "logs")
+    log = copied(asked, run)
+    assert main([str(tmp_path / "logs")]) == 0
+    assert capsys.readouterr().out.splitlines()[0] == str(log)
+
+
 def with_other_definitions(log: Path, to: Path, old: bytes, new: bytes) -> Path:
     """A copy of a log, as an older version would have written it: its types have another text."""
     (whole,) = log.glob("*.mcap")
