@@ -75,7 +75,8 @@ def _motions(
     if not motions:
         reasons = "; ".join(f"{name}: {reason}" for name, reason in refused)
         what = f"states of body {given.body!r}" if given.body else "states of a body"
-        raise InvalidFieldError("RECORDING", f"none of {len(sources)} with {what} {reasons}", "one at least")
+        why = f" ({reasons})" if reasons else ""
+        raise InvalidFieldError("RECORDING", f"none with {what}{why}", "one at least")
     return motions, names, refused
 
 

@@ -18,7 +18,7 @@ def server_parameters(found: Calibration) -> str:
     shape = body.shape
     corners = (shape.vertices + body.p_FB_F).ravel()
     lines = [
-        f"# Calibrated from {found.clusters} tosses. Add the topics of the body's states.",
+        f"# Calibrated from tosses: {found.clusters}. Add the topics of the body's states.",
         "/**:",
         "  ros__parameters:",
         f"    gravity: {_list(found.gravity_W)}",
