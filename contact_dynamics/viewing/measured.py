@@ -36,7 +36,7 @@ from contact_dynamics.viewing.entities import (
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.tumbling import Trajectory
@@ -44,6 +44,12 @@ if TYPE_CHECKING:
 
 OF_ONE_BODY: Final = (ENERGY, MOMENTUM, ANGULAR_MOMENTUM, ANGULAR_VELOCITY)
 """The entities of the curves that one body has at a time: it must have mass properties."""
+
+_MOST_ACCELERATION: Final = 20.0
+"""m/s^2. A body that was struck or lost from view for a while is not taken for one that was put elsewhere."""
+
+_SLACK: Final = 0.05
+"""m. The same for one whose measured velocities are off."""
 
 
 def curves_of(
@@ -98,6 +104,8 @@ def draw_states(
 ) -> None:
     """Draw states in the order of their stamps. The trail continues from the state ``before``, if any.
 
+    It has a gap where the body was put elsewhere, as a simulation does that begins anew.
+
     The other arguments are those of `curves_of`.
     """
     if not states:
@@ -107,12 +115,20 @@ def draw_states(
     points = measured.p_WB_W
     poses = rr.Transform3D.columns(translation=points, quaternion=measured.q_WB)
     recording.send_columns(body_entity(body_name), indexes=[stamps], columns=poses)
-    starts = np.vstack([points[:1] if before is None else before.p_WB_W, points[:-1]])
+    way = trajectory_of([before or states[0], *states])
+    starts = np.where(_put_elsewhere(way)[:, None], points, way.p_WB_W[:-1])
     segments = np.stack([starts, points], axis=1)
     trail = rr.LineStrips3D.columns(strips=list(segments))
     recording.send_columns(trail_entity(body_name), indexes=[stamps], columns=trail)
     curves = curves_of(measured, up_W=up_W, body=body, gravity_W=gravity_W)
     _draw_curves(recording, body_name, "measured", stamps, curves)
+
+
+def _put_elsewhere(way: Trajectory) -> NDArray[np.bool_]:
+    """Tell which states after the first cannot be where velocities took the body from the state before."""
+    seconds, speeds = np.diff(way.seconds), np.linalg.norm(way.v_WB_W, axis=1)
+    reach = (speeds[:-1] + speeds[1:]) * seconds + _MOST_ACCELERATION * seconds**2 + _SLACK
+    return np.asarray(np.linalg.norm(np.diff(way.p_WB_W, axis=0), axis=1) > reach)
 
 
 def draw_curves_of_one(

@@ -60,6 +60,20 @@ def test_the_trail_goes_on_where_the_last_batch_ended(
     np.testing.assert_array_equal(segments[1:, 0], segments[:-1, 1])
 
 
+def test_the_trail_has_a_gap_where_the_body_was_put_elsewhere(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, state: BodyState
+) -> None:
+    """As a simulation does that begins anew; a state in between that got lost is no gap."""
+    states = flight(body, state, 9)
+    elsewhere = [replace(s, p_WB_W=s.p_WB_W + 0.3 * UP) for s in states[5:]]
+    draw_states(recording, "brick", states[:3], before=None, up_W=UP)
+    draw_states(recording, "brick", [states[4], *elsewhere], before=states[2], up_W=UP)
+    segments = read().series("/world/trails/brick", "LineStrips3D:strips")
+    lengths = np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)
+    assert np.flatnonzero(lengths == 0.0).tolist() == [0, 4]
+    np.testing.assert_allclose(segments[3, 0], states[2].p_WB_W, rtol=1e-6)
+
+
 def test_height_counts_against_gravity(
     recording: rr.RecordingStream, read: Callable[[], Drawn], state: BodyState
 ) -> None:
