@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from array import array
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,16 +19,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from contact_dynamics.validation import FloatArray
-
-
-_CURVED_FIELDS: Final = (
-    "kinds",
-    *(
-        f"{side}_{field}"
-        for side in ("body", "surface")
-        for field in ("curvatures", "curvatures_across", "curvature_directions")
-    ),
-)
 
 
 def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
@@ -101,7 +91,15 @@ def rows(numbers: Sequence[float], width: int = 3) -> FloatArray:
 
 def _sides(msg: ContactSetMsg) -> tuple[Curvatures | None, Curvatures | None]:
     """Return the curvatures of body and surface, or None for points on flats, as most contacts are."""
-    if not any(len(getattr(msg, field)) for field in _CURVED_FIELDS):
+    if not (
+        msg.kinds
+        or msg.body_curvatures
+        or msg.body_curvatures_across
+        or msg.body_curvature_directions
+        or msg.surface_curvatures
+        or msg.surface_curvatures_across
+        or msg.surface_curvature_directions
+    ):
         return None, None
     n = len(msg.frictions)
     kinds = np.array(msg.kinds, dtype=np.uint8)

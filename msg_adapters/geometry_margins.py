@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from contact_dynamics.contact.uncertainty import ContactUncertainty
+from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
 from contact_dynamics.contact_modes.result import GeometryMargin, ModeVerdict, VerdictsWithin
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics_interfaces import msg as messages
@@ -28,11 +28,13 @@ def write_uncertainty(uncertainty: ContactUncertainty, msg: Side) -> None:
 
 
 def uncertainty_from_msg(msg: Side) -> ContactUncertainty:
-    """Return how well contacts are known.
+    """Return how well contacts are known. Without numbers they are known exactly.
 
     Raises:
         InvalidFieldError: a number is not allowed, or lists are of different counts of contacts.
     """
+    if not (msg.uncertainty_points or msg.uncertainty_normals or msg.uncertainty_frictions):
+        return EXACT_CONTACTS
     try:
         return ContactUncertainty(
             points=_unlisted(msg.uncertainty_points),

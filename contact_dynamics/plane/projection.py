@@ -13,14 +13,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from functools import lru_cache
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.errors import OutOfPlaneError
-from contact_dynamics.numerics.linear_spaces import rough_span
 from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, scaled, without
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, Vector2
 from contact_dynamics.records import Record
@@ -29,8 +27,6 @@ from contact_dynamics.tolerances import OUT_OF_PLANE_RATIO, OUT_OF_PLANE_SPEED
 from contact_dynamics.validation import FloatArray, check_unit
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from numpy.typing import ArrayLike
 
 _STEEP: Final = 0.8
@@ -61,7 +57,7 @@ class PlaneOfMotion(Record):
     def __post_init__(self) -> None:
         """Check the normal, and complete the axes."""
         object.__setattr__(self, "normal_W", check_unit("plane_normal", self.normal_W, 3))
-        normal = _three(self.normal_W)
+        normal = three_of(self.normal_W)
         y = normalised(without((0.0, 0.0, 1.0) if abs(normal[2]) < _STEEP else (1.0, 0.0, 0.0), normal))
         axes = np.array((cross(y, normal), y))
         axes.flags.writeable = False
@@ -121,23 +117,71 @@ def project_onto_plane(
         OutOfPlaneError: velocity, a contact normal, the wrench or the inertia leaves the plane by more than
             its tolerance.
     """
-    normal = _three(plane.normal_W)
-    x, y = (_three(axis) for axis in plane.axes_W)
-    force, torque = _three(force_W), _three(torque_W)
+    seen = in_floats(body, state, contacts)
+    return projected(seen, fit_of(seen, plane), force_W, torque_W, speed_tolerance)
+
+
+class ProblemInFloats(NamedTuple):
+    """A problem in space, in plain floats where these are faster."""
+
+    body: MassProperties
+    R_WB: FloatArray
+    v_W: Vector3
+    w_W: Vector3
+    contacts: ContactSet
+    arms_W: list[Vector3]  # from the centre of mass to the contacts
+    normals_W: list[Vector3]
+
+
+class PlaneFit(NamedTuple):
+    """A plane, and how well a problem fits into it."""
+
+    plane: PlaneOfMotion
+    normal_W: Vector3
+    speed: float  # m/s, the largest out of the plane
+    inertia: float  # kg m^2, about the plane's normal
+    coupling: float  # the ratio of angular momentum across the normal to that along it
+
+
+def in_floats(body: MassProperties, state: BodyState, contacts: ContactSet) -> ProblemInFloats:
+    """Return a problem in plain floats."""
+    return ProblemInFloats(
+        body=body,
+        R_WB=state.R_WB,
+        v_W=three_of(state.v_WB_W),
+        w_W=three_of(state.w_WB_W),
+        contacts=contacts,
+        arms_W=rows_of(contacts.p_WC_W - state.p_WB_W),
+        normals_W=rows_of(contacts.normals_W),
+    )
+
+
+def fit_of(seen: ProblemInFloats, plane: PlaneOfMotion) -> PlaneFit:
+    """Return how well a problem fits into a plane."""
+    normal = three_of(plane.normal_W)
+    speed = _speed_out_of(normal, seen.v_W, seen.w_W, seen.arms_W)
+    return PlaneFit(plane, normal, speed, *_inertia_about(seen.body, seen.R_WB, normal))
+
+
+def projected(
+    seen: ProblemInFloats, fit: PlaneFit, force_W: FloatArray, torque_W: FloatArray, speed_tolerance: float
+) -> PlanarProblem:
+    """Return the problem in the plane that it was fitted into; see `project_onto_plane`."""
+    plane, normal, out_of_plane, inertia, coupling = fit
+    x, y = (three_of(axis) for axis in plane.axes_W)
+    force, torque = three_of(force_W), three_of(torque_W)
+    body, contacts, normals = seen.body, seen.contacts, seen.normals_W
 
     def in_plane(vector: Vector3) -> Vector2:
         return (dot(x, vector), dot(y, vector))
 
-    out_of_plane = out_of_plane_speed(plane, state, contacts)
     if out_of_plane > speed_tolerance:
         raise OutOfPlaneError(
             "state",
             f"{out_of_plane:.6g} m/s out of the plane with normal {plane.normal_W.tolist()}",
             f"at most {speed_tolerance:g} m/s",
         )
-    normals = _rows(contacts.normals_W)
     _check_ratio("contact normals", max((abs(dot(n, normal)) for n in normals), default=0.0), plane)
-    inertia, coupling = _inertia_about(body, state.R_WB, normal)
     _check_ratio("inertia", coupling, plane)
     _check_ratio("applied force", _ratio(abs(dot(force, normal)), norm(force)), plane)
     planar_body = PlanarBody(mass=body.mass, inertia=inertia)
@@ -146,7 +190,7 @@ def project_onto_plane(
     return PlanarProblem(
         plane=plane,
         body=planar_body,
-        velocity=PlanarVelocity(v=in_plane(_three(state.v_WB_W)), w=dot(_three(state.w_WB_W), normal)),
+        velocity=PlanarVelocity(v=in_plane(seen.v_W), w=dot(seen.w_W, normal)),
         contacts=tuple(
             PlanarContact(
                 r=in_plane(r),
@@ -157,7 +201,7 @@ def project_onto_plane(
                 surface_curvature=k_S,
             )
             for r, n, mu, e, (k_B, k_S) in zip(
-                _rows(contacts.p_WC_W - state.p_WB_W),
+                seen.arms_W,
                 normals,
                 contacts.frictions.tolist(),
                 contacts.restitutions.tolist(),
@@ -195,102 +239,26 @@ def _curvatures_in(plane: PlaneOfMotion, contacts: ContactSet) -> list[tuple[flo
 
 def out_of_plane_speed(plane: PlaneOfMotion, state: BodyState, contacts: ContactSet) -> float:
     """Return the largest speed out of the plane, m/s, at contacts and centre of mass."""
-    normal = _three(plane.normal_W)
-    w = without(_three(state.w_WB_W), normal)
-    v = scaled(normal, dot(_three(state.v_WB_W), normal))
+    arms = rows_of(contacts.p_WC_W - state.p_WB_W)
+    return _speed_out_of(three_of(plane.normal_W), three_of(state.v_WB_W), three_of(state.w_WB_W), arms)
+
+
+def _speed_out_of(normal: Vector3, v_W: Vector3, w_W: Vector3, arms: list[Vector3]) -> float:
+    w = without(w_W, normal)
+    v = scaled(normal, dot(v_W, normal))
     fastest = norm(v)
     if w == (0.0, 0.0, 0.0):
         return fastest
-    for r in _rows(contacts.p_WC_W - state.p_WB_W):
+    for r in arms:
         turning = cross(w, r)
         fastest = max(fastest, norm((v[0] + turning[0], v[1] + turning[1], v[2] + turning[2])))
     return fastest
 
 
-def best_plane(
-    body: MassProperties,
-    state: BodyState,
-    contacts: ContactSet,
-    *,
-    force_W: FloatArray,
-    torque_W: FloatArray,
-    speed_tolerance: float = OUT_OF_PLANE_SPEED,
-) -> PlaneOfMotion:
-    """Return a plane in which a problem is planar, or the plane in which it is most nearly planar.
-
-    Contact normals and the applied force must lie in the plane. If they leave a choice (a body on a floor),
-    these planes are tried in turn, each made to contain them: normal to the rotation's axis; along the
-    sliding motion; normal to the torque; through all contacts, if there is such a plane; normal to each of
-    the body's principal axes, and to the world's. The first is taken that leaves out no motion above
-    ``speed_tolerance`` (m/s) and couples no inertia beyond `OUT_OF_PLANE_RATIO`. If none does, it is the one
-    that leaves out least.
-
-    Raises:
-        OutOfPlaneError: no plane contains all contact normals and the force.
-    """
-    fixed = rough_span(
-        [*_rows(contacts.normals_W), _normalised(_three(force_W))], tolerance=OUT_OF_PLANE_RATIO
-    )
-    if len(fixed) > 2:
-        raise OutOfPlaneError(
-            "contact normals", "normals and an applied force that span space", "vectors in a common plane"
-        )
-    if len(fixed) == 2:
-        return PlaneOfMotion(normal_W=np.array(cross(fixed[0], fixed[1])))
-    R_WB = state.R_WB
-    best: tuple[float, PlaneOfMotion] | None = None
-    for seed in _axis_candidates(body, state, contacts, fixed, _three(torque_W)):
-        across = seed
-        for direction in fixed:
-            across = without(across, direction)
-        length = norm(across)
-        if length <= OUT_OF_PLANE_RATIO * norm(seed):
-            continue
-        plane = PlaneOfMotion(normal_W=np.array(scaled(across, 1.0 / length)))
-        speed = out_of_plane_speed(plane, state, contacts)
-        _, coupling = _inertia_about(body, R_WB, _three(plane.normal_W))
-        if speed <= speed_tolerance and coupling <= OUT_OF_PLANE_RATIO:
-            return plane
-        if best is None or speed < best[0]:
-            best = (speed, plane)
-    if best is None:  # cannot be: of the world's axes at least two are not parallel to one direction
-        raise OutOfPlaneError("plane_normal", "no candidate", "an explicit normal")
-    return best[1]
-
-
-def _axis_candidates(
-    body: MassProperties, state: BodyState, contacts: ContactSet, fixed: list[Vector3], torque: Vector3
-) -> Iterator[Vector3]:
-    """Yield normals of planes, which are not unit and may be zero."""
-    yield _three(state.w_WB_W)
-    for direction in fixed:
-        yield cross(direction, _three(state.v_WB_W))
-    yield torque
-    for direction in fixed:
-        yield _normal_through(direction, _rows(contacts.p_WC_W - state.p_WB_W))
-    yield from _rows((state.R_WB @ _principal_axes(body)).T)
-    yield from ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-
-
-def _normal_through(direction: Vector3, points: list[Vector3]) -> Vector3:
-    """Return the normal, not unit, of the plane of a direction and points, or zero if they span none."""
-    farthest = max((cross(direction, point) for point in points), key=norm)
-    size = norm(farthest)
-    off = max(abs(dot(farthest, point)) for point in points)
-    named = size > OUT_OF_PLANE_RATIO * max(map(norm, points)) and off <= OUT_OF_PLANE_RATIO * size * size
-    return farthest if named else (0.0, 0.0, 0.0)
-
-
-@lru_cache(maxsize=64)
-def _principal_axes(body: MassProperties) -> FloatArray:
-    axes: FloatArray = np.linalg.eigh(body.I_B)[1]
-    return axes
-
-
 def _inertia_about(body: MassProperties, R_WB: FloatArray, normal_W: Vector3) -> tuple[float, float]:
     """Return the inertia about an axis, and the ratio of angular momentum across it to that along it."""
     axis_B = np.array(normal_W) @ R_WB
-    momentum, axis = _three(body.I_B @ axis_B), _three(axis_B)
+    momentum, axis = three_of(body.I_B @ axis_B), three_of(axis_B)
     along = dot(momentum, axis)
     return along, norm(without(momentum, axis)) / along
 
@@ -308,16 +276,14 @@ def _ratio(part: float, whole: float) -> float:
     return part / whole if whole > 0.0 else 0.0
 
 
-def _normalised(vector: Vector3) -> Vector3:
-    return normalised(vector) if vector != (0.0, 0.0, 0.0) else vector
-
-
-def _three(vector: FloatArray) -> Vector3:
+def three_of(vector: FloatArray) -> Vector3:
+    """Return a vector, (3,), in plain floats."""
     x, y, z = vector.tolist()
     return (x, y, z)
 
 
-def _rows(vectors: FloatArray) -> list[Vector3]:
+def rows_of(vectors: FloatArray) -> list[Vector3]:
+    """Return vectors, (n, 3), in plain floats."""
     return [(x, y, z) for x, y, z in vectors.tolist()]
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, best_plane, project_onto_plane
+from contact_dynamics.plane.plane_search import project_onto_best_plane
+from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, project_onto_plane
 from contact_dynamics.records import NamedInt
 
 if TYPE_CHECKING:
@@ -38,10 +39,11 @@ def planar_problem_of(
     """Return a problem in a plane of motion. If ``plane`` is None, the best fitting plane is found.
 
     Raises:
-        OutOfPlaneError: something leaves the plane by too much, as in `project_onto_plane` and `best_plane`.
+        OutOfPlaneError: something leaves the plane by too much, as in `project_onto_plane` and
+            `best_plane`.
     """
     if plane is None:
-        plane = best_plane(
+        return project_onto_best_plane(
             body, state, contacts, force_W=force_W, torque_W=torque_W, speed_tolerance=speed_tolerance
         )
     return project_onto_plane(

@@ -13,9 +13,9 @@ from scipy.spatial.transform import Rotation
 from contact_dynamics.contact.contact import Contact, ContactSet
 from contact_dynamics.errors import InvalidFieldError, OutOfPlaneError
 from contact_dynamics.impact import planar_impact, spatial_impact
+from contact_dynamics.plane.plane_search import best_plane
 from contact_dynamics.plane.projection import (
     PlaneOfMotion,
-    best_plane,
     out_of_plane_speed,
     project_onto_plane,
 )

@@ -1,0 +1,121 @@
+"""Finds the plane in which a problem in space is planar, or most nearly so."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contact_dynamics.errors import OutOfPlaneError
+from contact_dynamics.numerics.linear_spaces import rough_span
+from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, scaled, without
+from contact_dynamics.plane.projection import PlaneOfMotion, fit_of, in_floats, projected, rows_of, three_of
+from contact_dynamics.tolerances import OUT_OF_PLANE_RATIO, OUT_OF_PLANE_SPEED
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.plane.projection import PlanarProblem, PlaneFit, ProblemInFloats
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.validation import FloatArray
+
+
+def project_onto_best_plane(
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    *,
+    force_W: FloatArray,
+    torque_W: FloatArray,
+    speed_tolerance: float = OUT_OF_PLANE_SPEED,
+) -> PlanarProblem:
+    """Return the problem in the plane that `best_plane` finds. Arguments and errors are those of both."""
+    seen = in_floats(body, state, contacts)
+    return projected(
+        seen, _best_fit(seen, force_W, torque_W, speed_tolerance), force_W, torque_W, speed_tolerance
+    )
+
+
+def best_plane(
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    *,
+    force_W: FloatArray,
+    torque_W: FloatArray,
+    speed_tolerance: float = OUT_OF_PLANE_SPEED,
+) -> PlaneOfMotion:
+    """Return a plane in which a problem is planar, or the plane in which it is most nearly planar.
+
+    Contact normals and the applied force must lie in the plane. If they leave a choice (a body on a floor),
+    these planes are tried in turn, each made to contain them: normal to the rotation's axis; along the
+    sliding motion; normal to the torque; through all contacts, if there is such a plane; normal to each of
+    the body's principal axes, and to the world's. The first is taken that leaves out no motion above
+    ``speed_tolerance`` (m/s) and couples no inertia beyond `OUT_OF_PLANE_RATIO`. If none does, it is the one
+    that leaves out least.
+
+    Raises:
+        OutOfPlaneError: no plane contains all contact normals and the force.
+    """
+    return _best_fit(in_floats(body, state, contacts), force_W, torque_W, speed_tolerance).plane
+
+
+def _best_fit(
+    seen: ProblemInFloats, force_W: FloatArray, torque_W: FloatArray, speed_tolerance: float
+) -> PlaneFit:
+    fixed = rough_span([*seen.normals_W, _normalised(three_of(force_W))], tolerance=OUT_OF_PLANE_RATIO)
+    if len(fixed) > 2:
+        raise OutOfPlaneError(
+            "contact normals", "normals and an applied force that span space", "vectors in a common plane"
+        )
+    if len(fixed) == 2:
+        return fit_of(seen, PlaneOfMotion(normal_W=np.array(cross(fixed[0], fixed[1]))))
+    best: PlaneFit | None = None
+    for seed in _axis_candidates(seen, fixed, three_of(torque_W)):
+        across = seed
+        for direction in fixed:
+            across = without(across, direction)
+        length = norm(across)
+        if length <= OUT_OF_PLANE_RATIO * norm(seed):
+            continue
+        fit = fit_of(seen, PlaneOfMotion(normal_W=np.array(scaled(across, 1.0 / length))))
+        if fit.speed <= speed_tolerance and fit.coupling <= OUT_OF_PLANE_RATIO:
+            return fit
+        if best is None or fit.speed < best.speed:
+            best = fit
+    if best is None:  # cannot be: of the world's axes at least two are not parallel to one direction
+        raise OutOfPlaneError("plane_normal", "no candidate", "an explicit normal")
+    return best
+
+
+def _axis_candidates(seen: ProblemInFloats, fixed: list[Vector3], torque: Vector3) -> Iterator[Vector3]:
+    """Yield normals of planes, which are not unit and may be zero."""
+    yield seen.w_W
+    for direction in fixed:
+        yield cross(direction, seen.v_W)
+    yield torque
+    for direction in fixed:
+        yield _normal_through(direction, seen.arms_W)
+    yield from rows_of((seen.R_WB @ _principal_axes(seen.body)).T)
+    yield from ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+def _normal_through(direction: Vector3, points: list[Vector3]) -> Vector3:
+    """Return the normal, not unit, of the plane of a direction and points, or zero if they span none."""
+    farthest = max((cross(direction, point) for point in points), key=norm)
+    size = norm(farthest)
+    off = max(abs(dot(farthest, point)) for point in points)
+    named = size > OUT_OF_PLANE_RATIO * max(map(norm, points)) and off <= OUT_OF_PLANE_RATIO * size * size
+    return farthest if named else (0.0, 0.0, 0.0)
+
+
+@lru_cache(maxsize=64)
+def _principal_axes(body: MassProperties) -> FloatArray:
+    axes: FloatArray = np.linalg.eigh(body.I_B)[1]
+    return axes
+
+
+def _normalised(vector: Vector3) -> Vector3:
+    return normalised(vector) if vector != (0.0, 0.0, 0.0) else vector
