@@ -19,6 +19,7 @@ from nav_msgs.msg import Odometry
 
 from contact_dynamics.errors import FrameMismatchError, InvalidFieldError
 from contact_dynamics.motion.velocity_estimate import slope_noise
+from contact_dynamics.nodes.state_sources import ADAPTERS
 from contact_dynamics.questions.uncertain_state import KnownState, UncertainState, state_of
 from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.recording.message_types import message_types
@@ -31,7 +32,7 @@ from msg_adapters.pose import POSE, POSE_WITH_COVARIANCE
 from msg_adapters.pose_twist import POSE_TWIST_WITH_COVARIANCE
 from msg_adapters.rigid_bodies import RIGID_BODIES
 from msg_adapters.stamps import stamp_to_msg
-from msg_adapters.state_adapter import SourceSettings
+from msg_adapters.state_adapter import SourceSettings, StateAdapter
 from msg_adapters.tf import TF
 from msg_adapters.transforms import TransformTree
 
@@ -95,6 +96,12 @@ def same_state(one: KnownState | None, other: BodyState, atol: float = ROUNDING)
     for name in ("p_WB_W", "v_WB_W", "w_WB_W"):
         np.testing.assert_allclose(getattr(found, name), getattr(other, name), rtol=0.0, atol=atol)
     assert abs(found.q_WB @ other.q_WB) == pytest.approx(1.0, abs=atol)
+
+
+def test_every_source_has_a_case_here() -> None:
+    """`test_states` has those of poses with twists, which are as old as the package."""
+    here = {id(each) for each in globals().values() if isinstance(each, StateAdapter)}
+    assert [name for name, adapter in ADAPTERS.items() if id(adapter) not in here] == ["pose_twist"]
 
 
 # Frames

@@ -19,6 +19,7 @@ from rclpy.parameter import Parameter
 from contact_dynamics.nodes import server, visualizer
 from contact_dynamics.nodes.arguments import SERVER_PARAMETERS, VISUALIZER_PARAMETERS
 from contact_dynamics.nodes.log import Log
+from contact_dynamics.nodes.state_sources import ADAPTERS
 from contact_dynamics.recording.limits import UNLIMITED
 from running_server import DOMAIN_ID, PATIENCE_S, ROOT, environment, process, wait_for
 
@@ -137,6 +138,13 @@ def test_every_parameter_has_a_comment_that_says_its_default(
         said = WORDS[word] if word else type(default)(re.split(r"[,;.]?(?: |$)", text)[0])
         assert said == default, f"{name}: the file says {text!r}, declared is {default!r}"
         assert descriptor.read_only == (path.stem == "visualizer")
+
+
+def test_every_source_of_states_stands_in_the_file() -> None:
+    """Topics of the first ones have parameters of their own."""
+    told = comments_of(SERVER_FILE)["body.brick.source"].split()
+    own = {"odometry", "pose", "pose_twist"}
+    assert [name for name in ADAPTERS if name not in own and name not in told] == []
 
 
 def test_every_topic_that_is_configured_is_subscribed() -> None:
