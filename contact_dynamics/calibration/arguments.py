@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 
 from contact_dynamics.calibration.free import STANDARD, Free
+from contact_dynamics.evaluation.arguments import add_config, add_recordings
 
 
 def calibrate_parser() -> argparse.ArgumentParser:
@@ -20,20 +21,8 @@ def calibrate_parser() -> argparse.ArgumentParser:
         epilog="exit code: 0 all went well; 1 the data leave something open, which is said; 2 nothing "
         "could be calibrated, or an argument is wrong",
     )
-    parser.add_argument(
-        "recordings",
-        nargs="*",
-        metavar="RECORDING",
-        help="log (its folder or .mcap or .db3 file), toss (.csv), tosses (.npz, or one of them: "
-        "tosses.npz#17), or a folder in which all of these are looked for",
-    )
-    parser.add_argument(
-        "--config",
-        type=Path,
-        metavar="YAML",
-        help="parameters of the server that describe bodies, surfaces and topics (default: those in the log; "
-        "a toss has its own)",
-    )
+    add_recordings(parser)
+    add_config(parser)
     parser.add_argument("--body", default="", metavar="NAME", help="the body, where recordings show several")
     parser.add_argument(
         "--free",

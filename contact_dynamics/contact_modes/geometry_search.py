@@ -15,7 +15,7 @@ from contact_dynamics.contact.uncertainty import ContactUncertainty
 from contact_dynamics.contact_modes.result import GeometryMargin, ModeVerdict, VerdictsWithin
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
 
 _FAILED: Final = 4
@@ -71,9 +71,10 @@ def verdicts_within(
 
 
 def geometry_margins_within(
-    largest: Mapping[str, float],
     answer: AnyAnswer,
     *,
+    radius_of_gyration: float,
+    frictions: Iterable[float],
     step: float,
     steps: int,
     is_certain: Callable[[ContactUncertainty], bool],
@@ -85,8 +86,9 @@ def geometry_margins_within(
     margins if a contact approaches.
 
     Args:
-        largest: The largest size that is tried of each kind, by the field of `ContactUncertainty`.
         answer: The answer to the question itself.
+        radius_of_gyration: m, of the body. Points are tried so far off at most.
+        frictions: Those of the contacts. The largest, or 1, is the most that frictions are tried off.
         step: Each size is this factor from the next.
         steps: How many sizes below the largest are tried.
         is_certain: Whether it is proven that the verdict of this answer holds everywhere in a box.
@@ -94,6 +96,11 @@ def geometry_margins_within(
     """
     if answer.verdict == ModeVerdict.IMPACT:
         return ()
+    largest = {
+        "points": radius_of_gyration,
+        "normals": 0.5 * math.pi,
+        "frictions": max([1.0, *frictions]),
+    }
     return tuple(
         _margin(
             kind,

@@ -27,6 +27,15 @@ def evaluate_parser() -> argparse.ArgumentParser:
         epilog="exit code: 0 all recordings were evaluated; 1 some were not; 2 none was, or an argument is "
         "wrong",
     )
+    add_recordings(parser)
+    _add_what_is_asked(parser)
+    _add_who_does_it(parser)
+    _add_outputs(parser)
+    return parser
+
+
+def add_recordings(parser: argparse.ArgumentParser) -> None:
+    """Add the recordings that `sources.find_sources` finds."""
     parser.add_argument(
         "recordings",
         nargs="*",
@@ -34,21 +43,22 @@ def evaluate_parser() -> argparse.ArgumentParser:
         help="log (its folder or .mcap or .db3 file), toss (.csv), tosses (.npz, or one of them: "
         "tosses.npz#17), or a folder in which all of these are looked for",
     )
-    _add_what_is_asked(parser)
-    _add_who_does_it(parser)
-    _add_outputs(parser)
-    return parser
 
 
-def _add_what_is_asked(parser: argparse.ArgumentParser) -> None:
-    asked = parser.add_argument_group("what is asked")
-    asked.add_argument(
+def add_config(parser: argparse._ActionsContainer) -> None:
+    """Add the configuration that recordings are read with."""
+    parser.add_argument(
         "--config",
         type=Path,
         metavar="YAML",
         help="parameters of the server that describe bodies, surfaces and topics (default: those in the log; "
         "a toss has its own)",
     )
+
+
+def _add_what_is_asked(parser: argparse.ArgumentParser) -> None:
+    asked = parser.add_argument_group("what is asked")
+    add_config(asked)
     asked.add_argument(
         "--horizons",
         type=_list_of_seconds,

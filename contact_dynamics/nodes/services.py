@@ -107,15 +107,18 @@ class Service:
 
     Attributes:
         service_type: Its type.
-        type_name: The name of its type.
-        name: Its name below the node's.
+        name: Its name below the node's, which is that of its type as ROS writes names of topics.
         serve: Answers a request.
     """
 
     service_type: ServiceType
-    type_name: str
     name: str
     serve: Serve
+
+    @property
+    def type_name(self) -> str:
+        """Return the name of its type."""
+        return "".join(part.capitalize() for part in self.name.split("_"))
 
 
 def _serving(
@@ -147,43 +150,36 @@ def _serving(
 SERVICES: Final = (
     Service(
         service_type=PredictContactMode,
-        type_name="PredictContactMode",
         name="predict_contact_mode",
         serve=_serving(contact_mode_question_from_msg, contact_modes.answer, contact_mode_answer_to_msg),
     ),
     Service(
         service_type=PredictImpact,
-        type_name="PredictImpact",
         name="predict_impact",
         serve=_serving(impact_question_from_msg, impact.answer, impact_answer_to_msg),
     ),
     Service(
         service_type=PredictTumbling,
-        type_name="PredictTumbling",
         name="predict_tumbling",
         serve=_serving(tumbling_question_from_msg, tumbling.answer, tumbling_answer_to_msg),
     ),
     Service(
         service_type=PredictToss,
-        type_name="PredictToss",
         name="predict_toss",
         serve=_serving(toss_question_from_msg, toss.answer, toss_answer_to_msg),
     ),
     Service(
         service_type=PredictImpactBatch,
-        type_name="PredictImpactBatch",
         name="predict_impact_batch",
         serve=_serving(impacts_question_from_msg, many.answer_impacts, impacts_answer_to_msg),
     ),
     Service(
         service_type=PredictTumblingBatch,
-        type_name="PredictTumblingBatch",
         name="predict_tumbling_batch",
         serve=_serving(tumblings_question_from_msg, many.answer_tumblings, tumblings_answer_to_msg),
     ),
     Service(
         service_type=PredictContactModeBatch,
-        type_name="PredictContactModeBatch",
         name="predict_contact_mode_batch",
         serve=_serving(
             contact_modes_question_from_msg, many_contact_modes.answer, contact_modes_answer_to_msg

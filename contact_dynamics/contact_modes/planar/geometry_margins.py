@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
@@ -36,12 +35,10 @@ def planar_geometry_margins(
     """
     if answer is None:
         answer = planar_contact_modes(problem)
-    rho = problem.body.radius_of_gyration
-    largest_friction = max((contact.friction for contact in problem.contacts), default=0.0)
-    largest = {"points": rho, "normals": 0.5 * math.pi, "frictions": max(1.0, largest_friction)}
     return geometry_margins_within(
-        largest,
         answer,
+        radius_of_gyration=problem.body.radius_of_gyration,
+        frictions=[contact.friction for contact in problem.contacts],
         step=_STEP,
         steps=_STEPS,
         is_certain=partial(is_certain, problem, answer),

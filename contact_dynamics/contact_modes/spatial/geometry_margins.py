@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import partial
 from itertools import islice
 from typing import TYPE_CHECKING, Final
@@ -43,12 +42,10 @@ def spatial_geometry_margins(
     """
     if answer is None:
         answer = spatial_contact_modes(problem)
-    rho = problem.body.mean_radius_of_gyration
-    largest_friction = float(problem.contacts.frictions.max(initial=0.0))
-    largest = {"points": rho, "normals": 0.5 * math.pi, "frictions": max(1.0, largest_friction)}
     return geometry_margins_within(
-        largest,
         answer,
+        radius_of_gyration=problem.body.mean_radius_of_gyration,
+        frictions=problem.contacts.frictions.tolist(),
         step=_STEP,
         steps=_STEPS,
         is_certain=partial(is_certain, problem, answer),
