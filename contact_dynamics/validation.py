@@ -109,7 +109,8 @@ def _fits(shape: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
 
 
 def _in_words(shape: tuple[int | None, ...]) -> str:
-    return "(" + ", ".join("n" if length is None else str(length) for length in shape) + ")"
+    lengths = ", ".join("n" if length is None else str(length) for length in shape)
+    return f"({lengths},)" if len(shape) == 1 else f"({lengths})"
 
 
 def check_magnitude(field: str, value: FloatArray, most: float = LARGEST_NUMBER) -> FloatArray:

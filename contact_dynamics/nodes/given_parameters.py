@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.nodes.run_record import NODE_NAME
-from contact_dynamics.nodes.unknown_parameters import refuse_unknown
+from contact_dynamics.nodes.unknown_parameters import likely_misspelling, refuse_unknown
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -64,7 +64,8 @@ class GivenParameters:
             found = default
         wanted = default if isinstance(default, type) else type(default)
         if not isinstance(found, wanted) or (isinstance(found, bool) and wanted is not bool):
-            message = f"{self._before}{name}: found {found!r}, needed is: {description}"
+            meant = likely_misspelling(name, self._values) if found is None else ""
+            message = f"{self._before}{name}: found {found!r}, needed is: {description}{meant}"
             raise ConfigurationError(message)
         number: Any = found  # it has the default's type, which is a number where there are bounds
         if bounds is not None and not bounds[0] <= number <= bounds[1]:

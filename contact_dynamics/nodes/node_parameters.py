@@ -18,7 +18,7 @@ from contact_dynamics.nodes.parameter_sections import (
     nodes_given,
     read_sections,
 )
-from contact_dynamics.nodes.unknown_parameters import refuse_unknown
+from contact_dynamics.nodes.unknown_parameters import likely_misspelling, refuse_unknown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -78,7 +78,10 @@ class NodeParameters:
             message = f"{name}: {error} ({description})"
             raise ConfigurationError(message) from None
         if value is None:
-            message = f"{name}: found nothing, needed is: {description}"
+            given_names = self._node._parameter_overrides  # noqa: SLF001
+            message = (
+                f"{name}: found nothing, needed is: {description}{likely_misspelling(name, given_names)}"
+            )
             raise ConfigurationError(message)
         return value
 

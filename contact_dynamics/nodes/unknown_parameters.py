@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable
 
 _OF_ROS: Final = re.compile(r"use_sim_time|start_type_description_service|qos_overrides\..*")
+_LIKELY: Final = 0.7
+"""Similarity from which on a name counts as a misspelled one, by `difflib`. One letter in four makes 0.75."""
 _LISTED_BY: Final = {"body": "bodies", "surface": "surfaces"}
 
 
@@ -36,6 +38,14 @@ def refuse_unknown(
     unknown = sorted(name for name in given if name not in known and not is_of_ros(name))
     if unknown:
         raise ConfigurationError("\n".join(_unknown(name, known, listed) for name in unknown))
+
+
+def likely_misspelling(missing: str, given: Iterable[str]) -> str:
+    """Return words about a given name that is probably meant by the missing one, or nothing."""
+    group, _, last = missing.rpartition(".")
+    beside = [name.rpartition(".")[2] for name in given if name.rpartition(".")[0] == group]
+    close = difflib.get_close_matches(last, beside, n=1, cutoff=_LIKELY)
+    return f" Given is {group}.{close[0]}, which may be misspelled." if close else ""
 
 
 def _unknown(name: str, known: Collection[str], listed: Callable[[str], Iterable[str]]) -> str:

@@ -186,6 +186,10 @@ def put(**changes: Any) -> Change:
     return lambda values: values.update({name.replace("__", "."): value for name, value in changes.items()})
 
 
+def misspell(name: str, wrong: str) -> Change:
+    return lambda values: values.update({wrong: values.pop(name)})
+
+
 def drop(name: str) -> Change:
     return lambda values: values.pop(name)
 
@@ -207,6 +211,7 @@ NAN, INF = float("nan"), float("inf")
 BRICK = [3.5e-4, 8.4e-4, 1.0e-3]
 WRONG = [
     (drop("body.brick.mass"), "body.brick.mass: found nothing, needed is: Mass, kg."),
+    (misspell("body.brick.mass", "body.brick.maas"), "Given is body.brick.maas, which may be misspelled."),
     (put(body__brick__mass="heavy"), "body.brick.mass"),
     (put(body__brick__mass=1), "body.brick.mass"),
     (put(body__brick__mass=NAN), "body.brick.mass: found nan, allowed is"),
