@@ -18,9 +18,11 @@ from contact_dynamics.replay.progress import Progress
 
 if TYPE_CHECKING:
     import argparse
+    from pathlib import Path
 
     from contact_dynamics.calibration.result import Calibration
     from contact_dynamics.evaluation.motion import MeasuredMotion
+    from contact_dynamics.evaluation.sources import Source
 
 SOMETHING_OPEN: Final = 1
 """Exit code: the data leave something open, or a recording could not be read."""
@@ -57,6 +59,7 @@ def _motions(
 ) -> tuple[list[MeasuredMotion], list[str], list[tuple[str, str]]]:
     """Return the motions of one body, the names of their recordings, and what could not be read."""
     sources, refused = find_sources(given.recordings)
+    _check_config(given.config, sources)
     motions: list[MeasuredMotion] = []
     names: list[str] = []
     for source in sources:
@@ -78,6 +81,18 @@ def _motions(
         why = f" ({reasons})" if reasons else ""
         raise InvalidFieldError("RECORDING", f"none with {what}{why}", "one at least")
     return motions, names, refused
+
+
+def _check_config(config: Path | None, sources: list[Source]) -> None:
+    """Refuse a file that is not there, and tell that tosses have their own body and surface all the same."""
+    if config is None:
+        return
+    if not config.is_file():
+        raise InvalidFieldError("--config", f"no file {str(config)!r}", "a file of the server's parameters")
+    tosses = sum(source.is_toss for source in sources)
+    if tosses:
+        what = "of a toss" if tosses == 1 else f"of {tosses} tosses"
+        print(f"--config does not count for the body and surface {what}: these are in it", file=sys.stderr)
 
 
 def _write(given: argparse.Namespace, found: Calibration) -> None:

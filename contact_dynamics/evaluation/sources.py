@@ -57,10 +57,14 @@ class Source(Record):
             NotALogError: it has no file of a log.
             OSError: it cannot be read.
         """
-        is_toss = self.path.suffix in {TOSS, TOSSES}
-        files = [self.path] if is_toss else BagReader(self.path).paths
+        files = [self.path] if self.is_toss else BagReader(self.path).paths
         hashes = [_hash_of(file.resolve(), file.stat().st_mtime_ns) for file in files]
         return hashlib.sha256(" ".join([*hashes, str(self.index)]).encode()).hexdigest()
+
+    @property
+    def is_toss(self) -> bool:
+        """Return whether it is a toss, which has a body and a surface of its own, and no log."""
+        return self.path.suffix in {TOSS, TOSSES}
 
     def read(self, *, config: Path | None = None) -> Recording:
         """Return what it holds.
@@ -73,7 +77,7 @@ class Source(Record):
             ContactDynamicsError: it cannot be understood; the message says what is wrong.
             OSError: it cannot be read.
         """
-        if self.path.suffix in {TOSS, TOSSES}:
+        if self.is_toss:
             return recording_of_toss(read_toss(self.path, index=self.index))
         return recording_of_log(self.path, config=config)
 

@@ -102,6 +102,17 @@ def test_one_toss_does_not_tell_by_how_much_its_estimates_may_differ(
     assert "The two ways disagree" not in printed
 
 
+def test_a_configuration_that_does_not_count_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = [str(DEFAULT_RECORDING), "--no-trajectories", "--config"]
+    assert main([*arguments, str(tmp_path / "nowhere.yaml")]) == NOTHING
+    assert "--config: found no file" in capsys.readouterr().err
+    (tmp_path / "server.yaml").write_text("/**:\n  ros__parameters: {}\n", encoding="utf-8")
+    assert main([*arguments, str(tmp_path / "server.yaml")]) in {0, 1}
+    assert "--config does not count for the body and surface of a toss" in capsys.readouterr().err
+
+
 def some_rows(tmp_path: Path, rows: slice) -> str:
     """The package's toss with some of its 480 states, as a file."""
     lines = DEFAULT_RECORDING.read_text(encoding="utf-8").splitlines(keepends=True)
