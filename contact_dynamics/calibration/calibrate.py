@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.calibration.estimation import Data, Fitting
+from contact_dynamics.calibration.estimation import Data, Fitting, extra_spread
 from contact_dynamics.calibration.first_flights import RATIO_STEP, gravity_and_center, ratios_of_moments
 from contact_dynamics.calibration.free import STANDARD, Free
 from contact_dynamics.calibration.heights import at_rests, at_strikes
@@ -20,6 +20,7 @@ from contact_dynamics.calibration.result import Calibration, Estimate, MeasuredG
 from contact_dynamics.calibration.slides import lasting_frictions
 from contact_dynamics.calibration.strikes import strikes_of
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.numerics.vectors import tangents
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.shapes.convex import ConvexShape
 from contact_dynamics.world import Body, Surface
@@ -97,7 +98,7 @@ def calibrate_observed(
         second = fitting.estimate(paths.groups_at, spread=first.spread, start=first.fit.parameters)
     estimates, covariance, by_paths_covariance = _estimates(fitting, first, second)
     described = model.describe(first.values)
-    gravity = _gravity(data.gravity, first.values[:3]) if Free.GRAVITY in free else None
+    gravity = _gravity(data.gravity, first.values[:3], first.spread.flight) if Free.GRAVITY in free else None
     gravity_W = observed[0].motion.gravity_W if gravity is None else gravity.mean_W
     left = jumps(model, first.values[None], data.strikes, data.gravity)[0]
     lasting = lasting_frictions(observed, described, gravity_W, [surface.name for surface in model.surfaces])
@@ -217,7 +218,8 @@ def _undetermined(fitting: Fitting, found: Estimation) -> tuple[str, ...]:
     return tuple(texts)
 
 
-def _gravity(gravity: Gravity, center: FloatArray) -> MeasuredGravity | None:
+def _gravity(gravity: Gravity, center: FloatArray, factor: float) -> MeasuredGravity | None:
+    """Return gravity over all tosses, for a mass centre and a factor on the noise of positions."""
     known = ~np.isnan(gravity.std)
     count = int(known.sum())
     if count == 0:
@@ -228,6 +230,10 @@ def _gravity(gravity: Gravity, center: FloatArray) -> MeasuredGravity | None:
     size = float(np.median(sizes))
     # the median's error is 1.25 times the mean's, and 1.4826 times the median deviation is the standard one
     errors = 1.25 * 1.4826 / math.sqrt(count) if count > 1 else math.nan
+    down = mean / np.linalg.norm(mean)
+    axes = np.array([*tangents((down[0], down[1], down[2])), down])
+    off = (each - mean) @ axes.T
+    noise = (factor * gravity.std[known])[:, None, None] ** 2
     cosines = each @ mean / (sizes * np.linalg.norm(mean))
     return MeasuredGravity(
         mean_W=mean,
@@ -237,6 +243,8 @@ def _gravity(gravity: Gravity, center: FloatArray) -> MeasuredGravity | None:
         tilt=float(np.median(np.arccos(np.clip(cosines, -1.0, 1.0)))),
         expected_tilt=1.18 * float(np.median(gravity.std[known])) / size,
         count=count,
+        turning=extra_spread(off[:, :2], noise * np.eye(2)),
+        changing=extra_spread(off[:, 2:], noise),
     )
 
 

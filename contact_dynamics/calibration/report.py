@@ -93,7 +93,9 @@ def _gravity(found: Calibration) -> Iterator[str]:
     )
     yield (
         f"  It differs from toss to toss by {math.degrees(gravity.tilt):.2f} degrees; noise would make it "
-        f"{math.degrees(gravity.expected_tilt):.2f}."
+        f"{math.degrees(gravity.expected_tilt):.2f}. Without noise, it "
+        f"scatters by {gravity.turning:.2g} m/s^2 in each component sideways, and by "
+        f"{gravity.changing:.2g} m/s^2 in size."
     )
     product = gravity.size / float(np.linalg.norm(STANDARD_GRAVITY_W))
     yield (

@@ -100,6 +100,9 @@ class MeasuredGravity(Record):
         tilt: rad, median angle between a toss's gravity and the mean.
         expected_tilt: rad, the same as the noise of positions alone would make it.
         count: Number of tosses whose first flight tells gravity.
+        turning: m/s^2, by how much it differs from toss to toss without the noise of positions: the standard
+            deviation of each component across the mean. Gravity does so where recordings are tilted.
+        changing: m/s^2, the same along the mean.
     """
 
     mean_W: FloatArray
@@ -109,6 +112,18 @@ class MeasuredGravity(Record):
     tilt: float
     expected_tilt: float
     count: int
+    turning: float
+    changing: float
+
+    @property
+    def covariance_W(self) -> FloatArray:
+        """Return how uncertain gravity is in one more toss, (3, 3), m^2/s^4, world axes."""
+        down = self.mean_W / np.linalg.norm(self.mean_W)
+        along = np.outer(down, down)
+        found: FloatArray = (
+            self.mean_std**2 * np.eye(3) + self.turning**2 * (np.eye(3) - along) + self.changing**2 * along
+        )
+        return found
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

@@ -17,7 +17,8 @@ def toss_uncertainty(found: Calibration) -> TossUncertainty:
     """Return the covariance of what a toss depends on, and the spreads, of calibrated parameters.
 
     What was not free, or not determined, counts as exact. The friction where contact lasts has the standard
-    deviation from slide to slide, and is exact on surfaces on which no slides are seen.
+    deviation from slide to slide, and is exact on surfaces on which no slides are seen. Gravity, where it is
+    free, is as uncertain as it differs from toss to toss.
     """
     names = [
         *(f"friction.{surface.name}" for surface in found.surfaces),
@@ -35,6 +36,11 @@ def toss_uncertainty(found: Calibration) -> TossUncertainty:
         for i, k in zip(known, columns, strict=True)
     ]
     covariance[np.ix_(known, known)] = found.covariance[np.ix_(columns, columns)] / np.outer(units, units)
+    if found.gravity is not None and found.gravity.count > 1:
+        whole = np.zeros((len(names) + 3, len(names) + 3))
+        whole[: len(names), : len(names)] = covariance
+        whole[len(names) :, len(names) :] = found.gravity.covariance_W
+        covariance = whole
     spread = found.spread
     return TossUncertainty(
         covariance=covariance,

@@ -86,6 +86,9 @@ class FitResult(Record):
         position_misses_W: (count, 3), m, the positions less the fitted ones, world axes.
         orientation_misses_W: (count, 3), rad, rotation vectors from the fitted attitudes to those of the
             states, world axes.
+        by_gravity: By how much the fitted position (s^2) and velocity (s) change with gravity, each component
+            with its own. A fit to positions over a time T has about T^2 / 12 and T / 2. None means that it is
+            not known, as under wrenches.
     """
 
     state: BodyState
@@ -97,6 +100,7 @@ class FitResult(Record):
     converged: bool
     position_misses_W: FloatArray
     orientation_misses_W: FloatArray
+    by_gravity: tuple[float, float] | None = None
 
 
 def fit_free_motion(
@@ -138,6 +142,7 @@ def fit_free_motion(
     return FitResult(
         state=BodyState(p_WB_W=place.p_W, q_WB=q_WB, v_WB_W=place.v_W, w_WB_W=w_WB_W, stamp_ns=newest),
         covariance=covariance,
+        by_gravity=place.by_gravity,
         position_residual=place.residual,
         orientation_residual=spin.residual,
         count=len(states),
@@ -153,6 +158,7 @@ class _Place:
     p_W: FloatArray
     v_W: FloatArray
     covariance: FloatArray  # (2, 2), of a coordinate and its rate
+    by_gravity: tuple[float, float]  # s^2, s
     residual: float
     misses_W: FloatArray  # (n, 3), m
 
@@ -165,17 +171,22 @@ def _fit_place(
     positions = np.array([state.p_WB_W for state in states]) - origin
     fallen = positions - 0.5 * np.square(seconds)[:, None] * gravity
     span = -float(seconds[0])
-    design, values = np.column_stack([np.ones_like(seconds), seconds / span]), fallen
+    design = np.column_stack([np.ones_like(seconds), seconds / span])
     weight = 1.0 if noise is None else 1.0 / noise.position
-    design, values = weight * design, weight * fallen
+    # the last column is the change of all values with a component of gravity
+    values = weight * np.column_stack([fallen, -0.5 * np.square(seconds)])
+    design = weight * design
     if noise is not None and noise.linear_velocity is not None:
         velocities = np.array([state.v_WB_W for state in states]) - seconds[:, None] * gravity
+        velocities = np.column_stack([velocities, -seconds])
         slopes = np.column_stack([np.zeros_like(seconds), np.full_like(seconds, 1.0 / span)])
         design = np.vstack([design, slopes / noise.linear_velocity])
         values = np.vstack([values, velocities / noise.linear_velocity])
     orthogonal, triangle = np.linalg.qr(design)
     inverse = np.linalg.inv(triangle)
     solution = inverse @ (orthogonal.T @ values)
+    by_gravity = (float(solution[0, 3]), float(solution[1, 3]) / span)
+    solution = solution[:, :3]
     misses = fallen - solution[0] - (seconds / span)[:, None] * solution[1]
     total = float(np.square(misses).sum())
     scale = np.diag([1.0, 1.0 / span])
@@ -184,6 +195,7 @@ def _fit_place(
         p_W=origin + solution[0],
         v_W=solution[1] / span,
         covariance=variance * scale @ inverse @ inverse.T @ scale,
+        by_gravity=by_gravity,
         residual=math.sqrt(total / len(seconds)),
         misses_W=misses,
     )

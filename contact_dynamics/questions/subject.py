@@ -87,12 +87,15 @@ class Subject(Record):
         covariance: (12, 12), of the state, in the order of `UncertainState`, or None if it is not known.
         fit: How well the motion fits the published states that the state was found from, or None without a
             fit.
+        by_gravity: s^2 and s, by how much its position and velocity would change with gravity, as far as it
+            was found by a flight.
     """
 
     body: Body
     state: BodyState
     covariance: FloatArray | None = None
     fit: FitQuality | None = None
+    by_gravity: tuple[float, float] = (0.0, 0.0)
 
 
 def subject_of(
@@ -140,7 +143,13 @@ def subject_of(
         position_residual=best.position_residual,
         orientation_residual=best.orientation_residual,
     )
-    found = Subject(body=body, state=best.state, covariance=best.covariance, fit=quality)
+    found = Subject(
+        body=body,
+        state=best.state,
+        covariance=best.covariance,
+        fit=quality,
+        by_gravity=best.by_gravity or (0.0, 0.0),
+    )
     return _moved(found, None, source.stamp_ns, knowledge)
 
 
@@ -219,7 +228,13 @@ def _moved(subject: Subject, later: KnownState | None, stamp_ns: int | None, kno
     covariance = subject.covariance
     if covariance is not None:
         covariance = covariance_along(motion, covariance, [ahead]).covariances[0]
-    return replace(subject, state=replace(motion.state_at(ahead), stamp_ns=stamp_ns), covariance=covariance)
+    place, rate = subject.by_gravity
+    return replace(
+        subject,
+        state=replace(motion.state_at(ahead), stamp_ns=stamp_ns),
+        covariance=covariance,
+        by_gravity=(place + ahead * (rate + 0.5 * ahead), rate + ahead),
+    )
 
 
 def _covariance(known: KnownState) -> FloatArray | None:

@@ -197,6 +197,7 @@ def answer(question: TossQuestion, knowledge: Knowledge | None = None) -> TossAn
             state,
             known.world,
             covariance=subject.covariance,
+            by_gravity=subject.by_gravity,
             uncertainty=sampling.uncertainty,
             count=sampling.count,
             strikes=STRIKES if sampling.strikes is None else sampling.strikes,

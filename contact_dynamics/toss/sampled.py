@@ -4,7 +4,9 @@ The next strikes of all samples are found together (`strikes_of_many`), in a ten
 rest is asked for, each sample goes on from there as a toss does (`following`), and has its impacts and the
 steps of its sliding done in arrays with those of others (`together`). That takes far longer. It is done
 less exactly than a single toss: rebounds below `SAMPLED_SETTLING_HEIGHT` are not followed, and neither is a
-body that only rattles on a face until it rests (`laid_flat`).
+body that only rattles on a face until it rests (`laid_flat`). It then has the world's gravity, and not its
+own: in recorded slides, the gravity of the flight before leaves no trace, and the scatter of friction that
+lasts holds what slides differ by.
 """
 
 from __future__ import annotations
@@ -64,6 +66,7 @@ def sampled_toss(
     world: World,
     *,
     covariance: FloatArray | None = None,
+    by_gravity: tuple[float, float] = (0.0, 0.0),
     uncertainty: TossUncertainty = EXACT,
     count: int,
     strikes: int = 2,
@@ -80,6 +83,8 @@ def sampled_toss(
         world: Surfaces, which are flats, and gravity.
         covariance: (12, 12), of the state, in the order of `questions.UncertainState`, or None if the state
             is exact.
+        by_gravity: s^2 and s, by how much the best position and velocity change with gravity, as
+            `FitResult.by_gravity`. A state that does not depend on gravity has zeros.
         uncertainty: How uncertain parameters and law are.
         count: Number of samples.
         strikes: How many next strikes the tree has.
@@ -97,7 +102,14 @@ def sampled_toss(
     solid = solid_of(body, world, settling=SAMPLED_SETTLING_HEIGHT)
     chance = np.random.default_rng(seed)
     samples = draw(
-        body, state, world, covariance=covariance, uncertainty=uncertainty, count=count, chance=chance
+        body,
+        state,
+        world,
+        covariance=covariance,
+        by_gravity=by_gravity,
+        uncertainty=uncertainty,
+        count=count,
+        chance=chance,
     )
     spread = LawSpread(uncertainty, count, chance)
     told = strikes_of_many(

@@ -162,7 +162,7 @@ def _arrivals(
     levels = np.array([flat.level for flat in solid.flats]) + solid.rounding
     reaches = np.linalg.norm(corners, axis=2)
     pulls = np.maximum(
-        -(normals @ np.array(solid.gravity))[None, :, None]
+        -(samples.gravities_W[which] @ normals.T)[:, :, None]
         + _turning(inertias, state[1], state[3])[:, None, None] * reaches[:, None, :],
         0.0,
     )
@@ -190,7 +190,7 @@ def _arrivals(
             v_WB_W=state[2][active],
             w_WB_W=state[3][active],
             seconds=t[active],
-            gravity_W=solid.gravity,
+            gravity_W=samples.gravities_W[which[active]],
         )
         for each, rows in zip(then, (moved.p_WB_W, moved.q_WB, moved.v_WB_W, moved.w_WB_W), strict=True):
             each[active] = rows

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from contact_dynamics.world import Body, World
 
 MOST_PARAMETERS: Final = 100
-"""So many parameters may be uncertain. A request's list is bounded, and nobody has 48 uncertain surfaces."""
+"""So many parameters may be uncertain. A request's list is bounded, and nobody has 47 uncertain surfaces."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -38,9 +38,11 @@ class TossUncertainty(Record):
     """How uncertain parameters and the law of impact are.
 
     Attributes:
-        covariance: (2 s + 4, 2 s + 4), of the parameters with s surfaces, in this order: the
-            friction of each surface, the restitution of each, the mass centre x, y, z in body axes (m), and
-            the inertia as a relative change of all its entries. Without rows all of them are exact.
+        covariance: (2 s + 4, 2 s + 4) or (2 s + 7, 2 s + 7), of the parameters with s surfaces, in this
+            order: the friction of each surface, the restitution of each, the mass centre x, y, z in body
+            axes (m), the inertia as a relative change of all its entries, and, if it has them, the
+            components of gravity in world axes (m/s^2), for strikes and flights between them. Without rows
+            all of them are exact.
         velocity: m/s, >= 0, the law's own spread of each component of a velocity after a strike. It is the
             standard deviation of normal residuals with the same median (`law_spread`).
         spin: rad/s, >= 0, the same of an angular velocity.
@@ -120,6 +122,7 @@ class Samples(NamedTuple):
         frictions: (n, s), of each surface, in strikes.
         lasting_frictions: (n, s), where contact lasts.
         restitutions: (n, s), of each surface.
+        gravities_W: (n, 3), m/s^2.
     """
 
     p_WB_W: FloatArray
@@ -131,6 +134,7 @@ class Samples(NamedTuple):
     frictions: FloatArray
     lasting_frictions: FloatArray
     restitutions: FloatArray
+    gravities_W: FloatArray
 
 
 def draw(
@@ -139,6 +143,7 @@ def draw(
     world: World,
     *,
     covariance: FloatArray | None,
+    by_gravity: tuple[float, float] = (0.0, 0.0),
     uncertainty: TossUncertainty,
     count: int,
     chance: Generator,
@@ -151,6 +156,8 @@ def draw(
         world: Surfaces, which are flats.
         covariance: (12, 12), of the state, in the order of `questions.UncertainState`, or None if the state
             is exact.
+        by_gravity: s^2 and s, by how much the best position and velocity change with gravity. A state that
+            was fitted under the world's gravity has them from its fit.
         uncertainty: How uncertain the parameters are.
         count: How many samples to draw.
         chance: Where they are drawn from.
@@ -162,10 +169,15 @@ def draw(
     flats = [surface for surface in world.surfaces if isinstance(surface, Surface)]
     s = len(flats)
     size = len(uncertainty.covariance)
-    if size not in {0, 2 * s + 4}:
-        allowed = f"{2 * s + 4} rows, two for each of {s} surfaces and four more, or none"
+    whole = 2 * s + 7
+    if size not in {0, whole - 3, whole}:
+        allowed = (
+            f"{whole - 3} rows, two for each of {s} surfaces and four more, or {whole} with gravity, or none"
+        )
         raise InvalidFieldError("covariance", f"{size} rows", allowed)
-    off = _normal(uncertainty.covariance, count, chance) if size else np.zeros((count, 2 * s + 4))
+    off = _normal(uncertainty.covariance, count, chance) if size else np.zeros((count, whole - 3))
+    off = np.column_stack([off, np.zeros((count, whole - off.shape[1]))])
+    pulled = off[:, 2 * s + 4 :]
     moved = _normal(covariance, count, chance) if covariance is not None else np.zeros((count, 12))
     q = products(quaternions_of(moved[:, 3:6]), np.broadcast_to(state.q_WB, (count, 4)))
     centre = off[:, 2 * s : 2 * s + 3]
@@ -174,15 +186,16 @@ def draw(
     frictions = np.maximum(np.array([flat.friction for flat in flats]) + off[:, :s], 0.0)
     corners = _corners(body, uncertainty.height, count, chance) - centre[:, None, :]
     return Samples(
-        p_WB_W=state.p_WB_W + moved[:, :3] + shift,
+        p_WB_W=state.p_WB_W + moved[:, :3] + shift + by_gravity[0] * pulled,
         q_WB=q,
-        v_WB_W=state.v_WB_W + moved[:, 6:9] + np.cross(w, shift),
+        v_WB_W=state.v_WB_W + moved[:, 6:9] + np.cross(w, shift) + by_gravity[1] * pulled,
         w_WB_W=w,
-        inertias_B=body.mass_properties.I_B * np.exp(off[:, -1])[:, None, None],
+        inertias_B=body.mass_properties.I_B * np.exp(off[:, 2 * s + 3])[:, None, None],
         corners_B=corners,
         frictions=frictions,
         lasting_frictions=frictions * _factors(uncertainty, flats, count, chance),
         restitutions=np.clip(np.array([flat.restitution for flat in flats]) + off[:, s : 2 * s], 0.0, 1.0),
+        gravities_W=world.gravity_W + pulled,
     )
 
 

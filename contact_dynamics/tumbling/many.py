@@ -59,7 +59,7 @@ def states_of_many(
         v_WB_W: (n, 3), m/s, of the centres of mass, world axes.
         w_WB_W: (n, 3), rad/s, world axes.
         seconds: (n,), or one number for all, s, of either sign.
-        gravity_W: (3,), m/s^2, world axes.
+        gravity_W: (3,) for all bodies, or (n, 3), m/s^2, world axes.
 
     Raises:
         InvalidFieldError: an array of another shape, a number that is not finite, a quaternion that is not
@@ -78,7 +78,8 @@ def states_of_many(
     onto_W = np.einsum("nij,nj->ni", R_WP, turn[:, :3])
     then = products(np.column_stack([onto_W, turn[:, 3]]), q)
     w_then = np.einsum("nij,nj->ni", matrices_of(then) @ R_BP, w_P)
-    gravity = check_array("gravity_W", gravity_W, (3,))
+    one = np.ndim(gravity_W) == 1
+    gravity = check_array("gravity_W", gravity_W, (3,)) if one else _rows("gravity_W", gravity_W, n, (3,))
     elapsed = times[:, None]
     return Trajectory(
         seconds=times.copy(),

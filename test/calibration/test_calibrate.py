@@ -53,6 +53,10 @@ def test_tosses_are_sampled_with_the_covariance_that_was_found(found: Calibratio
     at = [each.name for each in found.estimates].index("friction.floor")
     assert uncertainty.covariance[0, 2] == pytest.approx(found.covariance[at, 0], rel=1e-9)
     assert uncertainty.velocity == found.spread.velocity
+    assert found.gravity is not None
+    np.testing.assert_array_equal(uncertainty.covariance[6:, 6:], found.gravity.covariance_W)
+    sideways = math.hypot(found.gravity.turning, found.gravity.mean_std)
+    assert math.sqrt(uncertainty.covariance[6, 6]) == pytest.approx(sideways, rel=1e-3)
 
 
 def test_both_ways_find_it_and_agree(found: Calibration) -> None:
@@ -67,6 +71,9 @@ def test_gravity_is_found_toss_by_toss_with_its_tilt(found: Calibration) -> None
     assert found.gravity.size == pytest.approx(TRUTH.gravity, abs=5.0 * found.gravity.size_std)
     assert found.gravity.tilt == pytest.approx(TRUTH.tilt, rel=0.3)
     assert found.gravity.expected_tilt < 0.5 * TRUTH.tilt
+    # A tilt of one size in any direction: each component has 1 / sqrt(2) of it, or 1 / 1.18 by the median.
+    assert 0.55 < found.gravity.turning / (TRUTH.gravity * TRUTH.tilt) < 1.0
+    assert found.gravity.changing < 0.3 * found.gravity.turning
 
 
 def test_configured_values_that_are_contradicted_are_said(found: Calibration) -> None:

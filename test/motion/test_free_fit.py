@@ -211,6 +211,24 @@ def test_what_each_state_misses_is_told() -> None:
     assert rms == pytest.approx(found.position_residual)
 
 
+@pytest.mark.parametrize("noise", [None, NOISE, WITH_RATES])
+def test_it_says_how_the_state_changes_with_gravity(noise: StateNoise | None) -> None:
+    """As a fit under another gravity has it; of many positions alone, by T^2 / 12 and T / 2."""
+    motion, pull = motion_of(min(MOTIONS)), np.array([0.3, -0.2, 0.1])
+    states = published(motion, np.linspace(1.3, 1.5, 400), NOISE)
+    found, other = (
+        fit_free_motion(motion.body, states, gravity_W=motion.gravity_W + each, noise=noise)
+        for each in (np.zeros(3), pull)
+    )
+    assert found.by_gravity is not None
+    place, rate = found.by_gravity
+    np.testing.assert_allclose(other.state.p_WB_W - found.state.p_WB_W, place * pull, rtol=1e-6, atol=1e-12)
+    np.testing.assert_allclose(other.state.v_WB_W - found.state.v_WB_W, rate * pull, rtol=1e-6, atol=1e-12)
+    if noise is not WITH_RATES:
+        assert place == pytest.approx(0.2**2 / 12.0, rel=0.01)
+        assert rate == pytest.approx(0.2 / 2.0, rel=0.01)
+
+
 def test_velocities_make_the_answer_surer() -> None:
     motion = motion_of("about the major axis")
     states = published(motion, WINDOW, WITH_RATES)

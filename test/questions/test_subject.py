@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -102,6 +104,23 @@ def test_a_fit_to_the_states_before_a_stamp_is_followed_to_it() -> None:
     at_last = subject_of("cube", PublishedState(stamp_ns=150 * MS, fit_window=0.1), known).covariance
     assert at_last is not None
     assert subject.covariance[0, 0] > at_last[0, 0], "it grows on the way"
+
+
+def test_a_state_says_how_it_changes_with_gravity() -> None:
+    """As the same question has it in a world with another gravity."""
+    known, pull = watching(*range(0, 200 * MS, 10 * MS)), np.array([0.2, -0.1, 0.3])
+    heavier = replace(known, world=replace(known.world, gravity_W=known.world.gravity_W + pull))
+    for source in (
+        PublishedState(),
+        PublishedState(stamp_ns=220 * MS),
+        PublishedState(fit_window=0.1),
+        PublishedState(stamp_ns=155 * MS, fit_window=0.1),
+    ):
+        one, other = (subject_of("cube", source, each) for each in (known, heavier))
+        place, rate = one.by_gravity
+        np.testing.assert_allclose(other.state.p_WB_W - one.state.p_WB_W, place * pull, atol=1e-12)
+        np.testing.assert_allclose(other.state.v_WB_W - one.state.v_WB_W, rate * pull, atol=1e-12)
+    assert subject_of("cube", PublishedState(), known).by_gravity == (0.0, 0.0)
 
 
 def test_a_load_is_interpolated_about_its_own_centre_of_mass() -> None:

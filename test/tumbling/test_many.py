@@ -116,6 +116,18 @@ def test_states_of_many_bodies_are_those_of_each() -> None:
         np.testing.assert_array_equal(found.v_WB_W[i], single.v_WB_W)
 
 
+def test_each_body_may_have_a_gravity_of_its_own() -> None:
+    bodies, pulls = many(5, 8), np.random.default_rng(9).normal(0.0, 10.0, (5, 3))
+    together = states_of_many(**bodies, seconds=0.3, gravity_W=pulls)
+    for i, pull in enumerate(pulls):
+        rows = {name: values[i : i + 1] for name, values in bodies.items()}
+        alone = states_of_many(**rows, seconds=0.3, gravity_W=pull)
+        np.testing.assert_array_equal(together.p_WB_W[i], alone.p_WB_W[0])
+        np.testing.assert_array_equal(together.v_WB_W[i], alone.v_WB_W[0])
+    with pytest.raises(InvalidFieldError, match="gravity_W"):
+        states_of_many(**bodies, seconds=0.3, gravity_W=pulls[:4])
+
+
 def test_one_body_in_many_states() -> None:
     bodies = many(20, 7)
     one = {**bodies, "I_B": bodies["I_B"][2]}
