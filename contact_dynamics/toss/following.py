@@ -69,6 +69,8 @@ class Following:
         kick: What changes velocities after the strike of a single contact, or None.
         flat_after: After so many strikes, a body that only rattles on a face is laid flat (`laid_flat`). If
             this is None, it never is.
+        thorough: Whether all modes are looked for where friction may wedge the body (`wedged`). Samples do
+            without, and take the mode that is found first, as a toss does that goes its first way.
         planes: The flats, as flights take them.
     """
 
@@ -84,11 +86,12 @@ class Following:
         error: float,
         kick: Kick | None = None,
         flat_after: int | None = None,
+        thorough: bool = True,
     ) -> None:
         self.solid, self.properties, self.shape = solid, properties, shape
         self.law, self.horizon = law, horizon
         self.most_events, self.error = most_events, error
-        self.kick, self.flat_after = kick, flat_after
+        self.kick, self.flat_after, self.thorough = kick, flat_after, thorough
         self.planes = [(np.array(flat.normal), flat.level) for flat in solid.flats]
 
     def run(self, state: BodyState, ways: tuple[int, ...]) -> Toss:
@@ -114,6 +117,8 @@ class Run(Course):
         self.work = SearchWork()
         self.slow = math.inf  # J, rest is tried where the kinetic energy is below this
         self.struck = self.laid = 0  # strikes, and how often it was laid flat
+        self.looked_at: list[Touch] = []  # contacts whose modes were all looked for last
+        self.way_on: Mode | None = None  # how it goes on where it could rest as well
 
     def go(self) -> Iterator[Asked]:
         """Follow the motion to its end, and ask for the work that it takes."""
@@ -262,7 +267,12 @@ class Run(Course):
 
     def _modes(self, touching: list[Touch]) -> list[Mode]:
         """Return the consistent modes, the one that is taken first."""
-        modes = choose_mode(self.solid, self.y, touching).modes
+        if self.way_on is not None:
+            mode, self.way_on = self.way_on, None
+            return [mode]
+        thorough = self.runs.thorough and touching != self.looked_at
+        self.looked_at = touching
+        modes = choose_mode(self.solid, self.y, touching, thorough=thorough).modes
         if len(modes) > 1:
             way = self.way(UndecidedReason.SEVERAL_MODES, len(modes))
             return [modes[way]]
@@ -319,14 +329,19 @@ class Run(Course):
             return False
         touching = self.touching_now(math.inf)
         still = [*self.y[:7], *[0.0] * 6]
-        modes = choose_mode(self.solid, still, touching).modes
-        if len(modes) != 1:
+        modes = choose_mode(self.solid, still, touching, thorough=self.runs.thorough).modes
+        if not modes:
             return False
         rates = pushed_by_contacts(self.solid, still, modes[0]).rates[7:]
         fastest = max(map(abs, rates[:3])) + self.solid.reach * max(map(abs, rates[3:]))
         if fastest > RESTING_ACCELERATION * norm(self.solid.gravity):
             self.slow = _SLOWER * energy
             return False
+        if len(modes) > 1:
+            way = self.way(UndecidedReason.SEVERAL_MODES, len(modes))
+            if way > 0:
+                self.way_on = modes[way]
+                return False
         self.lost_in_contact += energy
         placed = held_in_place(self.solid, still, modes[0])
         self.lost_in_contact += energy_of(self.solid, still) - energy_of(self.solid, placed)

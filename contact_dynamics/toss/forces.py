@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.numerics.vectors import Vector3, cross, dot, normalised
+from contact_dynamics.numerics.vectors import Vector3, cross, dot, normalised, opposite, scaled, without
 from contact_dynamics.tolerances import SAME_FORCES
 from contact_dynamics.toss.flush import flush_sliding, is_flush
 from contact_dynamics.toss.held import sliding_direction
@@ -116,8 +116,9 @@ def pushed_by_contacts(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> Push
         share = size * per_mass
         a_x, a_y, a_z = a_x + share * x, a_y + share * yy, a_z + share * z
         t_x, t_y, t_z = t_x + size * u, t_y + size * v, t_z + size * w
-    if len(mode) == 2 and not (mode[0].slides or mode[1].slides) and mode[0].touch[0] == mode[1].touch[0]:
-        forces = _shared_along_edge(solid, pose, mode, forces)
+    if len(mode) == 2 and not (mode[0].slides or mode[1].slides):
+        shared = _shared_along_edge if mode[0].touch[0] == mode[1].touch[0] else _squeezed
+        forces = shared(solid, pose, mode, forces)
     return Pushed(rates_of(y, (a_x, a_y, a_z), (t_x, t_y, t_z)), forces)
 
 
@@ -146,6 +147,42 @@ def _shared_along_edge(
         more = total * space / room - part
         shared.append((force[0] + more * edge[0], force[1] + more * edge[1], force[2] + more * edge[2]))
     return shared
+
+
+def _squeezed(solid: Solid, pose: Pose, mode: tuple[Held, ...], forces: list[Vector3]) -> list[Vector3]:
+    """Return forces with the same motion, where two contacts that stick squeeze the body between flats.
+
+    By how much they do so is open. It is the least by which friction holds both, or zero if none does.
+    """
+    (x, y, z), (a, b, c) = (arm_of(solid, pose, one.touch) for one in mode)
+    line = normalised((x - a, y - b, z - c))
+    least, most = -math.inf, math.inf
+    for one, force, u in zip(mode, forces, (line, opposite(line)), strict=True):
+        flat = solid.flats[one.touch[0]]
+        low, high = _within_cone(force, u, flat.normal, flat.friction)
+        least, most = max(least, low), min(most, high)
+    if least > most:
+        return forces
+    (f_x, f_y, f_z), (g_x, g_y, g_z) = forces
+    more = min(max(0.0, least), most)
+    x, y, z = scaled(line, more)
+    return [(f_x + x, f_y + y, f_z + z), (g_x - x, g_y - y, g_z - z)]
+
+
+def _within_cone(force: Vector3, u: Vector3, n: Vector3, friction: float) -> tuple[float, float]:
+    """Return between which multiples of a unit vector ``u`` a force, N, is in a friction cone with them."""
+    p, q = dot(force, n), dot(u, n)
+    across, sideways = without(force, n), without(u, n)
+    mu2 = friction * friction
+    a = mu2 * q * q - dot(sideways, sideways)
+    b = mu2 * p * q - dot(across, sideways)
+    c = mu2 * p * p - dot(across, across)
+    root = math.sqrt(max(b * b - a * c, 0.0))
+    if a > 0.0:  # the line goes on into the cone for ever
+        return ((root - b) / a, math.inf) if q > 0.0 else (-math.inf, (-root - b) / a)
+    if a == 0.0 or b * b < a * c or p - q * b / a < 0.0:
+        return (math.inf, -math.inf)
+    return ((root - b) / a, (-root - b) / a)
 
 
 def rates_of(y: Numbers, a: Vector3, alpha: Vector3) -> Numbers:

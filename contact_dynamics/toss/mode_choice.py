@@ -4,8 +4,8 @@ The mode that goes on is tried first: contacts that slide slide on, contacts at 
 refuses it, the forces of one consistent mode are sought (`cone_forces`), and the mode is read off them. Where
 friction at a contact could by itself lift the body or press it down, whatever the sliding (Painleve), there
 may be several modes or none, and all of them are sought (`contact_modes`). So they are where all contacts
-slide and their forces need not be the only ones (`several_forces`). Where some stick, several contacts can
-have several modes without that, if friction is strong. These are not looked for.
+slide and their forces need not be the only ones (`several_forces`). Where some stick, all are sought on
+demand, if friction may wedge the body between flats (`wedged`).
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ from contact_dynamics.toss.cone_forces import Site, cone_forces
 from contact_dynamics.toss.forces import Free, free_accelerations, pushed_by_contacts
 from contact_dynamics.toss.held import Held, sliding_direction
 from contact_dynamics.toss.solid import arm_of, pose_of, times, velocity_of
+from contact_dynamics.toss.wedged import may_be_wedged
 
 if TYPE_CHECKING:
     from contact_dynamics.numerics.vectors import Vector3
@@ -54,8 +55,11 @@ class Choice(NamedTuple):
     modes: list[Mode]
 
 
-def choose_mode(solid: Solid, y: Numbers, touching: list[Touch]) -> Choice:
-    """Return the modes that are consistent at touching contacts that do not approach."""
+def choose_mode(solid: Solid, y: Numbers, touching: list[Touch], *, thorough: bool = False) -> Choice:
+    """Return the modes that are consistent at touching contacts that do not approach.
+
+    ``thorough`` asks for all of them where friction may wedge the body, too, which takes some 10 to 50 ms.
+    """
     if not touching:
         return Choice(ModeVerdict.UNIQUE, [()])
     free = free_accelerations(solid, y)
@@ -92,12 +96,24 @@ def choose_mode(solid: Solid, y: Numbers, touching: list[Touch]) -> Choice:
             choice.modes.sort(key=lambda mode: [(one.touch, one.slides) for one in mode] != going_on)
             return choice
     mode = corrected(solid, y, tuple(guess), free)
-    if mode is not None:
-        return Choice(ModeVerdict.UNIQUE, [mode])
-    found = cone_forces(1.0 / solid.mass, free.pose.inverse, sites)
-    if found is None:
-        return choice if paradox else _all_modes(solid, y, touching)
-    return Choice(ModeVerdict.UNIQUE, [_read_off(solid, y, guess, sites, pushes=found[0], motions=found[1])])
+    if mode is None:
+        found = cone_forces(1.0 / solid.mass, free.pose.inverse, sites)
+        if found is None:
+            return choice if paradox else _all_modes(solid, y, touching)
+        mode = _read_off(solid, y, guess, sites, pushes=found[0], motions=found[1])
+    if thorough and not paradox and may_be_wedged(solid, touching):
+        return _with_others(mode, _all_modes(solid, y, touching))
+    return Choice(ModeVerdict.UNIQUE, [mode])
+
+
+def _with_others(mode: Mode, known: Choice) -> Choice:
+    """Return a mode and the others among those that are known."""
+    others = [other for other in known.modes if _letters(other) != _letters(mode)]
+    return Choice(known.verdict if others else ModeVerdict.UNIQUE, [mode, *others])
+
+
+def _letters(mode: Mode) -> set[tuple[Touch, bool]]:
+    return {(one.touch, one.slides) for one in mode}
 
 
 def several_forces(solid: Solid, free: Free, sliding: list[Held]) -> bool:

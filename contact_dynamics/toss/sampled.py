@@ -198,6 +198,7 @@ def _begun(
         error=SAMPLED_PHASE_ERROR,
         kick=None if spread.is_none else spread.of_one(i),
         flat_after=len(told.seconds) - int((told.corners[:, i] >= 0).sum()),
+        thorough=False,
     )
     return Run(following, state, ())
 
