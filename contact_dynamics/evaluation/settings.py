@@ -37,9 +37,7 @@ class Law(Enum):
     @property
     def restitution_law(self) -> RestitutionLaw:
         """What coefficients of restitution mean."""
-        return {Law.NEWTON: RestitutionLaw.NEWTON, Law.ENERGETIC: RestitutionLaw.ENERGETIC}.get(
-            self, RestitutionLaw.POISSON
-        )
+        return RestitutionLaw.POISSON if self is Law.IN_TIME else RestitutionLaw[self.name]
 
     @property
     def several_contacts_law(self) -> SeveralContactsLaw | InTime:
