@@ -160,9 +160,13 @@ def _method(each: Summary | Change) -> str:
     return f"({each.method.value})"
 
 
+def _named(source: str, problem: str) -> str:
+    return problem if problem.startswith(f"{source}: ") else f"{source}: {problem}"
+
+
 def _problems(evaluation: Evaluation) -> list[str]:
     bad = [result for result in evaluation.results if result.problem]
-    lines = [f"  {result.source}: {result.problem}" for result in bad[:MOST_PROBLEMS]]
+    lines = [f"  {_named(result.source, result.problem)}" for result in bad[:MOST_PROBLEMS]]
     if len(bad) > MOST_PROBLEMS:
         lines.append(f"  and {len(bad) - MOST_PROBLEMS} more")
     damaged = [result for result in evaluation.results if result.damage]

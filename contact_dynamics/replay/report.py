@@ -78,7 +78,7 @@ def _gaps(found: Verification) -> list[str]:
     unanswered = sum(tally.unanswered for tally in found.services.values())
     unreadable = sum(tally.unreadable for tally in found.services.values())
     if unanswered:
-        lines.append(f"  {unanswered} questions have no answer in the log and were not asked")
+        lines.append(f"  not asked, because the log has no answer: {unanswered}")
     if unreadable:
         lines.append(f"  {unreadable} calls could not be read; the first: {found.unreadable}")
     if found.damage is not None:
