@@ -180,3 +180,30 @@ def test_a_request_of_another_page_is_answered(
     answer = client.ask(fill(service.Request(), yaml.safe_load(request_text)))
     expected = answer.NO_STATE if page == WITHOUT_STATE else answer.OK
     assert answer.status == expected, answer.message
+
+
+IN_A_SENTENCE = re.compile(r"`(\{\w+: [^`]*\}|[a-z_]+: \S+)`")
+TO_SET = [
+    (str(path.relative_to(ROOT)), text)
+    for path in (
+        ROOT / "contact_dynamics_interfaces" / "README.md",
+        ROOT / "README.md",
+        *sorted((ROOT / "docs").rglob("*.md")),
+    )
+    for text in IN_A_SENTENCE.findall(path.read_text(encoding="utf-8"))
+]
+
+
+def takes(service: Any, fields: dict[str, Any]) -> bool:
+    try:
+        fill(service.Request(), fields)
+    except AssertionError:  # of ROS's own checks, which refuse a number where a list is meant
+        return False
+    return True
+
+
+@pytest.mark.parametrize(("page", "text"), TO_SET)
+def test_what_a_sentence_says_to_set_is_taken_by_a_request(page: str, text: str) -> None:
+    fields = yaml.safe_load(text if text.startswith("{") else f"{{{text}}}")
+    asking = [each for each in SERVICES if all(hasattr(each.Request(), name) for name in fields)]
+    assert not asking or any(takes(each, fields) for each in asking), page
