@@ -36,6 +36,9 @@ Answer = TypeVar("Answer")
 _NEEDED: Final = ("contact_dynamics.questions.asking", "scipy.linalg", "scipy.optimize", "scipy.spatial")
 """What a worker has imported before it is asked: an import of SciPy takes longer than most answers."""
 
+_START_AFTER_S: Final = 1.0
+"""s. Workers import for a second of processor time, which would delay the first answer of a server."""
+
 _NICER: Final = 5
 _SPARE_S: Final = 1.0  # that a worker has to send its answer before it ends by itself
 _MEGABYTE: Final = 1_000_000
@@ -79,7 +82,10 @@ class Workers:
     """
 
     def __init__(self, limits: WorkerLimits) -> None:
-        """Start the processes. They need a second to be ready, and questions wait for that."""
+        """Have the processes started, each with its first question, or after a second if there is none yet.
+
+        They need a second to be ready, and questions wait for that.
+        """
         self.limits = limits
         self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
         self._lock = threading.Lock()
@@ -147,8 +153,13 @@ class Workers:
         # that they do not end with a traceback while they still import. They end with this process.
         resource_tracker.ensure_running()  # first, since its start unblocks the signal again
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        asked: list[_Job | None] = []
+        with contextlib.suppress(queue.Empty):
+            asked.append(self._jobs.get(timeout=_START_AFTER_S))
+        if asked == [None]:  # closed meanwhile
+            return
         worker.start()
-        while not self._closing and (job := self._jobs.get()) is not None:
+        while not self._closing and (job := asked.pop() if asked else self._jobs.get()) is not None:
             outcome = worker.outcome(job)
             with self._lock:
                 self._open -= 1
