@@ -77,15 +77,18 @@ class CallTimes:
         """Note that the answer to a call leaves."""
         call.sent_ns = time.time_ns()
 
-    def of_event(self, event: bytes) -> EventTimes:
+    def of_event(self, event: bytes, *, received_ns: int) -> EventTimes:
         """Return the time of what an event reports.
 
-        It is the present for an event of a client, which happened elsewhere, and for bytes that are no event.
+        Args:
+            event: the event as it came.
+            received_ns: when it came, ns since the epoch by this machine's clock. It is the time of an event
+                of a client, which happened elsewhere, and of bytes that are no event.
         """
         try:
             info = event_info(event)
         except InvalidFieldError:
-            return EventTimes(time.time_ns())
+            return EventTimes(received_ns)
         key = (info.client_gid, info.sequence_number)
         if info.event_type is EventType.REQUEST_RECEIVED:
             while self._unclaimed:
@@ -99,4 +102,4 @@ class CallTimes:
         elif info.event_type is EventType.RESPONSE_SENT and key in self._answered:
             answered = self._answered.pop(key)
             return EventTimes(answered.sent_ns, max(0, info.stamp_ns), answered.is_logged)
-        return EventTimes(time.time_ns(), max(0, info.stamp_ns))
+        return EventTimes(received_ns, max(0, info.stamp_ns))

@@ -202,6 +202,8 @@ class ServiceFront:
         answering.header = header
         if answering.is_done:
             self._send(answering)
+        else:
+            self.take_events()
 
     def _send(self, answering: _Answering) -> None:
         """Send a response, unless its client left, and do only then what nobody has to wait for."""
@@ -267,7 +269,7 @@ class ServiceFront:
             return False
 
     def _record_event(self, event: Taken) -> None:
-        happened = self._times.of_event(event.data)
+        happened = self._times.of_event(event.data, received_ns=event.received_ns)
         if happened.is_logged:
             return
         self._record(self.topic, event.data, happened.log_time_ns, happened.publish_time_ns)

@@ -15,7 +15,6 @@ from rosgraph_msgs.msg import Clock
 from contact_dynamics.nodes import parameter_event
 from contact_dynamics.nodes.diagnostics import AnswerTimes, Diagnostics
 from contact_dynamics.nodes.gone_clients import GoneClients
-from contact_dynamics.nodes.inbox import TAKE_EVERY_S
 from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.offered_qos import OfferedQosWatch
 from contact_dynamics.nodes.reconfiguring import CONFIGURED_ANEW, bodies_read_otherwise
@@ -52,6 +51,9 @@ CLOCK_QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 PATH_QOS = QoSProfile(depth=1)
 """Queue of the predicted trajectory as a path. It is a picture, and only the newest one matters."""
+
+EVENTS_EVERY_S: Final = 0.05
+"""s. Time between two looks for events that no call of the moment is about, which are those of clients."""
 
 LOOK_EVERY_S: Final = 1.0
 """s. Time between two looks at topics and other nodes, which /diagnostics then tells of."""
@@ -196,7 +198,7 @@ class Serving:
     def attend(self) -> None:
         """Take the events that wait, unless that was done a moment ago, and look around once a second."""
         now = time.monotonic()
-        if now - self._took_events >= TAKE_EVERY_S:
+        if now - self._took_events >= EVENTS_EVERY_S:
             self._take_events()
         since_look = now - self._looked
         if since_look >= LOOK_EVERY_S:

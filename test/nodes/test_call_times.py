@@ -12,6 +12,7 @@ from contact_dynamics.recording.cdr_stamp import EventType
 
 GID_A, GID_B = b"a" * 16, b"b" * 16
 SECOND = 1_000_000_000
+LATER_NS = 5 * SECOND  # when events come
 
 
 def event(kind: EventType, seconds: int, gid: bytes, number: int) -> bytes:
@@ -37,6 +38,10 @@ class Calls:
         self.times.end(call)
         self.ended.append((before_ns, time.time_ns()))
 
+    def log_time_ns(self, event: bytes) -> int:
+        """The time that the log has of an event."""
+        return self.times.of_event(event, received_ns=LATER_NS).log_time_ns
+
 
 def test_each_event_has_the_time_of_its_call_whoever_asks() -> None:
     calls = Calls()
@@ -44,10 +49,10 @@ def test_each_event_has_the_time_of_its_call_whoever_asks() -> None:
     for _ in asked:
         calls.answer()
     for number, (gid, sequence) in enumerate(asked):
-        came = calls.times.of_event(event(EventType.REQUEST_RECEIVED, number + 1, gid, sequence)).log_time_ns
+        came = calls.log_time_ns(event(EventType.REQUEST_RECEIVED, number + 1, gid, sequence))
         assert calls.began[number][0] <= came <= calls.began[number][1]
     for number, (gid, sequence) in reversed(list(enumerate(asked))):
-        left = calls.times.of_event(event(EventType.RESPONSE_SENT, number + 1, gid, sequence)).log_time_ns
+        left = calls.log_time_ns(event(EventType.RESPONSE_SENT, number + 1, gid, sequence))
         assert calls.ended[number][0] <= left <= calls.ended[number][1]
 
 
@@ -55,9 +60,9 @@ def test_events_that_got_lost_shift_no_other() -> None:
     calls = Calls()
     for _ in range(4):
         calls.answer()
-    came = calls.times.of_event(event(EventType.REQUEST_RECEIVED, 3, GID_A, 3)).log_time_ns
+    came = calls.log_time_ns(event(EventType.REQUEST_RECEIVED, 3, GID_A, 3))
     assert calls.began[2][0] <= came <= calls.began[2][1]
-    came = calls.times.of_event(event(EventType.REQUEST_RECEIVED, 4, GID_A, 4)).log_time_ns
+    came = calls.log_time_ns(event(EventType.REQUEST_RECEIVED, 4, GID_A, 4))
     assert calls.began[3][0] <= came <= calls.began[3][1]
 
 
@@ -72,10 +77,9 @@ def test_events_that_got_lost_shift_no_other() -> None:
     ],
     ids=["of a client", "of a client's answer", "of a call before", "of no kind", "no event"],
 )
-def test_other_events_are_of_now_and_take_no_calls_time(other: bytes) -> None:
+def test_other_events_are_of_when_they_came_and_take_no_calls_time(other: bytes) -> None:
     calls = Calls()
     calls.answer()
-    before_ns = time.time_ns()
-    assert before_ns <= calls.times.of_event(other).log_time_ns <= time.time_ns()
-    came = calls.times.of_event(event(EventType.REQUEST_RECEIVED, 1, GID_A, 1)).log_time_ns
+    assert calls.log_time_ns(other) == LATER_NS
+    came = calls.log_time_ns(event(EventType.REQUEST_RECEIVED, 1, GID_A, 1))
     assert calls.began[0][0] <= came <= calls.began[0][1]
