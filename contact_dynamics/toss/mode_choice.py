@@ -25,6 +25,7 @@ from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
 from contact_dynamics.numerics.vectors import cross, dot, norm, normalised, opposite, without
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tolerances import BEGINNING_ROUNDING, FORCE_ROUNDING, SAME_FORCES, SLIDING_STOPPED
+from contact_dynamics.toss.beginning import turned_along_accelerations
 from contact_dynamics.toss.cone_forces import Site, cone_forces
 from contact_dynamics.toss.forces import Free, free_accelerations, pushed_by_contacts
 from contact_dynamics.toss.held import Held, sliding_direction
@@ -40,7 +41,10 @@ if TYPE_CHECKING:
 Mode = tuple[Held, ...]
 
 _MOST_CORRECTIONS: Final = 30
-"""Rounds of corrections of a guessed mode. One to three are usual, and ten where a corner begins to slide."""
+"""Rounds of corrections of a guessed mode. One to three are usual."""
+
+_FEW_CORRECTIONS: Final = 8
+"""After so many rounds, directions in which contacts begin to slide are sought all at once."""
 
 
 class Choice(NamedTuple):
@@ -163,8 +167,11 @@ def corrected(solid: Solid, y: Numbers, guess: Mode, free: Free) -> Mode | None:
     """
     starts = {one.touch: one for one in guess}
     held = {one.touch: one for one in guess}
-    for _ in range(_MOST_CORRECTIONS):
+    for k in range(_MOST_CORRECTIONS):
         mode = tuple(held.values())
+        if k >= _FEW_CORRECTIONS:
+            mode = turned_along_accelerations(solid, y, mode)
+            held = {one.touch: one for one in mode}
         pushed = pushed_by_contacts(solid, y, mode)
         rates = pushed.rates
         moved = Free(free.pose, (rates[7], rates[8], rates[9]), (rates[10], rates[11], rates[12]))
