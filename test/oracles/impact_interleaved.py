@@ -7,6 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
+ROUNDING = 1e-12
+"""m/s. A contact that has been compressed to its end may still approach by the rounding of velocities."""
+
 
 def velocity_after(
     *,
@@ -37,7 +40,7 @@ def velocity_after(
         row, n, mu = rows[i], normals[i], frictions[i]
         response = row @ inverse_mass @ row.T
         p = increment
-        compresses = approach[i] < 0.0
+        compresses = approach[i] < -ROUNDING
         if compresses:
             p = min(p, -approach[i] / float(n @ response @ n))
         velocity = row @ now
