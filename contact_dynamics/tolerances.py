@@ -499,6 +499,10 @@ BEGINNING_ROUNDING: Final = 1e-7
 """Relative to gravity. Where a contact begins to slide, its acceleration may be off the direction of friction
 by this much. Accelerations carry the rounding of forces, `FORCE_ROUNDING`, times some ten."""
 
+BEGINNING_TURN: Final = 1e-4
+"""rad. By so much the direction in which a contact begins to slide is turned, to see how accelerations
+change. Their rounding is then a thousandth of the change, and so is what a straight line misses of it."""
+
 BEGUN_TO_SLIDE: Final = 1e-3
 """m/s. Below this speed, a contact that begins to slide does so along its acceleration. At 1e-3 m/s, friction
 of 10 m/s^2 turns the sliding in 1e-4 s, which is as short as a step of a phase should be."""

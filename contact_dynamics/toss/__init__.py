@@ -5,9 +5,9 @@ event: flights in closed form, strikes (`strike`), contact phases (`phase`), and
 happens, and `result` has what is returned. Impacts (`one_impact`) and steps are work that is `asked` for.
 
 - `solid` has the body and the flats in plain floats, and the points that touch.
-- `mode_choice` says which contact mode follows. It tries the one that goes on, corrects it, seeks pushes in
-  friction cones (`cone_forces`), and asks `contact_modes` where there may be several modes, as where a
-  body may be `wedged`.
+- `mode_choice` says which contact mode follows. It tries the one that goes on, corrects it, with the
+  directions of sliding that is `beginning`, seeks pushes in friction cones (`cone_forces`), and asks
+  `contact_modes` where there may be several modes, as where a body may be `wedged`.
 - `forces` has the accelerations in a mode of `held` contacts, `flush` those of a body that slides on a face,
   and `phase` integrates them (`phase_step`) until the mode ends (`phase_ends`). `holding` keeps contacts
   where they are.

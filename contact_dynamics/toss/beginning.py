@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.numerics.vectors import cross, dot
-from contact_dynamics.tolerances import BEGINNING_ROUNDING
+from contact_dynamics.tolerances import BEGINNING_ROUNDING, BEGINNING_TURN
 from contact_dynamics.toss.forces import Free, pushed_by_contacts
 from contact_dynamics.toss.solid import arm_of, pose_of
 
@@ -25,9 +25,6 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 _MOST_STEPS: Final = 12
-_TURN: Final = 1e-4
-"""rad. By so much a direction is turned to see what that changes."""
-
 _FARTHEST: Final = 0.5
 """rad. The largest turn of a step: a friction cone is round."""
 
@@ -55,9 +52,11 @@ def turned_along_accelerations(solid: Solid, y: Numbers, mode: tuple[Held, ...])
         off = sideways(mode)
         if np.abs(off).max() <= enough:
             break
-        slopes = [(sideways(_turned(solid, mode, {k: _TURN})) - off) / _TURN for k in which]
+        slopes = [(sideways(_turned(solid, mode, {k: BEGINNING_TURN})) - off) / BEGINNING_TURN for k in which]
         turns = np.linalg.lstsq(np.array(slopes).T, -off, rcond=None)[0]
-        turns *= min(1.0, _FARTHEST / max(float(np.abs(turns).max()), 1e-300))
+        largest = float(np.abs(turns).max())
+        if largest > _FARTHEST:
+            turns *= _FARTHEST / largest
         mode = _turned(solid, mode, dict(zip(which, turns.tolist(), strict=True)))
     return mode
 
