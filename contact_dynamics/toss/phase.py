@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.numerics.vectors import cross, dot, norm
+from contact_dynamics.numerics.vectors import cross, dot, norm, without
 from contact_dynamics.tolerances import (
     BEGUN_TO_SLIDE,
     FORCE_ROUNDING,
+    MOST_SLIDING_STOPPED,
     PHASE_ERROR,
     PHASE_LEAST_STEP,
+    RESOLVED_SLIDING,
     SAMPLED_PHASE_ERROR,
     SLIDING_STOPPED,
 )
@@ -101,7 +103,8 @@ def phase(
     pushed = pushed_by_contacts(solid, y, mode)
     low = low_corners(solid, y, held)
     watched = watched_corners(solid, held, low)
-    before_stop, _ = _sliding(solid, y, pushed, mode)
+    resolved = max(SLIDING_STOPPED, min(RESOLVED_SLIDING * error, MOST_SLIDING_STOPPED))
+    before_stop, _ = _sliding(solid, y, pushed, mode, resolved=resolved)
     fast = kinetic_energy_of(solid, y) > slow
     for _ in range(MOST_PHASE_STEPS):
         longest = _before_arrival(solid, y, held)
@@ -128,7 +131,7 @@ def phase(
         pushed = after if turned == mode else pushed_by_contacts(solid, y, turned)
         mode = turned
         left = before_stop
-        before_stop, stopped = _sliding(solid, y, pushed, mode)
+        before_stop, stopped = _sliding(solid, y, pushed, mode, resolved=resolved)
         if stopped:
             still = tuple(one._replace(slides=one.slides and one.touch not in stopped) for one in mode)
             return Phase(PhaseEnd.SLIDING_STOPS, now, held_in_place(solid, y, still), steps)
@@ -157,8 +160,15 @@ def _before_arrival(solid: Solid, y: Numbers, held: set[Touch]) -> float:
     return longest
 
 
-def _sliding(solid: Solid, y: Numbers, pushed: Pushed, mode: tuple[Held, ...]) -> tuple[float, set[Touch]]:
-    """Return the longest step, s, before which no contact stops sliding, and those that have stopped."""
+def _sliding(
+    solid: Solid, y: Numbers, pushed: Pushed, mode: tuple[Held, ...], *, resolved: float
+) -> tuple[float, set[Touch]]:
+    """Return the longest step, s, before which no contact stops sliding, and those that have stopped.
+
+    Below the speed that is ``resolved``, m/s, the direction of a contact that stops turns by more in a step
+    than the error of the step allows to follow. There it would slide on and on, in steps of a microsecond,
+    so it has stopped if friction holds it then.
+    """
     longest, stopped = math.inf, set()
     pose = pose_of(solid, y)
     for one in mode:
@@ -166,9 +176,17 @@ def _sliding(solid: Solid, y: Numbers, pushed: Pushed, mode: tuple[Held, ...]) -
             speed, rate = _speed_and_rate(solid, pose, pushed, one)
             if rate < 0.0:
                 longest = min(longest, _TOWARDS_STOP * speed / -rate)
-                if speed <= SLIDING_STOPPED:
+                if speed <= SLIDING_STOPPED or (speed <= resolved and _friction_holds(solid, y, mode, one)):
                     stopped.add(one.touch)
     return max(longest, PHASE_LEAST_STEP), stopped
+
+
+def _friction_holds(solid: Solid, y: Numbers, mode: tuple[Held, ...], one: Held) -> bool:
+    """Tell whether friction holds a contact of the mode, if it sticks and the others do as the mode says."""
+    still = tuple(Held(each.touch) if each == one else each for each in mode)
+    force = pushed_by_contacts(solid, y, still).forces[mode.index(one)]
+    flat = solid.flats[one.touch[0]]
+    return norm(without(force, flat.normal)) <= flat.friction * dot(force, flat.normal)
 
 
 def _turned(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> tuple[Held, ...]:
