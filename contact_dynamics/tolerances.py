@@ -485,7 +485,7 @@ RESOLVED_SLIDING: Final = 50.0
 friction holds them: their direction turns within a step. Contacts were seen to slide on at 15 to 28 times the
 error, for ten thousands of steps, although friction took the speed of each in microseconds."""
 
-MOST_SLIDING_STOPPED: Final = 1e-4
+COARSE_SLIDING_STOPPED: Final = 1e-4
 """m/s. The same for large errors, of samples too. Friction of 0.1 stops that within 5e-9 m."""
 
 SLIDING_DIRECTION_SPEED: Final = 1e-9

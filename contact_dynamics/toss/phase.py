@@ -16,8 +16,8 @@ import numpy as np
 from contact_dynamics.numerics.vectors import cross, dot, norm, without
 from contact_dynamics.tolerances import (
     BEGUN_TO_SLIDE,
+    COARSE_SLIDING_STOPPED,
     FORCE_ROUNDING,
-    MOST_SLIDING_STOPPED,
     PHASE_ERROR,
     PHASE_LEAST_STEP,
     RESOLVED_SLIDING,
@@ -103,7 +103,7 @@ def phase(
     pushed = pushed_by_contacts(solid, y, mode)
     low = low_corners(solid, y, held)
     watched = watched_corners(solid, held, low)
-    resolved = max(SLIDING_STOPPED, min(RESOLVED_SLIDING * error, MOST_SLIDING_STOPPED))
+    resolved = max(SLIDING_STOPPED, min(RESOLVED_SLIDING * error, COARSE_SLIDING_STOPPED))
     before_stop, _ = _sliding(solid, y, pushed, mode, resolved=resolved)
     fast = kinetic_energy_of(solid, y) > slow
     for _ in range(MOST_PHASE_STEPS):
