@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from benchmarks._cube_engines import Given, Setting, engines
 from benchmarks._quotes import quote
 from benchmarks.calibration import _observed
 from contact_dynamics.calibration import calibrate_observed
@@ -283,9 +284,39 @@ def _costs(early: list[Early], world: World, uncertainty: TossUncertainty) -> No
         print(f"next two strikes of {count} samples: {np.median(spent):.0f} ms")
         quote(f"tosses.cost.{count}", float(np.median(spent)), "ms")
     body = world.bodies[0]
+    for count in (100, 1000):
+        if rollouts := _mujoco_rollouts(early, world, uncertainty, count):
+            print(f"MuJoCo, {count} rollouts over the same time: {np.median(rollouts):.0f} ms")
+            quote(f"tosses.cost.mujoco.{count}", float(np.median(rollouts)), "ms")
     spent = [_spent(partial(toss, body, one.state, world, most_alternatives=0)) for one in early]
     print(f"a single toss to rest: {np.median(spent):.0f} ms")
     quote("tosses.cost.single", float(np.median(spent)), "ms")
+
+
+def _mujoco_rollouts(
+    early: list[Early], world: World, uncertainty: TossUncertainty, count: int
+) -> list[float]:
+    """Return the processor time of MuJoCo's rollouts until the second strike, ms, or nothing without MuJoCo.
+
+    Each rollout takes the same time, wherever it starts, so that they all start from the fitted state.
+    """
+    body, floor = world.bodies[0], world.surfaces[0]
+    given = Given(body.mass_properties, body.p_FB_F, world.gravity_W, float(floor.p_WS_W[2]))
+    engine = engines(given).get("MuJoCo")
+    if engine is None:
+        return []
+    setting = Setting(floor.friction, floor.restitution, engine.softness)
+
+    def roll_out(state: BodyState, seconds: float) -> None:
+        for _ in range(count):
+            engine.poses(state, np.array([seconds]), setting)
+
+    spent = []
+    for one in early:
+        strikes = _predicted(one, world, uncertainty).strikes
+        if len(strikes) > 1:
+            spent.append(_spent(partial(roll_out, one.state, float(strikes[1].seconds.mean[0]))))
+    return spent
 
 
 def _spent(work: Callable[[], object]) -> float:
