@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -36,6 +36,7 @@ from contact_dynamics_interfaces.srv import (
 ROOT = Path(__file__).parents[1]
 DOMAIN_ID = claim_domain()  # of this test run alone
 PATIENCE_S = 90.0
+PATIENT = "state_timeout:=1000.0"  # no stall of a busy machine makes a state too old to ask about
 DEEP = QoSProfile(depth=1000)
 BYTECODE = Path(tempfile.gettempdir()) / f"contact_dynamics_bytecode_{os.getuid()}"
 SERVICES = {
@@ -206,9 +207,15 @@ def server_and_client(
     *,
     params_file: Path = ROOT / "config" / "server.yaml",
     domain_id: int = DOMAIN_ID,
+    parameters: Sequence[str] = (),
 ) -> Iterator[Client]:
-    """Run a server with the commented configuration, logging to ``log_directory``, and a client beside it."""
-    arguments = ("--params-file", str(params_file), "--ros-args", "-p", f"log_directory:={log_directory}")
+    """Run a server with the commented configuration, logging to ``log_directory``, and a client beside it.
+
+    The parameters, each "name:=value", count before the configuration.
+    """
+    arguments = ["--params-file", str(params_file), "--ros-args", "-p", f"log_directory:={log_directory}"]
+    for parameter in parameters:
+        arguments += ["-p", parameter]
     with process("server", *arguments, ready="ready", domain_id=domain_id):
         client = Client(domain_id=domain_id)
         try:

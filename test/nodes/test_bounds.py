@@ -13,12 +13,12 @@ from nav_msgs.msg import Odometry
 
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
-from running_server import Client, server_and_client
+from running_server import PATIENT, Client, server_and_client
 
 
 @pytest.fixture(scope="module")
 def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with server_and_client(Path(tmp_path_factory.mktemp("log"))) as client:
+    with server_and_client(Path(tmp_path_factory.mktemp("log")), parameters=[PATIENT]) as client:
         yield client
 
 

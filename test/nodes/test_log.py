@@ -41,7 +41,7 @@ from contact_dynamics_interfaces.srv import (
     PredictTumblingBatch,
 )
 from msg_adapters.stamps import stamp_ns_from_msg
-from running_server import PATIENCE_S, ROOT, SERVICES, Client, process
+from running_server import PATIENCE_S, PATIENT, ROOT, SERVICES, Client, process
 
 STATES_TOPIC = "/brick/odometry"
 EVENTS = {f"{name}/_service_event": service for service, name in SERVICES.items()}
@@ -128,7 +128,6 @@ def questions(number: int) -> list[Any]:
         PredictImpactBatch.Request(body_name="brick", states=falling),  # no contact is given
         PredictTumblingBatch.Request(body_name="brick", states=falling, times=[float("inf")]),
         PredictContactModeBatch.Request(body_name="brick"),  # in the air
-        # A worker starts for the first toss. No state that was published before would be new enough after it.
         toss,
         PredictToss.Request(body_name="brick", rate=[0.0]),
     ]
@@ -141,7 +140,8 @@ def session(tmp_path_factory: pytest.TempPathFactory) -> Session:
     states: list[Odometry] = []
     asked: dict[str, list[tuple[Any, Any]]] = {topic: [] for topic in EVENTS}
     file = str(ROOT / "config" / "server.yaml")
-    arguments = ("--params-file", file, "--ros-args", "-p", f"log_directory:={directory}")
+    arguments = ["--params-file", file, "--ros-args", "-p", f"log_directory:={directory}"]
+    arguments += ["-p", PATIENT]
     with process("server", *arguments, ready="ready") as server:
         client = Client()
         publisher = client.publisher(Odometry, STATES_TOPIC)
@@ -277,6 +277,7 @@ def test_the_run_record_has_every_parameter(session: Session) -> None:
     (node,) = yaml.safe_load((ROOT / "config" / "server.yaml").read_text(encoding="utf-8")).values()
     configured = {**node["ros__parameters"], "log_directory": str(session.folder.parent)}
     configured["answer_deadline"] = PATIENCE_S  # as all servers of tests have it
+    configured["state_timeout"] = float(PATIENT.rpartition("=")[2])
     parameters = json.loads(run["parameters"])
     assert {name: parameters.get(name) for name in configured} == configured
     assert json.loads(run["state_topics"]) == {"body.brick.odometry_topic": STATES_TOPIC}

@@ -14,7 +14,7 @@ from rclpy.publisher import Publisher
 
 from contact_dynamics.recording import BagReader
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
-from running_server import DOMAIN_ID, ROOT, Client, process, wait_for
+from running_server import DOMAIN_ID, PATIENT, ROOT, Client, process, wait_for
 
 LEAST_PORT = 7400 + 250 * DOMAIN_ID
 """The least port of DDS in the domain of this test run."""
@@ -96,7 +96,7 @@ def test_a_server_that_hears_goes_on(tmp_path: Path) -> None:
 
 def test_a_topic_that_falls_silent_while_somebody_publishes_is_subscribed_to_anew(tmp_path: Path) -> None:
     arguments = ["--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args"]
-    arguments += ["-p", f"log_directory:={tmp_path}"]
+    arguments += ["-p", f"log_directory:={tmp_path}", "-p", PATIENT]
     with process("server", *arguments, ready="ready") as server:
         client = Client()
         try:

@@ -22,7 +22,7 @@ from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.nodes.state_sources import ENTRY_POINTS, adapter_of
 from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
-from running_server import ROOT, Client, process
+from running_server import PATIENT, ROOT, Client, process
 
 VELOCITY = np.array([0.5, 0.0, 1.0])  # m/s, of all bodies
 STEP_NS = 4_000_000
@@ -65,7 +65,7 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
         for path in (folder, ROOT / "examples" / "pose_array_source"):
             patch.syspath_prepend(str(path))
         patch.setenv("PYTHONPATH", f"{folder}:{ROOT / 'examples' / 'pose_array_source'}:{ROOT}")
-        with process("server", "--params-file", str(file), ready="ready"):
+        with process("server", "--params-file", str(file), "--ros-args", "-p", PATIENT, ready="ready"):
             joined = Client()
             try:
                 yield joined
