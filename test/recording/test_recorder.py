@@ -80,7 +80,7 @@ def test_loses_nothing_from_many_threads_and_keeps_each_ones_order(tmp_path: Pat
 def test_messages_reach_the_file_without_closing(tmp_path: Path, pose_cdr: PoseCdr) -> None:
     with Recorder(pose_log(tmp_path / "log")) as recorder:
         recorder.record("/pose", pose_cdr(1, 2.0), log_time_ns=3)
-        deadline = time.monotonic() + 10.0
+        deadline = time.monotonic() + 90.0
         while recorder.status.written == 0 and time.monotonic() < deadline:
             time.sleep(0.01)
         with pytest.warns(DamagedLogWarning, match="cut short"):  # no end yet
@@ -162,6 +162,43 @@ def test_close_does_not_wait_for_a_hanging_disk_for_ever() -> None:
     assert recorder.close(timeout_s=0.3).waiting == 1
     writer.go.set()
     assert recorder.close().written == 1
+
+
+STOOD_STILL = """
+import sys
+from pathlib import Path
+from contact_dynamics.recording import Recorder
+
+class Disk:
+    folder, safe_count = Path("stuck"), 0
+    def write(self, *_, **__): pass
+    def flush(self): pass
+    def sync(self):
+        print("syncs", flush=True)
+        sys.stdin.readline()
+    def close(self): pass
+
+recorder = Recorder(Disk())
+recorder.record("/point", b"", log_time_ns=0)
+print(recorder.settle(timeout_s=1.0), flush=True)
+"""
+
+
+def test_a_process_that_stood_still_longer_than_a_disk_may_take_waits_on_for_the_disk() -> None:
+    """It once told of a disk that hangs, and answers then left before they were on it for 10 s."""
+    for _ in range(2):
+        with subprocess.Popen(
+            [sys.executable, "-c", STOOD_STILL], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        ) as process:
+            assert process.stdin is not None
+            assert process.stdout is not None
+            assert process.stdout.readline() == "syncs\n"
+            process.send_signal(signal.SIGSTOP)
+            time.sleep(1.1)
+            process.stdin.write("\n")  # meanwhile the disk takes it
+            process.stdin.flush()
+            process.send_signal(signal.SIGCONT)
+            assert process.stdout.readline() == "True\n"
 
 
 KILLED = """
