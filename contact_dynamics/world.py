@@ -75,12 +75,12 @@ class Body(Record):
 
     def __post_init__(self) -> None:
         """Check the arrays, and make corners and shape agree."""
-        center = check_magnitude("center_of_mass", check_array("center_of_mass", self.p_FB_F, (3,)))
+        center = check_magnitude("p_FB_F", check_array("p_FB_F", self.p_FB_F, (3,)))
         object.__setattr__(self, "p_FB_F", center)
         if self.shape is NO_SHAPE:
             object.__setattr__(self, "shape", ConvexShape(vertices=self.vertices_B))
         elif len(self.vertices_B) > 0 and self.vertices_B is not self.shape.vertices:
-            raise InvalidFieldError("vertices", "vertices and a shape", "one of them")
+            raise InvalidFieldError("vertices_B", "vertices and a shape", "one of them")
         object.__setattr__(self, "vertices_B", self.shape.vertices)
 
     @classmethod
@@ -158,8 +158,10 @@ class Surface(Record):
 
     def __post_init__(self) -> None:
         """Check all fields."""
-        object.__setattr__(self, "p_WS_W", check_magnitude("point", check_array("point", self.p_WS_W, (3,))))
-        object.__setattr__(self, "normal_W", check_unit("normal", self.normal_W, 3))
+        object.__setattr__(
+            self, "p_WS_W", check_magnitude("p_WS_W", check_array("p_WS_W", self.p_WS_W, (3,)))
+        )
+        object.__setattr__(self, "normal_W", check_unit("normal_W", self.normal_W, 3))
         object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
         object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
         object.__setattr__(self, "lasting_factor", check_not_negative("lasting_factor", self.lasting_factor))
@@ -200,7 +202,7 @@ class World(Record):
 
     def __post_init__(self) -> None:
         """Check gravity and that names are unique."""
-        object.__setattr__(self, "gravity_W", check_array("gravity", self.gravity_W, (3,)))
+        object.__setattr__(self, "gravity_W", check_array("gravity_W", self.gravity_W, (3,)))
         names = [body.name for body in self.bodies]
         if len(set(names)) < len(names):
             raise InvalidFieldError("bodies", names, "names that differ")

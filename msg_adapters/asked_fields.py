@@ -19,10 +19,11 @@ from contact_dynamics.questions.impact_question import InTime
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.sample_times import AtRate, AtStamps, AtTimes, UntilContact, UntilPlane
 from msg_adapters.contacts import contacts_from_msg
+from msg_adapters.field_names import WRENCH_FIELDS, renamed
 from msg_adapters.geometry import vector_from_msg
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from geometry_msgs.msg import Vector3
 
@@ -35,15 +36,6 @@ if TYPE_CHECKING:
 NOTHING: Final = np.zeros(3)
 """No force, no torque or no gravity."""
 
-WRENCH_FIELDS: Final = {
-    "force": "applied_wrench.force",
-    "torque": "applied_wrench.torque",
-    "force_W": "applied_wrench.force",
-    "torque_W": "applied_wrench.torque",
-}
-"""The request's names of the fields of a wrench, by their names in the package."""
-
-T = TypeVar("T", bound=InvalidFieldError)
 Number = TypeVar("Number", int, float)
 
 
@@ -190,8 +182,3 @@ def asked_several_contacts_law(request: PredictImpact.Request) -> SeveralContact
     except ValueError:
         allowed = "SEQUENTIAL (0), SIMULTANEOUS (1), SEQUENTIAL_IN_TIME (2)"
         raise InvalidFieldError("several_contacts_law", value, allowed) from None
-
-
-def renamed(error: T, names: Mapping[str, str]) -> T:
-    """Return the same error with the request's name of the field."""
-    return type(error)(names.get(error.field, error.field), error.found, error.allowed)

@@ -26,6 +26,7 @@ from msg_adapters.asked_fields import asked_gravity, asked_restitution_law, opti
 from msg_adapters.asked_subject import asked_body
 from msg_adapters.body_state import center_of_mass
 from msg_adapters.contacts import flat
+from msg_adapters.field_names import renamed
 from msg_adapters.requests import asked_inertia, asked_optional, write_gravity
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
 
-_OWN_NAMES: Final = {
+_STATE_FIELDS: Final = {
     "p_WB_W": "states.positions",
     "q_WB": "states.orientations",
     "v_WB_W": "states.linear_velocities",
@@ -60,8 +61,7 @@ def body_states_from_msg(msg: BodyStates, *, p_FB_F: FloatArray) -> ManyStates:
             w_WB_W=flat_rows("states.angular_velocities", msg.angular_velocities, 3),
         )
     except InvalidFieldError as error:
-        name, bracket, row = error.field.partition("[")
-        raise type(error)(f"{_OWN_NAMES.get(name, name)}{bracket}{row}", error.found, error.allowed) from None
+        raise renamed(error, _STATE_FIELDS) from None
 
 
 def body_states_to_msg(
@@ -84,12 +84,14 @@ def tumblings_question_from_msg(
 ) -> ManyTumblingsQuestion:
     """Return the question of a `PredictTumblingBatch` request."""
     body = asked_body(request.body_name, request.inertia, world)
-    return ManyTumblingsQuestion(
-        body=body,
-        states=body_states_from_msg(request.states, p_FB_F=body.p_FB_F),
-        seconds=np.array(request.times),
-        gravity_W=asked_gravity(request),
-    )
+    states = body_states_from_msg(request.states, p_FB_F=body.p_FB_F)
+    gravity_W = asked_gravity(request)
+    try:
+        return ManyTumblingsQuestion(
+            body=body, states=states, seconds=np.array(request.times), gravity_W=gravity_W
+        )
+    except InvalidFieldError as error:
+        raise renamed(error) from None
 
 
 def tumblings_question_to_msg(
@@ -135,16 +137,20 @@ def impacts_question_from_msg(
 ) -> ManyImpactsQuestion:
     """Return the question of a `PredictImpactBatch` request."""
     body = asked_body(request.body_name, request.inertia, world)
-    return ManyImpactsQuestion(
-        body=body,
-        states=body_states_from_msg(request.states, p_FB_F=body.p_FB_F),
-        p_WC_W=flat_rows("contact_positions", request.contact_positions, 3),
-        normals_W=flat_rows("contact_normals", request.contact_normals, 3),
-        frictions=np.array(request.frictions),
-        restitutions=np.array(request.restitutions),
-        restitution_law=asked_restitution_law(request.restitution_law),
-        velocity_tolerance=optional("velocity_tolerance", request.velocity_tolerance),
-    )
+    states = body_states_from_msg(request.states, p_FB_F=body.p_FB_F)
+    try:
+        return ManyImpactsQuestion(
+            body=body,
+            states=states,
+            p_WC_W=flat_rows("contact_positions", request.contact_positions, 3),
+            normals_W=flat_rows("contact_normals", request.contact_normals, 3),
+            frictions=np.array(request.frictions),
+            restitutions=np.array(request.restitutions),
+            restitution_law=asked_restitution_law(request.restitution_law),
+            velocity_tolerance=optional("velocity_tolerance", request.velocity_tolerance),
+        )
+    except InvalidFieldError as error:
+        raise renamed(error, {"p_WC_W": "contact_positions", "normals_W": "contact_normals"}) from None
 
 
 def impacts_question_to_msg(

@@ -16,6 +16,7 @@ from contact_dynamics.rigid_body.published_frame import origin_of_published_fram
 from contact_dynamics.validation import check_unit
 from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 from msg_adapters.contacts import flat
+from msg_adapters.field_names import renamed
 from msg_adapters.frames import check_frame
 from msg_adapters.geometry import quaternion_from_msg, vector_from_msg
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
@@ -48,9 +49,7 @@ def body_state_from_msg(msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArr
             stamp_ns=stamp_ns_from_msg(msg.header.stamp),
         )
     except InvalidFieldError as error:
-        if not error.field.startswith("orientation"):
-            raise
-        raise InvalidFieldError(f"state.pose.{error.field}", error.found, error.allowed) from None
+        raise renamed(error, {"q_WB": "state.pose.orientation"}) from None
 
 
 def body_state_to_msg(

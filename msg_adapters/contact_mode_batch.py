@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.questions.many_contact_modes import ManyContactModesAnswer, ManyContactModesQuestion
 from contact_dynamics_interfaces.srv import PredictContactModeBatch
 from msg_adapters.batches import flat_rows
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg, flat
+from msg_adapters.field_names import renamed
 from msg_adapters.questions import asked_contact_modes
 from msg_adapters.requests import write_contact_modes
 
@@ -29,17 +31,16 @@ def contact_modes_question_from_msg(
     forces = flat_rows("forces", request.forces, 3)
     torques = flat_rows("torques", request.torques, 3)
     none = np.zeros((max(len(forces), len(torques), 1), 3))
-    return ManyContactModesQuestion(
-        asked=asked_contact_modes(
-            request,
-            world,
-            world_frame,
-            compares_torques=request.want_margins,
-        ),
-        forces_W=forces if len(forces) > 0 else none,
-        torques_W=torques if len(torques) > 0 else none,
-        contact_counts=request.contact_counts,
-    )
+    asked = asked_contact_modes(request, world, world_frame, compares_torques=request.want_margins)
+    try:
+        return ManyContactModesQuestion(
+            asked=asked,
+            forces_W=forces if len(forces) > 0 else none,
+            torques_W=torques if len(torques) > 0 else none,
+            contact_counts=request.contact_counts,
+        )
+    except InvalidFieldError as error:
+        raise renamed(error, {"forces_W": "forces", "torques_W": "torques"}) from None
 
 
 def contact_modes_question_to_msg(

@@ -12,6 +12,7 @@ from contact_dynamics.contact.contact import MOST_CONTACTS, ContactSet
 from contact_dynamics.contact.curvature import Curvatures, alike
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLargeError
 from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
+from msg_adapters.field_names import CONTACT_FIELDS, renamed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,15 +40,18 @@ def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
         if any(getattr(msg, field)):
             raise NotSupportedError(f"contacts.{field}: found numbers, allowed is none in this version")
     body_curvatures, surface_curvatures = _sides(msg)
-    return ContactSet(
-        p_WC_W=_rows("contacts.positions", msg.positions, n),
-        normals_W=_rows("contacts.normals", msg.normals, n),
-        frictions=np.array(msg.frictions),
-        restitutions=np.array(msg.restitutions),
-        surfaces=tuple(msg.surface_names),
-        body_curvatures=body_curvatures,
-        surface_curvatures=surface_curvatures,
-    )
+    try:
+        return ContactSet(
+            p_WC_W=_rows("contacts.positions", msg.positions, n),
+            normals_W=_rows("contacts.normals", msg.normals, n),
+            frictions=np.array(msg.frictions),
+            restitutions=np.array(msg.restitutions),
+            surfaces=tuple(msg.surface_names),
+            body_curvatures=body_curvatures,
+            surface_curvatures=surface_curvatures,
+        )
+    except InvalidFieldError as error:
+        raise renamed(error, CONTACT_FIELDS) from None
 
 
 def contacts_to_msg(contacts: ContactSet, *, into: ContactSetMsg | None = None) -> ContactSetMsg:
@@ -138,11 +142,15 @@ def _curvatures(msg: ContactSetMsg, side: str, kinds: NDArray[np.uint8], *, poin
         )
     named = np.where(kinds == point, math.inf, 0.0)
     along = np.where(curved, along, named) if curved.any() else named
-    return Curvatures(
-        along=along,
-        across=np.where(curved, across, named) if len(across) > 0 else along,
-        directions_W=directions.reshape(-1, 3) if len(across) > 0 else np.zeros((n, 3)),
-    )
+    try:
+        return Curvatures(
+            along=along,
+            across=np.where(curved, across, named) if len(across) > 0 else along,
+            directions_W=directions.reshape(-1, 3) if len(across) > 0 else np.zeros((n, 3)),
+        )
+    except InvalidFieldError as error:
+        names = zip(("along", "across", "directions_W"), fields, strict=True)
+        raise renamed(error, {ours: f"contacts.{field}" for ours, field in names}) from None
 
 
 def _rows(field: str, values: array[float], n: int) -> FloatArray:

@@ -19,7 +19,6 @@ from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.tumbling import TumblingQuestion
 from msg_adapters.asked_fields import (
     NOTHING,
-    WRENCH_FIELDS,
     asked_contacts,
     asked_drag,
     asked_gravity,
@@ -31,9 +30,9 @@ from msg_adapters.asked_fields import (
     asked_several_contacts_law,
     asked_wrench,
     optional,
-    renamed,
 )
 from msg_adapters.asked_subject import asked_other, asked_subject
+from msg_adapters.field_names import WRENCH_FIELDS, renamed
 from msg_adapters.geometry import vector_from_msg
 from msg_adapters.geometry_margins import uncertainty_from_msg
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final, Protocol
 
 from contact_dynamics import errors
+from msg_adapters.field_names import renamed
 
 _CODE_NAMES: Final[tuple[tuple[type[errors.ContactDynamicsError], str], ...]] = (
     # A subclass must come before the class that it refines.
@@ -49,6 +50,7 @@ def code_name(error: Exception) -> str:
 
 def report_error(response: Response, error: Exception) -> None:
     """Write an error into a response, as its code and a message with what was found and what is allowed."""
+    error = renamed(error)
     for error_type, code_name in _CODE_NAMES:
         code = getattr(response, code_name, None)
         if isinstance(error, error_type) and code is not None:

@@ -27,6 +27,7 @@ from msg_adapters.asked_fields import asked_restitution_law, optional
 from msg_adapters.asked_subject import asked_subject
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
 from msg_adapters.contacts import flat, rows
+from msg_adapters.field_names import renamed
 from msg_adapters.geometry import vector_from_msg, vector_to_msg
 from msg_adapters.requests import asked_optional, write_fitted_subject
 from msg_adapters.toss_distribution import distribution_from_msg, distribution_to_msg
@@ -92,7 +93,7 @@ def _uncertainty(request: PredictToss.Request) -> TossUncertainty:
             lasting_factor_stds=request.lasting_factor_stds,
         )
     except InvalidFieldError as error:
-        raise InvalidFieldError(names.get(error.field, error.field), error.found, error.allowed) from None
+        raise renamed(error, names) from None
 
 
 def toss_question_to_msg(question: TossQuestion, *, world: World, world_frame: str) -> PredictToss.Request:

@@ -12,8 +12,10 @@ from contact_dynamics import contact_modes, impact
 from contact_dynamics.contact.contact import Contact, ContactSet
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.landing.plane_arrival import first_contact
+from contact_dynamics.plane.types import PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import free_motion
+from contact_dynamics.world import Body, Surface, World
 
 NAN = float("nan")
 BODY = MassProperties(mass=1.0, I_B=0.1 * np.eye(3))
@@ -36,8 +38,24 @@ def problem(**wrong: Any) -> contact_modes.SpatialContactProblem:
     return contact_modes.SpatialContactProblem(**{**good, **wrong})
 
 
+PLANAR = {"r": (0.0, -0.5), "normal": (0.0, 1.0), "friction": 0.3}
+PLACE = {"p_WB_W": (0.0, 0.0, 1.0), "q_WB": (0.0, 0.0, 0.0, 1.0)}
+MOVING = {**PLACE, "v_WB_W": (0.0, 0.0, 0.0), "w_WB_W": (0.0, 0.0, 0.0)}
+PLANE = {"p_WS_W": (0.0, 0.0, 0.0), "normal_W": (0.0, 0.0, 1.0)}
+FLOOR = {"name": "floor", **PLANE, "friction": 0.3, "restitution": 0.5}
+SETS = {"p_WC_W": np.zeros((1, 3)), "normals_W": (0.0, 0.0, 1.0), "frictions": 0.3, "restitutions": 0.5}
+
 CALLS: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
     "Contact": (lambda **wrong: Contact(**{**STRIKES, **wrong}), ("p_WC_W", "normal_W")),
+    "ContactSet": (lambda **wrong: ContactSet(**{**SETS, **wrong}), ("p_WC_W", "normals_W", "frictions")),
+    "BodyState": (lambda **wrong: BodyState(**{**MOVING, **wrong}), tuple(MOVING)),
+    "MassProperties": (lambda **wrong: MassProperties(mass=1.0, **wrong), ("I_B",)),
+    "Surface": (lambda **wrong: Surface(**{**FLOOR, **wrong}), ("p_WS_W", "normal_W")),
+    "Body": (lambda **wrong: Body(name="cup", mass_properties=BODY, **wrong), ("p_FB_F",)),
+    "World": (World, ("gravity_W",)),
+    "PlanarContact": (lambda **wrong: PlanarContact(**{**PLANAR, **wrong}), ("r", "normal")),
+    "PlanarVelocity": (lambda **wrong: PlanarVelocity(**{"v": (0.0, 0.0), "w": 0.0, **wrong}), ("v", "w")),
+    "PlanarWrench": (lambda **wrong: PlanarWrench(**{"f": (0.0, 0.0), **wrong}), ("f", "moment")),
     "SpatialContactProblem": (problem, ("force_W", "torque_W")),
     "jamming_impact": (loaded(impact.jamming_impact), ("force_W", "torque_W")),
     "free_motion": (lambda **wrong: free_motion(BODY, STATE, **wrong), ("gravity_W",)),
@@ -56,14 +74,22 @@ CALLS: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
 }
 
 
+WRONG: dict[object, object] = {
+    ("ContactSet", "p_WC_W"): [(0.0, NAN, 1.0)],
+    ("PlanarContact", "normal"): (0.0, NAN),
+    "I_B": [(NAN, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)],
+    "frictions": [NAN],
+    "q_WB": (0.0, NAN, 0.0, 1.0),
+} | dict.fromkeys(("r", "v", "f"), (0.0, NAN)) | dict.fromkeys(("w", "moment", "horizon"), NAN)  # fmt: skip
+
+
 @pytest.mark.parametrize(
     ("name", "argument"),
     [(name, argument) for name, (_, arguments) in CALLS.items() for argument in arguments],
 )
 def test_the_argument_is_named_as_it_is_written(name: str, argument: str) -> None:
-    wrong = NAN if argument == "horizon" else (0.0, NAN, 1.0)
-    with pytest.raises(InvalidFieldError, match=rf"^{argument}: found .*nan"):
-        CALLS[name][0](**{argument: wrong})
+    with pytest.raises(InvalidFieldError, match=rf"^{argument}(\[0\])?: found .*nan"):
+        CALLS[name][0](**{argument: WRONG.get((name, argument), WRONG.get(argument, (0.0, NAN, 1.0)))})
 
 
 BATCH = {

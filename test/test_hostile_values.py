@@ -63,30 +63,13 @@ HOSTILE = [
 
 
 ALIASES = {
-    "I_B": ("inertia",),
-    "inertia": ("inertia",),
-    "p_WB_W": ("position",),
-    "p_WC_W": ("position",),
-    "p_WS_W": ("point",),
-    "q_WB": ("orientation",),
-    "v_WB_W": ("velocity",),
-    "w_WB_W": ("velocity",),
-    "normal_W": ("normal",),
-    "normals_W": ("normals",),
-    "gravity_W": ("gravity",),
-    "moment": ("torque",),
-    "p_FV_F": ("vertices", "triangles"),
-    "frictions": ("positions",),
-    "seconds": ("time",),
-    "masses": ("points",),
-    "p_FP_F": ("points",),
-    "outline": ("vertices",),
-    "forces_W": ("forces",),
-    "torques_W": ("torques",),
+    "p_FV_F": ("triangles",),
+    "frictions": ("p_WC_W",),
+    "masses": ("p_FP_F",),
 }
-"""How errors name an argument that messages and configurations have under another name.
+"""Arguments that an error may name instead of the hostile one.
 
-A flat mesh is one of its triangles as much as of its vertices.
+A flat mesh is one of its triangles as much as of its vertices. Lists of unequal lengths are told of either.
 """
 
 NEVER = {"contact_path", "body_curvature", "surface_curvature", "semi_axes"}

@@ -80,12 +80,12 @@ def contacts(**changes: object) -> ContactSet:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"frictions": np.array([0.5, -0.1])}, r"contacts\.frictions\[1\]: found -0.1"),
-        ({"restitutions": np.array([1.1, 0.0])}, r"contacts\.restitutions\[0\]: found 1.1"),
-        ({"normals_W": np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0]])}, r"contacts\.normals\[1\]"),
-        ({"normals_W": np.array([[0.0, 0.0, 1.0]])}, r"contacts\.normals: found shape \(1, 3\)"),
-        ({"p_WC_W": np.full((2, 3), math.nan)}, r"contacts\.positions"),
-        ({"surfaces": ("floor",)}, "surface_names: found 1 names"),
+        ({"frictions": np.array([0.5, -0.1])}, r"^frictions\[1\]: found -0.1"),
+        ({"restitutions": np.array([1.1, 0.0])}, r"^restitutions\[0\]: found 1.1"),
+        ({"normals_W": np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0]])}, r"^normals_W\[1\]"),
+        ({"normals_W": np.array([[0.0, 0.0, 1.0]])}, r"^normals_W: found shape \(1, 3\)"),
+        ({"p_WC_W": np.full((2, 3), math.nan)}, r"^p_WC_W"),
+        ({"surfaces": ("floor",)}, "^surfaces: found 1 names"),
     ],
 )
 def test_contacts_that_make_no_sense_are_refused(changes: dict[str, object], words: str) -> None:
@@ -143,8 +143,8 @@ def test_a_surface_that_makes_no_sense_is_refused(field: str, value: object) -> 
         (lambda: cylinder(radius=1.0, length=4e60), r"length: found 4e\+60"),
         (lambda: box(size=[1.0, 1e61, 1.0]), r"size\[1\]: found 1e\+61"),
         (lambda: sphere(radius=1.0).moved([0.0, 2e60, 0.0]), r"vertices: found 2e\+60"),
-        (lambda: surface("far", (0.0, 0.0, -1e61), (0.0, 0.0, 1.0)), r"point: found 1e\+61"),
-        (lambda: Body(name="b", mass_properties=STUFF, p_FB_F=[1e61, 0, 0]), r"center_of_mass: found 1e\+61"),
+        (lambda: surface("far", (0.0, 0.0, -1e61), (0.0, 0.0, 1.0)), r"p_WS_W: found 1e\+61"),
+        (lambda: Body(name="b", mass_properties=STUFF, p_FB_F=[1e61, 0, 0]), r"p_FB_F: found 1e\+61"),
         (lambda: obstacle_of_size(1e61), r"vertices: found 1e\+61"),
     ],
 )

@@ -82,7 +82,7 @@ class Contact(Record):
         object.__setattr__(self, "normal_W", check_unit("normal_W", self.normal_W, 3))
         object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
         object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
-        _check_curvatures(self, self.normal_W[None], "")
+        _check_curvatures(self, self.normal_W[None])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -133,16 +133,14 @@ class ContactSet(Record):
         n = len(self.p_WC_W) if np.ndim(self.frictions) == 0 else len(self.frictions)
         if n > MOST_CONTACTS:
             raise TooLargeError("contacts", f"{n} contacts", f"at most {MOST_CONTACTS}")
-        points = check_array("contacts.positions", self.p_WC_W, (n, 3))
-        normals = check_array("contacts.normals", _for_each(self.normals_W, n, 1), (n, 3))
-        frictions = check_array("contacts.frictions", _for_each(self.frictions, n), (n,))
-        restitutions = check_array("contacts.restitutions", _for_each(self.restitutions, n), (n,))
+        points = check_array("p_WC_W", self.p_WC_W, (n, 3))
+        normals = check_array("normals_W", _for_each(self.normals_W, n, 1), (n, 3))
+        frictions = check_array("frictions", _for_each(self.frictions, n), (n,))
+        restitutions = check_array("restitutions", _for_each(self.restitutions, n), (n,))
         lengths = np.sqrt(np.einsum("ij,ij->i", normals, normals))
         _check_each(normals, lengths, frictions, restitutions)
         if self.surfaces and len(self.surfaces) != n:
-            raise InvalidFieldError(
-                "contacts.surface_names", f"{len(self.surfaces)} names", f"{n} names, or none"
-            )
+            raise InvalidFieldError("surfaces", f"{len(self.surfaces)} names", f"{n} names, or none")
         normals = normals / lengths[:, None]
         normals.flags.writeable = False
         object.__setattr__(self, "p_WC_W", points)
@@ -150,7 +148,7 @@ class ContactSet(Record):
         object.__setattr__(self, "frictions", frictions)
         object.__setattr__(self, "restitutions", restitutions)
         object.__setattr__(self, "surfaces", tuple(self.surfaces))
-        _check_curvatures(self, normals, "contacts.")
+        _check_curvatures(self, normals)
 
     @classmethod
     def of(cls, contacts: Sequence[Contact]) -> ContactSet:
@@ -221,12 +219,12 @@ def _together(curvatures: list[Curvatures | None], otherwise: float) -> Curvatur
     )
 
 
-def _check_curvatures(contacts: Contact | ContactSet, normals_W: FloatArray, prefix: str) -> None:
+def _check_curvatures(contacts: Contact | ContactSet, normals_W: FloatArray) -> None:
     """Check the curvatures of both sides against the normals, (n, 3), and make their directions tangent."""
     if contacts.body_curvatures is None and contacts.surface_curvatures is None:
         return
     for name in ("body_curvatures", "surface_curvatures"):
-        checked = checked_curvatures(f"{prefix}{name}", getattr(contacts, name), normals_W)
+        checked = checked_curvatures(name, getattr(contacts, name), normals_W)
         object.__setattr__(contacts, name, checked)
     check_pairs(normals_W, contacts.body_curvatures, contacts.surface_curvatures)
 
@@ -237,10 +235,10 @@ def _check_each(
     """Refuse the first contact with a number that is not allowed. Floats are faster for small sets."""
     for i, length in enumerate(lengths.tolist()):
         if abs(length - 1.0) > UNIT_LENGTH_TOLERANCE:
-            raise InvalidFieldError(f"contacts.normals[{i}]", normals[i].tolist(), "a unit vector")
+            raise InvalidFieldError(f"normals_W[{i}]", normals[i].tolist(), "a unit vector")
     for i, friction in enumerate(frictions.tolist()):
         if friction < 0.0:
-            raise InvalidFieldError(f"contacts.frictions[{i}]", friction, "a number >= 0")
+            raise InvalidFieldError(f"frictions[{i}]", friction, "a number >= 0")
     for i, restitution in enumerate(restitutions.tolist()):
         if not 0.0 <= restitution <= 1.0:
-            raise InvalidFieldError(f"contacts.restitutions[{i}]", restitution, "a number in [0, 1]")
+            raise InvalidFieldError(f"restitutions[{i}]", restitution, "a number in [0, 1]")

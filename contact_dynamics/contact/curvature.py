@@ -80,10 +80,10 @@ class Curvatures(Record):
         for name in ("along", "across"):
             values = np.array(getattr(self, name), dtype=np.float64)
             if values.shape != (n,) or np.isnan(values).any() or np.isneginf(values).any():
-                raise InvalidFieldError(f"curvatures.{name}", values.tolist(), f"{n} numbers, or infinity")
+                raise InvalidFieldError(name, values.tolist(), f"{n} numbers, or infinity")
             values.flags.writeable = False
             object.__setattr__(self, name, values)
-        directions = check_array("curvatures.directions", self.directions_W, (n, 3))
+        directions = check_array("directions_W", self.directions_W, (n, 3))
         object.__setattr__(self, "directions_W", directions)
 
     def __len__(self) -> int:
@@ -130,7 +130,9 @@ def checked_curvatures(field: str, curvatures: Curvatures | None, normals_W: Flo
     wrong = (np.abs(lengths - 1.0) > UNIT_LENGTH_TOLERANCE) | (np.abs(out) > UNIT_LENGTH_TOLERANCE)
     for i in np.flatnonzero(needed & wrong)[:1]:
         raise InvalidFieldError(
-            f"{field}.directions[{i}]", directions[i].tolist(), "a unit vector at right angles to the normal"
+            f"{field}.directions_W[{i}]",
+            directions[i].tolist(),
+            "a unit vector at right angles to the normal",
         )
     tangents = directions - out[:, None] * normals_W
     sizes = np.linalg.norm(tangents, axis=1, keepdims=True)
@@ -154,7 +156,7 @@ def check_pairs(
         )
         if rolling(body, surface, (0.0, 0.0), (0.0, 0.0)) is None:
             raise InvalidFieldError(
-                f"contacts.curvatures[{i}]",
+                f"body_curvatures, surface_curvatures: contact {i}",
                 f"{[k for k, _ in body]} of the body, {[k for k, _ in surface]} of the surface, 1/m",
                 "a sum > 0 in all directions, and no corner on a corner",
             )

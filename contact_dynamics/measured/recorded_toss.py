@@ -71,7 +71,7 @@ class Toss(Record):
         """Check every field, and normalise the quaternions to rounding."""
         n = len(self.times)
         object.__setattr__(self, "box_size", check_array("box_size", self.box_size, (3,)))
-        object.__setattr__(self, "gravity_W", check_array("gravity", self.gravity_W, (3,)))
+        object.__setattr__(self, "gravity_W", check_array("gravity_W", self.gravity_W, (3,)))
         for name in ("rate", "position_noise", "orientation_noise"):
             object.__setattr__(self, name, check_positive(name, getattr(self, name)))
         object.__setattr__(self, "times", check_array("times", self.times, (n,)))

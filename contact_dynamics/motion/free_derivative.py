@@ -67,7 +67,7 @@ def state_derivatives(motion: FreeMotion, seconds: ArrayLike) -> FloatArray:
     Raises:
         InvalidFieldError: the times are not a flat list of finite numbers.
     """
-    times = check_array("times", seconds, (None,))
+    times = check_array("seconds", seconds, (None,))
     derivatives = np.zeros((len(times), 12, 12))
     i = np.arange(3)
     derivatives[:, i, i] = derivatives[:, i + 6, i + 6] = 1.0

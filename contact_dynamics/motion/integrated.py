@@ -136,7 +136,7 @@ class ForcedMotion(Record):
         Raises:
             InvalidFieldError: the time is not finite, or beyond what `sample` reaches.
         """
-        check_within("time", seconds, -LARGEST_NUMBER, LARGEST_NUMBER)
+        check_within("seconds", seconds, -LARGEST_NUMBER, LARGEST_NUMBER)
         return self.sample(seconds).as_state(self.state.stamp_ns, seconds)
 
     def at(self, seconds: ArrayLike) -> Trajectory:
@@ -146,7 +146,7 @@ class ForcedMotion(Record):
             InvalidFieldError: the times are not a flat list of finite numbers, or beyond what `sample`
                 reaches.
         """
-        times = check_magnitude("times", check_array("times", seconds, (None,)))
+        times = check_magnitude("seconds", check_array("seconds", seconds, (None,)))
         values = np.empty((len(times), VARIABLES))
         for side, belongs in ((self.ahead, times >= 0.0), (self.back, times < 0.0)):
             values[belongs] = side.at_many(times[belongs])

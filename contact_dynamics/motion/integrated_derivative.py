@@ -60,7 +60,7 @@ def forced_state_derivatives(motion: ForcedMotion, seconds: ArrayLike) -> FloatA
         InvalidFieldError: the times are not a flat list of finite numbers, or beyond what the motion reaches.
         TooLargeError: so far, or under so strong a drag, that it takes more than `MOST_PIECES`.
     """
-    times = check_array("times", seconds, (None,))
+    times = check_array("seconds", seconds, (None,))
     answers = np.tile(np.eye(12), (len(times), 1, 1))
     for side in (times > 0.0, times < 0.0):
         if side.any():

@@ -105,5 +105,5 @@ class Steps:
     def _refuse(self, distance: float, limit: str) -> None:
         sign = math.copysign(1.0, self.end)
         raise InvalidFieldError(
-            "times", f"{sign * distance:g} s", f"no further than {limit}: {sign * self.ends[-1]:g} s"
+            "seconds", f"{sign * distance:g} s", f"no further than {limit}: {sign * self.ends[-1]:g} s"
         )

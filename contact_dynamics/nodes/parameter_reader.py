@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.world import LONGEST_NAME
+from msg_adapters.field_names import renamed
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -135,7 +136,8 @@ class ParameterReader:
         try:
             return make()
         except InvalidFieldError as error:
-            message = f"{prefix}.{error}" if prefix else str(error)
+            told = renamed(error)
+            message = f"{prefix}.{told}" if prefix else str(told)
             raise ConfigurationError(message) from None
 
 

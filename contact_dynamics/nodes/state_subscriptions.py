@@ -23,6 +23,7 @@ from contact_dynamics.questions.extent import check_believable
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
 from contact_dynamics.recording.decoding import message_class
+from msg_adapters.field_names import renamed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -198,6 +199,7 @@ class StateTopic:
         was_kept: bool = False,
     ) -> None:
         """Tell of a message that is refused, and note it for those who ask about the bodies."""
+        error = renamed(error)
         self._faults.refuse(self.name, error)
         is_message = isinstance(error, ContactDynamicsError)
         reason = error if is_message else no_message(data, self.type_name)

@@ -68,7 +68,7 @@ def check_mirrored(
         alone = partners.index(-1)
         depth = abs(float((contacts.p_WC_W[alone] - state.p_WB_W) @ plane.normal_W))
         raise OutOfPlaneError(
-            f"contacts.positions[{alone}]",
+            f"contacts.p_WC_W[{alone}]",
             f"{depth:.6g} m beside the plane with normal {plane.normal_W.tolist()}",
             "a contact in the plane through the centre of mass, or a like one on its other side",
         )

@@ -66,8 +66,8 @@ class PlanarVelocity(Record):
 
     def __post_init__(self) -> None:
         """Check both fields."""
-        object.__setattr__(self, "v", check_vector2("linear_velocity", self.v))
-        object.__setattr__(self, "w", _check_number("angular_velocity", self.w))
+        object.__setattr__(self, "v", check_vector2("v", self.v))
+        object.__setattr__(self, "w", _check_number("w", self.w))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -87,8 +87,8 @@ class PlanarWrench(Record):
 
     def __post_init__(self) -> None:
         """Check both fields."""
-        object.__setattr__(self, "f", check_vector2("force", self.f))
-        object.__setattr__(self, "moment", _check_number("torque", self.moment))
+        object.__setattr__(self, "f", check_vector2("f", self.f))
+        object.__setattr__(self, "moment", _check_number("moment", self.moment))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -122,13 +122,13 @@ class PlanarContact(Record):
 
     def __post_init__(self) -> None:
         """Check all fields and normalise the normal to rounding."""
-        object.__setattr__(self, "r", check_vector2("contact position", self.r))
-        n_x, n_y = check_vector2("contact normal", self.normal)
+        object.__setattr__(self, "r", check_vector2("r", self.r))
+        n_x, n_y = check_vector2("normal", self.normal)
         # Not `hypot`, whose last bit NumPy's may not share: batches repeat this.
         length = math.sqrt(n_x * n_x + n_y * n_y)
         off = abs(length - 1.0)
         if off > UNIT_LENGTH_TOLERANCE:
-            raise InvalidFieldError("contact normal", self.normal, "a unit vector")
+            raise InvalidFieldError("normal", self.normal, "a unit vector")
         unit = (n_x / length, n_y / length) if off > LENGTH_ROUNDING else (n_x, n_y)
         object.__setattr__(self, "normal", unit)
         object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
@@ -140,7 +140,7 @@ class PlanarContact(Record):
         one, other = self.body_curvature, self.surface_curvature
         if (one == math.inf and other == math.inf) or not one + other > 0.0:
             raise InvalidFieldError(
-                "contact curvatures",
+                "body_curvature, surface_curvature",
                 f"{one} of the body, {other} of the surface, 1/m",
                 "a sum > 0, and at most one corner",
             )

@@ -40,8 +40,8 @@ def check_believable(state: BodyState) -> None:
             `MOST_PUBLISHED_SPIN`.
     """
     for name, vector, most, unit in (
-        ("linear_velocity", state.v_WB_W, MOST_PUBLISHED_SPEED, "m/s"),
-        ("angular_velocity", state.w_WB_W, MOST_PUBLISHED_SPIN, "rad/s"),
+        ("v_WB_W", state.v_WB_W, MOST_PUBLISHED_SPEED, "m/s"),
+        ("w_WB_W", state.w_WB_W, MOST_PUBLISHED_SPIN, "rad/s"),
     ):
         size = math.hypot(*vector.tolist())
         if size > most:
@@ -55,9 +55,9 @@ def check_extent(body: MassProperties, state: BodyState) -> None:
         InvalidFieldError: a number is beyond `MOST_IN_CONTACT`, or a mass or moment beyond `MOST_INERTIA`.
     """
     for name, vector in (
-        ("position", state.p_WB_W),
-        ("linear_velocity", state.v_WB_W),
-        ("angular_velocity", state.w_WB_W),
+        ("p_WB_W", state.p_WB_W),
+        ("v_WB_W", state.v_WB_W),
+        ("w_WB_W", state.w_WB_W),
     ):
         check_vector(name, vector)
     check_mass(body)
@@ -66,7 +66,7 @@ def check_extent(body: MassProperties, state: BodyState) -> None:
 def check_mass(body: MassProperties) -> None:
     """Refuse a mass or a moment of inertia that is too large or too small, and name it."""
     moments = body.I_B.diagonal().tolist()
-    for name, value in (("mass", body.mass), *(("inertia", moment) for moment in moments)):
+    for name, value in (("mass", body.mass), *(("I_B", moment) for moment in moments)):
         if not 1.0 / MOST_INERTIA <= value <= MOST_INERTIA:
             allowed = f"a number from {1.0 / MOST_INERTIA:g} to {MOST_INERTIA:g} for contacts"
             raise InvalidFieldError(name, f"{value:g}", allowed)
@@ -87,7 +87,7 @@ def check_friction(name: str, friction: float) -> None:
 
 def check_contacts(contacts: ContactSet) -> None:
     """Refuse contacts that are too far away, and name the first."""
-    check_place("contacts.positions", contacts.p_WC_W)
+    check_place("contacts.p_WC_W", contacts.p_WC_W)
     check_friction("contacts.frictions", float(contacts.frictions.max(initial=0.0)))
 
 
@@ -100,8 +100,8 @@ def check_margin_length(length: float | None) -> None:
 
 def check_wrench(force_W: FloatArray, torque_W: FloatArray) -> None:
     """Refuse a force or a torque, (3,), that is too large, and name it."""
-    check_vector("force", force_W)
-    check_vector("torque", torque_W)
+    check_vector("force_W", force_W)
+    check_vector("torque_W", torque_W)
 
 
 def check_vector(name: str, vector: FloatArray) -> None:

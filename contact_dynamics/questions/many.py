@@ -94,7 +94,7 @@ class ManyTumblingsQuestion(Record):
 
     def __post_init__(self) -> None:
         """Check what has no type of its own."""
-        object.__setattr__(self, "seconds", _rows("times", self.seconds, len(self.states)))
+        object.__setattr__(self, "seconds", _rows("seconds", self.seconds, len(self.states)))
         if self.gravity_W is not None:
             object.__setattr__(self, "gravity_W", check_array("gravity_W", self.gravity_W, (3,)))
 
@@ -142,10 +142,10 @@ class ManyImpactsQuestion(Record):
         """Check the lengths, the numbers and the law."""
         check_choice("restitution_law", self.restitution_law, RestitutionLaw)
         n = len(self.states)
-        points = check_array("contact_positions", self.p_WC_W, (n, 3))
+        points = check_array("p_WC_W", self.p_WC_W, (n, 3))
         object.__setattr__(self, "p_WC_W", points)
-        normals = check_unit_rows("contact_normals", self.normals_W, 3)
-        object.__setattr__(self, "normals_W", _rows("contact_normals", normals, n, (3,)))
+        normals = check_unit_rows("normals_W", self.normals_W, 3)
+        object.__setattr__(self, "normals_W", _rows("normals_W", normals, n, (3,)))
         frictions = check_not_negative_rows("frictions", self.frictions)
         object.__setattr__(self, "frictions", _rows("frictions", frictions, n))
         restitutions = check_share_rows("restitutions", self.restitutions)

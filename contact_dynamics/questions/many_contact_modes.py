@@ -73,12 +73,12 @@ class ManyContactModesQuestion(Record):
 
     def __post_init__(self) -> None:
         """Check the arrays, and repeat what holds for all."""
-        forces = check_rows("forces", self.forces_W, (3,))
+        forces = check_rows("forces_W", self.forces_W, (3,))
         counts = _counts(self.contact_counts)
         most = max(len(forces), len(counts))
         if most > MOST_CANDIDATES:
-            raise TooLargeError("forces", f"{most} candidates", f"at most {MOST_CANDIDATES}")
-        torques = check_array("torques", self.torques_W, (len(forces), 3))
+            raise TooLargeError("forces_W", f"{most} candidates", f"at most {MOST_CANDIDATES}")
+        torques = check_array("torques_W", self.torques_W, (len(forces), 3))
         if counts:
             given = 0 if self.asked.contacts is None else len(self.asked.contacts)
             if min(counts) < 1 or sum(counts) != given:
@@ -87,7 +87,7 @@ class ManyContactModesQuestion(Record):
         if len(counts) > 1:
             if len(forces) not in {1, len(counts)}:
                 allowed = f"{len(counts)}, one for each set of contacts, or one for all"
-                raise InvalidFieldError("forces", f"{len(forces)} rows", allowed)
+                raise InvalidFieldError("forces_W", f"{len(forces)} rows", allowed)
             forces, torques = (np.broadcast_to(rows, (most, 3)).copy() for rows in (forces, torques))
         object.__setattr__(self, "forces_W", forces)
         object.__setattr__(self, "torques_W", torques)

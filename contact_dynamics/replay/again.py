@@ -32,6 +32,7 @@ from msg_adapters.batches import (
     tumblings_question_from_msg,
 )
 from msg_adapters.contact_mode import contact_mode_answer_from_msg
+from msg_adapters.field_names import renamed
 from msg_adapters.impact import impact_answer_from_msg
 from msg_adapters.questions import (
     contact_mode_question_from_msg,
@@ -172,7 +173,8 @@ class ServerAgain:
             check_believable(state_of(state))
             self._states.add(body_name, state, now_ns=now_ns)
         except ContactDynamicsError as error:
-            self._refuse(message.topic, body_name, error, error)
+            told = renamed(error)
+            self._refuse(message.topic, body_name, told, told)
             return None
         return body_name, state_of(state)
 

@@ -46,7 +46,7 @@ class MassProperties(Record):
     def __post_init__(self) -> None:
         """Check both fields."""
         object.__setattr__(self, "mass", check_positive("mass", self.mass))
-        object.__setattr__(self, "I_B", _check_inertia("inertia", self.I_B))
+        object.__setattr__(self, "I_B", _check_inertia("I_B", self.I_B))
 
     def inertia_in_world(self, R_WB: FloatArray) -> FloatArray:
         """Return the angular inertia in world axes, (3, 3), kg m^2 (lecture 25, eq. 11)."""
@@ -102,10 +102,10 @@ class BodyState(Record):
 
     def __post_init__(self) -> None:
         """Check all fields, and normalise the quaternion to rounding."""
-        object.__setattr__(self, "p_WB_W", check_array("position", self.p_WB_W, (3,)))
-        object.__setattr__(self, "q_WB", check_unit("orientation", self.q_WB, 4))
-        object.__setattr__(self, "v_WB_W", check_array("linear_velocity", self.v_WB_W, (3,)))
-        object.__setattr__(self, "w_WB_W", check_array("angular_velocity", self.w_WB_W, (3,)))
+        object.__setattr__(self, "p_WB_W", check_array("p_WB_W", self.p_WB_W, (3,)))
+        object.__setattr__(self, "q_WB", check_unit("q_WB", self.q_WB, 4))
+        object.__setattr__(self, "v_WB_W", check_array("v_WB_W", self.v_WB_W, (3,)))
+        object.__setattr__(self, "w_WB_W", check_array("w_WB_W", self.w_WB_W, (3,)))
 
     @property
     def R_WB(self) -> FloatArray:

@@ -44,7 +44,7 @@ def state_of_center_of_mass(
     Raises:
         InvalidFieldError: a number is not finite, or the quaternion is not unit.
     """
-    q_WB = check_unit("orientation", q_WF, 4)
+    q_WB = check_unit("q_WF", q_WF, 4)
     p_FB_W = turned(q_WB, p_FB_F)
     return BodyState(
         p_WB_W=p_WF_W + p_FB_W,

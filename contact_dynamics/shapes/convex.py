@@ -108,7 +108,7 @@ class ConvexShape(Record):
             InvalidFieldError: the offset is not three finite numbers, or the quaternion is not unit.
         """
         shift = check_array("offset", offset, (3,))
-        turn = check_unit("orientation", q, 4)
+        turn = check_unit("q", q, 4)
         R = np.eye(3) if turn[3] == 1.0 else rotation_matrix(turn)
         return ConvexShape(
             vertices=self.vertices @ R.T + shift,
@@ -129,7 +129,7 @@ def polyhedron(vertices: ArrayLike) -> ConvexShape:
 
 def polygon(outline: ArrayLike) -> ConvexShape:
     """Return a flat body in the x, y plane, the hull of corners, (k, 2), m."""
-    corners = check_array("outline", outline, (None, 2))
+    corners = check_magnitude("outline", check_array("outline", outline, (None, 2)))
     return ConvexShape(vertices=np.column_stack([corners, np.zeros(len(corners))]))
 
 

@@ -169,7 +169,7 @@ class FreeMotion(Record):
             InvalidFieldError: the time is not finite, or by then the body has turned more than
                 `constants.MOST_TURNED`.
         """
-        check_within("time", seconds, -self.farthest, self.farthest)
+        check_within("seconds", seconds, -self.farthest, self.farthest)
         return self.sample(seconds).as_state(self.state.stamp_ns, seconds)
 
     def at(self, seconds: ArrayLike) -> Trajectory:
@@ -179,7 +179,7 @@ class FreeMotion(Record):
             InvalidFieldError: the times are not a flat list of finite numbers, or by the farthest of them the
                 body has turned more than `constants.MOST_TURNED`.
         """
-        times = check_magnitude("times", check_array("times", seconds, (None,)), self.farthest)
+        times = check_magnitude("seconds", check_array("seconds", seconds, (None,)), self.farthest)
         if len(times) <= FEW:
             return self._one_by_one(times)
         q_WB, w_WB_W = self._in_chunks(times)
@@ -283,16 +283,16 @@ def free_motion(
 def check_extent(body: MassProperties, state: BodyState, gravity_W: FloatArray) -> None:
     """Refuse numbers whose powers leave the range of doubles. The error names the field."""
     numbers = {
-        "inertia": body.I_B,
-        "position": state.p_WB_W,
-        "linear_velocity": state.v_WB_W,
-        "angular_velocity": state.w_WB_W,
-        "gravity": gravity_W,
+        "I_B": body.I_B,
+        "p_WB_W": state.p_WB_W,
+        "v_WB_W": state.v_WB_W,
+        "w_WB_W": state.w_WB_W,
+        "gravity_W": gravity_W,
     }
     for name, values in numbers.items():
         if max(map(abs, values.ravel().tolist())) > LARGEST_NUMBER:  # NumPy's calls would cost more
             check_magnitude(name, values)
     if min(body.I_B.diagonal().tolist()) * LARGEST_NUMBER < 1.0:
         raise InvalidFieldError(
-            "inertia", body.I_B.diagonal().tolist(), f"moments of at least {1.0 / LARGEST_NUMBER:g} kg m^2"
+            "I_B", body.I_B.diagonal().tolist(), f"moments of at least {1.0 / LARGEST_NUMBER:g} kg m^2"
         )

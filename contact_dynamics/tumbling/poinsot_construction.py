@@ -256,7 +256,7 @@ def herpolhode(motion: FreeMotion, seconds: ArrayLike) -> FloatArray:
     The axes of the plane are world axes turned so that z lies along L. The coordinate z is the plane's
     distance, 2 T / |L|.
     """
-    times = check_array("times", seconds, (None,))
+    times = check_array("seconds", seconds, (None,))
     w_W = motion.at(times).w_WB_W
     points: FloatArray = w_W @ rotation_matrix(np.array(motion.q_WL))
     return points

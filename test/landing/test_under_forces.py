@@ -211,5 +211,5 @@ def test_a_motion_that_grows_without_bounds_is_refused_only_where_the_search_get
         )
 
     assert first_contact(driven(0.0), CUBE_B, FLOOR, UP, horizon=100.0) is not None
-    with pytest.raises(InvalidFieldError, match="times"):
+    with pytest.raises(InvalidFieldError, match="seconds"):
         first_contact(driven(50.0), CUBE_B, FLOOR, UP, horizon=1.0)

@@ -175,5 +175,5 @@ def test_no_times_no_derivatives() -> None:
 
 
 def test_times_are_finite() -> None:
-    with pytest.raises(InvalidFieldError, match="times"):
+    with pytest.raises(InvalidFieldError, match="seconds"):
         state_derivatives(motion_of("flat"), [math.nan])

@@ -133,7 +133,7 @@ def test_misuse_is_refused_by_name() -> None:
         fit_motion(BODY, states[-2:], **FORCES["drag"])
     with pytest.raises(InvalidFieldError, match="gravity"):
         fit_motion(BODY, states, gravity_W=[math.nan, 0.0, 0.0], **FORCES["drag"])
-    with pytest.raises(InvalidFieldError, match=r"times: found .* the motion stays within bounds"):
+    with pytest.raises(InvalidFieldError, match=r"seconds: found .* the motion stays within bounds"):
         fit_motion(BODY, states, drag=Drag(quadratic=50.0))
     with pytest.raises(InvalidFieldError, match=r"no further than 2 steps"):
         fit_motion(BODY, states, most_steps=2, **FORCES["drag"])

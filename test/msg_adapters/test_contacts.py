@@ -115,7 +115,7 @@ def test_kinds_alone_and_one_curvature_in_all_directions() -> None:
         ),
         (
             {"kinds": [2] * 3, "body_curvatures": [-1.0] * 3, "surface_curvatures": [0.0] * 3},
-            r"contacts\.curvatures\[0\]",
+            r"contacts\.body_curvatures, contacts\.surface_curvatures: contact 0",
         ),
     ],
 )

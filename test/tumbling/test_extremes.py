@@ -80,25 +80,25 @@ def test_what_turns_nothing_in_the_age_of_the_universe_is_at_rest() -> None:
 @pytest.mark.parametrize("make", [free_motion, forced_motion])
 @pytest.mark.parametrize(
     ("field", "value"),
-    [("position", 1e61), ("linear_velocity", -1e61), ("angular_velocity", 1e61), ("gravity", 1e61)],
+    [("p_WB_W", 1e61), ("v_WB_W", -1e61), ("w_WB_W", 1e61), ("gravity_W", 1e61)],
 )
 def test_numbers_that_cannot_be_squared_are_refused(make: object, field: str, value: float) -> None:
-    numbers = {name: np.zeros(3) for name in ("position", "linear_velocity", "angular_velocity", "gravity")}
+    numbers = {name: np.zeros(3) for name in ("p_WB_W", "v_WB_W", "w_WB_W", "gravity_W")}
     numbers[field] = np.array([0.0, value, 0.0])
     state = BodyState(
-        p_WB_W=numbers["position"],
+        p_WB_W=numbers["p_WB_W"],
         q_WB=(0.0, 0.0, 0.0, 1.0),
-        v_WB_W=numbers["linear_velocity"],
-        w_WB_W=numbers["angular_velocity"],
+        v_WB_W=numbers["v_WB_W"],
+        w_WB_W=numbers["w_WB_W"],
     )
     body = MassProperties(mass=1.0, I_B=np.eye(3))
     with pytest.raises(InvalidFieldError, match=rf"{field}: found 1e\+61, allowed is .*1e\+60"):
-        make(body, state, gravity_W=numbers["gravity"])
+        make(body, state, gravity_W=numbers["gravity_W"])
 
 
 @pytest.mark.parametrize("inertia", [1e-61, 1e61])
 def test_inertias_without_bounds_are_refused(inertia: float) -> None:
-    with pytest.raises(InvalidFieldError, match="inertia: found"):
+    with pytest.raises(InvalidFieldError, match="I_B: found"):
         motion_of(inertia * np.eye(3), np.ones(3))
 
 
@@ -106,9 +106,9 @@ def test_times_beyond_the_last_turn_that_doubles_tell_apart_are_refused() -> Non
     motion = motion_of(np.diag([1.0, 1.4, 1.9]), np.array([0.0, 0.0, 10.0]))
     motion.at([9e14])
     for ask in (motion.state_at, lambda t: motion.at([0.0, t])):
-        with pytest.raises(InvalidFieldError, match=r"times?: found"):
+        with pytest.raises(InvalidFieldError, match=r"seconds: found"):
             ask(-1.1e15)
     resting = motion_of(np.diag([1.0, 1.4, 1.9]), np.zeros(3))
     resting.state_at(1e60)
-    with pytest.raises(InvalidFieldError, match="time"):
+    with pytest.raises(InvalidFieldError, match="seconds"):
         resting.state_at(1e61)

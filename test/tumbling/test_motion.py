@@ -104,7 +104,7 @@ def test_no_times_give_no_samples() -> None:
 
 @pytest.mark.parametrize("bad", [[np.nan], [0.0, np.inf], [[0.0]], "now", 1.0])
 def test_times_that_are_no_list_of_numbers_are_refused(bad: object) -> None:
-    with pytest.raises(InvalidFieldError, match="times"):
+    with pytest.raises(InvalidFieldError, match="seconds"):
         motion_of("sphere").at(bad)  # type: ignore[arg-type]
 
 

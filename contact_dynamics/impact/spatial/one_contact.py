@@ -194,14 +194,14 @@ def check_striking(body: MassProperties, state: BodyState, points_W: FloatArray)
             farther than `LARGEST_ARM` radii of gyration from the centre of mass.
     """
     for field, numbers in (
-        ("contact position", (points_W - state.p_WB_W).ravel().tolist()),
-        ("linear_velocity", state.v_WB_W.tolist()),
-        ("angular_velocity", state.w_WB_W.tolist()),
+        ("p_WC_W", (points_W - state.p_WB_W).ravel().tolist()),
+        ("v_WB_W", state.v_WB_W.tolist()),
+        ("w_WB_W", state.w_WB_W.tolist()),
     ):
         if numbers and (max(numbers) > LARGEST_NUMBER or min(numbers) < -LARGEST_NUMBER):
             raise InvalidFieldError(field, numbers, f"numbers of at most {LARGEST_NUMBER:g}, by size")
     least = 1.0 / LARGEST_NUMBER
-    for field, numbers in (("mass", [body.mass]), ("inertia", body.I_B.diagonal().tolist())):
+    for field, numbers in (("mass", [body.mass]), ("I_B", body.I_B.diagonal().tolist())):
         if max(numbers) > LARGEST_NUMBER or min(numbers) < least:
             raise InvalidFieldError(field, numbers, f"numbers from {least:g} to {LARGEST_NUMBER:g}")
     arms = points_W - state.p_WB_W
@@ -209,7 +209,7 @@ def check_striking(body: MassProperties, state: BodyState, points_W: FloatArray)
     gyration = math.sqrt(float(body.I_B.diagonal().max()) / body.mass)
     if farthest > LARGEST_ARM * gyration:
         found = f"{farthest:g} m from the centre of mass"
-        raise InvalidFieldError("contact position", found, f"{LARGEST_ARM:g} radii of gyration at most")
+        raise InvalidFieldError("p_WC_W", found, f"{LARGEST_ARM:g} radii of gyration at most")
 
 
 def _responding(body: MassProperties, state: BodyState, point: FloatArray) -> Responding:

@@ -72,7 +72,7 @@ class InertiaEllipsoid(Record):
 
         This is sqrt(a / m) divided by the radius of gyration about that axis (eq. 17).
         """
-        axis = check_unit("axis", axis_B, 3)
+        axis = check_unit("axis_B", axis_B, 3)
         angular_inertia = float(axis @ self.I_B @ axis)
         return math.sqrt(self.level / angular_inertia) if angular_inertia > 0.0 else math.inf
 
@@ -85,9 +85,9 @@ def principal_axes(I_B: ArrayLike) -> PrincipalAxes:
     Raises:
         InvalidFieldError: the matrix is not symmetric, or not finite.
     """
-    matrix = check_array("inertia", I_B, (3, 3))
+    matrix = check_array("I_B", I_B, (3, 3))
     if float(np.abs(matrix - matrix.T).max()) > SYMMETRY_TOLERANCE * float(np.abs(matrix).max()):
-        raise InvalidFieldError("inertia", matrix.tolist(), "a symmetric matrix")
+        raise InvalidFieldError("I_B", matrix.tolist(), "a symmetric matrix")
     return axes_of_bytes(matrix.tobytes())
 
 
@@ -129,10 +129,10 @@ def inertia_ellipsoid(I_B: ArrayLike, *, level: float = 1.0) -> InertiaEllipsoid
     axes = principal_axes(I_B)
     low, _, high = axes.moments.tolist()
     if low < -float(EQUAL_MOMENTS_TOLERANCE) * abs(high):
-        raise InvalidFieldError("inertia", f"principal moments {axes.moments.tolist()}", "moments >= 0")
+        raise InvalidFieldError("I_B", f"principal moments {axes.moments.tolist()}", "moments >= 0")
     semi_axes = [math.sqrt(level / moment) if moment > 0.0 else math.inf for moment in axes.moments.tolist()]
     return InertiaEllipsoid(
-        I_B=check_array("inertia", I_B, (3, 3)), level=level, semi_axes=np.array(semi_axes), R_BP=axes.R_BP
+        I_B=check_array("I_B", I_B, (3, 3)), level=level, semi_axes=np.array(semi_axes), R_BP=axes.R_BP
     )
 
 

@@ -46,9 +46,9 @@ class MassDistribution(Record):
     def __post_init__(self) -> None:
         """Check all fields."""
         object.__setattr__(self, "mass", check_positive("mass", self.mass))
-        center = check_array("center_of_mass", self.p_FB_F, (3,))
-        object.__setattr__(self, "p_FB_F", check_magnitude("center_of_mass", center))
-        object.__setattr__(self, "I_B", _check_inertia("inertia", self.I_B))
+        center = check_array("p_FB_F", self.p_FB_F, (3,))
+        object.__setattr__(self, "p_FB_F", check_magnitude("p_FB_F", center))
+        object.__setattr__(self, "I_B", _check_inertia("I_B", self.I_B))
 
     @classmethod
     def of(cls, mass_properties: MassProperties, p_FB_F: ArrayLike = (0.0, 0.0, 0.0)) -> MassDistribution:
@@ -71,9 +71,9 @@ class MassDistribution(Record):
             InvalidFieldError: as in the class, and if the inertia is too small for a centre so far from Q.
         """
         mass = check_positive("mass", mass)
-        center = check_array("center_of_mass", p_FB_F, (3,))
-        arm = center - check_array("point", p_FQ_F, (3,))
-        about = check_array("inertia", I_Q, (3, 3))
+        center = check_array("p_FB_F", p_FB_F, (3,))
+        arm = center - check_array("p_FQ_F", p_FQ_F, (3,))
+        about = check_array("I_Q", I_Q, (3, 3))
         I_B = difference(about, mass * point_inertia(arm), terms=float(np.abs(about).max()))
         return cls(mass=mass, p_FB_F=center, I_B=I_B)
 
@@ -98,15 +98,15 @@ class MassDistribution(Record):
         Raises:
             InvalidFieldError: a number is not finite, or the quaternion is not unit.
         """
-        R_GF = rotation_matrix(check_unit("orientation", q_GF, 4))
-        origin = check_array("position", p_GF_G, (3,))
+        R_GF = rotation_matrix(check_unit("q_GF", q_GF, 4))
+        origin = check_array("p_GF_G", p_GF_G, (3,))
         return MassDistribution(
             mass=self.mass, p_FB_F=origin + R_GF @ self.p_FB_F, I_B=_symmetric(R_GF @ self.I_B @ R_GF.T)
         )
 
     def mirrored(self, normal_F: ArrayLike) -> MassDistribution:
         """Return the mirror image in the plane through F's origin with the given unit normal, (3,)."""
-        normal = check_unit("normal", normal_F, 3)
+        normal = check_unit("normal_F", normal_F, 3)
         M = np.eye(3) - 2.0 * np.outer(normal, normal)
         return MassDistribution(mass=self.mass, p_FB_F=M @ self.p_FB_F, I_B=_symmetric(M @ self.I_B @ M.T))
 
@@ -117,7 +117,7 @@ class MassDistribution(Record):
 
     def inertia_about(self, p_FQ_F: ArrayLike) -> FloatArray:
         """Return the angular inertia, (3, 3), kg m^2, about a point Q, F's axes (parallel axes)."""
-        arm = self.p_FB_F - check_array("point", p_FQ_F, (3,))
+        arm = self.p_FB_F - check_array("p_FQ_F", p_FQ_F, (3,))
         about: FloatArray = self.I_B + self.mass * point_inertia(arm)
         return about
 
@@ -128,13 +128,13 @@ class MassDistribution(Record):
             axis_F: (3,), unit, the line's direction.
             p_FQ_F: (3,), m, a point of the line. The default is the centre of mass.
         """
-        axis = check_unit("axis", axis_F, 3)
+        axis = check_unit("axis_F", axis_F, 3)
         about_center = max(
             float(axis @ self.I_B @ axis), 0.0
         )  # a line about itself has 0, or rounding below it
         if p_FQ_F is None:
             return about_center
-        lever = np.cross(axis, self.p_FB_F - check_array("point", p_FQ_F, (3,)))
+        lever = np.cross(axis, self.p_FB_F - check_array("p_FQ_F", p_FQ_F, (3,)))
         return about_center + self.mass * float(lever @ lever)
 
     def radius_of_gyration(self, axis_F: ArrayLike, *, p_FQ_F: ArrayLike | None = None) -> float:

@@ -24,7 +24,7 @@ def particles(masses: ArrayLike, p_FP_F: ArrayLike) -> MassDistribution:
             lengths differ.
     """
     m = check_magnitude("masses", check_array("masses", masses, (None,)))
-    points = check_magnitude("points", check_array("points", p_FP_F, (len(m), 3)))
+    points = check_magnitude("p_FP_F", check_array("p_FP_F", p_FP_F, (len(m), 3)))
     if (m < 0.0).any():
         raise InvalidFieldError("masses", float(m.min()), "numbers >= 0")
     total = float(m.sum())

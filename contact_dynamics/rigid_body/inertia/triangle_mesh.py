@@ -42,7 +42,7 @@ def mesh(
             inside out or flat, or has a part within a solid: the message names the edge, triangle or volume.
             Or a number is not finite, an index names no vertex, not exactly one of mass and density is given.
     """
-    vertices = check_magnitude("vertices", check_array("vertices", p_FV_F, (None, 3)))
+    vertices = check_magnitude("p_FV_F", check_array("p_FV_F", p_FV_F, (None, 3)))
     surface = closed_surface(vertices, triangles)
     check_facing(vertices, surface)
     return _solid(vertices, surface.triangles, mass, density)
@@ -59,8 +59,8 @@ def convex_hull(
         InvalidFieldError: the points lie in a plane, a number is not finite, or not exactly one of mass and
             density is given.
     """
-    vertices = check_magnitude("vertices", check_array("vertices", p_FV_F, (None, 3)))
-    flat = InvalidFieldError("vertices", f"{len(vertices)} points", "four or more, not in one plane")
+    vertices = check_magnitude("p_FV_F", check_array("p_FV_F", p_FV_F, (None, 3)))
+    flat = InvalidFieldError("p_FV_F", f"{len(vertices)} points", "four or more, not in one plane")
     if len(vertices) < 4:
         raise flat
     points = vertices - vertices.mean(axis=0)
@@ -68,7 +68,7 @@ def convex_hull(
     if thickness <= EPSILON * len(vertices) * float(np.abs(vertices).max()):
         raise flat
     try:
-        triangles = hull_of("vertices", points).simplices
+        triangles = hull_of("p_FV_F", points).simplices
     except UndecidedError:
         raise flat from None
     inward = signed_volumes(points, triangles) < 0.0  # their mean is inside

@@ -276,15 +276,15 @@ def test_a_flat_mesh_in_any_plane_is_flat() -> None:
 
 
 def test_vertices_that_are_none_are_refused() -> None:
-    with pytest.raises(InvalidFieldError, match=r"^vertices\[0\]: .*finite"):
+    with pytest.raises(InvalidFieldError, match=r"^p_FV_F\[0\]: .*finite"):
         inertia.mesh(BOX[0] * math.nan, BOX[1], mass=1.0)
     with pytest.raises(InvalidFieldError, match=r"mass, density: .*exactly one"):
         inertia.mesh(*BOX)
-    with pytest.raises(InvalidFieldError, match=r"vertices: found 0 points"):
+    with pytest.raises(InvalidFieldError, match=r"p_FV_F: found 0 points"):
         inertia.convex_hull(np.zeros((0, 3)), mass=1.0)
-    with pytest.raises(InvalidFieldError, match=r"vertices: found 8 points, allowed is .*not in one plane"):
+    with pytest.raises(InvalidFieldError, match=r"p_FV_F: found 8 points, allowed is .*not in one plane"):
         inertia.convex_hull(BOX[0] * [1, 1, 0], mass=1.0)
-    with pytest.raises(InvalidFieldError, match=r"vertices: found 3 points"):
+    with pytest.raises(InvalidFieldError, match=r"p_FV_F: found 3 points"):
         inertia.convex_hull(BOX[0][:3], mass=1.0)
 
 
@@ -314,5 +314,5 @@ def test_any_size_that_can_be_cubed(shape: str) -> None:
 
     for size in (1e-60, 1e-9, 1e20, 1e60):
         assert cube(size).I_B[0, 0] == pytest.approx(size**2 / 6.0, rel=1e-14)
-    with pytest.raises(InvalidFieldError, match=r"vertices: found 1e\+61, allowed is"):
+    with pytest.raises(InvalidFieldError, match=r"p_FV_F: found 1e\+61, allowed is"):
         cube(2e61)
