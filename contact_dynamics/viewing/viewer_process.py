@@ -32,6 +32,11 @@ _POLL_S: Final = 0.05
 _DRAWS: Final = "wgpu adapter"  # the viewer logs this once it has a window and a graphics adapter
 _MOST_WORDS: Final = 4  # number of the viewer's lines that are shown
 _COLORS: Final = re.compile(r"\x1b\[[0-9;]*m")
+_NO_SCREEN: Final = re.compile(r"\bDISPLAY\b.* (?:is|are) (?:not )?set")
+_ADVICE_WITHOUT_SCREEN: Final = (
+    "rerun's viewer has no screen to open on, since neither DISPLAY nor WAYLAND_DISPLAY is set; "
+    "draw into a file, or serve the picture to a viewer on another machine"
+)
 _LOGGED: Final = re.compile(r"^\S+ +(?:TRACE|DEBUG|INFO|WARN|ERROR) ")
 
 
@@ -121,7 +126,10 @@ class ViewerProcess:
 
 
 def _how_it_ended(process: subprocess.Popen[bytes], output: IO[bytes]) -> str:
-    return f"rerun's viewer ended with exit code {process.returncode}: {_words(output)}"
+    words = _words(output)
+    if _NO_SCREEN.search(words):
+        return _ADVICE_WITHOUT_SCREEN
+    return f"rerun's viewer ended with exit code {process.returncode}: {words}"
 
 
 def _printed(output: IO[bytes]) -> str:
