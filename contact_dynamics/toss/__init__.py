@@ -1,8 +1,9 @@
 """Whole tosses: the motion of a body from a state in flight to rest, in one call.
 
 `one_toss` is the call, and follows other ways where mechanics does not decide. `following` goes from event to
-event: flights in closed form, strikes (`strike`), contact phases (`phase`), and rest. `course` keeps what
-happens, and `result` has what is returned. Impacts (`one_impact`) and steps are work that is `asked` for.
+event: each `flight` in closed form, strikes (`strike`), contact phases (`phase`), and rest. `course` keeps
+what happens, and `result` has what is returned. Impacts (`one_impact`) and steps are work that is `asked`
+for.
 
 - `solid` has the body and the flats in plain floats, and the points that touch.
 - `mode_choice` says which contact mode follows. It tries the one that goes on, corrects it, with the

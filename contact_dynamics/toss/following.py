@@ -11,7 +11,6 @@ import numpy as np
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralVerdict
 from contact_dynamics.impact.several.settling import settling_impact
-from contact_dynamics.landing.plane_arrival import Descent
 from contact_dynamics.landing.search_work import SearchWork
 from contact_dynamics.numerics.vectors import norm
 from contact_dynamics.tolerances import (
@@ -21,6 +20,7 @@ from contact_dynamics.tolerances import (
     STRIKES,
 )
 from contact_dynamics.toss.course import Course
+from contact_dynamics.toss.flight import flight
 from contact_dynamics.toss.forces import pushed_by_contacts
 from contact_dynamics.toss.holding import held_in_place
 from contact_dynamics.toss.laid_flat import laid_flat
@@ -31,7 +31,7 @@ from contact_dynamics.toss.phase_ends import PhaseEnd
 from contact_dynamics.toss.result import FlightPiece, Toss, TossEnd, TossEventKind, UndecidedReason
 from contact_dynamics.toss.solid import energy_of, kinetic_energy_of, numbers_of
 from contact_dynamics.toss.strike import approaches, low_rebounds_ended, strike
-from contact_dynamics.tumbling import Precision, free_motion
+from contact_dynamics.toss.wedged import may_be_wedged
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -39,8 +39,9 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.shapes.convex import ConvexShape
     from contact_dynamics.toss.asked import Asked, Asking
-    from contact_dynamics.toss.mode_choice import Mode
+    from contact_dynamics.toss.mode_choice import Choice, Mode
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
+    from contact_dynamics.toss.strike import Strikes
 
 Kick: TypeAlias = "Callable[[Solid, Numbers, Numbers, Touch], Numbers]"
 """Takes the body, the states before and after a strike, and the contact, and returns another state after."""
@@ -71,7 +72,7 @@ class Following:
             this is None, it never is.
         thorough: Whether all modes are looked for where friction may wedge the body (`wedged`). Samples do
             without, and take the mode that is found first, as a toss does that goes its first way.
-        planes: The flats, as flights take them.
+        has_pieces: Whether flights and steps are kept, which give the state at any time. Samples do without.
     """
 
     def __init__(
@@ -87,12 +88,13 @@ class Following:
         kick: Kick | None = None,
         flat_after: int | None = None,
         thorough: bool = True,
+        has_pieces: bool = True,
     ) -> None:
         self.solid, self.properties, self.shape = solid, properties, shape
         self.law, self.horizon = law, horizon
         self.most_events, self.error = most_events, error
         self.kick, self.flat_after, self.thorough = kick, flat_after, thorough
-        self.planes = [(np.array(flat.normal), flat.level) for flat in solid.flats]
+        self.has_pieces = has_pieces
 
     def run(self, state: BodyState, ways: tuple[int, ...]) -> Toss:
         """Return the toss that takes the given ways at its first undecided points, and way 0 after that."""
@@ -117,6 +119,7 @@ class Run(Course):
         self.work = SearchWork()
         self.slow = math.inf  # J, rest is tried where the kinetic energy is below this
         self.struck = self.laid = 0  # strikes, and how often it was laid flat
+        self.settled: Strikes | None = None  # the last strikes
         self.looked_at: list[Touch] = []  # contacts whose modes were all looked for last
         self.way_on: Mode | None = None  # how it goes on where it could rest as well
 
@@ -132,8 +135,9 @@ class Run(Course):
             if self.now >= self.runs.horizon:
                 return TossEnd.HORIZON
             touching = self._laid_flat(touching)
-            if touching and min(approaches(self.solid, self.y, touching)) < -STRIKES:
-                touching = yield from self._strike(touching)
+            rates = approaches(self.solid, self.y, touching)
+            if min(rates, default=0.0) < -STRIKES:
+                touching = yield from self._strike(touching, rates)
             elif touching:
                 if self._rests(touching):
                     return TossEnd.RESTS
@@ -158,32 +162,22 @@ class Run(Course):
 
         A body whose contacts have just left without speed flies for a pause before arrivals are looked for.
         """
-        state = self.present()
-        motion = free_motion(
-            self.runs.properties, state, gravity_W=np.array(self.solid.gravity), precision=Precision.DOUBLE
-        )
-        self.pieces.append(FlightPiece(self.now, motion))
-        self._forget_instant()
         left = self.runs.horizon - self.now
-        begun = motion
-        if pause > 0.0:
-            begun = free_motion(
-                self.runs.properties,
-                motion.state_at(pause),
-                gravity_W=np.array(self.solid.gravity),
-                precision=Precision.DOUBLE,
-            )
-        first = left
-        for normal, level in self.runs.planes:
-            found = Descent(begun, self.runs.shape, level * normal, normal).run(
-                max(first - pause, 0.0), self.work
-            )
-            if found is not None:
-                first = min(first, pause + found.seconds)
-        sample = motion.sample(first)
-        self.y = [*sample.p_WB_W, *sample.q_WB, *sample.v_WB_W, *sample.w_WB_W]
-        self.now += first
-        return self.touching_now(STILL_TOUCHING) if first < left else []
+        flown = flight(
+            self.solid,
+            self.runs.properties,
+            self.runs.shape,
+            self.present(),
+            longest=left,
+            pause=pause,
+            work=self.work,
+        )
+        if self.runs.has_pieces:
+            self.pieces.append(FlightPiece(self.now, flown.motion))
+            self._forget_instant()
+        self.y = flown.y
+        self.now += flown.seconds
+        return self.touching_now(STILL_TOUCHING) if flown.seconds < left else []
 
     def _forget_instant(self) -> None:
         """Drop pieces of no length, so that a time belongs to one piece."""
@@ -192,8 +186,7 @@ class Run(Course):
 
     # Strikes
 
-    def _strike(self, touching: list[Touch]) -> Asking[list[Touch]]:
-        rates = approaches(self.solid, self.y, touching)
+    def _strike(self, touching: list[Touch], rates: list[float]) -> Asking[list[Touch]]:
         striking = [
             touch for rate, touch in sorted(zip(rates, touching, strict=True)) if rate < -self._fast()
         ]
@@ -201,7 +194,8 @@ class Run(Course):
         if len(striking) > 1:
             first = striking[self.way(UndecidedReason.STRIKE_TOGETHER, len(striking))]
         y, before = self.y, energy_of(self.solid, self.y)
-        strikes = yield from strike(self.solid, self.y, touching, self.runs.law, first=first)
+        strikes = yield from strike(self.solid, self.y, touching, self.runs.law, rates=rates, first=first)
+        self.settled = strikes
         self.y, staying = strikes.y, strikes.staying
         kick = self.runs.kick
         if kick is not None and len(touching) == 1 and not strikes.settled:
@@ -272,11 +266,19 @@ class Run(Course):
             return [mode]
         thorough = self.runs.thorough and touching != self.looked_at
         self.looked_at = touching
-        modes = choose_mode(self.solid, self.y, touching, thorough=thorough).modes
+        known = self._known_since_strikes(touching, thorough=thorough)
+        modes = (known or choose_mode(self.solid, self.y, touching, thorough=thorough)).modes
         if len(modes) > 1:
             way = self.way(UndecidedReason.SEVERAL_MODES, len(modes))
             return [modes[way]]
         return modes
+
+    def _known_since_strikes(self, touching: list[Touch], *, thorough: bool) -> Choice | None:
+        """Return the modes that the last strikes found for these contacts in this state, if they did."""
+        last = self.settled
+        if last is None or last.y is not self.y or last.staying != touching:
+            return None
+        return None if thorough and may_be_wedged(self.solid, touching) else last.choice
 
     def _follow(self, mode: Mode) -> Asking[list[Touch]]:
         """Go on in a mode to its end, and return what touches then."""
@@ -295,7 +297,8 @@ class Run(Course):
             slow=min(self.slow, self._slow([one.touch for one in mode])),
             error=self.runs.error,
         )
-        self.pieces += went.steps
+        if self.runs.has_pieces:
+            self.pieces += went.steps
         self.now, self.y = went.seconds, went.y
         self.lost_in_contact += before - energy_of(self.solid, self.y)
         held = [one.touch for one in mode]

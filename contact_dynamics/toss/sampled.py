@@ -199,6 +199,7 @@ def _begun(
         kick=None if spread.is_none else spread.of_one(i),
         flat_after=len(told.seconds) - int((told.corners[:, i] >= 0).sum()),
         thorough=False,
+        has_pieces=False,
     )
     return Run(following, state, ())
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from contact_dynamics.impact.law import RestitutionLaw
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.toss.asked import Asking
+    from contact_dynamics.toss.mode_choice import Choice
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
 
 MOST_STRIKES_AT_ONCE: Final = 500
@@ -42,12 +43,14 @@ class Strikes(NamedTuple):
         struck: Each strike.
         staying: The contacts that neither leave nor approach.
         settled: Whether rebounds came to their end.
+        choice: The modes of the staying contacts in this state, if they were looked for on the way.
     """
 
     y: Numbers
     struck: list[Struck]
     staying: list[Touch]
     settled: bool
+    choice: Choice | None = None
 
 
 def approaches(solid: Solid, y: Numbers, touching: list[Touch]) -> list[float]:
@@ -59,7 +62,13 @@ def approaches(solid: Solid, y: Numbers, touching: list[Touch]) -> list[float]:
 
 
 def strike(
-    solid: Solid, y: Numbers, touching: list[Touch], law: RestitutionLaw, *, first: Touch | None = None
+    solid: Solid,
+    y: Numbers,
+    touching: list[Touch],
+    law: RestitutionLaw,
+    *,
+    rates: list[float],
+    first: Touch | None = None,
 ) -> Asking[Strikes]:
     """Return the state after all strikes of contacts that touch at one instant.
 
@@ -68,24 +77,24 @@ def strike(
         y: The state before.
         touching: All contacts that touch, approaching or not.
         law: What the coefficients of restitution mean.
+        rates: m/s, the normal velocities of these contacts (`approaches`).
         first: The contact that is struck first, or None if it is the one that approaches fastest.
     """
     struck: list[Struck] = []
     for _ in range(MOST_STRIKES_AT_ONCE):
-        rates = approaches(solid, y, touching)
         fastest = min(rates)
         if fastest >= -STRIKES:
             break
         settled = _settled(solid, y, touching, rates)
         if settled is not None:
-            return Strikes(settled.y, struck + settled.struck, settled.staying, settled=True)
+            return settled._replace(struck=struck + settled.struck)
         which = touching[rates.index(fastest)] if first is None else first
         first = None
         impact = AskedImpact(solid, y, which, law)
         yield impact
         y = impact.after
         struck.append(impact.struck)
-    rates = approaches(solid, y, touching)
+        rates = approaches(solid, y, touching)
     staying = [touch for touch, rate in zip(touching, rates, strict=True) if rate <= STILL_TOUCHING]
     return Strikes(y, struck, staying, settled=False)
 
@@ -108,7 +117,7 @@ def low_rebounds_ended(solid: Solid, y: Numbers, touching: list[Touch]) -> Strik
         for touch, rate in zip(touching, rates, strict=True)
         if rate > STILL_TOUCHING and touch in found.staying
     ]
-    return found._replace(y=without_rebounds(solid, y, found.staying)) if low else None
+    return found._replace(y=without_rebounds(solid, y, found.staying), choice=None) if low else None
 
 
 def _settled(solid: Solid, y: Numbers, touching: list[Touch], rates: list[float]) -> Strikes | None:
@@ -147,18 +156,20 @@ def _settled(solid: Solid, y: Numbers, touching: list[Touch], rates: list[float]
         if motion[2] * motion[2] <= fast
     ]
     stopped = held_in_place(solid, after, tuple(slow))
-    staying = _pressed(solid, stopped, [one.touch for one in slow], touching, before=rates, motions=motions)
+    choice = choose_mode(solid, stopped, [one.touch for one in slow])
+    staying = _pressed(solid, stopped, choice, touching, before=rates, motions=motions)
     if staying is None:
         return None
+    if staying == [one.touch for one in slow]:
+        return Strikes(stopped, struck, staying, settled=True, choice=choice)
     kept = tuple(one for one in slow if one.touch in staying)
-    after = held_in_place(solid, after, kept)
-    return Strikes(after, struck, staying, settled=True)
+    return Strikes(held_in_place(solid, after, kept), struck, staying, settled=True)
 
 
 def _pressed(
     solid: Solid,
     y: Numbers,
-    slow: list[Touch],
+    choice: Choice,
     touching: list[Touch],
     *,
     before: list[float],
@@ -166,10 +177,10 @@ def _pressed(
 ) -> list[Touch] | None:
     """Return which slow contacts stay, or None if a contact that was struck presses too little to settle.
 
-    A contact that stays gives up what is left of its normal velocity. It may, if it is pressed in so much
-    that it would not rise by the solid's `settling` before it comes back.
+    ``choice`` has the modes of all slow contacts. A contact that stays gives up what is left of its normal
+    velocity. It may, if it is pressed in so much that it would not rise by the solid's `settling` before it
+    comes back.
     """
-    choice = choose_mode(solid, y, slow)
     if not choice.modes:
         return None
     mode = choice.modes[0]
