@@ -2,8 +2,8 @@
 
 `one_toss` is the call, and follows other ways where mechanics does not decide. `following` goes from event to
 event: each `flight` in closed form, strikes (`strike`), contact phases (`phase`), and rest. `course` keeps
-what happens, and `result` has what is returned. Impacts (`one_impact`) and steps are work that is `asked`
-for.
+what happens, and `result` has what is returned. Flights, impacts (`one_impact`) and steps are work that is
+`asked` for.
 
 - `solid` has the body and the flats in plain floats, and the points that touch.
 - `mode_choice` says which contact mode follows. It tries the one that goes on, corrects it, with the
@@ -14,10 +14,10 @@ for.
   where they are.
 
 What is not known exactly (`uncertainty`) is sampled: `sampled` is the call, and `distribution` has what it
-returns. `strikes_of_many` has the next strikes of all samples at once, and `law_spread` what the law of
-impact leaves open. `laid_flat` ends the rattling of samples on a face. Samples on their way to rest go on
-`together`: `impacts_of_many` and `steps_of_many` do in arrays what they ask for, by the arithmetic of one,
-with `solids_of_many`.
+returns. `strikes_of_many` has the next strikes of all samples at once (`arrivals_of_many`), and `law_spread`
+what the law of impact leaves open. `laid_flat` ends the rattling of samples on a face. Samples on their way
+to rest go on `together`: `flights_of_many`, `impacts_of_many` and `steps_of_many` do in arrays what they ask
+for, by the arithmetic of one, with `solids_of_many`.
 """
 
 from contact_dynamics.toss.distribution import TossDistribution

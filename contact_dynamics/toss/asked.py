@@ -1,8 +1,8 @@
 """What a toss asks for on its way, so that many samples can have it together.
 
-A toss is a generator that yields pieces of work: impacts at one contact, and steps of the integrator. A
-single toss does each of them at once. Samples wait for work of the same kind, and have it done in arrays
-(`together`).
+A toss is a generator that yields pieces of work: flights, impacts at one contact, and steps of the
+integrator. A single toss does each of them at once. Samples wait for work of the same kind, and have it done
+in arrays (`together`).
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Protocol, TypeAlias, TypeVar
 Result = TypeVar("Result")
 
 Kind: TypeAlias = tuple[str, int]
-"""What work is about, impact or step, and the law or the number of contacts."""
+"""What work is about, flight, impact or step, with the number of corners, the law, or the contacts."""
 
 
 class Asked(Protocol):

@@ -20,7 +20,7 @@ from contact_dynamics.tolerances import (
     STRIKES,
 )
 from contact_dynamics.toss.course import Course
-from contact_dynamics.toss.flight import flight
+from contact_dynamics.toss.flight import AskedFlight
 from contact_dynamics.toss.forces import pushed_by_contacts
 from contact_dynamics.toss.holding import held_in_place
 from contact_dynamics.toss.laid_flat import laid_flat
@@ -150,32 +150,35 @@ class Run(Course):
                     touching = yield from self._follow(modes[0])
                 else:
                     self.note(TossEventKind.LIFTS_OFF, touching)
-                    touching = self._fly(LIFT_OFF_PAUSE)
+                    touching = yield from self._fly(LIFT_OFF_PAUSE)
             else:
-                touching = self._fly(0.0)
+                touching = yield from self._fly(0.0)
         return TossEnd.MOST_EVENTS
 
     # Flights
 
-    def _fly(self, pause: float) -> list[Touch]:
+    def _fly(self, pause: float) -> Asking[list[Touch]]:
         """Fly on to the next contact or the horizon, and return what touches then.
 
         A body whose contacts have just left without speed flies for a pause before arrivals are looked for.
         """
         left = self.runs.horizon - self.now
-        flown = flight(
+        flown = AskedFlight(
             self.solid,
             self.runs.properties,
             self.runs.shape,
-            self.present(),
+            self.y,
+            stamp_ns=self.stamp_ns(),
             longest=left,
             pause=pause,
-            work=self.work,
+            search=self.work,
+            is_told=self.runs.has_pieces,
         )
+        yield flown
         if self.runs.has_pieces:
             self.pieces.append(FlightPiece(self.now, flown.motion))
             self._forget_instant()
-        self.y = flown.y
+        self.y = flown.after
         self.now += flown.seconds
         return self.touching_now(STILL_TOUCHING) if flown.seconds < left else []
 

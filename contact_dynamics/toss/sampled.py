@@ -1,12 +1,12 @@
 """Samples of a toss that is not known exactly, followed through the next strikes or to rest.
 
 The next strikes of all samples are found together (`strikes_of_many`), in a tenth of a millisecond each. If
-rest is asked for, each sample goes on from there as a toss does (`following`), and has its impacts and the
-steps of its sliding done in arrays with those of others (`together`). That takes far longer. It is done
-less exactly than a single toss: rebounds below `SAMPLED_SETTLING_HEIGHT` are not followed, and neither is a
-body that only rattles on a face until it rests (`laid_flat`). It then has the world's gravity, and not its
-own: in recorded slides, the gravity of the flight before leaves no trace, and the scatter of friction that
-lasts holds what slides differ by.
+rest is asked for, each sample goes on from there as a toss does (`following`), and has its flights, its
+impacts and the steps of its sliding done in arrays with those of others (`together`). That takes far longer.
+It is done less exactly than a single toss: rebounds below `SAMPLED_SETTLING_HEIGHT` are not followed, and
+neither is a body that only rattles on a face until it rests (`laid_flat`). It then has the world's gravity,
+and not its own: in recorded slides, the gravity of the flight before leaves no trace, and the scatter of
+friction that lasts holds what slides differ by.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Samples that go on together do what each does alone: impacts, steps, and whole tosses."""
+"""Samples that go on together do what each does alone: impacts, steps, flights, and whole tosses."""
 
 from __future__ import annotations
 
@@ -6,11 +6,15 @@ import numpy as np
 import pytest
 
 from contact_dynamics.impact import RestitutionLaw
+from contact_dynamics.landing.search_work import SearchWork
 from contact_dynamics.rigid_body import inertia
-from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes import box
+from contact_dynamics.shapes.convex import ConvexShape
 from contact_dynamics.tolerances import SAMPLED_PHASE_ERROR
 from contact_dynamics.toss import TossEnd, TossEventKind, TossUncertainty
+from contact_dynamics.toss.flight import AskedFlight
+from contact_dynamics.toss.flights_of_many import fly_together
 from contact_dynamics.toss.following import Following, Run
 from contact_dynamics.toss.forces import pushed_by_contacts
 from contact_dynamics.toss.held import Held
@@ -19,8 +23,9 @@ from contact_dynamics.toss.impacts_of_many import strike_together
 from contact_dynamics.toss.law_spread import LawSpread
 from contact_dynamics.toss.one_impact import AskedImpact
 from contact_dynamics.toss.phase_step import AskedStep, scales_of
-from contact_dynamics.toss.solid import Solid, numbers_of, solid_of
+from contact_dynamics.toss.solid import Solid, heights_and_rates, numbers_of, solid_of
 from contact_dynamics.toss.steps_of_many import step_together
+from contact_dynamics.toss.strike import approaches
 from contact_dynamics.toss.together import FEWEST_IMPACTS, FEWEST_STEPS, together
 from contact_dynamics.world import Body, Surface, World
 
@@ -86,6 +91,47 @@ def test_impacts_of_many_are_those_of_one_bit_for_bit(law: RestitutionLaw) -> No
         assert alone.struck == each.struck
 
 
+def test_flights_of_many_are_those_of_one() -> None:
+    """Bricks fly at once or after a pause, from the air or from a corner that leaves.
+
+    Some meet nothing. A quaternion and its opposite are one attitude.
+    """
+    chance = np.random.default_rng(5)
+    pairs, flying = [], 0
+    for k, solid in enumerate(solids(chance)):
+        y = numbers_of(state(chance, 0.3, 1.0))
+        if k % 3 == 0:  # a corner is on the ramp, and leaves
+            height, _, (_, corner) = min(heights_and_rates(solid, y))
+            y[:3] = [x - height * n for x, n in zip(y[:3], solid.flats[0].normal, strict=True)]
+            y[9] += 1.0 - min(approaches(solid, y, [(0, corner)]))
+        longest = 0.02 if k % 8 == 7 else 2.0
+        pairs.append([flight_of(solid, y, pause=1e-6 * (k % 2), longest=longest) for _ in range(2)])
+    fly_together([many for _, many in pairs])
+    for alone, many in pairs:
+        alone.work()
+        assert many.kind == ("flight", 8)
+        assert many.seconds == pytest.approx(alone.seconds, rel=0.0, abs=1e-13)
+        turned = np.sign(np.dot(many.after[3:7], alone.after[3:7]))
+        same = [*many.after[:3], *(turned * x for x in many.after[3:7]), *many.after[7:]]
+        np.testing.assert_allclose(same, alone.after, rtol=0.0, atol=1e-12)
+        flying += alone.seconds == alone.longest
+    assert 3 < flying < COUNT // 2
+
+
+def flight_of(solid: Solid, y: list[float], *, pause: float, longest: float) -> AskedFlight:
+    return AskedFlight(
+        solid,
+        MassProperties(mass=solid.mass, I_B=solid.inertia),
+        ConvexShape(vertices=np.array(solid.corners), rounding=solid.rounding),
+        y,
+        stamp_ns=0,
+        longest=longest,
+        pause=pause,
+        search=SearchWork(),
+        is_told=False,
+    )
+
+
 @pytest.mark.parametrize("corners", [(0,), (0, 1), (0, 7), (0, 1, 3), (0, 1, 2, 3)])
 def test_steps_of_many_are_those_of_one(corners: tuple[int, ...]) -> None:
     """Only sums over stages are in another order, so numbers differ by rounding."""
@@ -147,6 +193,7 @@ def test_tosses_that_go_on_together_end_where_they_do_alone() -> None:
         most_events=300,
         error=SAMPLED_PHASE_ERROR,
         flat_after=2,
+        has_pieces=False,
     )
     states = [state(chance, 0.15, 0.4) for _ in range(COUNT)]
     runs = [Run(following, each, ()) for each in states]

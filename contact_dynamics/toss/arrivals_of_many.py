@@ -1,0 +1,148 @@
+"""Where the flights of many samples end: all at once, in closed form.
+
+A flight ends where the first corner reaches a flat. All samples step towards that together. A step is as long
+as no corner can arrive earlier, since the acceleration of each is bounded along the flight (as in
+`landing.acceleration_bounds`). Steps shrink to the arrival as Newton's do.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.rotations.many import matrices_of
+from contact_dynamics.tolerances import ARRIVAL_POLISHED, SAMPLED_ARRIVAL
+from contact_dynamics.tumbling.many import states_of_many
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from contact_dynamics.numerics.arithmetic import FloatArray
+    from contact_dynamics.toss.solid import Solid
+
+_MOST_STEPS: Final = 200
+"""Steps towards one arrival, after which a sample counts as one that never arrives. Ten are usual."""
+
+
+class Arrivals(NamedTuple):
+    """Where flights end: after these times, s, at these flats and corners, -1 for none, in these states."""
+
+    seconds: FloatArray
+    surfaces: NDArray[np.int64]
+    corners: NDArray[np.int64]
+    state: list[FloatArray]
+
+
+def arrivals_of_many(
+    solid: Solid,
+    inertias: FloatArray,
+    corners: FloatArray,
+    gravities: FloatArray,
+    state: list[FloatArray],
+    *,
+    longest: FloatArray,
+    pauses: FloatArray | None = None,
+    polished: int = 0,
+) -> Arrivals:
+    """Return where flights of n samples end.
+
+    Args:
+        solid: What samples have in common: where the flats are, and by how much corners are rounded.
+        inertias: (n, 3, 3), kg m^2, body axes.
+        corners: (n, k, 3), m, body axes.
+        gravities: (n, 3), m/s^2.
+        state: Positions, quaternions, velocities and angular velocities, a row a sample.
+        longest: (n,), s, after which flights end anyway.
+        pauses: (n,), s, after which arrivals are looked for, if not at once.
+        polished: How many of Newton's steps go from `SAMPLED_ARRIVAL` to the flat itself.
+    """
+    n = len(inertias)
+    normals = np.array([flat.normal for flat in solid.flats])
+    levels = np.array([flat.level for flat in solid.flats]) + solid.rounding
+    reaches = np.linalg.norm(corners, axis=2)
+    pulls = np.maximum(
+        -(gravities @ normals.T)[:, :, None]
+        + _turning(inertias, state[1], state[3])[:, None, None] * reaches[:, None, :],
+        0.0,
+    )
+    t = np.zeros(n) if pauses is None else pauses.copy()
+    surface, corner = np.full(n, -1, dtype=np.int64), np.full(n, -1, dtype=np.int64)
+    then = [each.copy() for each in state]
+
+    def move(some: NDArray[np.intp]) -> None:
+        moved = states_of_many(
+            inertias[some],
+            p_WB_W=state[0][some],
+            q_WB=state[1][some],
+            v_WB_W=state[2][some],
+            w_WB_W=state[3][some],
+            seconds=t[some],
+            gravity_W=gravities[some],
+        )
+        for each, rows in zip(then, (moved.p_WB_W, moved.q_WB, moved.v_WB_W, moved.w_WB_W), strict=True):
+            each[some] = rows
+
+    if pauses is not None:
+        move(np.arange(n))
+    active = np.arange(n)
+    for _ in range(_MOST_STEPS):
+        heights, rates = _heights(normals, levels, corners[active], [each[active] for each in then])
+        # What arrives is as near as counts, and still comes nearer. Of several, the fastest strikes first.
+        speeds = np.where(heights <= SAMPLED_ARRIVAL, rates, np.inf).reshape(len(active), -1)
+        first = speeds.argmin(axis=1)
+        arrived = speeds[np.arange(len(active)), first] < 0.0
+        surface[active[arrived]], corner[active[arrived]] = np.divmod(first[arrived], corners.shape[1])
+        steps = _free_for(heights, rates, pulls[active]).reshape(len(active), -1).min(axis=1)
+        over = ~arrived & (t[active] >= longest[active])
+        active, steps = active[~arrived & ~over], steps[~arrived & ~over]
+        if len(active) == 0:
+            break
+        t[active] = np.minimum(t[active] + steps, longest[active])
+        move(active)
+    for _ in range(polished):
+        which = np.flatnonzero(corner >= 0)
+        rows = [each[which] for each in then]
+        heights, rates = _heights(normals, levels, corners[which, corner[which]][:, None, :], rows)
+        at = np.arange(len(which)), surface[which], 0
+        near = heights[at] / -rates[at]
+        sure = np.abs(near) <= ARRIVAL_POLISHED
+        t[which[sure]] = np.clip(t[which[sure]] + near[sure], 0.0, longest[which[sure]])
+        move(which[sure])
+    return Arrivals(t, surface, corner, then)
+
+
+def _turning(inertias: FloatArray, q: FloatArray, w: FloatArray) -> FloatArray:
+    """Return bounds on the accelerations of points by rotation, for each metre of distance, (n,), 1/s^2.
+
+    Energy bounds the angular velocity by 2 T / I1. The angular acceleration is at most a share of its square,
+    which is zero for a ball, and 1/sqrt(3) for any body.
+    """
+    w_B = np.einsum("nij,ni->nj", matrices_of(q), w)
+    moments = np.linalg.eigvalsh(inertias)
+    squares = np.einsum("ni,nij,nj->n", w_B, inertias, w_B) / moments[:, 0]
+    apart = (moments[:, 2] - moments[:, 0]) / moments[:, 0]
+    bounds: FloatArray = squares * (1.0 + np.minimum(apart, 1.0) / np.sqrt(3.0))
+    return bounds
+
+
+def _heights(
+    normals: FloatArray, levels: FloatArray, corners: FloatArray, state: list[FloatArray]
+) -> tuple[FloatArray, FloatArray]:
+    """Return the heights, m, and rates, m/s, (n, s, k), of corners above flats."""
+    p, q, v, w = state
+    arms = corners @ matrices_of(q).transpose(0, 2, 1)
+    heights = np.einsum("nkj,sj->nsk", arms + p[:, None, :], normals) - levels[None, :, None]
+    rates = np.einsum("nkj,sj->nsk", v[:, None, :] + np.cross(w[:, None, :], arms), normals)
+    return heights, rates
+
+
+def _free_for(heights: FloatArray, rates: FloatArray, pulls: FloatArray) -> FloatArray:
+    """Return for how long, s, points cannot arrive, if ``pulls`` are their largest accelerations, m/s^2."""
+    allowed = np.maximum(heights, 0.0) + 0.5 * SAMPLED_ARRIVAL
+    roots = np.sqrt(rates * rates + 2.0 * pulls * allowed)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        falling = 2.0 * allowed / (roots - rates)
+        rising = np.where(pulls > 0.0, (rates + roots) / pulls, np.inf)
+    times: FloatArray = np.where(rates < 0.0, falling, rising)
+    return times
