@@ -15,9 +15,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm
+from contact_dynamics.numerics.vectors import Vector3, cross, norm
 from contact_dynamics.tolerances import CONE_SWEEPS_CONVERGED, FORCE_ROUNDING
-from contact_dynamics.toss.solid import times
+from contact_dynamics.toss.solid import as_rows, responses, times
 
 if TYPE_CHECKING:
     from contact_dynamics.toss.solid import Matrix3
@@ -58,21 +58,9 @@ def cone_forces(
         sites: The contacts.
     """
     n = len(sites)
-    moments = [tuple(cross(site.arm, axis) for axis in site.axes) for site in sites]
-    turnings = [tuple(times(inverse, moment) for moment in row) for row in moments]
-    response = [
-        [
-            tuple(
-                tuple(
-                    per_mass * dot(sites[i].axes[a], sites[j].axes[b]) + dot(moments[i][a], turnings[j][b])
-                    for b in range(3)
-                )
-                for a in range(3)
-            )
-            for j in range(n)
-        ]
-        for i in range(n)
-    ]
+    rows = [[(axis, cross(site.arm, axis)) for axis in site.axes] for site in sites]
+    turning = [[(axis, times(inverse, moment)) for axis, moment in row] for row in rows]
+    response = [[as_rows(responses(per_mass, row, turned)) for turned in turning] for row in rows]
     pushes: list[Vector3] = [(0.0, 0.0, 0.0)] * n
     motions: list[Vector3] = [site.motion for site in sites]
     scale = max(map(norm, motions), default=0.0)
@@ -82,17 +70,17 @@ def cone_forces(
         change = 0.0
         for i, site in enumerate(sites):
             own = response[i][i]
-            back = times(own, pushes[i])  # type: ignore[arg-type]  # rows of three
+            back = times(own, pushes[i])
             m = motions[i]
             alone = (m[0] - back[0], m[1] - back[1], m[2] - back[2])
-            push = _one(own, alone, site)  # type: ignore[arg-type]
+            push = _one(own, alone, site)
             old = pushes[i]
             step = (push[0] - old[0], push[1] - old[1], push[2] - old[2])
             if step == (0.0, 0.0, 0.0):
                 continue
             pushes[i] = push
             for j in range(n):
-                x, y, z = times(response[j][i], step)  # type: ignore[arg-type]
+                x, y, z = times(response[j][i], step)
                 u, v, w = motions[j]
                 motions[j] = (u + x, v + y, w + z)
                 if j == i:

@@ -17,7 +17,7 @@ from contact_dynamics.numerics.vectors import Vector3, cross, dot, normalised, o
 from contact_dynamics.tolerances import SAME_FORCES
 from contact_dynamics.toss.flush import flush_sliding, is_flush
 from contact_dynamics.toss.held import sliding_direction
-from contact_dynamics.toss.solid import arm_of, pose_of, times, transposed_times, velocity_of
+from contact_dynamics.toss.solid import arm_of, pose_of, responses, times, transposed_times, velocity_of
 
 if TYPE_CHECKING:
     from contact_dynamics.toss.held import Held
@@ -51,14 +51,16 @@ class Free(NamedTuple):
 
     def at(self, solid: Solid, touch: Touch, arm: Vector3) -> Vector3:
         """Return the acceleration, m/s^2, of the body's point at an arm; a ball's point rolls meanwhile."""
-        r, n = solid.rounding, solid.flats[touch[0]].normal
-        corner = (arm[0] + r * n[0], arm[1] + r * n[1], arm[2] + r * n[2])
-        turning, inwards = cross(self.alpha, arm), cross(self.pose.w, cross(self.pose.w, corner))
-        a = self.a
+        r, (n_x, n_y, n_z) = solid.rounding, solid.flats[touch[0]].normal
+        (a_x, a_y, a_z), (t_x, t_y, t_z), (w_x, w_y, w_z) = self.a, self.alpha, self.pose.w
+        x, y, z = arm
+        # alpha x arm and w x (w x corner), with u = w x corner, by component.
+        p, q, s = x + r * n_x, y + r * n_y, z + r * n_z
+        u_x, u_y, u_z = w_y * s - w_z * q, w_z * p - w_x * s, w_x * q - w_y * p
         return (
-            a[0] + turning[0] + inwards[0],
-            a[1] + turning[1] + inwards[1],
-            a[2] + turning[2] + inwards[2],
+            a_x + (t_y * z - t_z * y) + (w_y * u_z - w_z * u_y),
+            a_y + (t_z * x - t_x * z) + (w_z * u_x - w_x * u_z),
+            a_z + (t_x * y - t_y * x) + (w_x * u_y - w_y * u_x),
         )
 
 
@@ -81,7 +83,8 @@ def pushed_by_contacts(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> Push
     # Each equation has a direction with its moment about the centre of mass, and each unknown has a force
     # with the angular acceleration that it causes.
     equations: list[tuple[Vector3, Vector3]] = []
-    unknowns: list[tuple[int, Vector3, Vector3]] = []
+    unknowns: list[tuple[Vector3, Vector3]] = []
+    of: list[int] = []
     wanted: list[float] = []
     for i, (touch, slides, towards, begins) in enumerate(mode):
         flat = solid.flats[touch[0]]
@@ -92,25 +95,23 @@ def pushed_by_contacts(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> Push
             d = towards if begins else sliding_direction(velocity_of(pose, arm), n, towards)
             mu = flat.friction
             force = (n[0] - mu * d[0], n[1] - mu * d[1], n[2] - mu * d[2])
-            unknowns.append((i, force, times(pose.inverse, cross(arm, force))))
+            of.append(i)
+            unknowns.append((force, times(pose.inverse, cross(arm, force))))
             equations.append((n, cross(arm, n)))
             wanted.append(-dot(n, acceleration))
         else:
             for axis in (*flat.tangents, n):
                 moment = cross(arm, axis)
-                unknowns.append((i, axis, times(pose.inverse, moment)))
+                of.append(i)
+                unknowns.append((axis, times(pose.inverse, moment)))
                 equations.append((axis, moment))
                 wanted.append(-dot(axis, acceleration))
     per_mass = 1.0 / solid.mass
-    matrix = [
-        [per_mass * dot(axis, force) + dot(moment, turning) for _, force, turning in unknowns]
-        for axis, moment in equations
-    ]
-    sizes = least_solution(matrix, wanted)
+    sizes = least_solution(responses(per_mass, equations, unknowns), wanted)
     a_x, a_y, a_z = free.a
     t_x, t_y, t_z = free.alpha
     forces = [(0.0, 0.0, 0.0)] * len(mode)
-    for size, (i, (x, yy, z), (u, v, w)) in zip(sizes, unknowns, strict=True):
+    for size, i, ((x, yy, z), (u, v, w)) in zip(sizes, of, unknowns, strict=True):
         f = forces[i]
         forces[i] = (f[0] + size * x, f[1] + size * yy, f[2] + size * z)
         share = size * per_mass

@@ -13,7 +13,7 @@ from contact_dynamics.numerics.vectors import normalised as normalised_vector
 from contact_dynamics.rotations.one import normalised, product
 from contact_dynamics.tolerances import HELD_DRIFT, SLIDING_STOPPED
 from contact_dynamics.toss.forces import least_solution
-from contact_dynamics.toss.solid import arm_of, pose_of, times, velocity_of
+from contact_dynamics.toss.solid import arm_of, pose_of, responses, times, velocity_of
 
 if TYPE_CHECKING:
     from contact_dynamics.toss.held import Held
@@ -26,13 +26,13 @@ def held_in_place(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> Numbers:
     y = [*y[:3], *q, *y[7:]]
     pose = pose_of(solid, y)
     arms = [arm_of(solid, pose, one.touch) for one in mode]
-    normals = [solid.flats[one.touch[0]].normal for one in mode]
+    flats = [solid.flats[one.touch[0]] for one in mode]
     heights = [
-        dot(pose.position, n) + dot(arm, n) - solid.flats[one.touch[0]].level
-        for one, arm, n in zip(mode, arms, normals, strict=True)
+        dot(pose.position, flat.normal) + dot(arm, flat.normal) - flat.level
+        for flat, arm in zip(flats, arms, strict=True)
     ]
     if max(map(abs, heights), default=0.0) > HELD_DRIFT:
-        rows = [(n, cross(arm, n)) for arm, n in zip(arms, normals, strict=True)]
+        rows = [(flat.normal, cross(arm, flat.normal)) for flat, arm in zip(flats, arms, strict=True)]
         shift, turn = _least_change(solid, pose.inverse, rows, heights)
         for k in range(3):
             y[k] -= shift[k]
@@ -40,9 +40,9 @@ def held_in_place(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> Numbers:
         pose = pose_of(solid, y)
         arms = [arm_of(solid, pose, one.touch) for one in mode]
     rows, speeds = [], []
-    for one, arm, n in zip(mode, arms, normals, strict=True):
+    for one, arm, flat in zip(mode, arms, flats, strict=True):
         velocity = velocity_of(pose, arm)
-        for axis in (n,) if one.slides else (n, *solid.flats[one.touch[0]].tangents):
+        for axis in (flat.normal,) if one.slides else (flat.normal, *flat.tangents):
             rows.append((axis, cross(arm, axis)))
             speeds.append(dot(velocity, axis))
     if max(map(abs, speeds), default=0.0) > HELD_DRIFT:
@@ -93,18 +93,11 @@ def _least_change(
     """
     per_mass = 1.0 / solid.mass
     forces = rows if forces is None else forces
-    turnings = [times(inverse, moment) for _, moment in forces]
-    matrix = [
-        [
-            per_mass * dot(a, b) + dot(moment, turning)
-            for (b, _), turning in zip(forces, turnings, strict=True)
-        ]
-        for a, moment in rows
-    ]
-    shares = least_solution(matrix, amounts)
-    v = w = (0.0, 0.0, 0.0)
-    for share, (axis, _), turning in zip(shares, forces, turnings, strict=True):
+    pushes = [(force, times(inverse, moment)) for force, moment in forces]
+    shares = least_solution(responses(per_mass, rows, pushes), amounts)
+    v_x = v_y = v_z = w_x = w_y = w_z = 0.0
+    for share, ((x, y, z), (t_x, t_y, t_z)) in zip(shares, pushes, strict=True):
         part = share * per_mass
-        v = (v[0] + part * axis[0], v[1] + part * axis[1], v[2] + part * axis[2])
-        w = (w[0] + share * turning[0], w[1] + share * turning[1], w[2] + share * turning[2])
-    return v, w
+        v_x, v_y, v_z = v_x + part * x, v_y + part * y, v_z + part * z
+        w_x, w_y, w_z = w_x + share * t_x, w_y + share * t_y, w_z + share * t_z
+    return (v_x, v_y, v_z), (w_x, w_y, w_z)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.numerics.vectors import cross, dot, norm, without
+from contact_dynamics.numerics.vectors import dot, norm, without
 from contact_dynamics.tolerances import (
     BEGUN_TO_SLIDE,
     COARSE_SLIDING_STOPPED,
@@ -24,7 +24,7 @@ from contact_dynamics.tolerances import (
     SAMPLED_PHASE_ERROR,
     SLIDING_STOPPED,
 )
-from contact_dynamics.toss.forces import Pushed, free_accelerations, pushed_by_contacts
+from contact_dynamics.toss.forces import Free, Pushed, free_accelerations, pushed_by_contacts
 from contact_dynamics.toss.held import Held, sliding_direction
 from contact_dynamics.toss.holding import held_in_place
 from contact_dynamics.toss.mode_choice import corrected
@@ -213,13 +213,6 @@ def _speed_and_rate(solid: Solid, pose: Pose, pushed: Pushed, one: Held) -> tupl
     arm, n = arm_of(solid, pose, one.touch), solid.flats[one.touch[0]].normal
     velocity = velocity_of(pose, arm)
     d = sliding_direction(velocity, n, one.towards)
-    r, w, rates = solid.rounding, pose.w, pushed.rates
-    corner = (arm[0] + r * n[0], arm[1] + r * n[1], arm[2] + r * n[2])
-    turning = cross((rates[10], rates[11], rates[12]), arm)
-    inwards = cross(w, cross(w, corner))
-    acceleration = (
-        rates[7] + turning[0] + inwards[0],
-        rates[8] + turning[1] + inwards[1],
-        rates[9] + turning[2] + inwards[2],
-    )
-    return dot(velocity, d), dot(acceleration, d)
+    rates = pushed.rates
+    moved = Free(pose, (rates[7], rates[8], rates[9]), (rates[10], rates[11], rates[12]))
+    return dot(velocity, d), dot(moved.at(solid, one.touch, arm), d)

@@ -254,6 +254,20 @@ def transposed_times(matrix: Matrix3, vector: Vector3) -> Vector3:
     return (a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z)
 
 
+def responses(
+    per_mass: float, rows: list[tuple[Vector3, Vector3]], pushes: list[tuple[Vector3, Vector3]]
+) -> list[list[float]]:
+    """Return how much of each row's motion each push makes.
+
+    Rows have a direction and its moment about the centre of mass, and pushes have a force and the angular
+    acceleration that it causes, or an impulse and the change of angular velocity.
+    """
+    return [
+        [per_mass * (a * x + b * y + c * z) + (d * u + e * v + f * w) for (x, y, z), (u, v, w) in pushes]
+        for (a, b, c), (d, e, f) in rows
+    ]
+
+
 def arm_of(solid: Solid, pose: Pose, touch: Touch) -> Vector3:
     """Return the arm, m, from the centre of mass to the point that touches or would touch, world axes."""
     x, y, z = times(pose.rows, solid.corners[touch[1]])

@@ -142,8 +142,12 @@ def _settled(solid: Solid, y: Numbers, touching: list[Touch], rates: list[float]
     after = list(y)
     struck = []
     for touch, site, push in zip(touching, sites, pushes, strict=True):
-        x, yy, z = (sum(push[k] * site.axes[k][i] for k in range(3)) for i in range(3))
-        impulse = (x, yy, z)
+        (p, q, r), (t1, t2, n) = push, site.axes
+        impulse = (
+            p * t1[0] + q * t2[0] + r * n[0],
+            p * t1[1] + q * t2[1] + r * n[1],
+            p * t1[2] + q * t2[2] + r * n[2],
+        )
         turning = times(pose.inverse, cross(site.arm, impulse))
         for k in range(3):
             after[7 + k] += impulse[k] / solid.mass
