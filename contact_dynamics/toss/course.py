@@ -29,6 +29,8 @@ from contact_dynamics.toss.solid import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.rigid_body.body import BodyState
@@ -86,7 +88,7 @@ class Course:
             end=end,
             seconds=self.now,
             state=self.present(),
-            events=tuple(map(self._told_event, self.events)),
+            events=tuple(self._told_events()),
             resting_corners=tuple(sorted(corner for _, corner in self.resting)),
             resting_normal_B=np.array(self.resting_normal_B()),
             energy=energy,
@@ -137,7 +139,17 @@ class Course:
     def _state(self, seconds: float, y: Numbers) -> BodyState:
         return state_of(y, ns_after(self._began_ns, seconds))
 
-    def _told_event(self, noted: Noted) -> TossEvent:
+    def _told_events(self) -> Iterator[TossEvent]:
+        """Return what is told of the events. Those that leave one state share it."""
+        last: Noted | None = None
+        state = None
+        for noted in self.events:
+            if state is None or last is None or noted.y is not last.y or noted.seconds != last.seconds:
+                state = self._state(noted.seconds, noted.y)
+            last = noted
+            yield self._told_event(noted, state)
+
+    def _told_event(self, noted: Noted, state: BodyState) -> TossEvent:
         touching, y = noted.touching, noted.y
         return TossEvent(
             seconds=noted.seconds,
@@ -148,5 +160,5 @@ class Course:
             impulse_W=np.array(noted.impulse),
             outcome=noted.outcome,
             mode=noted.mode,
-            state=self._state(noted.seconds, y),
+            state=state,
         )

@@ -309,9 +309,10 @@ def properties_of(solid: Solid) -> MassProperties:
 
 def state_of(y: Numbers, stamp_ns: int = 0) -> BodyState:
     """Return 13 numbers, whose quaternion is nearly unit, as a state."""
-    q = np.array(y[3:7])
+    numbers = np.array(y)
+    q = numbers[3:7].copy()
     q /= math.sqrt(float(q @ q))
-    return BodyState(p_WB_W=y[:3], q_WB=q, v_WB_W=y[7:10], w_WB_W=y[10:], stamp_ns=stamp_ns)
+    return BodyState(p_WB_W=numbers[:3], q_WB=q, v_WB_W=numbers[7:10], w_WB_W=numbers[10:], stamp_ns=stamp_ns)
 
 
 def points_of(solid: Solid, y: Numbers, touching: list[Touch]) -> FloatArray:
