@@ -175,12 +175,14 @@ def _strike(
         restitution_laws=law,
         skip_separating=True,
     )
-    changes = spread.changes(which, np.linalg.norm(impacts.v_WB_W - state[2][which], axis=1))
+    inverses = R @ np.linalg.inv(inertias) @ R.transpose(0, 2, 1)
+    turning = solid.mass * np.cross(inverses, r[:, None, :])  # rows of the inverse times the matrix of r x
+    changes = spread.changes(which, np.linalg.norm(impacts.v_WB_W - state[2][which], axis=1), turning)
     v, w = impacts.v_WB_W + changes[:, :3], impacts.w_WB_W + changes[:, 3:]
     rebounds = np.einsum("ni,ni->n", normals, v + np.cross(w, r))
     # A corner does not go on into the flat. Where the spread would have it so, an impulse turns it back.
     moments = np.cross(r, normals)
-    turns = np.einsum("nij,njk,nlk,nl->ni", R, np.linalg.inv(inertias), R, moments)
+    turns = np.einsum("nij,nj->ni", inverses, moments)
     impulses = np.maximum(-2.0 * rebounds, 0.0) / (1.0 / solid.mass + np.einsum("ni,ni->n", moments, turns))
     state[2][which] = v + (impulses / solid.mass)[:, None] * normals
     state[3][which] = w + impulses[:, None] * turns

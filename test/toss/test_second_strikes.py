@@ -97,6 +97,59 @@ def test_second_strikes_of_made_tosses_are_in_their_regions() -> None:
     assert 0.85 < most.mean() < 0.95
 
 
+def test_regions_hold_where_the_law_is_off_by_impulses_at_the_contact() -> None:
+    """The impulses are drawn here, and the toss goes on from the velocities that they leave."""
+    chance = np.random.default_rng(8)
+    velocity = 0.018  # m/s
+    mass, moment = CUBE.mass_properties.mass, CUBE.mass_properties.I_B[0, 0]
+    lever = np.linalg.norm(CUBE.shape.vertices[0]) * mass / moment
+    spin = velocity * lever * np.sqrt(2.0 / 3.0)  # rad/s, by such impulses at any corner of a cube
+    held = []
+    while len(held) < 60:
+        state = thrown(chance)
+        went = toss(CUBE, state, WORLD, most_events=1, most_alternatives=0)
+        (first,) = went.events
+        tail = 0.8881 * np.sqrt(3.0 / chance.chisquare(3.0))
+        push = tail * np.sqrt(0.9) * velocity * chance.standard_normal(3)
+        pushed = np.cross(first.p_WC_W[0] - first.state.p_WB_W, mass * push)
+        off_v, off_w = tail * np.sqrt(0.1) * np.outer([velocity, spin], chance.standard_normal(3))
+        after = replace(
+            first.state,
+            v_WB_W=first.state.v_WB_W + push + off_v,
+            w_WB_W=first.state.w_WB_W + pushed / moment + off_w,
+        )
+        told = sampled_toss(
+            CUBE,
+            state,
+            WORLD,
+            uncertainty=TossUncertainty(velocity=velocity, spin=spin),
+            count=100,
+            law=RestitutionLaw.POISSON,
+            horizon=2.0,
+        )
+        rebound = after.velocity_of_point(first.p_WC_W[0])[2]
+        follows = first_strikes(after, WORLD)[:1]
+        if rebound < 0.05 or not follows or len(told.strikes) < 2 or told.strikes[1].probability < 1.0:
+            continue
+        regions, event = told.strikes[1], follows[0]
+        if regions.seconds.mean[0] - first.seconds < 0.03:
+            continue
+        turn = rotation_vectors(event.state.q_WB[None], regions.q_WB)[0]
+        held.append(
+            [
+                told.strikes[0].velocity.holds([after.v_WB_W])[0],
+                told.strikes[0].spin.holds([after.w_WB_W])[0],
+                regions.seconds.holds([[first.seconds + event.seconds]])[0],
+                regions.position.holds([event.state.p_WB_W])[0],
+                regions.turn.holds([turn])[0],
+            ]
+        )
+    half, most = np.mean(held, axis=0).T
+    np.testing.assert_allclose(half, 0.5, atol=0.19)  # of 60, three standard errors
+    np.testing.assert_allclose(most, 0.9, atol=0.12)
+    assert 0.85 < most.mean() < 0.95
+
+
 def recorded(state: BodyState, seconds: float, chance: np.random.Generator) -> Observed | None:
     """What is found in a made recording of a toss, or None if it has no first strike."""
     went = toss(CUBE, state, WORLD, horizon=seconds, most_alternatives=0)

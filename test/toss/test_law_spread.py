@@ -1,0 +1,82 @@
+"""The law's own spread is an impulse at the contact for the most part, for many samples and for one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contact_dynamics.impact import RestitutionLaw
+from contact_dynamics.rigid_body import inertia
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.shapes import box
+from contact_dynamics.toss import TossUncertainty, sampled_toss, toss
+from contact_dynamics.toss.law_spread import LawSpread
+from contact_dynamics.toss.solid import solid_of
+from contact_dynamics.world import Body, Surface, World
+
+SIZE = (0.1, 0.12, 0.07)
+BRICK = Body(
+    name="brick", mass_properties=inertia.box(size=SIZE, mass=0.4).mass_properties, shape=box(size=SIZE)
+)
+FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.2, restitution=0.4)
+WORLD = World(bodies=(BRICK,), surfaces=(FLOOR,))
+STATE = BodyState(
+    p_WB_W=[0, 0, 0.3],
+    q_WB=np.array([0.3, 0.5, -0.2, 0.7]) / np.linalg.norm([0.3, 0.5, -0.2, 0.7]),
+    v_WB_W=[0.5, -0.2, 0.1],
+    w_WB_W=[1.0, -2.0, 0.5],
+)
+UNCERTAINTY = TossUncertainty(velocity=0.0068, spin=0.3)
+"""An impulse that changes the velocity by 6.8 mm/s changes the spin by 0.3 rad/s."""
+
+
+def changes_of_many() -> np.ndarray:
+    """Of the first strikes of samples that differ in nothing else."""
+    found = sampled_toss(
+        BRICK,
+        STATE,
+        WORLD,
+        uncertainty=UNCERTAINTY,
+        count=60,
+        strikes=1,
+        law=RestitutionLaw.POISSON,
+        horizon=5.0,
+    ).ghosts
+    strike = toss(BRICK, STATE, WORLD, most_events=1, most_alternatives=0).events[0].state
+    return np.hstack([found.v_WB_W - strike.v_WB_W, found.w_WB_W - strike.w_WB_W])
+
+
+def changes_of_one() -> np.ndarray:
+    """Of the same strike, asked for one sample after the other."""
+    event = toss(BRICK, STATE, WORLD, most_events=1, most_alternatives=0).events[0]
+    after = [*event.state.p_WB_W, *event.state.q_WB, *event.state.v_WB_W, *event.state.w_WB_W]
+    before = [*after[:7], *STATE.v_WB_W, *STATE.w_WB_W]
+    spread = LawSpread(UNCERTAINTY, 60, np.random.default_rng(0))
+    solid = solid_of(BRICK, WORLD)
+    kicked = [spread.of_one(i)(solid, before, after, (0, event.corners[0])) for i in range(60)]
+    return np.array(kicked)[:, 7:] - np.array(after[7:])
+
+
+@pytest.mark.parametrize("changes_of", [changes_of_many, changes_of_one])
+def test_changes_of_spin_are_those_of_an_impulse_that_changes_the_velocity(changes_of: object) -> None:
+    event = toss(BRICK, STATE, WORLD, most_events=1, most_alternatives=0).events[0]
+    R = event.state.R_WB
+    inertia_W = R @ BRICK.mass_properties.I_B @ R.T
+    changes = changes_of()  # type: ignore[operator]
+    moments = np.cross(event.p_WC_W[0] - event.state.p_WB_W, BRICK.mass_properties.mass * changes[:, :3])
+    by_impulse = np.linalg.solve(inertia_W, moments.T).T
+    # Medians are compared, since tails are heavy.
+    # A tenth of both variances is left, and by that 0.45 of the size.
+    left, whole = (
+        np.median(np.linalg.norm(x, axis=1)) for x in (changes[:, 3:] - by_impulse, changes[:, 3:])
+    )
+    assert len(changes) >= 30
+    assert left < 0.65 * whole
+
+
+def test_both_spreads_are_kept_where_a_body_cannot_be_turned_at_its_contact() -> None:
+    """No impulse at a contact that is the mass centre changes a spin."""
+    spread = LawSpread(UNCERTAINTY, 4000, np.random.default_rng(1))
+    changes = spread.changes(np.arange(4000), np.ones(4000), np.zeros((4000, 3, 3)))
+    medians = [np.median(np.linalg.norm(part, axis=1)) for part in (changes[:, :3], changes[:, 3:])]
+    np.testing.assert_allclose(medians, 1.538 * np.array([0.0068, 0.3]), rtol=0.06)  # as of normal numbers
