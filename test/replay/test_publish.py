@@ -74,11 +74,13 @@ def test_stamps_are_moved_to_the_present(asked: Asked, tmp_path: Path) -> None:
     arguments = ["--params-file", str(configured(tmp_path)), "--ros-args"]
     arguments += ["-p", f"log_directory:={tmp_path / 'logs'}"]
     with process("server", *arguments, ready="ready"):
+        began_ns = time.time_ns()  # the log that is published has ended before
         done = published(asked.log, "--requests", "--wait", str(PATIENCE_S))
+        ended_ns = time.time_ns()
     assert done.returncode == 0, done.stderr
     (log,) = (tmp_path / "logs").iterdir()
     for message in BagReader(log).messages(STATES):
-        assert abs(message.log_time_ns - message.publish_time_ns) < 500_000_000
+        assert began_ns < message.publish_time_ns < ended_ns
     answered = []
     for path in (asked.log, log):
         responses = [decode_without_ros(call.response_event).response[0] for call in calls_of(path)]
