@@ -12,7 +12,17 @@ ROOT = Path(__file__).parents[1]
 ROW = re.compile(r"^\| [^|]+ \| ([^|]+) \| `([\w.]+)\.([A-Z_]+)` \| [^|]+ \|$", re.MULTILINE)
 ROWS = ROW.findall((ROOT / "docs" / "limits.md").read_text(encoding="utf-8"))
 DECLARED = re.compile(r"^((?:MOST|LARGEST)_[A-Z_]+): Final = ", re.MULTILINE)
-CHAPTERS = ("contact", "contact_modes", "impact", "landing", "motion", "questions", "shapes", "tumbling")
+CHAPTERS = (
+    "contact",
+    "contact_modes",
+    "impact",
+    "landing",
+    "motion",
+    "questions",
+    "shapes",
+    "toss",
+    "tumbling",
+)
 
 NOT_REFUSED = {
     # They bound work after which a result says that it is not complete or not converged, or choose a way.
@@ -37,6 +47,14 @@ NOT_REFUSED = {
     "questions.effort.MOST_QUICK_TURNS",
     "questions.settled_impact.MOST_CONTACTS_IN_ORDERS",
     "questions.state_store.MOST_STATES",
+    "toss.cone_forces.MOST_SWEEPS",
+    "toss.laid_flat.MOST_CORNERS",
+    "toss.one_toss.MOST_ALTERNATIVES",
+    "toss.phase.LARGEST_STEP",
+    "toss.phase.MOST_PHASE_STEPS",
+    "toss.sampled.MOST_GHOSTS",
+    "toss.strike.MOST_STRIKES_AT_ONCE",
+    "toss.strikes_of_many.MOST_FURTHER",
     "tumbling.attitude_form.MOST_TERMS",
 }
 

@@ -89,7 +89,7 @@ class Course:
             seconds=self.now,
             state=self.present(),
             events=tuple(self._told_events()),
-            resting_corners=tuple(sorted(corner for _, corner in self.resting)),
+            resting_corners=tuple(sorted({corner for _, corner in self.resting})),
             resting_normal_B=np.array(self.resting_normal_B()),
             energy=energy,
             undecided=tuple(self._undecided),

@@ -46,6 +46,9 @@ if TYPE_CHECKING:
 Kick: TypeAlias = "Callable[[Solid, Numbers, Numbers, Touch], Numbers]"
 """Takes the body, the states before and after a strike, and the contact, and returns another state after."""
 
+MOST_STEPS: Final = 100_000
+"""Steps in contact, after which a toss ends unfinished. A ball that rolls takes some thirteen a turn."""
+
 _ROUNDS: Final = 4
 """Searches for a mode, relative to the bound on events, after which a toss ends unfinished."""
 
@@ -118,7 +121,7 @@ class Run(Course):
         self.runs = runs
         self.work = SearchWork()
         self.slow = math.inf  # J, rest is tried where the kinetic energy is below this
-        self.struck = self.laid = 0  # strikes, and how often it was laid flat
+        self.struck = self.laid = self.steps = 0  # strikes, how often it was laid flat, steps in contact
         self.settled: Strikes | None = None  # the last strikes
         self.looked_at: list[Touch] = []  # contacts whose modes were all looked for last
         self.way_on: Mode | None = None  # how it goes on where it could rest as well
@@ -130,7 +133,7 @@ class Run(Course):
     def _to_end(self) -> Asking[TossEnd]:
         touching = self.touching_now(STRIKES)
         for _ in range(_ROUNDS * self.runs.most_events):
-            if len(self.events) >= self.runs.most_events:
+            if len(self.events) >= self.runs.most_events or self.steps >= MOST_STEPS:
                 return TossEnd.MOST_EVENTS
             if self.now >= self.runs.horizon:
                 return TossEnd.HORIZON
@@ -302,6 +305,7 @@ class Run(Course):
         )
         if self.runs.has_pieces:
             self.pieces += went.steps
+        self.steps += len(went.steps)
         self.now, self.y = went.seconds, went.y
         self.lost_in_contact += before - energy_of(self.solid, self.y)
         held = [one.touch for one in mode]

@@ -153,10 +153,18 @@ def _shared_along_edge(
 def _squeezed(solid: Solid, pose: Pose, mode: tuple[Held, ...], forces: list[Vector3]) -> list[Vector3]:
     """Return forces with the same motion, where two contacts that stick squeeze the body between flats.
 
-    By how much they do so is open. It is the least by which friction holds both, or zero if none does.
+    By how much they do so is open. It is the least by which friction holds both, or zero if none does. It is
+    along the line between the two contacts. A corner in a groove, which touches both flats itself, is pressed
+    against both by what is along the difference of their normals.
     """
     (x, y, z), (a, b, c) = (arm_of(solid, pose, one.touch) for one in mode)
-    line = normalised((x - a, y - b, z - c))
+    between = (x - a, y - b, z - c)
+    if between == (0.0, 0.0, 0.0):
+        (x, y, z), (a, b, c) = (solid.flats[one.touch[0]].normal for one in mode)
+        between = (x - a, y - b, z - c)
+    if between == (0.0, 0.0, 0.0):  # the flats are the same
+        return forces
+    line = normalised(between)
     least, most = -math.inf, math.inf
     for one, force, u in zip(mode, forces, (line, opposite(line)), strict=True):
         flat = solid.flats[one.touch[0]]

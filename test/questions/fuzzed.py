@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -22,16 +23,20 @@ from contact_dynamics.questions import (
     Problem,
     PublishedState,
     StateStore,
+    TossQuestion,
+    TossSampling,
     TumblingQuestion,
     UncertainState,
     UntilContact,
     UntilPlane,
 )
 from contact_dynamics.questions.many import ManyImpactsQuestion, ManyStates, ManyTumblingsQuestion
+from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import ConvexShape
 from contact_dynamics.shapes.obstacle import Obstacle
-from contact_dynamics.world import Body, World, box_vertices
+from contact_dynamics.toss import TossUncertainty
+from contact_dynamics.world import Body, Surface, World, box_vertices
 from questions.known_world import CUBE, FLOOR, SIDE, state
 
 BALL = Body(
@@ -45,6 +50,7 @@ STEP = Obstacle(
     friction=0.5,
     restitution=0.3,
 )
+WALL = Surface(name="wall", p_WS_W=[2.0, 0, 0], normal_W=[-1, 0, 0], friction=0.3, restitution=0.4)
 NAMES = ("cube", "ball")
 FEW_MS = 4_000_000  # ns
 
@@ -57,6 +63,12 @@ def knowledge() -> Knowledge:
             stamp_ns = number * FEW_MS
             states.add(name, state(1.0, v=(0.1, 0.0, -1e-9 * 9.8 * stamp_ns), stamp_ns=stamp_ns))
     return Knowledge(world=World(bodies=(CUBE, BALL), surfaces=(FLOOR, STEP)), states=states)
+
+
+def knowledge_of_flats() -> Knowledge:
+    """The same with a wall instead of the step: tosses are among flats."""
+    known = knowledge()
+    return replace(known, world=replace(known.world, surfaces=(FLOOR, WALL)))
 
 
 usual = st.one_of(
@@ -275,4 +287,54 @@ def contact_mode_questions(draw: st.DrawFn) -> ContactModeQuestion:
         want_wrenches=draw(st.booleans()),
         want_statics=draw(st.booleans()),
         want_impact=draw(st.booleans()),
+    )
+
+
+@st.composite
+def many_contact_modes_questions(draw: st.DrawFn) -> ManyContactModesQuestion:
+    asked = draw(contact_mode_questions())
+    count = 0 if asked.contacts is None else len(asked.contacts)
+    candidates = draw(st.integers(1, 3))
+    return ManyContactModesQuestion(
+        asked=asked,
+        forces_W=draw(rows(candidates, vectors())),
+        torques_W=draw(rows(candidates, vectors())),
+        contact_counts=draw(st.sampled_from([(), (), (1,) * count, (count,)])),
+    )
+
+
+@st.composite
+def toss_uncertainties(draw: st.DrawFn) -> TossUncertainty:
+    """Mostly small, as a calibration finds it, now and then of any size."""
+    rows_of_two_flats = draw(st.sampled_from([0, 8, 11, 11, 3]))
+    deviations = [draw(st.one_of(st.just(0.01), sizes)) for _ in range(rows_of_two_flats)]
+    factors = draw(st.sampled_from([0, 2, 2, 1]))
+    return TossUncertainty(
+        covariance=np.diag([d * d for d in deviations]),
+        velocity=draw(st.one_of(st.just(0.02), sizes)),
+        spin=draw(st.one_of(st.just(0.3), sizes)),
+        height=draw(st.one_of(st.just(1e-4), sizes)),
+        lasting_factors=[draw(sizes) for _ in range(factors)],
+        lasting_factor_stds=[draw(sizes) for _ in range(draw(st.sampled_from([0, factors])))],
+    )
+
+
+@st.composite
+def toss_questions(draw: st.DrawFn) -> TossQuestion:
+    sampling = st.builds(
+        TossSampling,
+        count=st.integers(1, 4),
+        strikes=st.sampled_from([None, 1, 2]),
+        to_rest=st.booleans(),
+        uncertainty=toss_uncertainties(),
+    )
+    return TossQuestion(
+        body=draw(asked_bodies()),
+        state=draw(sources()),
+        restitution_law=draw(st.sampled_from(RestitutionLaw)),
+        horizon=draw(st.one_of(st.just(0.5), st.just(0.5), sizes)),
+        rate=draw(optional_sizes),
+        most_alternatives=draw(st.sampled_from([None, 0, 0, 1])),
+        sampling=draw(st.one_of(st.none(), sampling)),
+        lasting_factors=draw(st.sampled_from([(), (), (1.0, 0.5), (0.0, 1e300)])),
     )

@@ -11,22 +11,27 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from contact_dynamics.errors import ContactDynamicsError
-from contact_dynamics.questions import ask
+from contact_dynamics.questions import TossQuestion, ask
 from contact_dynamics.questions.many import (
     ManyImpactsQuestion,
     ManyTumblingsQuestion,
     answer_impacts,
     answer_tumblings,
 )
+from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
+from contact_dynamics.questions.many_contact_modes import answer as answer_contact_modes
 from questions import fuzzed
 
 KNOWLEDGE = fuzzed.knowledge()
+FLATS = fuzzed.knowledge_of_flats()
 KINDS = (
     fuzzed.tumbling_questions,
     fuzzed.impact_questions,
     fuzzed.contact_mode_questions,
     fuzzed.many_tumblings_questions,
     fuzzed.many_impacts_questions,
+    fuzzed.many_contact_modes_questions,
+    fuzzed.toss_questions,
 )
 CASES = 10_000
 
@@ -51,6 +56,10 @@ def check_answered(question: Any) -> None:
                 answer_tumblings(question, KNOWLEDGE)
             elif isinstance(question, ManyImpactsQuestion):
                 answer_impacts(question, KNOWLEDGE)
+            elif isinstance(question, ManyContactModesQuestion):
+                answer_contact_modes(question, KNOWLEDGE)
+            elif isinstance(question, TossQuestion):
+                ask(question, FLATS)
             else:
                 ask(question, KNOWLEDGE)
 

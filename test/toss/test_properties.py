@@ -10,7 +10,7 @@ import pytest
 from contact_dynamics import Body, BodyState, Surface, World, inertia
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, NotSupportedError
 from contact_dynamics.rigid_body.body import kinetic_energy
-from contact_dynamics.shapes import box, cylinder
+from contact_dynamics.shapes import box, cylinder, sphere
 from contact_dynamics.toss import Toss, TossEnd, TossEventKind, UndecidedReason, toss
 
 G = 9.81
@@ -149,3 +149,19 @@ def test_bad_input_is_refused_by_name() -> None:
     with pytest.raises(InvalidFieldError, match="seconds"):
         went.at([0.06])
     assert TossEventKind.RESTS not in {event.kind for event in went.events}
+
+
+def test_a_ball_that_rolls_on_for_years_ends_at_the_bound_on_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each step is short beside a turn, so a horizon without end would take as long."""
+    monkeypatch.setattr("contact_dynamics.toss.following.MOST_STEPS", 200)
+    ball = Body(
+        name="ball",
+        mass_properties=inertia.sphere(radius=0.05, mass=0.3).mass_properties,
+        shape=sphere(radius=0.05),
+    )
+    floor = Surface(**FLOOR, friction=0.5, restitution=0.0)
+    state = BodyState(p_WB_W=[0, 0, 0.05], q_WB=[0, 0, 0, 1], v_WB_W=[1, 0, 0], w_WB_W=[0, 0, 0])
+    went = toss(ball, state, World(surfaces=(floor,)), horizon=1e9)
+    assert went.end == TossEnd.MOST_EVENTS
+    assert 1.0 < went.seconds < 1e4
+    assert went.state.v_WB_W[0] == pytest.approx(5.0 / 7.0, rel=1e-6)  # it rolls
