@@ -214,7 +214,7 @@ class _LogPublisher:
             _move(request, pacing)
         if call.service not in self._clients:
             self._clients[call.service] = self._node.create_client(
-                message_class(call.service_type), call.service
+                message_class(call.service_type), call.service, qos_profile=QoSProfile(depth=DEPTH)
             )
             self._clients[call.service].wait_for_service(timeout_sec=_ANSWERS_S)
         future = self._clients[call.service].call_async(request)

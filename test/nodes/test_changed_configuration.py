@@ -18,7 +18,7 @@ from rclpy.parameter import Parameter
 from contact_dynamics.recording import BagReader
 from contact_dynamics.replay.verify import verify_log
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
-from running_server import PATIENCE_S, ROOT, SERVICES, Client, environment, process
+from running_server import PATIENCE_S, PATIENT, ROOT, SERVICES, Client, environment, process
 
 NODE = "/contact_dynamics"
 
@@ -62,7 +62,7 @@ class Configured(NamedTuple):
 @pytest.fixture
 def configured(tmp_path: Path) -> Iterator[Configured]:
     arguments = ["--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args"]
-    arguments += ["-p", f"log_directory:={tmp_path}"]
+    arguments += ["-p", f"log_directory:={tmp_path}", "-p", PATIENT]
     with process("server", *arguments, ready="ready"):
         client = Client()
         try:
