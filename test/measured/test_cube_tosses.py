@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 import os
 from pathlib import Path
 
@@ -118,7 +119,8 @@ def test_a_file_that_is_not_as_described_is_refused(tmp_path: Path) -> None:
             read_toss(path)
 
 
-BESIDE = Path(__file__).parents[3] / "shared" / "data" / "cube_tosses" / "tosses.npz"
+ROOT = Path(__file__).parents[2]
+BESIDE = ROOT.parent / "shared" / "data" / "cube_tosses" / "tosses.npz"
 MEASURED = Path(os.environ.get("CUBE_TOSSES", BESIDE))
 
 
@@ -136,3 +138,22 @@ def test_published_tosses_fly_strike_and_come_to_rest() -> None:
         assert -0.006 < events.rest.heights.min() < 0.002
         with_strikes += len(events.strikes) > 0
     assert with_strikes > 0.7 * len(tosses)  # of all 360, 281 have a strike between two flights
+
+
+@pytest.mark.skipif(not MEASURED.is_file(), reason=f"no published tosses at {MEASURED} (CUBE_TOSSES)")
+def test_no_toss_on_which_errors_are_told_is_another_one_that_is_turned_about_the_vertical() -> None:
+    """Such a turn changes neither heights nor the vertical in body axes."""
+    split = json.loads((ROOT / "benchmarks" / "cube_split.json").read_text(encoding="utf-8"))
+    with np.load(MEASURED) as file:
+        rows, offsets = file["data"], file["offsets"]
+
+    def fingerprint(index: int) -> tuple[float, ...]:
+        toss = rows[offsets[index] : offsets[index + 1]]
+        up_B = np.array([matrix(q)[2] for q in toss[:20:5, 4:8]])
+        return (float(len(toss)), *np.round([*toss[:20:5, 3], *up_B.ravel()], 9).tolist())
+
+    tested = [fingerprint(index) for index in split["test"]]
+    fitted = {fingerprint(index) for index in split["fit"]}
+    assert len(set(tested)) == len(tested) == 160
+    assert not fitted & set(tested)
+    assert len({fingerprint(index) for index in range(360)}) == 333  # so the twins are found
