@@ -10,11 +10,14 @@ from __future__ import annotations
 
 import time
 from copy import copy
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 from rclpy.qos_overriding_options import QoSOverridingOptions
+from rclpy.serialization import deserialize_message
+from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.nodes.introductions import ask_for_introductions
@@ -65,6 +68,7 @@ class InboxNode(Node):
         """Begin without any, and find who is there; the arguments are those of `rclpy.node.Node`."""
         self.inbox: list[Subscription] = []
         self._in_rounds: list[Subscription] = []
+        self._takes_time = False  # by a subscription of its own, rather than by that of its time source
         self._emptied = 0.0  # when, s
         self._question_ns = 0
         super().__init__(*arguments, **options)
@@ -116,6 +120,22 @@ class InboxNode(Node):
             self._in_rounds.append(subscription)
         return subscription
 
+    def subscribe_to_time(self, receive: Callable[[Taken], object], qos: QoSProfile) -> Subscription:
+        """Subscribe to the simulated time. The node's clock goes by the messages that ``receive`` gets.
+
+        The subscription of rclpy's time source is left alone from then on: it keeps one message, and what it
+        took, others might not get.
+        """
+
+        def tick(taken: Taken) -> None:
+            receive(taken)
+            self._set_clock(taken.data)
+
+        subscription = self.subscribe(Clock, "/clock", tick, qos)
+        self._in_rounds.insert(0, self._in_rounds.pop())  # states that are ahead of the clock are refused
+        self._takes_time = True
+        return subscription
+
     def subscribe_anew(self, subscription: Subscription) -> Subscription:
         """Put another subscription in the place of one, and return it."""
         made = self.create_subscription(
@@ -137,6 +157,7 @@ class InboxNode(Node):
             self.destroy_subscription(subscription)
         self.inbox.clear()
         self._in_rounds.clear()
+        self._takes_time = False
 
     def attend(self) -> None:
         """Take all messages, unless that was done a moment ago; see `RunnableNode`."""
@@ -147,7 +168,7 @@ class InboxNode(Node):
         """Take all messages that wait."""
         self._emptied = time.monotonic()
         clock = self._clock_subscription
-        if clock is not None:  # first, because states that are ahead of the clock are refused
+        if clock is not None and not self._takes_time:
             self._take_time(clock)
         for subscription in self._in_rounds:
             self.empty(subscription)
@@ -184,17 +205,29 @@ class InboxNode(Node):
     def _take_time(self, clock: Subscription) -> None:
         with clock.handle:
             for _ in range(clock.qos_profile.depth):
-                taken = clock.handle.take_message(clock.msg_type, False)  # noqa: FBT003  not raw
+                taken = clock.handle.take_message(clock.msg_type, True)  # noqa: FBT003  raw
                 if taken is None:
                     return
-                try:
-                    clock.callback(taken[0])
-                except ValueError:  # rclpy has no time before zero; the clock stays where it was
-                    self.get_logger().warning(
-                        f"{clock.topic_name}: message ignored: clock.sec: found {taken[0].clock.sec}, "
-                        "allowed is a number >= 0",
-                        throttle_duration_sec=_TELL_EVERY_S,
-                    )
+                self._set_clock(taken[0])
+
+    def _set_clock(self, data: bytes) -> None:
+        """Set the node's clock to what a message says, or say why it cannot be."""
+        clock = self._clock_subscription
+        if clock is None:  # the parameter `use_sim_time` was changed meanwhile
+            return
+        warn = partial(self.get_logger().warning, throttle_duration_sec=_TELL_EVERY_S)
+        try:
+            msg = deserialize_message(data, Clock)
+        except RuntimeError as error:  # bytes that are no message
+            warn(f"{clock.topic_name}: message ignored: {error}")
+            return
+        try:
+            clock.callback(msg)
+        except ValueError:  # rclpy has no time before zero; the clock stays where it was
+            warn(
+                f"{clock.topic_name}: message ignored: clock.sec: found {msg.clock.sec}, "
+                "allowed is a number >= 0"
+            )
 
     def _after_the_question(self, received_ns: int) -> int:
         """Return when a message came; one that came while a question was being taken counts as later."""

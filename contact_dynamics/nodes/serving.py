@@ -10,7 +10,6 @@ from nav_msgs.msg import Path
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
 from rclpy.qos import QoSProfile, ReliabilityPolicy
-from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.nodes import parameter_event
 from contact_dynamics.nodes.diagnostics import AnswerTimes, Diagnostics
@@ -292,7 +291,7 @@ class Serving:
         def record(tick: Taken) -> None:
             self._record(topic, tick)
 
-        topic: str = self._node.subscribe(Clock, "/clock", record, CLOCK_QOS).topic_name
+        topic: str = self._node.subscribe_to_time(record, CLOCK_QOS).topic_name
         self._log.add_topic(topic, "rosgraph_msgs/msg/Clock")
         self._clock_publishers = OfferedQosWatch(self._node, topic, self._note_offers)
 

@@ -12,6 +12,7 @@ import yaml
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
 from rclpy.qos import QoSProfile
+from rclpy.serialization import serialize_message
 from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.nodes.inbox import Taken
@@ -103,6 +104,22 @@ def test_a_clock_before_zero_is_ignored_and_told(tmp_path: Path) -> None:
                 tick.clock.sec = seconds
                 clock.publish(tick)
             wait_for(server, "/clock: message ignored: clock.sec: found -5, allowed is a number >= 0")
+            states.publish(odometry("brick", HOUR_NS))
+            client.spin_until(lambda: newest_ns(client, "brick") == HOUR_NS)
+        finally:
+            client.close()
+
+
+def test_a_clock_that_is_no_message_is_ignored_and_told(tmp_path: Path) -> None:
+    arguments = ("--params-file", str(two_bodies(tmp_path)), "--ros-args", "-p", "use_sim_time:=true")
+    with process("server", *arguments, ready="ready") as server:
+        client = Client()
+        try:
+            states = client.publisher(Odometry, "/brick/odometry")
+            clock = client.publisher(Clock, "/clock")
+            clock.publish(serialize_message(Clock())[:5])
+            wait_for(server, "/clock: message ignored: ")
+            clock.publish(Clock(clock=stamp_to_msg(HOUR_NS)))
             states.publish(odometry("brick", HOUR_NS))
             client.spin_until(lambda: newest_ns(client, "brick") == HOUR_NS)
         finally:
