@@ -18,6 +18,7 @@ from rclpy.utilities import remove_ros_args
 
 from contact_dynamics.contact_modes import ModeVerdict
 from contact_dynamics.demo.arguments import PUSHED_BLOCK, THROWN_BOX, TRAY, commentator_parser
+from contact_dynamics.demo.patience import Patience
 from contact_dynamics.demo.until_stopped import run_until_stopped
 from contact_dynamics.diagrams.words import OUTCOMES, VERDICTS, mode_in_words
 from contact_dynamics.errors import NotSupportedError
@@ -68,7 +69,7 @@ class Commentator(Node):
             TRAY: self._comment_on_the_tray,
         }[situation]
         self._newest: dict[type, Any] = {}
-        self._heard: float | None = None
+        self._silence: Patience | None = None  # since the newest state
         self._measured: list[tuple[type, str]] = [(Odometry, topics[0].full_name)]
         if situation == PUSHED_BLOCK:
             self._measured.append((WrenchStamped, "/finger/wrench"))
@@ -87,7 +88,7 @@ class Commentator(Node):
         The publishers begin when somebody listens. So this listens no sooner than it can ask.
         """
         if self._ask(self._mode, PredictContactMode.Request(body_name=self._body.name)) is None:
-            self._executor.spin_once(timeout_sec=0.05)
+            self._spin()
             return False
         for msg_type, topic in self._measured:
             self._listen(msg_type, topic)
@@ -96,7 +97,7 @@ class Commentator(Node):
     @property
     def is_over(self) -> bool:
         """Whether there were states, and come no more."""
-        return self._heard is not None and time.monotonic() - self._heard > SILENCE_S
+        return self._silence is not None and self._silence.is_over
 
     def comment(self) -> None:
         """Ask once, and print what was answered if it is new; then listen until the next question is due."""
@@ -108,7 +109,7 @@ class Commentator(Node):
             self._begun = now if self._begun is None else self._begun
             print(f"{now - self._begun:5.1f} s  {words}", flush=True)
         while time.monotonic() < due:
-            self._executor.spin_once(timeout_sec=0.05)
+            self._spin()
 
     def _comment_on_the_box(self) -> str:
         """Tell what the next landing does, or in which mode the box lies."""
@@ -179,19 +180,25 @@ class Commentator(Node):
         if not client.service_is_ready():
             return None
         future = client.call_async(request)
-        deadline = time.monotonic() + DEADLINE_S
+        patience = Patience(DEADLINE_S)
         # Not spin_until_future_complete: in rclpy 7.1 each call makes the next one slower.
-        while not future.done() and time.monotonic() < deadline:
-            self._executor.spin_once(timeout_sec=0.05)
+        while not (future.done() or patience.is_over):
+            self._spin()
+            patience.look()
         if future.done():
             return future.result()
         client.remove_pending_request(future)
         return None
 
+    def _spin(self) -> None:
+        self._executor.spin_once(timeout_sec=0.05)
+        if self._silence is not None:
+            self._silence.look()
+
     def _listen(self, msg_type: type, topic: str) -> None:
         def keep(msg: object) -> None:
             self._newest[msg_type] = msg
-            self._heard = time.monotonic()
+            self._silence = Patience(SILENCE_S)
 
         self.create_subscription(msg_type, topic, keep, 1)  # the newest alone
 

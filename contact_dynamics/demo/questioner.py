@@ -16,6 +16,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
 from contact_dynamics.constants import ns_after, seconds_between, to_seconds
+from contact_dynamics.demo.patience import Patience
 from contact_dynamics.demo.toss_publisher import QOS, WORLD_FRAME, topic_of
 from contact_dynamics.motion.velocity_estimate import WINDOW
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
@@ -75,7 +76,7 @@ class Questioner(Node):
         self._epoch_ns: int | None = None
         self._now = 0.0
         self._flying_since = 0.0  # s on the recording's clock, as predicted
-        self._heard = time.monotonic()
+        self._silence = Patience(_START_S)  # until the first state, as long as a start may take
         self._recent: deque[BodyState] = deque(maxlen=REST_FRAMES)
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self)
@@ -113,11 +114,11 @@ class Questioner(Node):
 
     def watch(self, playing: Callable[[], bool]) -> None:
         """Listen and ask until the toss is over."""
-        self._heard = time.monotonic() + _START_S  # until the first state, as long as a start may take
+        self._silence = Patience(_START_S)
         landing: float | None = None  # predicted, s on the recording's clock
         # velocities look back over WINDOW, so it must have seen that much flight before it asks
         blind_until = 0.0
-        while self.received < len(self._toss) and (playing() or time.monotonic() - self._heard < SILENCE_S):
+        while self.received < len(self._toss) and (playing() or not self._silence.is_over):
             if not self._spin():
                 continue
             if self._at_rest() and not self.modes:
@@ -146,13 +147,14 @@ class Questioner(Node):
         late_ns = self.get_clock().now().nanoseconds - state.stamp_ns
         self.latest = max(self.latest, to_seconds(late_ns))
         self._recent.append(state)
-        self._heard = time.monotonic()
+        self._silence = Patience(SILENCE_S)
         self.received += 1
 
     def _spin(self) -> bool:
         """Return whether a state has come."""
         before = self.received
         self._executor.spin_once(timeout_sec=0.1)
+        self._silence.look()
         return self.received > before
 
     def _at_rest(self) -> bool:
@@ -195,12 +197,13 @@ class Questioner(Node):
             self._askers[service] for service in self._askers if isinstance(request, service.Request)
         )
         start, now = time.monotonic(), self._now
-        future = client.call_async(request)
+        future, patience = client.call_async(request), Patience(ANSWER_S)
         while not future.done():
-            if time.monotonic() - start > ANSWER_S:
+            if patience.is_over:
                 message = f"no answer from {client.srv_name} within {ANSWER_S:g} s"
                 raise TimeoutError(message)
             self._executor.spin_once(timeout_sec=0.1)
+            patience.look()
         return Asked(time=now, response=future.result(), round_trip=time.monotonic() - start)
 
     def close(self) -> None:
