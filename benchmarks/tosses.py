@@ -23,8 +23,10 @@ from __future__ import annotations
 import json
 import os
 import time
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import partial
+from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -48,6 +50,7 @@ from contact_dynamics.world import World
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from concurrent.futures import Executor
 
     from contact_dynamics.calibration import Calibration
     from contact_dynamics.calibration.observed import Observed
@@ -68,6 +71,10 @@ RESTING: Final = 20
 """Tosses that are followed to rest."""
 
 RESTING_SAMPLES: Final = 50
+MANY: Final = 1000
+"""Samples to rest that several processes share."""
+
+PROCESSES: Final = 2
 HORIZON: Final = 3.0
 
 
@@ -161,7 +168,13 @@ def _about(state: BodyState, centre: FloatArray) -> BodyState:
 
 
 def _predicted(
-    one: Early, world: World, uncertainty: TossUncertainty, *, count: int = SAMPLES, to_rest: bool = False
+    one: Early,
+    world: World,
+    uncertainty: TossUncertainty,
+    *,
+    count: int = SAMPLES,
+    to_rest: bool = False,
+    processes: int | Executor = 1,
 ) -> TossDistribution:
     return sampled_toss(
         world.bodies[0],
@@ -174,6 +187,7 @@ def _predicted(
         to_rest=to_rest,
         law=RestitutionLaw.POISSON,
         horizon=HORIZON,
+        processes=processes,
     )
 
 
@@ -234,6 +248,26 @@ def _costs(early: list[Early], world: World, uncertainty: TossUncertainty) -> No
     spent = [_spent(partial(toss, body, one.state, world, most_alternatives=0)) for one in early]
     print(f"a single toss to rest: {np.median(spent):.0f} ms")
     quote("tosses.cost.single", float(np.median(spent)), "ms")
+    _shared(early[0], world, uncertainty)
+
+
+def _shared(one: Early, world: World, uncertainty: TossUncertainty) -> None:
+    """Print how long many samples to rest take in one process and in several."""
+    print(f"{MANY} samples to rest                   time    processor time")
+    with ProcessPoolExecutor(PROCESSES, mp_context=get_context("spawn")) as executor:
+        list(executor.map(_predicted, [one] * PROCESSES, [world] * PROCESSES, [uncertainty] * PROCESSES))
+        for name, words, processes in (
+            ("one", "in one process", 1),
+            ("several", f"in {PROCESSES} processes", PROCESSES),
+            ("running", f"in {PROCESSES} that run already", executor),
+        ):
+            begin, used = time.perf_counter(), sum(os.times()[:4])
+            _predicted(one, world, uncertainty, count=MANY, to_rest=True, processes=processes)
+            spent = time.perf_counter() - begin
+            # The time of children counts once they have ended.
+            worked = f"{sum(os.times()[:4]) - used:14.1f} s" if name != "running" else ""
+            print(f"  {words:<32}{spent:6.1f} s{worked}")
+            quote(f"tosses.cost.many.{name}", spent, "s")
 
 
 def _mujoco_rollouts(

@@ -15,9 +15,10 @@ what happens, and `result` has what is returned. Flights, impacts (`one_impact`)
 
 What is not known exactly (`uncertainty`) is sampled: `sampled` is the call, and `distribution` has what it
 returns. `strikes_of_many` has the next strikes of all samples at once (`arrivals_of_many`), and `law_spread`
-what the law of impact leaves open. `laid_flat` ends the rattling of samples on a face. Samples on their way
-to rest go on `together`: `flights_of_many`, `impacts_of_many` and `steps_of_many` do in arrays what they ask
-for, by the arithmetic of one, with `solids_of_many`.
+what the law of impact leaves open. `to_rest` has samples on their way to rest, in blocks that several
+processes can share. `laid_flat` ends their rattling on a face. Those of a block go on `together`:
+`flights_of_many`, `impacts_of_many` and `steps_of_many` do in arrays what they ask for, by the arithmetic of
+one, with `solids_of_many`.
 """
 
 from contact_dynamics.toss.distribution import TossDistribution

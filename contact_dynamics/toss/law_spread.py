@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from numpy.random import Generator
     from numpy.typing import NDArray
 
-    from contact_dynamics.toss.following import Kick
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
     from contact_dynamics.toss.uncertainty import TossUncertainty
     from contact_dynamics.validation import FloatArray
@@ -71,47 +70,57 @@ class LawSpread:
         # Numbers are drawn for all samples, so that a sample's do not depend on what others do.
         count = len(self._first)
         drawn, sizes = self._chance.standard_normal((count, 9))[which], _tails(self._chance, count)[which]
-        parts = self._parts(np.einsum("nij,nij->n", turning, turning) / 3.0)
+        parts = _parts(self._sizes, np.einsum("nij,nij->n", turning, turning) / 3.0)
         drawn *= np.repeat(np.array(parts).T * (sizes * shares)[:, None], 3, axis=1)
         drawn[:, 3:6] += drawn[:, :3]
         drawn[:, 6:] += np.einsum("nij,nj->ni", turning, drawn[:, :3])
         changes: FloatArray = drawn[:, 3:]
         return changes
 
-    def _parts(self, squares: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return standard deviations: of velocities by an impulse, and of what is left of both, (m,).
-
-        ``squares``, (m,), 1/m^2, are the variances of a spin's components by an impulse that changes those
-        of the velocity by 1.
-        """
-        velocity, spin = self._sizes[0] ** 2, self._sizes[3] ** 2
-        most = np.full(len(squares), velocity)
-        np.divide(spin, squares, out=most, where=squares > 0.0)
-        pushed = BY_IMPULSE * np.minimum(velocity, most)
-        return np.sqrt(pushed), np.sqrt(velocity - pushed), np.sqrt(np.maximum(spin - pushed * squares, 0.0))
-
-    def of_one(self, i: int) -> Kick:
+    def of_one(self, i: int) -> KickOfOne:
         """Return what changes the velocities of one sample after a strike of a single contact.
 
         Each sample has numbers of its own, so that it does not matter which one goes on first.
         """
         self._own = self._own or self._chance.spawn(len(self._first))
-        chance = self._own[i]
+        return KickOfOne(self._sizes, float(self._first[i]), self._own[i])
 
-        def kick(solid: Solid, before: Numbers, after: Numbers, touch: Touch) -> Numbers:
-            jump = float(np.linalg.norm(np.subtract(after[7:10], before[7:10])))
-            first = self._first[i] = self._first[i] or jump
-            share = min(jump / (FULL * first), 1.0) if first > 0.0 else 1.0
-            size = share * float(_tails(chance, 1)[0])
-            turning = _turning(solid, after, touch)
-            parts = self._parts(np.array([(turning * turning).sum() / 3.0]))
-            drawn = size * np.repeat(np.ravel(parts), 3) * chance.standard_normal(9)
-            pushed = drawn[:3]
-            changes = [*(pushed + drawn[3:6]).tolist(), *(turning @ pushed + drawn[6:]).tolist()]
-            y = [*after[:7], *(x + change for x, change in zip(after[7:], changes, strict=True))]
-            return _turned_back(solid, y, touch)
 
-        return kick
+class KickOfOne:
+    """Changes the velocities of one sample after its strikes. It can be handed to another process."""
+
+    def __init__(self, sizes: FloatArray, first: float, chance: Generator) -> None:
+        self._sizes, self._chance = sizes, chance
+        self._first = first  # m/s, by how much the first strike changed the velocity
+
+    def __call__(self, solid: Solid, before: Numbers, after: Numbers, touch: Touch) -> Numbers:
+        """Return the changed state after a strike, for those before and after it and the contact."""
+        jump = float(np.linalg.norm(np.subtract(after[7:10], before[7:10])))
+        first = self._first = self._first or jump
+        share = min(jump / (FULL * first), 1.0) if first > 0.0 else 1.0
+        size = share * float(_tails(self._chance, 1)[0])
+        turning = _turning(solid, after, touch)
+        parts = _parts(self._sizes, np.array([(turning * turning).sum() / 3.0]))
+        drawn = size * np.repeat(np.ravel(parts), 3) * self._chance.standard_normal(9)
+        pushed = drawn[:3]
+        changes = [*(pushed + drawn[3:6]).tolist(), *(turning @ pushed + drawn[6:]).tolist()]
+        y = [*after[:7], *(x + change for x, change in zip(after[7:], changes, strict=True))]
+        return _turned_back(solid, y, touch)
+
+
+def _parts(sizes: FloatArray, squares: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return standard deviations: of velocities by an impulse, and of what is left of both, (m,).
+
+    Args:
+        sizes: (6,), m/s and rad/s, those of velocities and spins.
+        squares: (m,), 1/m^2, the variances of a spin's components by an impulse that changes those of the
+            velocity by 1.
+    """
+    velocity, spin = sizes[0] ** 2, sizes[3] ** 2
+    most = np.full(len(squares), velocity)
+    np.divide(spin, squares, out=most, where=squares > 0.0)
+    pushed = BY_IMPULSE * np.minimum(velocity, most)
+    return np.sqrt(pushed), np.sqrt(velocity - pushed), np.sqrt(np.maximum(spin - pushed * squares, 0.0))
 
 
 def _tails(chance: Generator, count: int) -> FloatArray:

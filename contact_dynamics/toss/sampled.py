@@ -1,25 +1,23 @@
 """Samples of a toss that is not known exactly, followed through the next strikes or to rest.
 
 The next strikes of all samples are found together (`strikes_of_many`), in a tenth of a millisecond each. If
-rest is asked for, each sample goes on from there as a toss does (`following`), and has its flights, its
-impacts and the steps of its sliding done in arrays with those of others (`together`). That takes far longer.
-It is done less exactly than a single toss: rebounds below `SAMPLED_SETTLING_HEIGHT` are not followed, and
-neither is a body that only rattles on a face until it rests (`laid_flat`). It then has the world's gravity,
-and not its own: in recorded slides, the gravity of the flight before leaves no trace, and the scatter of
-friction that lasts holds what slides differ by.
+rest is asked for, each sample goes on from there as a toss does (`to_rest`). That takes far longer, and
+several processes can share it. It is done less exactly than a single toss: rebounds below
+`SAMPLED_SETTLING_HEIGHT` are not followed, and neither is a body that only rattles on a face until it rests
+(`laid_flat`). It then has the world's gravity, and not its own: in recorded slides, the gravity of the flight
+before leaves no trace, and the scatter of friction that lasts holds what slides differ by.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.numerics.vectors import dot, norm
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.shapes.convex import ConvexShape
-from contact_dynamics.tolerances import SAMPLED_PHASE_ERROR, SAMPLED_SETTLING_HEIGHT
+from contact_dynamics.numerics.vectors import dot
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.tolerances import SAMPLED_SETTLING_HEIGHT
 from contact_dynamics.toss.distribution import (
     FEWEST,
     Branch,
@@ -30,20 +28,21 @@ from contact_dynamics.toss.distribution import (
     regions_of,
     rest_of,
 )
-from contact_dynamics.toss.following import Following, Run
 from contact_dynamics.toss.law_spread import LawSpread
-from contact_dynamics.toss.result import TossEnd, TossEventKind
-from contact_dynamics.toss.solid import as_rows, solid_of
+from contact_dynamics.toss.solid import solid_of
 from contact_dynamics.toss.strikes_of_many import ManyStrikes, SampleEnd, strikes_of_many
-from contact_dynamics.toss.together import together
-from contact_dynamics.toss.uncertainty import EXACT, Samples, TossUncertainty, draw
+from contact_dynamics.toss.to_rest import check_processes, followed_to_rest
+from contact_dynamics.toss.uncertainty import EXACT, TossUncertainty, draw
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from numpy.typing import NDArray
 
     from contact_dynamics.impact.law import RestitutionLaw
     from contact_dynamics.numerics.vectors import Vector3
-    from contact_dynamics.toss.solid import Numbers, Solid
+    from contact_dynamics.toss.solid import Solid
+    from contact_dynamics.toss.to_rest import Followed
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
 
@@ -56,7 +55,6 @@ MOST_STRIKES: Final = 10
 MOST_GHOSTS: Final = 30
 """Samples whose poses are kept for pictures."""
 
-_MOST_EVENTS: Final = 500
 _SAME_FACE: Final = 0.999  # cosine between normals of one face
 
 
@@ -74,6 +72,7 @@ def sampled_toss(
     seed: int = 0,
     law: RestitutionLaw,
     horizon: float,
+    processes: int | Executor = 1,
 ) -> TossDistribution:
     """Return what can happen in a toss whose state, parameters or impacts are not known exactly.
 
@@ -92,13 +91,22 @@ def sampled_toss(
         seed: Samples are drawn from it. The same seed draws the same ones.
         law: What the coefficients of restitution mean.
         horizon: s, how far samples are followed.
+        processes: How many processes share the samples that go on to rest, or an executor of
+            `concurrent.futures`, which keeps its processes from toss to toss. The answer is the same bit for
+            bit. Each process takes some 250 samples at a time (`to_rest.BLOCK`), so that more processes than
+            such parts are of no use. A number of processes is started anew by each call, which takes about
+            half a second. They import the main module, so a program does its work under
+            ``if __name__ == "__main__":``, as with `multiprocessing`.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
         NotSupportedError: the shape has rims, or a surface is an obstacle.
         InvalidFieldError: the parameters' covariance has another size than the world's surfaces ask for, or
-            there are not as many factors as surfaces.
+            there are not as many factors as surfaces, or ``processes`` is neither a whole number >= 1 nor an
+            executor.
+        BrokenProcessPool: a process died, for example because the main module is not guarded as said above.
     """
+    shared_by = check_processes(processes)
     solid = solid_of(body, world, settling=SAMPLED_SETTLING_HEIGHT)
     chance = np.random.default_rng(seed)
     samples = draw(
@@ -115,17 +123,14 @@ def sampled_toss(
     told = strikes_of_many(
         solid, samples, law=law, spread=spread, depth=strikes, horizon=horizon, further=to_rest
     )
-    rests: dict[int, _Rest] = {}
+    rests: dict[int, Followed] = {}
     if to_rest:
-        runs = {
-            i: _begun(solid, samples, told, spread, i, law=law, horizon=horizon)
-            for i in np.flatnonzero(told.now < horizon).tolist()
-        }
-        together([run.go() for run in runs.values()])
-        for i, run in runs.items():
-            _tell(told, i, run)
-            if run.end == TossEnd.RESTS:
-                rests[i] = _Rest(float(told.now[i]) + run.now, run.y, run.resting_normal_B())
+        followed = followed_to_rest(
+            solid, samples, told, spread, law=law, horizon=horizon, processes=shared_by
+        )
+        for i, one in followed.items():
+            _tell(told, i, one)
+        rests = {i: one for i, one in followed.items() if one.rests}
     faces, shares = _faces([each.normal_B for each in rests.values()], count)
     rest = None
     if rests:
@@ -142,77 +147,14 @@ def sampled_toss(
     )
 
 
-class _Rest(NamedTuple):
-    """How a sample rests.
-
-    Attributes:
-        seconds: s, when it comes to rest.
-        y: The 13 numbers of its state.
-        normal_B: The normal of the flat under it, body axes.
-    """
-
-    seconds: float
-    y: Numbers
-    normal_B: Vector3
-
-
-def _begun(
-    solid: Solid,
-    samples: Samples,
-    told: ManyStrikes,
-    spread: LawSpread,
-    i: int,
-    *,
-    law: RestitutionLaw,
-    horizon: float,
-) -> Run:
-    """Return the toss that one sample goes on with."""
-    inertia, corners = samples.inertias_B[i], samples.corners_B[i]
-    flats = tuple(
-        flat._replace(friction=mu, restitution=e, strike_friction=struck)
-        for flat, mu, e, struck in zip(
-            solid.flats,
-            samples.lasting_frictions[i].tolist(),
-            samples.restitutions[i].tolist(),
-            samples.frictions[i].tolist(),
-            strict=True,
-        )
-    )
-    points = tuple((x, y, z) for x, y, z in corners.tolist())
-    mine = solid._replace(
-        inertia=as_rows(inertia.tolist()),
-        inverse=as_rows(np.linalg.inv(inertia).tolist()),
-        corners=points,
-        reach=max(map(norm, points)) + solid.rounding,
-        flats=flats,
-    )
-    p, q, v, w = (rows[i] for rows in told.last)
-    state = BodyState(p_WB_W=p, q_WB=q / np.linalg.norm(q), v_WB_W=v, w_WB_W=w)
-    following = Following(
-        mine,
-        MassProperties(mass=solid.mass, I_B=inertia),
-        ConvexShape(vertices=corners, rounding=solid.rounding),
-        law,
-        horizon=horizon - float(told.now[i]),
-        most_events=_MOST_EVENTS,
-        error=SAMPLED_PHASE_ERROR,
-        kick=None if spread.is_none else spread.of_one(i),
-        flat_after=len(told.seconds) - int((told.corners[:, i] >= 0).sum()),
-        thorough=False,
-        has_pieces=False,
-    )
-    return Run(following, state, ())
-
-
-def _tell(told: ManyStrikes, i: int, run: Run) -> None:
+def _tell(told: ManyStrikes, i: int, followed: Followed) -> None:
     """Tell of the strikes of one sample that the tree still lacks."""
     k = int((told.corners[:, i] >= 0).sum())
-    later = [event for event in run.events if event.kind == TossEventKind.STRIKES]
-    for event in later[: len(told.seconds) - k]:
-        told.seconds[k, i] = told.now[i] + event.seconds
-        ((told.surfaces[k, i], told.corners[k, i]),) = event.touching
-        told.p_WB_W[k, i], told.q_WB[k, i] = event.y[:3], event.y[3:7]
-        told.v_WB_W[k, i], told.w_WB_W[k, i] = event.y[7:10], event.y[10:]
+    for seconds, touch, y in followed.strikes:
+        told.seconds[k, i] = seconds
+        told.surfaces[k, i], told.corners[k, i] = touch
+        told.p_WB_W[k, i], told.q_WB[k, i] = y[:3], y[3:7]
+        told.v_WB_W[k, i], told.w_WB_W[k, i] = y[7:10], y[10:]
         k += 1
     told.ends[i] = SampleEnd.FOLLOWED if k == len(told.seconds) else SampleEnd.ENDS
 
@@ -286,7 +228,7 @@ def _faces(rests: list[Vector3], count: int) -> tuple[FloatArray, FloatArray]:
     return normals, np.array([number / count for _, number in faces])
 
 
-def _ghosts(told: ManyStrikes, rests: dict[int, _Rest], count: int) -> Ghosts:
+def _ghosts(told: ManyStrikes, rests: dict[int, Followed], count: int) -> Ghosts:
     rows = []
     for i in range(min(count, MOST_GHOSTS)):
         for k in np.flatnonzero(told.corners[:, i] >= 0).tolist():

@@ -1,0 +1,78 @@
+"""Samples that several processes follow to rest: the numbers are those of one process."""
+
+from __future__ import annotations
+
+import pickle
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.impact import RestitutionLaw
+from contact_dynamics.rigid_body import inertia
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.shapes import box
+from contact_dynamics.toss import TossDistribution, TossUncertainty, sampled_toss
+from contact_dynamics.toss.to_rest import BLOCK
+from contact_dynamics.world import Body, Surface, World
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+SIZE = (0.1, 0.12, 0.07)
+BRICK = Body(
+    name="brick", mass_properties=inertia.box(size=SIZE, mass=0.4).mass_properties, shape=box(size=SIZE)
+)
+FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.2, restitution=0.3)
+COUNT = int(1.6 * BLOCK)  # two parts
+
+
+def told(count: int, **given: Any) -> TossDistribution:
+    """Return what can happen to a brick that is dropped nearly flat, and slides on."""
+    return sampled_toss(
+        BRICK,
+        BodyState(p_WB_W=[0, 0, 0.07], q_WB=[0.08, 0.06, 0.0, 0.995], v_WB_W=[0.4, 0, 0], w_WB_W=[0, 0, 1]),
+        World(bodies=(BRICK,), surfaces=(FLOOR,)),
+        covariance=np.diag([1e-3] * 3 + [0.02] * 3 + [0.02] * 3 + [0.3] * 3) ** 2,
+        uncertainty=TossUncertainty(velocity=0.02, spin=0.4, height=5e-4),
+        count=count,
+        to_rest=True,
+        law=RestitutionLaw.POISSON,
+        horizon=2.0,
+        **given,
+    )
+
+
+@pytest.fixture(scope="module")
+def alone() -> TossDistribution:
+    """What one process tells of two parts. They end on their own, after strikes and slides."""
+    found = told(COUNT)
+    assert found.rest is not None
+    assert found.face_probabilities.sum() > 0.9
+    return found
+
+
+def test_two_processes_give_the_numbers_of_one(alone: TossDistribution) -> None:
+    assert pickle.dumps(told(COUNT, processes=2)) == pickle.dumps(alone)
+
+
+def test_the_processes_of_an_executor_give_the_numbers_of_one(alone: TossDistribution) -> None:
+    """They start as Python 3.14 does it by itself."""
+    with ProcessPoolExecutor(2, mp_context=get_context("forkserver")) as executor:
+        assert pickle.dumps(told(COUNT, processes=executor)) == pickle.dumps(alone)
+
+
+def test_few_samples_start_no_process() -> None:
+    """The executor is one that takes no more work."""
+    executor = ProcessPoolExecutor(2)
+    executor.shutdown()
+    assert told(20, processes=executor).samples == 20
+
+
+@pytest.mark.parametrize("processes", [0, -1, 1.5, True, "two", None])
+def test_what_is_no_number_of_processes_is_refused_by_its_name(processes: Executor | float | str) -> None:
+    with pytest.raises(InvalidFieldError, match=r"^processes: found .*, allowed is a whole number >= 1, or"):
+        told(20, processes=processes)
