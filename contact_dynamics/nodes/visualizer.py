@@ -39,8 +39,10 @@ from contact_dynamics.nodes.topic_faults import TopicFaults
 from contact_dynamics.nodes.visualizer_parameters import read_visualizer_parameters
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.uncertain_state import state_of
+from contact_dynamics.viewing.pace import SHORTEST_S
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import OpenRecording, ViewerMode, raise_errors
+from contact_dynamics.viewing.states_in_turn import StatesInTurn
 from contact_dynamics_interfaces.srv import (
     PredictContactMode,
     PredictImpact,
@@ -63,15 +65,11 @@ if TYPE_CHECKING:
     from rclpy.subscription import Subscription
 
     from contact_dynamics.questions.uncertain_state import KnownState
-    from contact_dynamics.rigid_body.body import BodyState
 
 NODE_NAME: Final = "contact_dynamics_visualizer"
 
 EVENT_QOS: Final = QoSProfile(depth=10_000)
 """Queue depth of the service events. It equals the server's, so that a burst of questions is all drawn."""
-
-DRAW_PERIOD_S: Final = 0.05
-"""States are drawn in batches, because a batch costs what a single state does."""
 
 SERVER_WAIT_S: Final = 3.0
 """How long a start waits for a server: as long as one that is started at the same time may take."""
@@ -158,7 +156,7 @@ class Visualizer(InboxNode):
             surface_side=own.surface_side,
             predictions=own.predictions,
         )
-        self._states = _WaitingStates()
+        self._states = StatesInTurn(self._picture, guarded=self._guarded)
         self._server = server
         self._values = {name: plain(parameter.value) for name, parameter in self._parameters.items()}
         self.create_subscription(ParameterEvent, parameter_event.TOPIC, self._follow, EVENT_QOS)
@@ -168,20 +166,18 @@ class Visualizer(InboxNode):
         self._topics = subscribe_to_states(
             self,
             state_sources(parameters, static=self._static),
-            states=self._states,
+            states=_HandedOn(self._states),
             record=lambda _topic, _taken: None,
             offered=lambda _topic, _offers: None,
             faults=TopicFaults(self.get_logger().warning),
         )
-        self.create_timer(DRAW_PERIOD_S, self.draw_states, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self.create_timer(SHORTEST_S, self._keep_pace, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.get_logger().info(f"ready: draws {server} to {self._recording.description}")
 
     def draw_states(self) -> None:
         """Draw the states that came since the last time."""
         self.take_messages()
-        for body_name, states in self._states.take().items():
-            self._guarded("states", partial(self._picture.add_states, body_name, states))
-        self._guarded("files and viewers", self._recording.tend)
+        self._states.draw()
 
     def close(self) -> bool:
         """Draw what is left and close the sinks. Return whether they took everything."""
@@ -189,6 +185,13 @@ class Visualizer(InboxNode):
         if self._sinks.viewer is ViewerMode.NONE:
             self._guarded("the last look", self._picture.frame_all)
         return self._recording.close()
+
+    def _keep_pace(self) -> None:
+        """Take what has come, and draw it if that is due."""
+        self.take_messages()
+        if self._states.pace.is_due:
+            self._states.draw()
+        self._guarded("files and viewers", self._recording.tend)
 
     def _wait_for_server(self, server: str, events: list[Subscription], patience: float) -> None:
         """Wait for the server's events, so that nothing is missed by who plays states to their listeners."""
@@ -209,15 +212,17 @@ class Visualizer(InboxNode):
 
     def _show(self, shown: _Shown, event: Any) -> None:
         response = event.response[0]
-        self.draw_states()
-        now_ns = self._picture.newest_stamp_ns() or stamp_ns_from_msg(event.info.stamp)
+        self.take_messages()
+        now_ns = self._states.newest_stamp_ns() or stamp_ns_from_msg(event.info.stamp)
         if response.status != response.OK:
             refused = f"refused ({response.status}): {response.message}"
             self._picture.tell(shown.kind, refused, stamp_ns=now_ns, is_error=True)
             return
+        answer = shown.from_msg(response, world=self._configuration.world)
+        self._states.draw_before_answer(answer.body_name)
         shown.show(
             self._picture,
-            shown.from_msg(response, world=self._configuration.world),
+            answer,
             now_ns=now_ns,
             remark=response.message,
             computation_time=response.computation_time,
@@ -258,16 +263,16 @@ class Visualizer(InboxNode):
                 self.get_logger().warning(f"cannot draw {kind}; not told again:\n{traceback.format_exc()}")
 
 
-class _WaitingStates(StateStore):
-    """Keeps the states that are not drawn yet."""
+class _HandedOn(StateStore):
+    """Hands all states on, to be drawn."""
 
-    def __init__(self) -> None:
+    def __init__(self, states: StatesInTurn) -> None:
         super().__init__(history=0.0, timeout=0.0)
-        self._waiting: dict[str, list[BodyState]] = {}
+        self._states = states
 
     def add(self, body_name: str, state: KnownState, *, now_ns: int | None = None) -> None:  # noqa: ARG002
-        """Keep a state whatever its stamp: those of a log are not of this clock."""
-        self._waiting.setdefault(body_name, []).append(state_of(state))
+        """Hand on a state whatever its stamp: those of a log are not of this clock."""
+        self._states.add(body_name, state_of(state))
 
     def add_unread(
         self,
@@ -277,14 +282,10 @@ class _WaitingStates(StateStore):
         *,
         now_ns: int | None = None,  # noqa: ARG002  as above
     ) -> None:
-        """Read and keep a state, as all are drawn."""
+        """Read and hand on a state, as all are drawn."""
         state = read()
         if state is not None:
             self.add(body_name, state)
-
-    def take(self) -> dict[str, list[BodyState]]:
-        waiting, self._waiting = self._waiting, {}
-        return {name: sorted(states, key=lambda state: state.stamp_ns) for name, states in waiting.items()}
 
 
 def main(arguments: list[str]) -> int:

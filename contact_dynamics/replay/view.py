@@ -13,12 +13,12 @@ from contact_dynamics.questions.tumbling import TumblingAnswer
 from contact_dynamics.replay.events import Answered, BatchAnswer, StateCame, WorldChanged
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode, raise_errors
+from contact_dynamics.viewing.states_in_turn import StatesInTurn
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from contact_dynamics.replay.events import Event, Events
-    from contact_dynamics.rigid_body.body import BodyState
 
 KINDS: Final = {
     "predict_tumbling": TUMBLING,
@@ -100,20 +100,18 @@ class _Drawing:
         self._picture = picture
         self._on_problem = on_problem
         self._told: set[str] = set()
-        self._waiting: dict[str, list[BodyState]] = {}
-        self._count = 0
+        self._waiting = StatesInTurn(picture, guarded=self._guarded)
 
     def show(self, event: Event) -> None:
         """Draw an event, or keep a state to be drawn with others."""
         if isinstance(event, StateCame):
             self.states += 1
-            self._count += 1
-            self._waiting.setdefault(event.body_name, []).append(event.state)
-            if self._count >= _AT_ONCE:
-                self._draw_states()
+            self._waiting.add(event.body_name, event.state)
+            if self._waiting.count >= _AT_ONCE:
+                self._waiting.draw()
             return
-        self._draw_states()
         if isinstance(event, WorldChanged):
+            self._waiting.draw()
             change = partial(self._picture.change_world, event.world, stamp_ns=event.stamp_ns)
             self._guarded("a change of the world", change)
             return
@@ -122,13 +120,15 @@ class _Drawing:
 
     def finish(self, *, look_at_all: bool) -> None:
         """Draw what is left, and look at all of it where no viewer was open from the beginning."""
-        self._draw_states()
+        self._waiting.draw()
         if look_at_all:
             self._guarded("the last look", self._picture.frame_all)
 
     def _show_answer(self, answered: Answered) -> None:
-        answer, now_ns = answered.answer, self._picture.newest_stamp_ns() or answered.asked_ns
+        answer, now_ns = answered.answer, self._waiting.newest_stamp_ns() or answered.asked_ns
         remark, seconds = answered.message, answered.computation_time
+        if answer is not None:
+            self._waiting.draw_before_answer(answer.body_name)
         if answer is None:
             refused = f"refused ({answered.status}): {remark}"
             self._picture.tell(
@@ -144,13 +144,6 @@ class _Drawing:
             self._picture.show_many(answer, now_ns=now_ns, remark=remark, computation_time=seconds)
         else:
             self._picture.show_contact_modes(answer, now_ns=now_ns, remark=remark, computation_time=seconds)
-
-    def _draw_states(self) -> None:
-        self._count = 0
-        waiting, self._waiting = self._waiting, {}
-        for body_name, states in waiting.items():
-            ordered = sorted(states, key=lambda state: state.stamp_ns)
-            self._guarded("states", partial(self._picture.add_states, body_name, ordered))
 
     def _guarded(self, kind: str, show: Callable[[], object]) -> None:
         try:

@@ -12,50 +12,61 @@ is one drawing, in the order in which states and answers came.
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from dataclasses import dataclass, replace
+from itertools import groupby
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from uuid import uuid4
 
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.constants import to_ns
 from contact_dynamics.viewing.arrangement import Arrangement
+from contact_dynamics.viewing.columns import Columns
 from contact_dynamics.viewing.entities import ORDER, SINCE_START, TIMELINE
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from numpy.typing import NDArray
+    from collections.abc import Iterable, Iterator, Sequence
 
 APPLICATION: Final = "contact_dynamics"
 
-LAST_BATCHES: Final = 40
-"""Batches of states that stay in memory of each trail and curve: two seconds of a live picture."""
+LAST_S: Final = 2.0
+"""s. The newest part of each trail and curve that stays in memory, by the stamps."""
+
+LAST_BATCHES: Final = 100
+"""The most batches of states that this can be. Stamps may stand still or go back."""
 
 LAST_WORDS: Final = 200
 """Lines of the list of all answers that stay in memory."""
 
 
+class _Timed(NamedTuple):
+    """The times of one drawing."""
+
+    columns: tuple[rr.TimeColumn, ...]  # one for each timeline
+    last_ns: int
+    step: int
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Drawn:
-    """One thing that was drawn: a row with the time it was drawn at, or columns with their own times."""
+class _Row:
+    """One thing that was drawn at a time."""
 
     step: int
     stamp_ns: int | None
     path: str
-    parts: tuple[Any, ...]
-    indexes: tuple[rr.TimeColumn, ...] = ()
+    kind: type
+    parts: Sequence[rr.DescribedComponentBatch]
 
-    @property
-    def kind(self) -> type:
-        return type(self.parts[0])
 
-    def draw(self, place: rr.RecordingStream, start_ns: int | None) -> None:
-        if self.indexes:
-            place.send_columns(self.path, indexes=self.indexes, columns=self.parts)
-            return
-        _set_time(place, self.stamp_ns, start_ns=start_ns, step=self.step)
-        place.log(self.path, *self.parts)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Batch:
+    """One thing that was drawn at many times."""
+
+    step: int
+    stamp_ns: int | None  # the last one
+    path: str
+    columns: Columns
 
 
 class KeptRecording(rr.RecordingStream):
@@ -71,9 +82,10 @@ class KeptRecording(rr.RecordingStream):
         super().set_sinks()
         self._places: list[rr.RecordingStream] = []
         self._arrangement = Arrangement(APPLICATION)
-        self._static: dict[tuple[str, type], tuple[Any, ...]] = {}
-        self._rows: dict[str, dict[type, _Drawn]] = {}  # by path and kind
-        self._batches: dict[str, deque[_Drawn]] = {}  # columns with the gaps between them, and words
+        self._static: dict[tuple[str, type], Sequence[rr.DescribedComponentBatch]] = {}
+        self._rows: dict[str, dict[type, _Row]] = {}  # by path and kind
+        self._batches: dict[str, deque[_Row | _Batch]] = {}  # columns with the gaps between them, and words
+        self._timed: _Timed | None = None
         self._start_ns: int | None = None
         self._stamp_ns: int | None = None
         self._step = 0
@@ -95,11 +107,18 @@ class KeptRecording(rr.RecordingStream):
             return
         self._arrangement.send_to(place)
         for (path, _), parts in self._static.items():
-            place.log(path, *parts, static=True)
+            place.log(path, parts, static=True)
         rows = (row for kinds in self._rows.values() for row in kinds.values())
-        batches = (batch for kept in self._batches.values() for batch in kept)
+        batches = (batch for kept in self._batches.values() for batch in _joined(kept))
+        step = -1
         for drawn in sorted((*rows, *batches), key=lambda each: each.step):
-            drawn.draw(place, self._start_ns)
+            if isinstance(drawn, _Batch):
+                place.send_chunks(drawn.columns.chunk(drawn.path))
+                continue
+            if drawn.step != step:
+                step = drawn.step
+                _set_time(place, drawn.stamp_ns, start_ns=self._start_ns, step=step)
+            place.log(drawn.path, drawn.parts)
         _set_time(place, self._stamp_ns, start_ns=self._start_ns, step=self._step)
 
     def set_time(self, timeline: str, **time: Any) -> None:
@@ -126,24 +145,43 @@ class KeptRecording(rr.RecordingStream):
         path = (
             rr.new_entity_path(entity_path) if isinstance(entity_path, list) else f"/{entity_path.strip('/')}"
         )
-        parts = (entity, *extra)
+        parts = [batch for part in (entity, *extra) for batch in part.as_component_batches()]
         for place in self._places:
-            place.log(path, *parts, static=static, strict=strict)
+            place.log(path, parts, static=static, strict=strict)
         if static:
             self._static[path, type(entity)] = parts
+            return
+        row = _Row(step=self._step, stamp_ns=self._stamp_ns, path=path, kind=type(entity), parts=parts)
+        if row.kind is rr.Clear:
+            self._clear(row)
+        elif row.kind is rr.TextLog:
+            self._batches.setdefault(path, deque(maxlen=LAST_WORDS)).append(row)
         else:
-            self._keep(_Drawn(step=self._step, stamp_ns=self._stamp_ns, path=path, parts=parts))
+            self._rows.setdefault(path, {})[row.kind] = row
 
     def send_columns(
-        self, entity_path: str, indexes: Iterable[Any], columns: Iterable[Any], *, strict: bool | None = None
+        self,
+        entity_path: str,
+        indexes: Iterable[Any],
+        columns: Iterable[Any],
+        *,
+        strict: bool | None = None,  # noqa: ARG002  what is wrong always raises
     ) -> None:
-        """Draw a thing at many times, as `rr.RecordingStream.send_columns` does."""
-        self._step += 1
-        times = tuple(time for index in indexes for time in self._times(index))
-        path, parts = f"/{entity_path.strip('/')}", tuple(columns)
+        """Draw a thing at many times, as `rr.RecordingStream.send_columns` does, at the stamps of one column.
+
+        Things that are drawn one after the other at the same stamps, given as one object, are one drawing.
+        """
+        (index,) = indexes
+        timed = self._at_times(index)
+        path = f"/{entity_path.strip('/')}"
+        made = Columns.made_of(timed.columns, columns)
+        chunk = made.chunk(path)
         for place in self._places:
-            place.send_columns(path, indexes=times, columns=parts, strict=strict)
-        self._keep(_Drawn(step=self._step, stamp_ns=None, path=path, parts=parts, indexes=times))
+            place.send_chunks(chunk)
+        kept = self._batches.setdefault(path, deque(maxlen=LAST_BATCHES))
+        kept.append(_Batch(step=timed.step, stamp_ns=timed.last_ns, path=path, columns=made))
+        while (kept[0].stamp_ns or 0) < timed.last_ns - to_ns(LAST_S):
+            kept.popleft()
 
     def send_blueprint(self, blueprint: Any, *, make_active: bool = True, make_default: bool = True) -> None:
         """Arrange the views, as `rr.RecordingStream.send_blueprint` does."""
@@ -167,28 +205,23 @@ class KeptRecording(rr.RecordingStream):
             self._start_ns = stamp_ns
         return self._start_ns
 
-    def _times(self, index: Any) -> list[rr.TimeColumn]:
-        """Return a column of times, and if it has stamps, those of the other timelines."""
-        if index.timeline_name() != TIMELINE:
-            return [index]
-        stamps: NDArray[np.int64] = index.as_arrow_array().to_numpy(zero_copy_only=False).astype(np.int64)
-        since = (stamps - self._begin(int(stamps[0]))).astype("timedelta64[ns]")
-        steps = np.full(len(stamps), self._step)
-        return [index, rr.TimeColumn(SINCE_START, duration=since), rr.TimeColumn(ORDER, sequence=steps)]
+    def _at_times(self, index: rr.TimeColumn) -> _Timed:
+        """Return a column of stamps with those of the other timelines."""
+        if self._timed is None or index is not self._timed.columns[0]:
+            stamps = index.as_arrow_array().to_numpy(zero_copy_only=False).astype(np.int64)
+            self._step += 1
+            since = (stamps - self._begin(int(stamps[0]))).astype("timedelta64[ns]")
+            steps = np.full(len(stamps), self._step)
+            columns = (
+                index,
+                rr.TimeColumn(SINCE_START, duration=since),
+                rr.TimeColumn(ORDER, sequence=steps),
+            )
+            self._timed = _Timed(columns, int(stamps.max()), self._step)
+        return self._timed
 
-    def _keep(self, drawn: _Drawn) -> None:
-        """Remember a thing in place of what it covers."""
-        is_words = drawn.kind is rr.TextLog
-        if drawn.kind is rr.Clear:
-            self._clear(drawn)
-        elif is_words or drawn.indexes:
-            most = LAST_WORDS if is_words else LAST_BATCHES
-            self._batches.setdefault(drawn.path, deque(maxlen=most)).append(drawn)
-        else:
-            self._rows.setdefault(drawn.path, {})[drawn.kind] = drawn
-
-    def _clear(self, drawn: _Drawn) -> None:
-        (is_recursive,) = drawn.parts[0].is_recursive.as_arrow_array().to_pylist()
+    def _clear(self, drawn: _Row) -> None:
+        (is_recursive,) = drawn.parts[0].as_arrow_array().to_pylist()
         kept: tuple[dict[str, Any], ...] = (self._rows, self._batches)
         if is_recursive:
             for each in kept:
@@ -198,6 +231,20 @@ class KeptRecording(rr.RecordingStream):
         self._rows.pop(drawn.path, None)
         if drawn.path in self._batches:
             self._batches[drawn.path].append(drawn)
+
+
+def _joined(kept: Iterable[_Row | _Batch]) -> Iterator[_Row | _Batch]:
+    """Join batches that follow each other, since many small ones cost many times as much."""
+    for kind, group in groupby(
+        kept, key=lambda each: each.columns.kind if isinstance(each, _Batch) else None
+    ):
+        first, *others = group
+        if kind is None or not isinstance(first, _Batch):
+            yield first
+            yield from others
+        else:
+            joined = first.columns.joined(each.columns for each in others if isinstance(each, _Batch))
+            yield replace(first, columns=joined)
 
 
 def _set_time(place: rr.RecordingStream, stamp_ns: int | None, *, start_ns: int | None, step: int) -> None:

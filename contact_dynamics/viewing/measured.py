@@ -118,7 +118,7 @@ def draw_states(
     way = trajectory_of([before or states[0], *states])
     starts = np.where(_put_elsewhere(way)[:, None], points, way.p_WB_W[:-1])
     segments = np.stack([starts, points], axis=1)
-    trail = rr.LineStrips3D.columns(strips=list(segments))
+    trail = rr.LineStrips3D.columns(strips=segments)
     recording.send_columns(trail_entity(body_name), indexes=[stamps], columns=trail)
     curves = curves_of(measured, up_W=up_W, body=body, gravity_W=gravity_W)
     _draw_curves(recording, body_name, "measured", stamps, curves)

@@ -285,9 +285,18 @@ class Picture:
         """Return what there is to see so far, as `make_blueprint` takes it."""
         return frozenset(self._shown)
 
-    def newest_stamp_ns(self) -> int | None:
-        """Return the stamp of the newest measured state, or else of the last answer, if there is either."""
-        return max((state.stamp_ns for state in self._newest.values()), default=self._told_ns)
+    @property
+    def bodies_with_curves(self) -> set[str]:
+        """The bodies whose energy and momenta or whose rolling ellipsoid are drawn, as of one at a time."""
+        return {name for name in (self._predictions.conserved, self._poinsot.rolling) if name is not None}
+
+    def newest_stamp_ns(self, waiting_ns: dict[str, int] | None = None) -> int | None:
+        """Return the stamp of the newest measured state, or else of the last answer, if there is either.
+
+        ``waiting_ns`` are the newest stamps of bodies that have states which are not drawn yet.
+        """
+        stamps_ns = {name: state.stamp_ns for name, state in self._newest.items()} | (waiting_ns or {})
+        return max(stamps_ns.values(), default=self._told_ns)
 
     def _show_after_impact(self, found: AfterImpact) -> None:
         name, end_ns = found.answer.body_name, found.stamps_ns[-1]

@@ -31,6 +31,11 @@ class PoinsotInView:
         self._recording = recording
         self._rolling: tuple[str, Poinsot] | None = None
 
+    @property
+    def rolling(self) -> str | None:
+        """The body whose ellipsoid rolls, if there is one."""
+        return None if self._rolling is None else self._rolling[0]
+
     def come(
         self, body_name: str, picture: Poinsot, curves: RollingCurves, state: BodyState, *, stamp_ns: int
     ) -> None:

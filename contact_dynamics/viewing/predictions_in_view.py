@@ -66,6 +66,11 @@ class PredictionsInView:
         self._conserved_ns: dict[str, int] = {}  # stamp of the last state whose energy is drawn
         self._compared_ns: dict[str, int] = {}  # stamp of the last state with a prediction beside it
 
+    @property
+    def conserved(self) -> str | None:
+        """The body whose energy and momenta are drawn, if there is one."""
+        return self._conserved.body_name
+
     def newest(self, body_name: str) -> Prediction | None:
         """Return the newest prediction of a body, if there is one."""
         return self._predictions.get(body_name)

@@ -9,7 +9,7 @@ import pytest
 import rerun as rr
 
 from contact_dynamics.viewing.blueprint import make_blueprint
-from contact_dynamics.viewing.kept_recording import LAST_BATCHES, LAST_WORDS, KeptRecording
+from contact_dynamics.viewing.kept_recording import LAST_BATCHES, LAST_S, LAST_WORDS, KeptRecording
 from contact_dynamics.viewing.measured import set_time, time_column
 from contact_dynamics.viewing.picture import Picture
 from viewing.answers import contact_mode_answer, tumbling_answer
@@ -120,6 +120,26 @@ def test_what_is_kept_is_bounded(places: Places) -> None:
     assert drawn.values["/thing", "Points3D:positions"] == [
         (STAMP_NS + LAST_WORDS + 49, [[LAST_WORDS + 49, 0, 0]])
     ]
+
+
+def test_the_last_seconds_of_a_curve_are_kept_and_come_in_one_piece(places: Places) -> None:
+    """A viewer that comes back gets one chunk of a curve, instead of one for each batch."""
+    from rerun.chunk import RrdReader
+
+    recording = places.recording
+    stamps_ns = [STAMP_NS + 100_000_000 * i for i in range(50)]
+    for i, stamp_ns in enumerate(stamps_ns):
+        column = rr.Scalars.columns(scalars=[float(i), i + 0.5])
+        recording.send_columns("curve", indexes=[time_column([stamp_ns, stamp_ns + 1])], columns=column)
+    path = places.open()
+    (drawn,) = places.read(path)
+    begin_ns = stamps_ns[-1] + 1 - int(1e9 * LAST_S)
+    kept = [i for i, stamp_ns in enumerate(stamps_ns) if stamp_ns + 1 >= begin_ns]
+    assert len(kept) == 21
+    values = [value for i in kept for value in ([float(i)], [i + 0.5])]
+    assert [value for _, value in drawn.values["/curve", "Scalars:scalars"]] == values
+    chunks = [chunk for chunk in RrdReader(path).stream() if str(chunk.entity_path) == "/curve"]
+    assert len(chunks) == 1
 
 
 def test_a_place_without_sinks_gets_nothing_and_opened_anew_what_stands(

@@ -1,0 +1,67 @@
+"""Keeps states until it is their turn to be drawn: at a pace, or before an answer that needs them."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from contact_dynamics.viewing.pace import Pace
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.viewing.picture import Picture
+
+
+class StatesInTurn:
+    """The states that have come and are not drawn yet.
+
+    Attributes:
+        count: How many there are.
+        pace: The pace at which all of them are drawn.
+    """
+
+    def __init__(self, picture: Picture, *, guarded: Callable[[str, Callable[[], None]], None]) -> None:
+        """Begin without any.
+
+        Args:
+            picture: The picture that they are drawn into.
+            guarded: A function that is given what is drawn, in words, and what draws it.
+        """
+        self.count = 0
+        self.pace = Pace()
+        self._picture = picture
+        self._guarded = guarded
+        self._waiting: dict[str, list[BodyState]] = {}
+
+    def add(self, body_name: str, state: BodyState) -> None:
+        """Keep a state of a body."""
+        self.count += 1
+        self._waiting.setdefault(body_name, []).append(state)
+
+    def draw(self) -> None:
+        """Draw all states."""
+        with self.pace.drawing():
+            for body_name in list(self._waiting):
+                self._draw_of(body_name)
+
+    def draw_before_answer(self, body_name: str) -> None:
+        """Draw the states of a body before an answer about it, and of those whose curves it may end.
+
+        If each answer had those of all bodies drawn, there would be no pace where many questions are asked.
+        """
+        for each in {body_name, *self._picture.bodies_with_curves}:
+            self._draw_of(each)
+
+    def newest_stamp_ns(self) -> int | None:
+        """Return the stamp of the newest state, or else of the last drawn answer, if there is either."""
+        return self._picture.newest_stamp_ns(
+            {name: max(state.stamp_ns for state in states) for name, states in self._waiting.items()}
+        )
+
+    def _draw_of(self, body_name: str) -> None:
+        states = sorted(self._waiting.pop(body_name, []), key=lambda state: state.stamp_ns)
+        self.count -= len(states)
+        if states:
+            self._guarded("states", partial(self._picture.add_states, body_name, states))

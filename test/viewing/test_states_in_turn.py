@@ -1,0 +1,97 @@
+"""States wait for their turn, and an answer has those before it that it needs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from contact_dynamics.tumbling import free_motion
+from contact_dynamics.viewing.picture import Picture
+from contact_dynamics.viewing.states_in_turn import StatesInTurn
+from contact_dynamics.world import World
+from viewing.answers import tumbling_answer
+from viewing.drawn import STAMP_NS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import rerun as rr
+
+    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.world import Body
+    from viewing.drawn import Drawn
+
+NAMES = ("brick", "ball", "rod")
+POSE = "Transform3D:translation"
+
+
+@pytest.fixture
+def picture(recording: rr.RecordingStream, body: Body) -> Picture:
+    bodies = tuple(replace(body, name=name) for name in NAMES)
+    return Picture(recording, World(bodies=bodies, surfaces=()), surface_side=1.0)
+
+
+@pytest.fixture
+def states(picture: Picture) -> StatesInTurn:
+    return StatesInTurn(picture, guarded=lambda _, draw: draw())
+
+
+def add(states: StatesInTurn, state: BodyState, *after_ns: int) -> None:
+    for name in NAMES:
+        for each in after_ns:
+            states.add(name, replace(state, stamp_ns=STAMP_NS + each))
+
+
+def test_all_are_drawn_by_their_stamps(
+    states: StatesInTurn, state: BodyState, read: Callable[[], Drawn]
+) -> None:
+    add(states, state, 3, 1, 2)
+    assert states.count == 9
+    states.draw()
+    assert states.count == 0
+    drawn = read()
+    for name in NAMES:
+        stamps = drawn.stamps(f"/world/bodies/{name}", POSE)
+        assert [stamp - STAMP_NS for stamp in stamps] == [1, 2, 3]
+
+
+def test_before_an_answer_only_what_it_needs_is_drawn(
+    states: StatesInTurn, state: BodyState, read: Callable[[], Drawn]
+) -> None:
+    add(states, state, 1, 2)
+    states.draw_before_answer("ball")
+    assert states.count == 4
+    assert {name for name in NAMES if f"/world/bodies/{name}" in read().entities} == {"ball"}
+
+
+def test_curves_of_one_body_reach_to_those_of_the_next(
+    picture: Picture, states: StatesInTurn, body: Body, state: BodyState, read: Callable[[], Drawn]
+) -> None:
+    """The energy of a body is drawn up to the last state before the answer about another body."""
+    short = free_motion(body.mass_properties, state).at([0.0, 1e-9])
+    picture.show_tumbling(tumbling_answer(state, short, body_name="brick"))
+    add(states, state, 10, 20)
+    states.draw_before_answer("ball")
+    picture.show_tumbling(tumbling_answer(replace(state, stamp_ns=STAMP_NS + 30), short, body_name="ball"))
+    add(states, state, 40)
+    states.draw()
+    drawn = read()
+    component = "Scalars:scalars"
+    ns = {name: drawn.stamps(f"/energy/{name}/measured", component) for name in ("brick", "ball")}
+    assert [stamp - STAMP_NS for stamp in ns["brick"]] == [10, 20]
+    assert STAMP_NS + 40 in ns["ball"]
+
+
+def test_states_that_wait_have_the_newest_stamp_too(
+    picture: Picture, states: StatesInTurn, state: BodyState
+) -> None:
+    assert states.newest_stamp_ns() is None
+    add(states, state, 5)
+    assert states.newest_stamp_ns() == STAMP_NS + 5
+    assert picture.newest_stamp_ns() is None
+    states.draw()
+    add(states, state, 7, 6)
+    assert states.newest_stamp_ns() == STAMP_NS + 7
+    assert picture.newest_stamp_ns() == STAMP_NS + 5
