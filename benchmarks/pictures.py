@@ -24,9 +24,8 @@ import subprocess
 import tempfile
 import time
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -169,12 +168,11 @@ class _Drawing:
         state = replace(self._flights[name][(self._count - 1) % FLIGHT], stamp_ns=stamp_ns)
         kind = self._asked // BODIES % 3
         self._asked += 1
-        show: Callable[[], None]
         if kind == 0:
             question = TumblingQuestion(body=name, state=state, sampling=UntilContact(), curve_points=100)
-            show = partial(self._picture.show_tumbling, ask(question, KNOWN))
+            self._show(Picture.show_tumbling, ask(question, KNOWN))
         elif kind == 1:
-            show = partial(self._picture.show_impact, ask(ImpactQuestion(body=name, state=state), KNOWN))
+            self._show(Picture.show_impact, ask(ImpactQuestion(body=name, state=state), KNOWN))
         else:
             resting = BodyState(
                 p_WB_W=[*state.p_WB_W[:2], 0.5 * SIZE[2]],
@@ -183,12 +181,13 @@ class _Drawing:
                 w_WB_W=[0, 0, 0],
                 stamp_ns=stamp_ns,
             )
-            show = partial(
-                self._picture.show_contact_modes, ask(ContactModeQuestion(body=name, state=resting), KNOWN)
-            )
+            modes = ask(ContactModeQuestion(body=name, state=resting), KNOWN)
+            self._show(Picture.show_contact_modes, modes)
+
+    def _show(self, show: Callable[..., None], answer: Any) -> None:
         began = time.thread_time()
-        self._states.draw_before_answer(name)
-        show()
+        self._states.draw_before(answer)
+        show(self._picture, answer)
         self.for_answers += time.thread_time() - began
 
 

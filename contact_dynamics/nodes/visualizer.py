@@ -219,7 +219,7 @@ class Visualizer(InboxNode):
             self._picture.tell(shown.kind, refused, stamp_ns=now_ns, is_error=True)
             return
         answer = shown.from_msg(response, world=self._configuration.world)
-        self._states.draw_before_answer(answer.body_name)
+        self._states.draw_before(answer)
         shown.show(
             self._picture,
             answer,

@@ -128,7 +128,7 @@ class _Drawing:
         answer, now_ns = answered.answer, self._waiting.newest_stamp_ns() or answered.asked_ns
         remark, seconds = answered.message, answered.computation_time
         if answer is not None:
-            self._waiting.draw_before_answer(answer.body_name)
+            self._waiting.draw_before(answer)
         if answer is None:
             refused = f"refused ({answered.status}): {remark}"
             self._picture.tell(

@@ -15,6 +15,7 @@ from contact_dynamics.questions.planar_view import beyond, sliding_directions
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import contacts_entity
 from contact_dynamics.viewing.impact import friction_cones
+from contact_dynamics.viewing.strips import strips_3d
 from contact_dynamics.viewing.trajectory import outline
 
 if TYPE_CHECKING:
@@ -63,7 +64,9 @@ def draw_contact_modes(recording: rr.RecordingStream, shape: Shape, answer: Cont
     )
     recording.log(f"{path}/cones", rr.Clear(recursive=False) if cones is None else cones)
     edges = list(outline(shape, answer.state.p_WB_W, answer.state.q_WB))
-    body = rr.LineStrips3D(edges, colors=palette.translucent(palette.NORMAL, 0.6), radii=_OUTLINE_WIDTH)
+    body = rr.LineStrips3D(
+        strips_3d(edges), colors=palette.translucent(palette.NORMAL, 0.6), radii=_OUTLINE_WIDTH
+    )
     recording.log(f"{path}/body", body)
     for i, name in enumerate(mode_names()):
         mode_path = f"{path}/{name}"

@@ -15,6 +15,7 @@ from contact_dynamics.diagrams.force_dual import force_dual_of
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import FORCE_DUAL
 from contact_dynamics.viewing.mode_map import draw_frame
+from contact_dynamics.viewing.strips import strips_2d
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -55,10 +56,12 @@ def draw_force_dual(
     pixels = np.array([palette.BACKGROUND, fill]).astype(np.uint8)[figure.inside.astype(int), :3]
     recording.log(f"{entity}/wrenches", rr.Image(pixels, color_model="RGB", draw_order=-20.0))
     strips = rr.LineStrips2D(
-        figure.outlines, colors=palette.translucent(palette.MEASURED, 0.6), radii=_OUTLINE_WIDTH
+        strips_2d(figure.outlines), colors=palette.translucent(palette.MEASURED, 0.6), radii=_OUTLINE_WIDTH
     )
     recording.log(f"{entity}/body", strips)
-    recording.log(f"{entity}/borders", rr.LineStrips2D(figure.borders, colors=color, radii=_OUTLINE_WIDTH))
+    recording.log(
+        f"{entity}/borders", rr.LineStrips2D(strips_2d(figure.borders), colors=color, radii=_OUTLINE_WIDTH)
+    )
     for name, dots, point_color in (
         ("contact_forces", figure.contact_forces, palette.FRICTION_CONE),
         ("acceleration_centres", figure.acceleration_centres, palette.PREDICTED),

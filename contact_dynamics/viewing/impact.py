@@ -17,6 +17,7 @@ import rerun as rr
 from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import impact_entity
+from contact_dynamics.viewing.strips import strips_3d
 from contact_dynamics.viewing.trajectory import outline
 
 if TYPE_CHECKING:
@@ -116,7 +117,7 @@ def draw_impact(
     recording.log(f"{path}/velocity_label", velocity_labels(answer, size))
     recording.log(f"{path}/measured_velocity", rr.Clear(recursive=False))  # the impact before had one
     paths = _paths(answer, scale=impulses.scale(size)) if not impact.strikes else []
-    strips = rr.LineStrips3D(paths, colors=palette.IMPACT, radii=2.0 * _OUTLINE_WIDTH)
+    strips = rr.LineStrips3D(strips_3d(paths), colors=palette.IMPACT, radii=2.0 * _OUTLINE_WIDTH)
     recording.log(f"{path}/impulse_path", strips)
     height = CONE_HEIGHT * size
     width = 0.5 * ARROW_WIDTH * size
@@ -134,7 +135,9 @@ def draw_impact(
     if other is not None and other_shape is not None:
         bodies.append((other_shape, other.state))
     edges = [edge for drawn, state in bodies for edge in outline(drawn, state.p_WB_W, state.q_WB)]
-    body = rr.LineStrips3D(edges, colors=palette.translucent(palette.IMPACT, 0.7), radii=_OUTLINE_WIDTH)
+    body = rr.LineStrips3D(
+        strips_3d(edges), colors=palette.translucent(palette.IMPACT, 0.7), radii=_OUTLINE_WIDTH
+    )
     recording.log(f"{path}/body", body)
 
 

@@ -11,6 +11,7 @@ import rerun as rr
 from contact_dynamics.diagrams.impulse_space import EVENTS, impulse_space_of, line_in_box
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import IMPULSE_SPACE
+from contact_dynamics.viewing.strips import strips_2d
 from contact_dynamics.viewing.words import room_2d, words_2d
 
 if TYPE_CHECKING:
@@ -111,7 +112,7 @@ def _strips(
     width: float = _LINE_WIDTH,
 ) -> None:
     drawn = [_on_screen(np.asarray(strip)) for strip in strips]
-    recording.log(path, rr.LineStrips2D(drawn, colors=color, radii=width))
+    recording.log(path, rr.LineStrips2D(strips_2d(drawn), colors=color, radii=width))
 
 
 def _on_screen(points: FloatArray) -> FloatArray:

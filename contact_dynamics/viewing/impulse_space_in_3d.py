@@ -16,6 +16,7 @@ from contact_dynamics.diagrams.impulse_space import EVENTS
 from contact_dynamics.diagrams.impulse_space_in_3d import impulse_space_in_3d_of
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import IMPULSE_SPACE_IN_3D
+from contact_dynamics.viewing.strips import strips_3d
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -133,4 +134,4 @@ def _strips(
     *,
     width: float = _LINE_WIDTH,
 ) -> None:
-    recording.log(path, rr.LineStrips3D(list(strips), colors=color, radii=width))
+    recording.log(path, rr.LineStrips3D(strips_3d(strips), colors=color, radii=width))

@@ -85,6 +85,7 @@ class KeptRecording(rr.RecordingStream):
         self._static: dict[tuple[str, type], Sequence[rr.DescribedComponentBatch]] = {}
         self._rows: dict[str, dict[type, _Row]] = {}  # by path and kind
         self._batches: dict[str, deque[_Row | _Batch]] = {}  # columns with the gaps between them, and words
+        self._cleared: dict[str, _Row] = {}  # the paths where nothing was drawn since
         self._timed: _Timed | None = None
         self._start_ns: int | None = None
         self._stamp_ns: int | None = None
@@ -145,6 +146,8 @@ class KeptRecording(rr.RecordingStream):
         path = (
             rr.new_entity_path(entity_path) if isinstance(entity_path, list) else f"/{entity_path.strip('/')}"
         )
+        if type(entity) is rr.Clear and self._is_clear(path, entity):
+            return
         parts = [batch for part in (entity, *extra) for batch in part.as_component_batches()]
         for place in self._places:
             place.log(path, parts, static=static, strict=strict)
@@ -154,7 +157,9 @@ class KeptRecording(rr.RecordingStream):
         row = _Row(step=self._step, stamp_ns=self._stamp_ns, path=path, kind=type(entity), parts=parts)
         if row.kind is rr.Clear:
             self._clear(row)
-        elif row.kind is rr.TextLog:
+            return
+        self._note_drawn(path)
+        if row.kind is rr.TextLog:
             self._batches.setdefault(path, deque(maxlen=LAST_WORDS)).append(row)
         else:
             self._rows.setdefault(path, {})[row.kind] = row
@@ -176,6 +181,7 @@ class KeptRecording(rr.RecordingStream):
         path = f"/{entity_path.strip('/')}"
         made = Columns.made_of(timed.columns, columns)
         chunk = made.chunk(path)
+        self._note_drawn(path)
         for place in self._places:
             place.send_chunks(chunk)
         kept = self._batches.setdefault(path, deque(maxlen=LAST_BATCHES))
@@ -220,10 +226,23 @@ class KeptRecording(rr.RecordingStream):
             self._timed = _Timed(columns, int(stamps.max()), self._step)
         return self._timed
 
+    def _is_clear(self, path: str, clear: rr.Clear) -> bool:
+        """Tell whether nothing was drawn at a path since it was cleared, at this stamp or before."""
+        before = self._cleared.get(path)
+        if before is None or (before.stamp_ns or 0) > (self._stamp_ns or 0):
+            return False
+        return _is_recursive(before.parts) or not _is_recursive(clear.as_component_batches())
+
+    def _note_drawn(self, path: str) -> None:
+        """Note that neither a path nor those that it lies below are clear."""
+        while path and self._cleared:
+            self._cleared.pop(path, None)
+            path = path.rpartition("/")[0]
+
     def _clear(self, drawn: _Row) -> None:
-        (is_recursive,) = drawn.parts[0].as_arrow_array().to_pylist()
+        self._cleared[drawn.path] = drawn
         kept: tuple[dict[str, Any], ...] = (self._rows, self._batches)
-        if is_recursive:
+        if _is_recursive(drawn.parts):
             for each in kept:
                 for path in [path for path in each if f"{path}/".startswith(f"{drawn.path}/")]:
                     del each[path]
@@ -231,6 +250,11 @@ class KeptRecording(rr.RecordingStream):
         self._rows.pop(drawn.path, None)
         if drawn.path in self._batches:
             self._batches[drawn.path].append(drawn)
+
+
+def _is_recursive(parts: Sequence[rr.DescribedComponentBatch]) -> bool:
+    (is_recursive,) = parts[0].as_arrow_array().to_pylist()
+    return bool(is_recursive)
 
 
 def _joined(kept: Iterable[_Row | _Batch]) -> Iterator[_Row | _Batch]:

@@ -10,6 +10,7 @@ import rerun as rr
 from contact_dynamics.questions.many import ManyImpactsAnswer
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import many_entity
+from contact_dynamics.viewing.strips import strips_3d
 from contact_dynamics.viewing.trajectory import outline
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ def draw_many_states(
     chosen = np.unique(np.linspace(0, len(states) - 1, min(len(states), MOST_OUTLINES)).round().astype(int))
     edges = [edge for i in chosen for edge in outline(shape, states.p_WB_W[i], states.q_WB[i])]
     faint = palette.translucent(color, 0.45)
-    recording.log(f"{path}/outlines", rr.LineStrips3D(edges, colors=faint, radii=_OUTLINE_WIDTH))
+    recording.log(f"{path}/outlines", rr.LineStrips3D(strips_3d(edges), colors=faint, radii=_OUTLINE_WIDTH))
     velocities = rr.Arrows3D(
         origins=states.p_WB_W,
         vectors=ARROW_SECONDS * states.v_WB_W,

@@ -19,6 +19,7 @@ from contact_dynamics.diagrams.trajectory_curves import (
     trajectory_of,
 )
 from contact_dynamics.viewing import palette
+from contact_dynamics.viewing.columns import pose_columns, scalar_columns, strip_columns
 from contact_dynamics.viewing.entities import (
     ANGULAR_MOMENTUM,
     ANGULAR_VELOCITY,
@@ -113,13 +114,12 @@ def draw_states(
     stamps = time_column([state.stamp_ns for state in states])
     measured = trajectory_of(states)
     points = measured.p_WB_W
-    poses = rr.Transform3D.columns(translation=points, quaternion=measured.q_WB)
+    poses = pose_columns(points, measured.q_WB)
     recording.send_columns(body_entity(body_name), indexes=[stamps], columns=poses)
     way = trajectory_of([before or states[0], *states])
-    starts = np.where(_put_elsewhere(way)[:, None], points, way.p_WB_W[:-1])
-    segments = np.stack([starts, points], axis=1)
-    trail = rr.LineStrips3D.columns(strips=segments)
-    recording.send_columns(trail_entity(body_name), indexes=[stamps], columns=trail)
+    segments = np.stack([way.p_WB_W[:-1], points], axis=1)
+    segments[_put_elsewhere(way), 0] = points[_put_elsewhere(way)]
+    recording.send_columns(trail_entity(body_name), indexes=[stamps], columns=strip_columns(segments))
     curves = curves_of(measured, up_W=up_W, body=body, gravity_W=gravity_W)
     _draw_curves(recording, body_name, "measured", stamps, curves)
 
@@ -173,14 +173,15 @@ def draw_prediction_at(
             quantity: np.interp(seconds[inside], trajectory.seconds, values)
             for quantity, values in curves.items()
         }
-        _draw_curves(recording, body_name, "predicted", time_column(reached), there)
+        there_stamps = time_column(reached)
+        _draw_curves(recording, body_name, "predicted", there_stamps, there)
         measured_W = np.array([state.p_WB_W for state in states])[inside]
         predicted_W = [np.interp(seconds[inside], trajectory.seconds, each) for each in trajectory.p_WB_W.T]
         apart = np.linalg.norm(measured_W - np.column_stack(predicted_W), axis=1)
         recording.send_columns(
             entity(ERROR, body_name),
-            indexes=[time_column(reached)],
-            columns=rr.Scalars.columns(scalars=apart),
+            indexes=[there_stamps],
+            columns=scalar_columns(apart),
         )
     past = np.array(stamps_ns, dtype=np.int64)[seconds > trajectory.seconds[-1]]
     if len(past) > 0:
@@ -210,5 +211,5 @@ def _draw_curves(
 ) -> None:
     for quantity, values in curves.items():
         recording.send_columns(
-            entity(quantity, body_name, kind), indexes=[stamps], columns=rr.Scalars.columns(scalars=values)
+            entity(quantity, body_name, kind), indexes=[stamps], columns=scalar_columns(values)
         )

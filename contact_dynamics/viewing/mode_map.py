@@ -26,6 +26,7 @@ from contact_dynamics.diagrams.mode_map import (
 from contact_dynamics.diagrams.wrench_chart import gap, picture_size
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import MODE_MAP
+from contact_dynamics.viewing.strips import strips_2d
 from contact_dynamics.viewing.words import room_2d
 
 if TYPE_CHECKING:
@@ -67,7 +68,7 @@ def draw_mode_map(
     pixels = np.array(colors, dtype=np.uint8)[regions.classes, :3]
     recording.log(f"{entity}/regions", rr.Image(pixels, color_model="RGB", draw_order=-20.0))
     borders = [strip for one in sets for strip in borders_of(one, chart)]
-    strips = rr.LineStrips2D(borders, colors=palette.BACKGROUND, radii=_BORDER_WIDTH)
+    strips = rr.LineStrips2D(strips_2d(borders), colors=palette.BACKGROUND, radii=_BORDER_WIDTH)
     recording.log(f"{entity}/borders", strips)
     for name, shown in (("names", True), ("small_regions", False)):
         there = [widest for widest in widest_places(regions, chart) if widest.has_room == shown]
@@ -103,7 +104,7 @@ def bounds(chart: WrenchChart) -> rrb.VisualBounds2D:
 
 def draw_frame(recording: rr.RecordingStream, chart: WrenchChart, entity: str, *, note: str = "") -> None:
     """Draw a chart's outline, the names of its parts below them, and a note above."""
-    frames = rr.LineStrips2D(outlines_of(chart), colors=palette.NORMAL, radii=_BORDER_WIDTH)
+    frames = rr.LineStrips2D(strips_2d(outlines_of(chart)), colors=palette.NORMAL, radii=_BORDER_WIDTH)
     recording.log(f"{entity}/frame", frames)
     captions = captions_of(chart)
     places, texts = [caption.place for caption in captions], [caption.text for caption in captions]
@@ -132,5 +133,5 @@ def draw_applied(
         return
     recording.log(f"{entity}/applied", rr.Points2D(shown, colors=palette.IMPACT, radii=_POINT_SIZE))
     way = way_of(chart, applied, change)
-    strips = rr.LineStrips2D(way, colors=palette.IMPACT, radii=2.0 * _BORDER_WIDTH)
+    strips = rr.LineStrips2D(strips_2d(way), colors=palette.IMPACT, radii=2.0 * _BORDER_WIDTH)
     recording.log(f"{entity}/applied/way_out", strips)

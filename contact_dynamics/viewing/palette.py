@@ -9,6 +9,7 @@ expects.
 from __future__ import annotations
 
 import colorsys
+from functools import cache
 from typing import Final, TypeAlias
 
 Color: TypeAlias = tuple[int, int, int, int]
@@ -100,6 +101,7 @@ def body_color(index: int) -> Color:
     return BODIES[index % len(BODIES)]
 
 
+@cache
 def readable(color: Color) -> Color:
     """Return the colour, as much lighter as a word needs to have `WORD_CONTRAST` before the background."""
     share = 0.0

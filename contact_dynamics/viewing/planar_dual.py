@@ -19,6 +19,7 @@ from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import FORCE_DUAL
 from contact_dynamics.viewing.force_dual import draw_force_dual
 from contact_dynamics.viewing.mode_map import color_of_modes
+from contact_dynamics.viewing.strips import strips_2d
 from contact_dynamics.viewing.words import room_2d, words_2d
 
 if TYPE_CHECKING:
@@ -112,7 +113,7 @@ def _draw_dots(
     beside = [np.array([(1.0 + _WORDS) * width, (0.3 + 0.2 * i) * height]) for i in there]
     leaders = [np.array([places[i], (width, word[1])]) for i, word in zip(there, beside, strict=True)]
     strips = rr.LineStrips2D(
-        leaders, colors=[palette.translucent(color, 0.5) for color in colors], radii=_LEADER_WIDTH
+        strips_2d(leaders), colors=[palette.translucent(color, 0.5) for color in colors], radii=_LEADER_WIDTH
     )
     recording.log(f"{FORCE_DUAL}/leaders", strips)
     recording.log(f"{FORCE_DUAL}/words", words_2d(np.reshape(beside, (-1, 2)), labels, colors))

@@ -13,6 +13,7 @@ import rerun as rr
 from contact_dynamics.diagrams.planar_scene import planar_scene_of
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import PLANAR_SCENE
+from contact_dynamics.viewing.strips import strips_2d
 from contact_dynamics.viewing.words import words_2d
 
 if TYPE_CHECKING:
@@ -107,4 +108,6 @@ def _strips(
     color: palette.Color,
     width: float,
 ) -> None:
-    recording.log(path, rr.LineStrips2D([upright(strip) for strip in strips], colors=color, radii=width))
+    recording.log(
+        path, rr.LineStrips2D(strips_2d([upright(strip) for strip in strips]), colors=color, radii=width)
+    )

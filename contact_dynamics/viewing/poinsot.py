@@ -21,6 +21,7 @@ from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import POINSOT_WORDS, poinsot_entity
 from contact_dynamics.viewing.measured import time_column
+from contact_dynamics.viewing.strips import strips_3d
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -62,15 +63,18 @@ def draw_poinsot(
     unit = figure.unit
     recording.log(path, rr.Transform3D(mat3x3=figure.axes_W / unit))
     ellipsoid = rr.LineStrips3D(
-        figure.net_B, colors=palette.translucent(palette.MEASURED, 0.45), radii=_GRID_WIDTH
+        strips_3d(figure.net_B), colors=palette.translucent(palette.MEASURED, 0.45), radii=_GRID_WIDTH
     )
     recording.log(f"{path}/body/ellipsoid", ellipsoid)
-    polhode = rr.LineStrips3D([curves.polhode_B], colors=palette.POLHODE, radii=_CURVE_WIDTH)
+    polhode = rr.LineStrips3D(strips_3d([curves.polhode_B]), colors=palette.POLHODE, radii=_CURVE_WIDTH)
     recording.log(f"{path}/body/polhode", polhode)
-    herpolhode = rr.LineStrips3D([curves.herpolhode_W], colors=palette.HERPOLHODE, radii=_CURVE_WIDTH)
+    herpolhode = rr.LineStrips3D(
+        strips_3d([curves.herpolhode_W]), colors=palette.HERPOLHODE, radii=_CURVE_WIDTH
+    )
     recording.log(f"{path}/herpolhode", herpolhode)
     recording.log(
-        f"{path}/plane/grid", rr.LineStrips3D(figure.grid_W, colors=palette.SURFACE_GRID, radii=_GRID_WIDTH)
+        f"{path}/plane/grid",
+        rr.LineStrips3D(strips_3d(figure.grid_W), colors=palette.SURFACE_GRID, radii=_GRID_WIDTH),
     )
     patch = rr.Mesh3D(
         vertex_positions=figure.corners_W,

@@ -11,6 +11,7 @@ from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import SCENE, SURFACES, entity, trail_entity
+from contact_dynamics.viewing.strips import strips_3d
 
 if TYPE_CHECKING:
     from contact_dynamics.diagrams.shape import Shape
@@ -62,7 +63,7 @@ def surface_parts(surface: Surface, *, center_W: FloatArray, side: float) -> dic
     ]
     return {
         "patch": patch,
-        "grid": rr.LineStrips3D(lines, colors=palette.SURFACE_GRID, radii=_GRID_WIDTH),
+        "grid": rr.LineStrips3D(strips_3d(lines), colors=palette.SURFACE_GRID, radii=_GRID_WIDTH),
     }
 
 
@@ -71,7 +72,7 @@ def obstacle_parts(obstacle: Obstacle) -> dict[str, Part]:
     shape = convex_shape(obstacle.vertices_W)
     return {
         "patch": solid(shape, palette.SURFACE),
-        "grid": rr.LineStrips3D(list(shape.edges_B), colors=palette.SURFACE_GRID, radii=_EDGE_WIDTH),
+        "grid": rr.LineStrips3D(strips_3d(shape.edges_B), colors=palette.SURFACE_GRID, radii=_EDGE_WIDTH),
     }
 
 
@@ -85,7 +86,7 @@ def body_parts(shape: Shape, *, color: palette.Color = palette.MEASURED, name: s
         parts["faces"] = solid(shape, color)
     if len(shape.edges_B) > 0:
         edges = list(shape.edges_B)
-        parts["edges"] = rr.LineStrips3D(edges, colors=palette.MEASURED_EDGE, radii=_EDGE_WIDTH)
+        parts["edges"] = rr.LineStrips3D(strips_3d(edges), colors=palette.MEASURED_EDGE, radii=_EDGE_WIDTH)
     else:
         parts["faces"] = rr.Points3D([[0.0, 0.0, 0.0]], radii=0.5 * shape.size, colors=color)
     if name:

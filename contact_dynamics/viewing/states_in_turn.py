@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from contact_dynamics.questions.toss import TossAnswer
+from contact_dynamics.questions.tumbling import TumblingAnswer
 from contact_dynamics.viewing.pace import Pace
 
 if TYPE_CHECKING:
@@ -46,12 +48,14 @@ class StatesInTurn:
             for body_name in list(self._waiting):
                 self._draw_of(body_name)
 
-    def draw_before_answer(self, body_name: str) -> None:
-        """Draw the states of a body before an answer about it, and of those whose curves it may end.
+    def draw_before(self, answer: Any) -> None:
+        """Draw the states of a body before an answer about it, and those of bodies whose curves it may end.
 
         If each answer had those of all bodies drawn, there would be no pace where many questions are asked.
         """
-        for each in {body_name, *self._picture.bodies_with_curves}:
+        predicts_motion = isinstance(answer, TumblingAnswer | TossAnswer)
+        others = self._picture.bodies_with_curves if predicts_motion else set()
+        for each in {answer.body_name, *others}:
             self._draw_of(each)
 
     def newest_stamp_ns(self) -> int | None:

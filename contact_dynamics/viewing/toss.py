@@ -17,6 +17,7 @@ from contact_dynamics.toss import TossEnd, TossEventKind
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import toss_entity
 from contact_dynamics.viewing.scene import solid
+from contact_dynamics.viewing.strips import strips_3d
 from contact_dynamics.viewing.trajectory import outline
 
 if TYPE_CHECKING:
@@ -60,7 +61,9 @@ def draw_toss(recording: rr.RecordingStream, shape: Shape, answer: TossAnswer, *
 def _draw_toss(recording: rr.RecordingStream, path: str, shape: Shape, answer: TossAnswer) -> None:
     went = answer.toss
     trajectory = went.trajectory
-    recording.log(f"{path}/path", rr.LineStrips3D([trajectory.p_WB_W], colors=palette.PREDICTED, radii=_PATH))
+    recording.log(
+        f"{path}/path", rr.LineStrips3D(strips_3d([trajectory.p_WB_W]), colors=palette.PREDICTED, radii=_PATH)
+    )
     strikes = [event for event in went.events if event.kind == TossEventKind.STRIKES]
     points = np.array([point for event in strikes for point in event.p_WC_W]).reshape(-1, 3)
     recording.log(f"{path}/strikes", rr.Points3D(points, colors=palette.IMPACT, radii=_POINT))
@@ -69,12 +72,12 @@ def _draw_toss(recording: rr.RecordingStream, path: str, shape: Shape, answer: T
         for event in strikes[:MOST_OUTLINES]
         for edge in outline(shape, event.state.p_WB_W, event.state.q_WB)
     ]
-    recording.log(f"{path}/outlines", rr.LineStrips3D(edges, colors=palette.IMPACT, radii=_OTHER))
+    recording.log(f"{path}/outlines", rr.LineStrips3D(strips_3d(edges), colors=palette.IMPACT, radii=_OTHER))
     begin = list(outline(shape, trajectory.p_WB_W[0], trajectory.q_WB[0]))
-    recording.log(f"{path}/begin", rr.LineStrips3D(begin, colors=palette.PREDICTED, radii=_OTHER))
+    recording.log(f"{path}/begin", rr.LineStrips3D(strips_3d(begin), colors=palette.PREDICTED, radii=_OTHER))
     last_p, last_q = trajectory.p_WB_W[-1], trajectory.q_WB[-1]
     end = list(outline(shape, last_p, last_q))
-    recording.log(f"{path}/end", rr.LineStrips3D(end, colors=palette.PREDICTED, radii=_PATH))
+    recording.log(f"{path}/end", rr.LineStrips3D(strips_3d(end), colors=palette.PREDICTED, radii=_PATH))
     recording.log(f"{path}/rest", rr.Transform3D(translation=last_p, quaternion=last_q))
     faces = solid(shape, palette.translucent(palette.PREDICTED, 0.25))
     rests = went.end == TossEnd.RESTS
@@ -86,13 +89,13 @@ def _draw_other_ways(recording: rr.RecordingStream, path: str, shape: Shape, ans
     ways = [other.trajectory for other in answer.alternatives]
     lines = [way.p_WB_W for way in ways]
     lines += [edge for way in ways for edge in outline(shape, way.p_WB_W[-1], way.q_WB[-1])]
-    recording.log(path, rr.LineStrips3D(lines, colors=palette.UNDECIDED, radii=_THIN))
+    recording.log(path, rr.LineStrips3D(strips_3d(lines), colors=palette.UNDECIDED, radii=_THIN))
 
 
 def _draw_fan(recording: rr.RecordingStream, path: str, shape: Shape, told: TossDistribution) -> None:
     ghosts = told.ghosts
     color = palette.translucent(palette.PREDICTED, 0.3)
-    recording.log(f"{path}/ways", rr.LineStrips3D(fan_of(told), colors=color, radii=_THIN))
+    recording.log(f"{path}/ways", rr.LineStrips3D(strips_3d(fan_of(told)), colors=color, radii=_THIN))
     for name, chosen, shown in (
         (
             "strikes",
@@ -104,7 +107,7 @@ def _draw_fan(recording: rr.RecordingStream, path: str, shape: Shape, told: Toss
         edges = [
             edge for i in np.flatnonzero(chosen) for edge in outline(shape, ghosts.p_WB_W[i], ghosts.q_WB[i])
         ]
-        recording.log(f"{path}/{name}", rr.LineStrips3D(edges, colors=shown, radii=_THIN))
+        recording.log(f"{path}/{name}", rr.LineStrips3D(strips_3d(edges), colors=shown, radii=_THIN))
 
 
 def _draw_tree(
@@ -115,7 +118,9 @@ def _draw_tree(
     followed = [(k, node) for k, node in enumerate(nodes) if node.parent >= 0]
     lines = [np.vstack([places[node.parent], places[k]]) for k, node in followed]
     widths = [-0.5 - 3.0 * node.probability for _, node in followed]
-    recording.log(f"{path}/branches", rr.LineStrips3D(lines, colors=palette.AFTER_IMPACT, radii=widths))
+    recording.log(
+        f"{path}/branches", rr.LineStrips3D(strips_3d(lines), colors=palette.AFTER_IMPACT, radii=widths)
+    )
     texts, regions = [node.text for node in nodes], [node.regions.position for node in nodes]
     if told.rest is not None:
         places.append(told.rest.position.mean)
@@ -130,7 +135,7 @@ def _draw_tree(
     recording.log(f"{path}/labels", labels)
     leaders = [np.vstack(ends) for ends in zip(places, raised, strict=True)]
     faint = palette.translucent(palette.AFTER_IMPACT, 0.5)
-    recording.log(f"{path}/leaders", rr.LineStrips3D(leaders, colors=faint, radii=_THIN))
+    recording.log(f"{path}/leaders", rr.LineStrips3D(strips_3d(leaders), colors=faint, radii=_THIN))
     recording.log(f"{path}/regions", _ellipsoids(regions) if regions else rr.Clear(recursive=False))
 
 

@@ -15,6 +15,7 @@ from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import predicted_entity
 from contact_dynamics.viewing.scene import solid
+from contact_dynamics.viewing.strips import strips_3d
 
 if TYPE_CHECKING:
     from contact_dynamics.diagrams.shape import Shape
@@ -61,7 +62,7 @@ def draw_trajectory(
         recording.log(path, rr.Clear(recursive=True))
         return
     last = len(trajectory) - 1
-    strip = rr.LineStrips3D([_thinned(trajectory)], colors=palette.PREDICTED, radii=_PATH_WIDTH)
+    strip = rr.LineStrips3D(strips_3d([_thinned(trajectory)]), colors=palette.PREDICTED, radii=_PATH_WIDTH)
     recording.log(f"{path}/path", strip)
     travelled = float(np.linalg.norm(np.diff(trajectory.p_WB_W, axis=0), axis=1).sum())
     count = min(MOST_OUTLINES, int(travelled / shape.size))
@@ -70,13 +71,15 @@ def draw_trajectory(
     outlines = [outline(shape, trajectory.p_WB_W[i], trajectory.q_WB[i]) for i in chosen]
     edges = [edge for edges in outlines for edge in edges]
     color = palette.translucent(palette.PREDICTED, 0.45)
-    recording.log(f"{path}/outlines", rr.LineStrips3D(edges, colors=color, radii=_OUTLINE_WIDTH))
+    recording.log(f"{path}/outlines", rr.LineStrips3D(strips_3d(edges), colors=color, radii=_OUTLINE_WIDTH))
     ellipsoids = _ellipsoids(trajectory, covariance, [*chosen.tolist(), last])
     recording.log(f"{path}/uncertainty", ellipsoids or rr.Clear(recursive=False))
     p_WB_W, q_WB = trajectory.p_WB_W[last], trajectory.q_WB[last]
     moves_away = travelled > NEARBY * shape.size
     edges = list(outline(shape, p_WB_W, q_WB)) if moves_away else []
-    recording.log(f"{path}/end", rr.LineStrips3D(edges, colors=palette.PREDICTED, radii=_END_WIDTH))
+    recording.log(
+        f"{path}/end", rr.LineStrips3D(strips_3d(edges), colors=palette.PREDICTED, radii=_END_WIDTH)
+    )
     pose = rr.Transform3D(translation=p_WB_W, quaternion=q_WB)
     recording.log(f"{path}/newest_end", pose)
     faces = solid(shape, palette.translucent(palette.PREDICTED, 0.25))
@@ -89,7 +92,9 @@ def draw_earlier_path(
     """Keep the path of a trajectory in view when a later one is drawn, until another takes its place."""
     path = f"{predicted_entity(body_name)}/earlier/{place}"
     color = palette.translucent(palette.PREDICTED, 0.4)
-    recording.log(path, rr.LineStrips3D([_thinned(trajectory)], colors=color, radii=0.5 * _PATH_WIDTH))
+    recording.log(
+        path, rr.LineStrips3D(strips_3d([_thinned(trajectory)]), colors=color, radii=0.5 * _PATH_WIDTH)
+    )
 
 
 def _thinned(trajectory: Trajectory) -> FloatArray:

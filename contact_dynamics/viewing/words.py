@@ -13,6 +13,7 @@ import numpy as np
 import rerun as rr
 
 from contact_dynamics.viewing import palette
+from contact_dynamics.viewing.strips import strips_2d
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,7 +26,7 @@ _NO_COLOR: Final = (0, 0, 0, 0)
 def words_2d(places: FloatArray, texts: Sequence[str], colors: Sequence[palette.Color]) -> rr.LineStrips2D:
     """Return words at places, (n, 2), as rerun's 2D views have them: the second coordinate goes down."""
     return rr.LineStrips2D(
-        [np.array([place, place]) for place in places],
+        strips_2d([np.array([place, place]) for place in places]),
         colors=[palette.readable(color) for color in colors],
         radii=0.0,
         labels=list(texts),
@@ -35,4 +36,6 @@ def words_2d(places: FloatArray, texts: Sequence[str], colors: Sequence[palette.
 
 def room_2d(corners: FloatArray) -> rr.LineStrips2D:
     """Return what keeps room for a picture that reaches to these points, (n, 2), in the view."""
-    return rr.LineStrips2D([np.array([corner, corner]) for corner in corners], colors=_NO_COLOR, radii=0.0)
+    return rr.LineStrips2D(
+        strips_2d([np.array([corner, corner]) for corner in corners]), colors=_NO_COLOR, radii=0.0
+    )

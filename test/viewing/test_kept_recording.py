@@ -92,6 +92,20 @@ def test_what_was_cleared_is_not_drawn_again(places: Places) -> None:
     assert {path for path, _ in drawn.values if not path.startswith("/__")} == {"/ab"}
 
 
+def test_what_is_clear_is_not_cleared_again(places: Places) -> None:
+    """An earlier stamp is not clear, nor is what was drawn since, also below the path."""
+    path, recording = places.open(), places.recording
+    point = rr.Points3D([[1.0, 2.0, 3.0]])
+    for after, drawn_at in ((0, "a/b"), (1, ""), (2, ""), (3, "a"), (4, "a/b/c"), (3, ""), (5, "elsewhere")):
+        set_time(recording, STAMP_NS + after)
+        if drawn_at:
+            recording.log(drawn_at, point)
+        recording.log("a", rr.Clear(recursive=True))
+    (drawn,) = places.read(path)
+    stamps = drawn.stamps("/a", "Clear:is_recursive")
+    assert [stamp - STAMP_NS for stamp in stamps] == [0, 3, 3, 4]
+
+
 def test_a_gap_between_batches_stays(places: Places) -> None:
     recording = places.recording
     for first in (0, 10):

@@ -13,12 +13,14 @@ from contact_dynamics.viewing.states_in_turn import StatesInTurn
 from contact_dynamics.world import World
 from viewing.answers import tumbling_answer
 from viewing.drawn import STAMP_NS
+from viewing.test_picture import an_impact
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     import rerun as rr
 
+    from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.world import Body
     from viewing.drawn import Drawn
@@ -58,10 +60,10 @@ def test_all_are_drawn_by_their_stamps(
 
 
 def test_before_an_answer_only_what_it_needs_is_drawn(
-    states: StatesInTurn, state: BodyState, read: Callable[[], Drawn]
+    states: StatesInTurn, state: BodyState, two_contacts: ContactSet, read: Callable[[], Drawn]
 ) -> None:
     add(states, state, 1, 2)
-    states.draw_before_answer("ball")
+    states.draw_before(an_impact(state, two_contacts, name="ball"))
     assert states.count == 4
     assert {name for name in NAMES if f"/world/bodies/{name}" in read().entities} == {"ball"}
 
@@ -73,8 +75,9 @@ def test_curves_of_one_body_reach_to_those_of_the_next(
     short = free_motion(body.mass_properties, state).at([0.0, 1e-9])
     picture.show_tumbling(tumbling_answer(state, short, body_name="brick"))
     add(states, state, 10, 20)
-    states.draw_before_answer("ball")
-    picture.show_tumbling(tumbling_answer(replace(state, stamp_ns=STAMP_NS + 30), short, body_name="ball"))
+    answer = tumbling_answer(replace(state, stamp_ns=STAMP_NS + 30), short, body_name="ball")
+    states.draw_before(answer)
+    picture.show_tumbling(answer)
     add(states, state, 40)
     states.draw()
     drawn = read()
