@@ -13,7 +13,7 @@ import numpy as np
 
 from contact_dynamics.rotations.many import matrices_of
 from contact_dynamics.tolerances import ARRIVAL_POLISHED, SAMPLED_ARRIVAL
-from contact_dynamics.tumbling.many import states_of_many
+from contact_dynamics.tumbling.many import motions_of_many
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -70,16 +70,17 @@ def arrivals_of_many(
     surface, corner = np.full(n, -1, dtype=np.int64), np.full(n, -1, dtype=np.int64)
     then = [each.copy() for each in state]
 
+    motions = motions_of_many(
+        inertias,
+        p_WB_W=state[0],
+        q_WB=state[1],
+        v_WB_W=state[2],
+        w_WB_W=state[3],
+        gravities_W=gravities,
+    )
+
     def move(some: NDArray[np.intp]) -> None:
-        moved = states_of_many(
-            inertias[some],
-            p_WB_W=state[0][some],
-            q_WB=state[1][some],
-            v_WB_W=state[2][some],
-            w_WB_W=state[3][some],
-            seconds=t[some],
-            gravity_W=gravities[some],
-        )
+        moved = (motions.of(some) if len(some) < n else motions).at(t[some])
         for each, rows in zip(then, (moved.p_WB_W, moved.q_WB, moved.v_WB_W, moved.w_WB_W), strict=True):
             each[some] = rows
 

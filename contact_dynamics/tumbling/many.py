@@ -1,40 +1,38 @@
 """This file follows many free motions at once, each at its own time, such as samples of an uncertain state.
 
-The formulas are those for one motion, over arrays and in doubles. Errors of attitude grow by about 1e-16 of
-the angle turned, times the motion's sensitivity. A motion that is on the separatrix to the last bit is
-computed as if it were 1e-300 off it.
+The formulas are those for one motion, over arrays and in doubles (`many_turns`). Errors of attitude grow by
+about 1e-16 of the angle turned, times the motion's sensitivity. A motion that is on the separatrix to the
+last bit is computed as if it were 1e-300 off it.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.numerics.arithmetic import ARRAYS, FloatArray
+from contact_dynamics.numerics.arithmetic import FloatArray
 from contact_dynamics.rotations.many import matrices_of, products
 from contact_dynamics.tolerances import (
-    MOTIONLESS,
-    SMALLEST,
     SYMMETRY_TOLERANCE,
     TRIANGLE_TOLERANCE,
     UNIT_LENGTH_TOLERANCE,
 )
-from contact_dynamics.tumbling.attitude_form import SWITCH, bumps, harmonics, zeros
-from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
+from contact_dynamics.tumbling.many_turns import Turns, tumbles_of_many, turns_of_many
 from contact_dynamics.tumbling.motion import Trajectory
 from contact_dynamics.validation import check_array
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from contact_dynamics.tumbling.theta import Bumps, Harmonics
 
 CHUNK: Final = 4096
 """Number of rotations computed at a time. Their intermediate arrays stay in the processor's cache."""
+
+_IN_STEADY_SPIN: Final[Any] = {"divide": "ignore", "invalid": "ignore", "over": "ignore"}
+"""What NumPy need not tell: rows of steady spin divide by zero, and are computed apart."""
 
 
 def states_of_many(
@@ -65,28 +63,119 @@ def states_of_many(
         InvalidFieldError: an array of another shape, a number that is not finite, a quaternion that is not
             unit, an inertia that is not symmetric and positive definite.
     """
+    start = _start(I_B, p_WB_W=p_WB_W, q_WB=q_WB, v_WB_W=v_WB_W, w_WB_W=w_WB_W, gravity_W=gravity_W)
+    n = len(start.p)
+    times = np.broadcast_to(_times(seconds, n), (n,))
+    return start.after(times, *rotations_of_many(start.moments, start.w_P, times))
+
+
+class ManyMotions(NamedTuple):
+    """Free motions of n bodies, set up by `motions_of_many` to be asked for several times.
+
+    Attributes:
+        start: Their states at time 0.
+        turns: Their rotations.
+    """
+
+    start: _Start
+    turns: Turns
+
+    def of(self, which: NDArray[np.intp]) -> ManyMotions:
+        """Return some of the motions, by their numbers."""
+        return ManyMotions(_Start(*(rows[which] for rows in self.start)), self.turns.of(which))
+
+    def at(self, times: FloatArray) -> Trajectory:
+        """Return the state of each body at its time, (n,), s."""
+        with np.errstate(**_IN_STEADY_SPIN):
+            turned = self.turns.at(times)
+        return self.start.after(times, *turned)
+
+
+def motions_of_many(
+    inertias_B: ArrayLike,
+    *,
+    p_WB_W: ArrayLike,
+    q_WB: ArrayLike,
+    v_WB_W: ArrayLike,
+    w_WB_W: ArrayLike,
+    gravities_W: ArrayLike,
+) -> ManyMotions:
+    """Return the motions of n bodies, to be asked for several times: those of `states_of_many`.
+
+    Arguments and errors are those of `states_of_many`, with inertias (n, 3, 3) and gravities (n, 3).
+    """
+    start = _start(inertias_B, p_WB_W=p_WB_W, q_WB=q_WB, v_WB_W=v_WB_W, w_WB_W=w_WB_W, gravity_W=gravities_W)
+    with np.errstate(**_IN_STEADY_SPIN):
+        return ManyMotions(start, turns_of_many(start.moments, start.w_P))
+
+
+class _Start(NamedTuple):
+    """States of n bodies at time 0, a row each.
+
+    Attributes:
+        p: (n, 3), m, world.
+        q: (n, 4), unit quaternions.
+        v: (n, 3), m/s, world axes.
+        gravity: (n, 3), m/s^2, world axes.
+        moments: (n, 3), principal moments, ascending.
+        R_BP: (n, 3, 3), principal axes in the body.
+        R_WP: (n, 3, 3), in the world.
+        w_P: (n, 3), rad/s, principal axes.
+    """
+
+    p: FloatArray
+    q: FloatArray
+    v: FloatArray
+    gravity: FloatArray
+    moments: FloatArray
+    R_BP: FloatArray
+    R_WP: FloatArray
+    w_P: FloatArray
+
+    def after(self, times: FloatArray, turn: FloatArray, w_P: FloatArray) -> Trajectory:
+        """Return the states at times (n,), s, from what `rotations_of_many` returns.
+
+        The turn is in principal axes at time 0. As a rotation of the world it is R_WP turn R_WP^T.
+        """
+        onto_W = np.einsum("nij,nj->ni", self.R_WP, turn[:, :3])
+        then = products(np.column_stack([onto_W, turn[:, 3]]), self.q)
+        elapsed = times[:, None]
+        return Trajectory(
+            seconds=times.copy(),
+            p_WB_W=self.p + elapsed * (self.v + (0.5 * elapsed) * self.gravity),
+            q_WB=then,
+            v_WB_W=self.v + elapsed * self.gravity,
+            w_WB_W=np.einsum("nij,nj->ni", matrices_of(then) @ self.R_BP, w_P),
+        )
+
+
+def _start(
+    I_B: ArrayLike,
+    *,
+    p_WB_W: ArrayLike,
+    q_WB: ArrayLike,
+    v_WB_W: ArrayLike,
+    w_WB_W: ArrayLike,
+    gravity_W: ArrayLike,
+) -> _Start:
     w = check_array("w_WB_W", w_WB_W, (None, 3))
     n = len(w)
     p, v = _rows("p_WB_W", p_WB_W, n, (3,)), _rows("v_WB_W", v_WB_W, n, (3,))
     q = _unit(_rows("q_WB", q_WB, n, (4,)))
     given = check_array("I_B", I_B, (3, 3)) if np.ndim(I_B) == 2 else _rows("I_B", I_B, n, (3, 3))
     moments, R_BP = _principal(given)
-    times = np.broadcast_to(_times(seconds, n), (n,))
     R_WP = matrices_of(q) @ R_BP
-    turn, w_P = rotations_of_many(moments, np.einsum("nij,ni->nj", R_WP, w), times)
-    # The turn is in principal axes at time 0. As a rotation of the world it is R_WP turn R_WP^T.
-    onto_W = np.einsum("nij,nj->ni", R_WP, turn[:, :3])
-    then = products(np.column_stack([onto_W, turn[:, 3]]), q)
-    w_then = np.einsum("nij,nj->ni", matrices_of(then) @ R_BP, w_P)
     one = np.ndim(gravity_W) == 1
     gravity = check_array("gravity_W", gravity_W, (3,)) if one else _rows("gravity_W", gravity_W, n, (3,))
-    elapsed = times[:, None]
-    return Trajectory(
-        seconds=times.copy(),
-        p_WB_W=p + elapsed * (v + (0.5 * elapsed) * gravity),
-        q_WB=then,
-        v_WB_W=v + elapsed * gravity,
-        w_WB_W=w_then,
+    return _Start(
+        p=p,
+        q=q,
+        v=v,
+        gravity=gravity,
+        moments=moments,
+        R_BP=R_BP,
+        R_WP=R_WP,
+        w_P=np.einsum("nij,ni->nj", R_WP, w),
     )
 
 
@@ -150,10 +239,10 @@ def rotations_of_many(
     n = len(w)
     times = np.broadcast_to(_times(seconds, n), (n,))
     q, w_then = np.empty((n, 4)), np.empty((n, 3))
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # in rows of steady spin, set after
+    with np.errstate(**_IN_STEADY_SPIN):  # set after
         for start in range(0, n, CHUNK):
             part = slice(start, start + CHUNK)
-            _turn(given[part], w[part], times[part], q[part], w_then[part])
+            q[part], w_then[part] = turns_of_many(given[part], w[part]).at(times[part])
     return q, w_then
 
 
@@ -164,8 +253,8 @@ def flips_of_many(moments: ArrayLike, w_P: ArrayLike) -> tuple[FloatArray, Float
     spin has no flips, and its times are NaN. Arguments and errors are those of `rotations_of_many`.
     """
     w, given = _checked(moments, w_P)
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # in rows of steady spin
-        r = _tumbles(given, w)
+    with np.errstate(**_IN_STEADY_SPIN):
+        r = tumbles_of_many(given, w)
         rate = np.where(r.steady, np.nan, r.z_rate)
         return -r.z_offset / rate, np.divide(np.pi, np.abs(rate))
 
@@ -177,125 +266,3 @@ def _checked(moments: ArrayLike, w_P: ArrayLike) -> tuple[FloatArray, FloatArray
     if not (given > 0.0).all():
         raise InvalidFieldError("moments", float(given.min()), "numbers > 0")
     return w, np.broadcast_to(given, w.shape)
-
-
-@dataclass(frozen=True, slots=True)
-class _Tumbles:
-    """The numbers of `polhode.Tumble` for many rotations, in arrays (n,), in Jacobi's axes of each."""
-
-    axes: NDArray[np.intp]  # (n, 3), which of the given axes is 1, 2, 3
-    signs: FloatArray  # (n, 3), and whether it points along or against it
-    moments: FloatArray  # (n, 3)
-    L: FloatArray
-    m: FloatArray
-    a2: FloatArray
-    c2: FloatArray
-    z_rate: FloatArray  # rad/s
-    z_offset: FloatArray  # rad
-    quarter: FloatArray
-    precession: FloatArray
-    steady: FloatArray  # bool
-
-
-def _tumbles(given: FloatArray, w_P: FloatArray) -> _Tumbles:
-    rows = np.arange(len(w_P))
-    order = np.argsort(given, axis=1)
-    small, middle, large = (given[rows, order[:, k]] for k in range(3))
-    w_small, w_large = w_P[rows, order[:, 0]], w_P[rows, order[:, 2]]
-    low, high, both = middle - small, large - middle, large - small
-    from_middle = large * high * w_large**2 - small * low * w_small**2
-    major = from_middle >= 0.0
-    axes = np.where(major[:, None], order, order[:, ::-1])
-    I1, I2, I3 = np.where(major, small, large), middle, np.where(major, large, small)
-    gap21, gap32, gap31 = np.where(major, (low, high, both), (-high, -low, -both))
-    w1, w2, w3 = (w_P[rows, axes[:, k]] for k in range(3))
-    signs = np.ones((len(w_P), 3))
-    signs[:, 0], signs[:, 2] = np.copysign(1.0, w1), np.copysign(1.0, w3)
-    even = (axes[:, 1] - axes[:, 0]) % 3 == 1
-    signs[:, 1] = signs[:, 0] * signs[:, 2] * np.where(even, 1.0, -1.0)
-    d1 = I2 * gap21 * w2**2 + I3 * gap31 * w3**2
-    d3 = I1 * gap31 * w1**2 + I2 * gap32 * w2**2
-    momenta = I1 * w1, I2 * w2, I3 * w3
-    squared = momenta[0] ** 2 + momenta[1] ** 2 + momenta[2] ** 2
-    a2, b2, c2 = I1 * d3 / (gap31 * squared), I2 * d3 / (gap32 * squared), I3 * d1 / (gap31 * squared)
-    steady = ~(a2 > MOTIONLESS) | ~(abs(gap32) * w3**2 + abs(gap21) * w1**2 > 0.0)
-    # Steady rows get the numbers of some tumble, so that the iterations end.
-    a2, b2, c2 = (np.where(steady, 0.5, x) for x in (a2, b2, c2))
-    m = np.where(steady, 0.5, np.maximum(d3 * gap21 / (d1 * gap32), SMALLEST))
-    m1 = np.where(steady, 0.5, np.maximum(from_middle * gap31 / (d1 * gap32), SMALLEST))
-    L = np.sqrt(squared)
-    sn = np.where(steady, 0.0, signs[:, 1] * momenta[1] / (L * np.sqrt(b2)))
-    cn2 = np.where(steady, 1.0, momenta[0] ** 2 / (squared * a2))
-    dn2 = np.where(steady, 1.0, np.maximum(momenta[2] ** 2 / (squared * c2), SMALLEST))
-    u0 = sn * carlson_rf(cn2, dn2, np.ones_like(sn), numbers=ARRAYS)
-    quarter, average = average_over_period(np.sqrt(m1), b2 / a2, 1.0 / I1, b2 / (a2 * I2), numbers=ARRAYS)
-    omega_p = np.where(major, 1.0, -1.0) * np.sqrt(d1 * gap32 / (I1 * I2 * I3))
-    return _Tumbles(
-        axes=axes,
-        signs=signs,
-        moments=np.stack((I1, I2, I3)),
-        L=L,
-        m=m,
-        a2=a2,
-        c2=c2,
-        z_rate=omega_p * quarter,
-        z_offset=u0 * quarter,
-        quarter=quarter,
-        precession=L * average,
-        steady=steady,
-    )
-
-
-def _turn(given: FloatArray, w_P: FloatArray, times: FloatArray, q: FloatArray, w_then: FloatArray) -> None:
-    """Fill (n, 4) quaternions and (n, 3) angular velocities."""
-    r = _tumbles(given, w_P)
-    begin, end = _values(r, np.zeros_like(times)), _values(r, times)
-    x0, y0, z0, w0 = _attitudes(begin)
-    x1, y1, z1, w1 = _attitudes(end)
-    turned = np.stack(
-        (
-            w0 * x1 - x0 * w1 - y0 * z1 + z0 * y1,
-            w0 * y1 + x0 * z1 - y0 * w1 - z0 * x1,
-            w0 * z1 - x0 * y1 + y0 * x1 - z0 * w1,
-        ),
-        axis=1,
-    )
-    norm2 = end[0] ** 2 + end[1] ** 2 + end[2] ** 2 + end[3] ** 2
-    momenta = np.stack((end[4], 2.0 * (end[0] * end[3] - end[1] * end[2]), end[5]))
-    rates = (momenta * (r.L / norm2) / r.moments).T
-    np.put_along_axis(q, r.axes, r.signs * turned, axis=1)
-    q[:, 3] = w0 * w1 + x0 * x1 + y0 * y1 + z0 * z1
-    q /= np.sqrt(np.einsum("ij,ij->i", q, q))[:, None]
-    np.put_along_axis(w_then, r.axes, r.signs * rates, axis=1)
-    if r.steady.any():
-        spin, half = w_P[r.steady], 0.5 * times[r.steady]
-        rate = np.sqrt(np.einsum("ij,ij->i", spin, spin))
-        q[r.steady, :3] = spin * (np.sin(rate * half) / np.maximum(rate, SMALLEST))[:, None]
-        q[r.steady, 3] = np.cos(rate * half)
-        w_then[r.steady] = spin
-
-
-def _attitudes(values: FloatArray) -> FloatArray:
-    """Return quaternions (4, n) of any length, x y z w, of Jacobi's axes in L's."""
-    A_re, A_im, B_re, B_im, _, _, tangent = values
-    return np.stack(
-        (B_im + tangent * B_re, tangent * B_im - B_re, A_im + tangent * A_re, A_re - tangent * A_im)
-    )
-
-
-def _values(r: _Tumbles, times: FloatArray) -> FloatArray:
-    """Return `theta.Values` as (7, n)."""
-    xi, eta = (zero * r.quarter for zero in zeros(r.a2, r.c2, r.m, ARRAYS))
-    by_bumps = 2.0 * (xi + eta) <= SWITCH
-    values = np.empty((7, len(times)))
-    z, psi = r.z_rate * times + r.z_offset, 0.5 * (r.precession - r.z_rate) * times / np.pi
-    for rows, make, unit in ((~by_bumps, harmonics, 2.0 * np.pi), (by_bumps, bumps, np.pi)):
-        if rows.any():
-            peaks = np.sqrt(r.a2[rows]), np.sqrt(r.c2[rows])
-            series: Harmonics | Bumps = make(xi[rows], eta[rows], peaks, functions=np)
-            turns = z[rows] / unit
-            whole = np.rint(turns)
-            each = series.values(np, turns - whole, whole, psi[rows])
-            for value, row in zip(values, each, strict=True):
-                value[rows] = row  # one number where no term of a series matters, as in symmetric bodies
-    return values
