@@ -446,6 +446,14 @@ CHATTER_HEIGHT: Final = 1e-7
 """m. Lower rebounds are not followed. This height is a hundred times `GRAZING_DEPTH`, and far below the
 roughness of surfaces."""
 
+SAME_CORNER: Final = 1e-5
+"""m. Corners of a body nearer to each other are one corner in a whole toss: ten times the height of rebounds
+that are not followed. Of 300 drawn boxes with two corners in place of each, 12 did not come to rest where
+these were less than 1 micrometre apart, 4 of 400 between 1 and 2.5, and none beyond."""
+
+SAME_CORNER_SHARE: Final = 1e-4
+"""The same, relative to the reach of the body, for small bodies."""
+
 SETTLING_HEIGHT: Final = 1e-6
 """m. In a whole toss, a contact whose rebounds are lower stays, and a body that can only rise or slide so far
 rests. It is a hundredth of what motion capture resolves, and below the roughness of most surfaces."""

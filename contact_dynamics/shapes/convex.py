@@ -54,12 +54,19 @@ class Rim(NamedTuple):
     radius: float
 
 
+def _distinct(vertices: FloatArray) -> FloatArray:
+    """Return the vertices without repetitions: two at one place would strike together, always."""
+    rows = dict.fromkeys(map(tuple, vertices.tolist()))
+    return vertices if len(rows) == len(vertices) else check_array("vertices", [*rows], (None, 3))
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ConvexShape(Record):
     """The convex hull of points and circles, rolled over by a ball. Without points and circles it is empty.
 
     Attributes:
-        vertices: (k, 3), m, corners in body axes.
+        vertices: (k, 3), m, corners in body axes. One that is given again, as in the triangles of a mesh,
+            stands where it was given first, and only there.
         rims: Circles in body axes.
         rounding: The ball's radius, m, >= 0.
 
@@ -87,7 +94,7 @@ class ConvexShape(Record):
             raise TooLargeError("vertices", f"{len(vertices)} vertices", f"at most {MOST_VERTICES}")
         if len(self.rims) > MOST_RIMS:
             raise TooLargeError("rims", f"{len(self.rims)} rims", f"at most {MOST_RIMS}")
-        object.__setattr__(self, "vertices", vertices)
+        object.__setattr__(self, "vertices", _distinct(vertices))
         object.__setattr__(self, "rims", tuple(_checked(*rim) for rim in self.rims))
         object.__setattr__(self, "rounding", check_within("rounding", self.rounding, 0.0, LARGEST_NUMBER))
 

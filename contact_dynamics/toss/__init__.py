@@ -5,7 +5,8 @@ event: each `flight` in closed form, strikes (`strike`), contact phases (`phase`
 what happens, and `result` has what is returned. Flights, impacts (`one_impact`) and steps are work that is
 `asked` for.
 
-- `solid` has the body and the flats in plain floats, and the points that touch.
+- `solid` has the body and the flats in plain floats, and the points that touch. Corners that are very near to
+  each other are one (`distinct_corners`).
 - `mode_choice` says which contact mode follows. It tries the one that goes on, corrects it, with the
   directions of sliding that is `beginning`, seeks pushes in friction cones (`cone_forces`), and asks
   `contact_modes` where there may be several modes, as where a body may be `wedged`.

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from math import dist
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -35,6 +36,11 @@ if TYPE_CHECKING:
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
+
+
+NEAR_CORNERS: Final = 0.1
+"""Distance of two corners, relative to the body's reach, below which heights of touching ones are compared
+more closely."""
 
 
 class Noted(NamedTuple):
@@ -89,7 +95,7 @@ class Course:
             seconds=self.now,
             state=self.present(),
             events=tuple(self._told_events()),
-            resting_corners=tuple(sorted({corner for _, corner in self.resting})),
+            resting_corners=tuple(sorted({self.solid.indices[corner] for _, corner in self.resting})),
             resting_normal_B=np.array(self.resting_normal_B()),
             energy=energy,
             undecided=tuple(self._undecided),
@@ -106,8 +112,26 @@ class Course:
 
     def touching_now(self, leaving: float) -> list[Touch]:
         """Return the contacts that touch and do not leave faster than ``leaving``, m/s."""
-        listed = heights_and_rates(self.solid, self.y)
-        return [touch for height, rate, touch in listed if height <= DISTANCE_TOLERANCE and rate <= leaving]
+        listed = [
+            (height, touch)
+            for height, rate, touch in heights_and_rates(self.solid, self.y)
+            if height <= DISTANCE_TOLERANCE and rate <= leaving
+        ]
+        return [touch for _, touch in listed] if len(listed) < 2 else self._touching_together(listed)
+
+    def _touching_together(self, listed: list[tuple[float, Touch]]) -> list[Touch]:
+        """Return the contacts, of those with these heights, m, that the body need not turn to touch with.
+
+        Contacts that touch together are held together. If two are near to each other, the tolerance of one's
+        height would be a large angle, so it is less there.
+        """
+        corners, reach = self.solid.corners, self.solid.reach
+        found: list[Touch] = []
+        for height, (flat, corner) in sorted(listed):
+            apart = min((dist(corners[corner], corners[k]) for s, k in found if s == flat), default=reach)
+            if height <= DISTANCE_TOLERANCE * min(1.0, apart / (NEAR_CORNERS * reach)):
+                found.append((flat, corner))
+        return [touch for _, touch in listed if touch in found]
 
     def way(self, reason: UndecidedReason, options: int) -> int:
         """Return which way is taken at a point that mechanics does not decide, and tell of it."""
@@ -155,7 +179,7 @@ class Course:
             seconds=noted.seconds,
             kind=noted.kind,
             surfaces=tuple(self.solid.flats[surface].name for surface, _ in touching),
-            corners=tuple(corner for _, corner in touching),
+            corners=tuple(self.solid.indices[corner] for _, corner in touching),
             p_WC_W=points_of(self.solid, y, touching),
             impulse_W=np.array(noted.impulse),
             outcome=noted.outcome,

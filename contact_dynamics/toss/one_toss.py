@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.tolerances import PHASE_ERROR
+from contact_dynamics.toss.distinct_corners import with_distinct_corners
 from contact_dynamics.toss.following import Following
 from contact_dynamics.toss.solid import solid_of
 from contact_dynamics.toss.uncertainty import check_factors
@@ -74,7 +75,8 @@ def toss(
     """
     check_choice("restitution_law", restitution_law, RestitutionLaw)
     factors = check_factors("lasting_factors", lasting_factors)
-    solid = solid_of(body, world, lasting_factors=factors)
+    body, indices = with_distinct_corners(body)
+    solid = solid_of(body, world, indices=indices, lasting_factors=factors)
     runs = Following(
         solid,
         body.mass_properties,

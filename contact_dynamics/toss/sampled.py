@@ -18,6 +18,7 @@ import numpy as np
 from contact_dynamics.numerics.vectors import dot
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tolerances import SAMPLED_SETTLING_HEIGHT
+from contact_dynamics.toss.distinct_corners import with_distinct_corners
 from contact_dynamics.toss.distribution import (
     FEWEST,
     Branch,
@@ -107,7 +108,8 @@ def sampled_toss(
         BrokenProcessPool: a process died, for example because the main module is not guarded as said above.
     """
     shared_by = check_processes(processes)
-    solid = solid_of(body, world, settling=SAMPLED_SETTLING_HEIGHT)
+    body, indices = with_distinct_corners(body)
+    solid = solid_of(body, world, indices=indices, settling=SAMPLED_SETTLING_HEIGHT)
     chance = np.random.default_rng(seed)
     samples = draw(
         body,
@@ -204,7 +206,7 @@ def _branches(solid: Solid, told: ManyStrikes, count: int) -> list[Branch]:
                         strike=k + 1,
                         kind=BranchKind.STRIKES if strikes else BranchKind(-key[1]),
                         surface=solid.flats[key[0]].name if strikes else "",
-                        corner=key[1] if strikes else -1,
+                        corner=solid.indices[key[1]] if strikes else -1,
                         probability=number / count,
                         regions=_regions(told, k, which, count) if strikes and number >= FEWEST else None,
                     )

@@ -64,6 +64,7 @@ class Solid(NamedTuple):
         inertia: (3, 3), kg m^2, body axes.
         inverse: Its inverse.
         corners: m, body axes.
+        indices: Those of the corners among the vertices of the body's shape.
         rounding: m, the radius of the ball that rolls over the corners.
         reach: m, the distance of the farthest point of the body from its centre of mass.
         gravity: m/s^2, world axes.
@@ -75,6 +76,7 @@ class Solid(NamedTuple):
     inertia: Matrix3
     inverse: Matrix3
     corners: tuple[Vector3, ...]
+    indices: tuple[int, ...]
     rounding: float
     reach: float
     gravity: Vector3
@@ -101,13 +103,19 @@ class Pose(NamedTuple):
 
 
 def solid_of(
-    body: Body, world: World, *, settling: float = SETTLING_HEIGHT, lasting_factors: FloatArray | None = None
+    body: Body,
+    world: World,
+    *,
+    indices: tuple[int, ...] | None = None,
+    settling: float = SETTLING_HEIGHT,
+    lasting_factors: FloatArray | None = None,
 ) -> Solid:
     """Return a body and a world in plain floats.
 
     Args:
         body: The body.
         world: Flats, and gravity.
+        indices: (k,), those that are told of the body's corners. Without any, they count from 0.
         settling: m. Rebounds that are lower are not followed.
         lasting_factors: (s,), the friction of each surface where contact lasts, relative to that of its
             strikes. Without any, those of the surfaces hold.
@@ -155,6 +163,7 @@ def solid_of(
         inertia=as_rows(I_B.tolist()),
         inverse=as_rows(np.linalg.inv(I_B).tolist()),
         corners=corners,
+        indices=tuple(range(len(corners))) if indices is None else indices,
         rounding=body.shape.rounding,
         reach=max(map(norm, corners)) + body.shape.rounding,
         gravity=(g_x, g_y, g_z),

@@ -42,11 +42,11 @@ def test_none_is_no_shape() -> None:
         ({"box": [0.1, 0.2, 0.3]}, 8, 0, 0.0),
         ({"box": [0.1, 0.2, 0.3], "rounding": 0.01}, 8, 0, 0.01),
         ({"sphere": [0.1]}, 1, 0, 0.1),
-        ({"capsule": [0.1, 0.0]}, 2, 0, 0.1),
+        ({"capsule": [0.1, 0.0]}, 1, 0, 0.1),
         ({"cylinder": [0.1, 0.2]}, 0, 2, 0.0),
         ({"cylinder": [0.1, 0.0]}, 0, 1, 0.0),
         ({"cone": [0.1, 0.2]}, 1, 1, 0.0),
-        ({"vertices": [0.0] * 12}, 4, 0, 0.0),
+        ({"vertices": [0.0] * 12}, 1, 0, 0.0),
     ],
 )
 def test_each_shape_has_its_parts(given: dict[str, Any], corners: int, rims: int, rounding: float) -> None:
