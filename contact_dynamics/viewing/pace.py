@@ -19,7 +19,7 @@ SHORTEST_S: Final = 0.05
 LONGEST_S: Final = 0.5
 """s. The time between two drawings of states however dear they are."""
 
-SHARE: Final = 0.1
+SHARE: Final = 0.2
 """The share of one processor that the drawing of states takes, unless the longest time is too short."""
 
 
