@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.shapes.convex import ConvexShape
     from contact_dynamics.toss.asked import Asked, Asking
+    from contact_dynamics.toss.laid_flat import Faces
     from contact_dynamics.toss.mode_choice import Choice, Mode
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
     from contact_dynamics.toss.strike import Strikes
@@ -124,6 +125,7 @@ class Run(Course):
         self.struck = self.laid = self.steps = 0  # strikes, how often it was laid flat, steps in contact
         self.settled: Strikes | None = None  # the last strikes
         self.looked_at: list[Touch] = []  # contacts whose modes were all looked for last
+        self.faces: Faces = {}  # that it could be laid on
         self.way_on: Mode | None = None  # how it goes on where it could rest as well
 
     def go(self) -> Iterator[Asked]:
@@ -325,7 +327,7 @@ class Run(Course):
         after = self.runs.flat_after
         if after is None or self.struck < after or self.laid >= _MOST_LAID:
             return touching
-        flat = laid_flat(self.solid, self.y)
+        flat = laid_flat(self.solid, self.y, self.faces)
         if flat is None:
             return touching
         self.laid += 1

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from itertools import combinations
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 from contact_dynamics.numerics.vectors import cross, dot, norm, tangents
 from contact_dynamics.rotations.one import normalised, product
@@ -57,10 +57,15 @@ class _Face(NamedTuple):
     tipping: float
 
 
-def laid_flat(solid: Solid, y: Numbers) -> Numbers | None:
+Faces: TypeAlias = "dict[tuple[int, ...], _Face | None]"
+"""The faces that have been looked for, by three corners each; None where these are not on one."""
+
+
+def laid_flat(solid: Solid, y: Numbers, faces: Faces) -> Numbers | None:
     """Return the state of a body that slides flush on a face, or None if it does more than rattle on one.
 
-    Only a body near a single flat is laid on it, and only with `MOST_CORNERS` there at most.
+    Only a body near a single flat is laid on it, and only with `MOST_CORNERS` there at most. ``faces`` are
+    those of this body that are known, and gets others that are looked for.
     """
     low = NEARLY_FLUSH * solid.reach
     near = [touch for height, _, touch in heights_and_rates(solid, y) if height < low]
@@ -80,7 +85,7 @@ def laid_flat(solid: Solid, y: Numbers) -> Numbers | None:
     rests = (share * speed) ** 2 <= 2.0 * pressing * flat.friction * solid.settling
     ahead = 0.0 if rests else flat.friction / speed
     lean = transposed_times(rows, (ahead * along[0], ahead * along[1], ahead * along[2]))
-    face = _face_below(solid, transposed_times(rows, n), lean, [corner for _, corner in near])
+    face = _face_below(solid, transposed_times(rows, n), lean, [corner for _, corner in near], faces)
     if face is None:
         return None
     stands = flat.level + face.high + solid.rounding
@@ -101,33 +106,39 @@ def laid_flat(solid: Solid, y: Numbers) -> Numbers | None:
     ]
 
 
-def _face_below(solid: Solid, n_B: Vector3, lean: Vector3, near: list[int]) -> _Face | None:
+def _face_below(solid: Solid, n_B: Vector3, lean: Vector3, near: list[int], faces: Faces) -> _Face | None:
     """Return the face of some of the corners on which the body can stand, or None if there is none.
 
     ``lean`` says how far ahead the weight is borne, body axes, relative to the height of the mass centre.
     """
-    allowed = SAME_FACE * solid.reach
-    for i, j, k in combinations(near, 3):
-        p, q, r = solid.corners[i], solid.corners[j], solid.corners[k]
-        first = (q[0] - p[0], q[1] - p[1], q[2] - p[2])
-        second = (r[0] - p[0], r[1] - p[1], r[2] - p[2])
-        up = cross(first, second)
-        size = norm(up)
-        if size == 0.0:
+    for three in combinations(near, 3):
+        if three not in faces:
+            faces[three] = _face_of(solid, three)
+        face = faces[three]
+        if face is None or dot(face.up, n_B) < 0.0:
             continue
-        size = math.copysign(size, dot(up, n_B))
-        up = (up[0] / size, up[1] / size, up[2] / size)
-        high = -dot(up, p)
-        if high <= 0.0 or any(
-            dot(up, corner) < -high - FACE_ROUNDING * solid.reach for corner in solid.corners
-        ):
-            continue
-        borne = (high * lean[0], high * lean[1], high * lean[2])
-        if not _stands(up, [(x - borne[0], y - borne[1], z - borne[2]) for x, y, z in (p, q, r)]):
-            continue
-        face = [corner for corner in solid.corners if dot(up, corner) < allowed - high]
-        return _Face(up, high, _tipping(up, high, face))
+        x, y, z = face.high * lean[0], face.high * lean[1], face.high * lean[2]
+        triangle = [(p - x, q - y, r - z) for p, q, r in (solid.corners[corner] for corner in three)]
+        if _stands(face.up, triangle):
+            return face
     return None
+
+
+def _face_of(solid: Solid, three: tuple[int, ...]) -> _Face | None:
+    """Return the face of the body on which three corners are, or None if they are not on one."""
+    p, q, r = (solid.corners[corner] for corner in three)
+    first = (q[0] - p[0], q[1] - p[1], q[2] - p[2])
+    second = (r[0] - p[0], r[1] - p[1], r[2] - p[2])
+    up = cross(first, second)
+    size = math.copysign(norm(up), -dot(up, p))
+    if size == 0.0:
+        return None
+    up = (up[0] / size, up[1] / size, up[2] / size)
+    high = -dot(up, p)
+    if high <= 0.0 or any(dot(up, corner) < -high - FACE_ROUNDING * solid.reach for corner in solid.corners):
+        return None
+    face = [corner for corner in solid.corners if dot(up, corner) < SAME_FACE * solid.reach - high]
+    return _Face(up, high, _tipping(up, high, face))
 
 
 def _stands(up: Vector3, triangle: list[Vector3]) -> bool:

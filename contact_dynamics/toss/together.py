@@ -27,7 +27,7 @@ FEWEST_STEPS: Final = 12
 FEWEST_IMPACTS: Final = 12
 """The same of impacts."""
 
-FEWEST_FLIGHTS: Final = 6
+FEWEST_FLIGHTS: Final = 16
 """The same of flights."""
 
 _FIRST: Final = {"step": 2, "flight": 1, "impact": 0}

@@ -39,7 +39,7 @@ def tilted(body: Body, tilt: float, v: list[float], w: list[float]) -> BodyState
 
 
 def laid(body: Body, state: BodyState, *surfaces: Surface) -> list[float] | None:
-    return laid_flat(solid_of(body, World(surfaces=surfaces or (FLOOR,))), numbers_of(state))
+    return laid_flat(solid_of(body, World(surfaces=surfaces or (FLOOR,))), numbers_of(state), {})
 
 
 def test_it_lies_flush_and_slides_with_the_momentum_that_the_rattling_leaves() -> None:
