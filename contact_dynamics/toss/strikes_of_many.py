@@ -12,7 +12,7 @@ import numpy as np
 
 from contact_dynamics.impact.spatial.batch import StrikingBodies, spatial_impacts
 from contact_dynamics.records import NamedInt
-from contact_dynamics.rotations.many import matrices_of
+from contact_dynamics.rotations.many import crosses, matrices_of
 from contact_dynamics.tolerances import SAMPLED_SETTLING_HEIGHT
 from contact_dynamics.toss.arrivals_of_many import arrivals_of_many
 
@@ -179,9 +179,9 @@ def _strike(
     turning = solid.mass * np.cross(inverses, r[:, None, :])  # rows of the inverse times the matrix of r x
     changes = spread.changes(which, np.linalg.norm(impacts.v_WB_W - state[2][which], axis=1), turning)
     v, w = impacts.v_WB_W + changes[:, :3], impacts.w_WB_W + changes[:, 3:]
-    rebounds = np.einsum("ni,ni->n", normals, v + np.cross(w, r))
+    rebounds = np.einsum("ni,ni->n", normals, v + crosses(w, r))
     # A corner does not go on into the flat. Where the spread would have it so, an impulse turns it back.
-    moments = np.cross(r, normals)
+    moments = crosses(r, normals)
     turns = np.einsum("nij,nj->ni", inverses, moments)
     impulses = np.maximum(-2.0 * rebounds, 0.0) / (1.0 / solid.mass + np.einsum("ni,ni->n", moments, turns))
     state[2][which] = v + (impulses / solid.mass)[:, None] * normals

@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from contact_dynamics.rotations.many import (
     cross_matrices,
+    crosses,
     make_continuous,
     matrices_of,
     products,
@@ -105,3 +106,10 @@ def test_none_at_all() -> None:
     assert matrices_of(none).shape == (0, 3, 3)
     assert rotation_vectors(none, none).shape == (0, 3)
     assert turned(none, np.zeros((0, 3))).shape == (0, 4)
+
+
+def test_crosses_are_those_of_numpy_bit_for_bit() -> None:
+    chance = np.random.default_rng(3)
+    a, b = chance.standard_normal((2, 20, 3))
+    for one, other in ((a, b), (a, b[0]), (a[0], b), (a[:0], b[:0])):
+        np.testing.assert_array_equal(crosses(one, other), np.cross(one, other))
