@@ -13,13 +13,14 @@ import os
 import sys
 import time
 import traceback
+from collections import deque
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from rcl_interfaces.msg import ParameterEvent
 from rclpy.clock import Clock, ClockType
 from rclpy.qos import QoSProfile
-from service_msgs.msg import ServiceEventInfo
+from rclpy.serialization import deserialize_message
 
 from contact_dynamics.diagrams.words import CONTACT_MODE, IMPACT, MANY_IMPACTS, MANY_TUMBLINGS, TOSS, TUMBLING
 from contact_dynamics.nodes import parameter_event
@@ -39,6 +40,7 @@ from contact_dynamics.nodes.topic_faults import TopicFaults
 from contact_dynamics.nodes.visualizer_parameters import read_visualizer_parameters
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.uncertain_state import state_of
+from contact_dynamics.recording.cdr_stamp import EventType, event_type_of
 from contact_dynamics.viewing.pace import SHORTEST_S
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import OpenRecording, ViewerMode, raise_errors
@@ -64,6 +66,7 @@ if TYPE_CHECKING:
 
     from rclpy.subscription import Subscription
 
+    from contact_dynamics.nodes.inbox import Taken
     from contact_dynamics.questions.uncertain_state import KnownState
 
 NODE_NAME: Final = "contact_dynamics_visualizer"
@@ -80,6 +83,10 @@ _NICER: Final = 5
 _POLL_S: Final = 0.02
 
 
+_LEFT_S: Final = 2.0
+"""How long answers that are left are drawn at the end, before a launch would kill the process."""
+
+
 class _Shown(NamedTuple):
     """A service whose answers are drawn."""
 
@@ -88,6 +95,15 @@ class _Shown(NamedTuple):
     kind: str  # the kind of its answers, in words
     from_msg: Callable[..., Any]  # makes an answer of a response
     show: Callable[..., None]  # draws an answer
+
+
+class _Waiting(NamedTuple):
+    """An answer that is not drawn yet."""
+
+    shown: _Shown
+    data: bytes  # the event
+    came: int  # this many states had come
+    now_ns: int | None  # the stamp of the newest of them
 
 
 _SHOWN: Final = (
@@ -157,11 +173,12 @@ class Visualizer(InboxNode):
             predictions=own.predictions,
         )
         self._states = StatesInTurn(self._picture, guarded=self._guarded)
+        self._answers: deque[_Waiting] = deque()
         self._server = server
         self._values = {name: plain(parameter.value) for name, parameter in self._parameters.items()}
         self.create_subscription(ParameterEvent, parameter_event.TOPIC, self._follow, EVENT_QOS)
-        events = [self._listen(shown, f"{server}/{shown.name}") for shown in _SHOWN]
-        self._wait_for_server(server, events, server_wait)
+        self._events = [self._listen(shown, f"{server}/{shown.name}") for shown in _SHOWN]
+        self._wait_for_server(server, self._events, server_wait)
         self._static = TransformTree()
         self._topics = subscribe_to_states(
             self,
@@ -174,21 +191,36 @@ class Visualizer(InboxNode):
         self.create_timer(SHORTEST_S, self._keep_pace, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.get_logger().info(f"ready: draws {server} to {self._recording.description}")
 
-    def draw_states(self) -> None:
-        """Draw the states that came since the last time."""
+    def take_messages(self) -> None:
+        """Take all states that wait, and then the events, so that an answer has the states before it."""
+        super().take_messages()
+        if len(self._answers) < EVENT_QOS.depth:  # others wait in the queues of DDS
+            for subscription in self._events:
+                self.empty(subscription)
+
+    def draw_all(self) -> None:
+        """Draw what came since the last time."""
         self.take_messages()
+        self._draw_answers()
         self._states.draw()
 
     def close(self) -> bool:
         """Draw what is left and close the sinks. Return whether they took everything."""
-        self.draw_states()
+        until = time.monotonic() + _LEFT_S
+        self.draw_all()
+        while self._answers and time.monotonic() < until:
+            self.draw_all()
         if self._sinks.viewer is ViewerMode.NONE:
             self._guarded("the last look", self._picture.frame_all)
         return self._recording.close()
 
     def _keep_pace(self) -> None:
-        """Take what has come, and draw it if that is due."""
+        """Draw the answers that came since the last time, and the states if that is due.
+
+        An answer is not drawn at once: then this process would wake when the server and its client are busy.
+        """
         self.take_messages()
+        self._draw_answers()
         if self._states.pace.is_due:
             self._states.draw()
         self._guarded("files and viewers", self._recording.tend)
@@ -203,23 +235,34 @@ class Visualizer(InboxNode):
             time.sleep(_POLL_S)
 
     def _listen(self, shown: _Shown, service: str) -> Subscription:
-        def receive(event: Any) -> None:
-            if event.info.event_type == ServiceEventInfo.RESPONSE_SENT and event.response:
-                self._guarded(service, lambda: self._show(shown, event))
+        def receive(taken: Taken) -> None:
+            if event_type_of(taken.data) == EventType.RESPONSE_SENT:
+                came, now_ns = self._states.came, self._states.newest_stamp_ns()
+                self._answers.append(_Waiting(shown, taken.data, came, now_ns))
 
-        event_type = shown.service_type.Event
-        return self.create_subscription(event_type, f"{service}/_service_event", receive, EVENT_QOS)
+        topic = f"{service}/_service_event"
+        return self.subscribe(shown.service_type.Event, topic, receive, EVENT_QOS, in_rounds=False)
 
-    def _show(self, shown: _Shown, event: Any) -> None:
+    def _draw_answers(self) -> None:
+        """Draw the answers that wait, and let states that come meanwhile not overflow their queues."""
+        for _ in range(len(self._answers)):
+            waiting = self._answers.popleft()
+            self._guarded(f"{self._server}/{waiting.shown.name}", partial(self._show, waiting))
+            self.attend()
+
+    def _show(self, waiting: _Waiting) -> None:
+        shown = waiting.shown
+        event = deserialize_message(waiting.data, shown.service_type.Event)
+        if not event.response:
+            return
         response = event.response[0]
-        self.take_messages()
-        now_ns = self._states.newest_stamp_ns() or stamp_ns_from_msg(event.info.stamp)
+        now_ns = waiting.now_ns or self._picture.newest_stamp_ns() or stamp_ns_from_msg(event.info.stamp)
         if response.status != response.OK:
             refused = f"refused ({response.status}): {response.message}"
             self._picture.tell(shown.kind, refused, stamp_ns=now_ns, is_error=True)
             return
         answer = shown.from_msg(response, world=self._configuration.world)
-        self._states.draw_before(answer)
+        self._states.draw_before(answer, came=waiting.came)
         shown.show(
             self._picture,
             answer,
@@ -239,7 +282,7 @@ class Visualizer(InboxNode):
             check_change(before, after)
         except ConfigurationError:
             return  # parameters of a body come one by one, before that which lists it
-        self.draw_states()
+        self.draw_all()
         self._configuration = after
         if bodies_read_otherwise(before, after):
             sources = {each.full_name: each for each in state_sources(after, static=self._static)}

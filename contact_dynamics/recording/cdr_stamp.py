@@ -18,6 +18,7 @@ from contact_dynamics.errors import InvalidFieldError
 
 _LITTLE_ENDIAN: Final = 1
 _LEADING_STAMP: Final = {True: struct.Struct("<4xiI"), False: struct.Struct(">4xiI")}
+_EVENT_TYPE_AT: Final = 4
 _EVENT_INFO: Final = {True: struct.Struct("<4xB3xiI16s4xq"), False: struct.Struct(">4xB3xiI16s4xq")}
 
 
@@ -61,6 +62,11 @@ def event_info(data: bytes) -> EventInfo:
     if kind >= len(_EVENT_TYPES):
         raise InvalidFieldError("event_type", kind, "0 to 3")
     return EventInfo(_EVENT_TYPES[kind], seconds * NS_PER_S + nanoseconds, gid, sequence_number)
+
+
+def event_type_of(data: bytes) -> int | None:
+    """Return the kind of a serialised service event, or None if these bytes are too few for one."""
+    return data[_EVENT_TYPE_AT] if len(data) > _EVENT_TYPE_AT else None
 
 
 def event_stamp_ns(data: bytes) -> int:

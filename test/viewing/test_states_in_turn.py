@@ -68,6 +68,19 @@ def test_before_an_answer_only_what_it_needs_is_drawn(
     assert {name for name in NAMES if f"/world/bodies/{name}" in read().entities} == {"ball"}
 
 
+def test_an_answer_that_waited_has_no_states_before_it_that_came_after(
+    states: StatesInTurn, state: BodyState, two_contacts: ContactSet, read: Callable[[], Drawn]
+) -> None:
+    add(states, state, 2, 1)
+    came = states.came
+    add(states, state, 4, 3)
+    states.draw_before(an_impact(state, two_contacts, name="ball"), came=came)
+    assert states.count == 10
+    assert states.newest_stamp_ns() == STAMP_NS + 4
+    stamps = read().stamps("/world/bodies/ball", POSE)
+    assert [stamp - STAMP_NS for stamp in stamps] == [1, 2]
+
+
 def test_curves_of_one_body_reach_to_those_of_the_next(
     picture: Picture, states: StatesInTurn, body: Body, state: BodyState, read: Callable[[], Drawn]
 ) -> None:
