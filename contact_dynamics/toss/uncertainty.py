@@ -16,7 +16,7 @@ from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.records import Record
 from contact_dynamics.rotations.many import matrices_of, products, quaternions_of
 from contact_dynamics.toss.solid import factors_of
-from contact_dynamics.validation import FloatArray, check_array, check_not_negative
+from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_within
 from contact_dynamics.validation_batches import check_covariance
 from contact_dynamics.world import Surface
 
@@ -31,6 +31,13 @@ if TYPE_CHECKING:
 
 MOST_PARAMETERS: Final = 100
 """So many parameters may be uncertain. A request's list is bounded, and nobody has 47 uncertain surfaces."""
+
+
+MOST_SPREAD: Final = 1e6
+"""Largest standard deviation of anything that is uncertain about a toss, in SI units."""
+
+MOST_INERTIA_SPREAD: Final = 10.0
+"""Largest standard deviation of the inertia, as a relative change. Samples have e to the power of it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -54,8 +61,8 @@ class TossUncertainty(Record):
             them. Without any, the factors are exact.
 
     Raises:
-        InvalidFieldError: the matrix is not a covariance, a number is negative or not finite, or there are
-            not as many standard deviations as factors.
+        InvalidFieldError: the matrix is not a covariance, a number is negative or not finite, a standard
+            deviation is larger than `MOST_SPREAD`, or there are not as many standard deviations as factors.
         TooLargeError: the matrix has more than `MOST_PARAMETERS` rows.
     """
 
@@ -85,12 +92,14 @@ class TossUncertainty(Record):
         rows = check_array("covariance", self.covariance, (None, None))
         if len(rows) > MOST_PARAMETERS:
             raise TooLargeError("covariance", len(rows), f"at most {MOST_PARAMETERS}")
+        check_magnitude("covariance", rows, MOST_SPREAD**2)
         matrix = check_covariance("covariance", rows, len(rows)) if len(rows) else rows
         object.__setattr__(self, "covariance", matrix)
         for name in ("velocity", "spin", "height"):
-            object.__setattr__(self, name, check_not_negative(name, getattr(self, name)))
+            object.__setattr__(self, name, check_within(name, getattr(self, name), 0.0, MOST_SPREAD))
         for name in ("lasting_factors", "lasting_factor_stds"):
-            object.__setattr__(self, name, check_factors(name, getattr(self, name)))
+            factors = check_factors(name, getattr(self, name))
+            object.__setattr__(self, name, check_magnitude(name, factors, MOST_SPREAD))
         count = len(self.lasting_factors)
         if len(self.lasting_factor_stds) not in {0, count}:
             found = f"{len(self.lasting_factor_stds)} numbers"
@@ -163,8 +172,9 @@ def draw(
         chance: Where they are drawn from.
 
     Raises:
-        InvalidFieldError: the parameters' covariance has another size than the world's surfaces ask for, or
-            there are not as many factors as surfaces.
+        InvalidFieldError: the parameters' covariance has another size than the world's surfaces ask for,
+            there are not as many factors as surfaces, or a variance is too large (`MOST_SPREAD`,
+            `MOST_INERTIA_SPREAD`).
     """
     flats = [surface for surface in world.surfaces if isinstance(surface, Surface)]
     s = len(flats)
@@ -175,6 +185,11 @@ def draw(
             f"{whole - 3} rows, two for each of {s} surfaces and four more, or {whole} with gravity, or none"
         )
         raise InvalidFieldError("covariance", f"{size} rows", allowed)
+    if size and uncertainty.covariance[2 * s + 3, 2 * s + 3] > MOST_INERTIA_SPREAD**2:
+        found = f"a variance of the inertia of {uncertainty.covariance[2 * s + 3, 2 * s + 3]:g}"
+        raise InvalidFieldError("covariance", found, f"at most {MOST_INERTIA_SPREAD**2:g}")
+    if covariance is not None:
+        check_magnitude("state.covariance", covariance, MOST_SPREAD**2)
     off = _normal(uncertainty.covariance, count, chance) if size else np.zeros((count, whole - 3))
     off = np.column_stack([off, np.zeros((count, whole - off.shape[1]))])
     pulled = off[:, 2 * s + 4 :]

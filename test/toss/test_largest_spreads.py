@@ -1,0 +1,82 @@
+"""Uncertainties of any size are sampled or refused by name."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact_dynamics import Body, BodyState, Surface, World, inertia
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.impact import RestitutionLaw
+from contact_dynamics.shapes import box
+from contact_dynamics.toss import TossUncertainty, sampled_toss
+from contact_dynamics.toss.uncertainty import MOST_INERTIA_SPREAD, MOST_SPREAD
+
+SIZE = (0.1, 0.08, 0.06)
+BRICK = Body(
+    name="brick", mass_properties=inertia.box(size=SIZE, mass=0.4).mass_properties, shape=box(size=SIZE)
+)
+WORLD = World(
+    bodies=(BRICK,),
+    surfaces=(Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.2),),
+)
+THROWN = BodyState(p_WB_W=[0, 0, 0.5], q_WB=[0, 0, 0, 1], v_WB_W=[0.5, 0, 0], w_WB_W=[1, 3, 2])
+EXACT_STATE = np.zeros((12, 12))
+
+
+def spread(variance: float, *, rows: int = 9, only: int | None = None) -> np.ndarray:
+    """A covariance of the parameters with this variance of all, or of one."""
+    matrix = np.zeros((rows, rows))
+    each = range(rows) if only is None else [only]
+    for k in each:
+        matrix[k, k] = min(variance, MOST_INERTIA_SPREAD**2) if k == 5 and only is None else variance
+    return matrix
+
+
+def ask(uncertainty: TossUncertainty, covariance: np.ndarray = EXACT_STATE) -> None:
+    told = sampled_toss(
+        BRICK,
+        THROWN,
+        WORLD,
+        covariance=covariance,
+        uncertainty=uncertainty,
+        count=5,
+        law=RestitutionLaw.POISSON,
+        horizon=2.0,
+    )
+    assert told.samples == 5
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"velocity": MOST_SPREAD},
+        {"spin": MOST_SPREAD},
+        {"height": 1.0},
+        {"covariance": spread(1.0)},
+        {"covariance": spread(MOST_SPREAD**2, only=0)},
+        {"covariance": spread(MOST_INERTIA_SPREAD**2, only=5)},
+        {"lasting_factors": [MOST_SPREAD], "lasting_factor_stds": [MOST_SPREAD]},
+    ],
+)
+def test_the_largest_are_sampled(given: dict[str, Any]) -> None:
+    ask(TossUncertainty(**given))
+
+
+@pytest.mark.parametrize("field", ["velocity", "spin", "height"])
+def test_a_larger_spread_is_refused_by_name(field: str) -> None:
+    with pytest.raises(InvalidFieldError, match=rf"{field}: found .*, allowed is a number in \[0, 1e\+06\]"):
+        TossUncertainty(**{field: np.nextafter(MOST_SPREAD, np.inf)})
+
+
+def test_a_larger_variance_is_refused_by_name() -> None:
+    with pytest.raises(InvalidFieldError, match=r"covariance: found 1e.300"):
+        TossUncertainty(covariance=spread(1e300))
+    with pytest.raises(InvalidFieldError, match="covariance: found a variance of the inertia of 101"):
+        ask(TossUncertainty(covariance=spread(101.0, only=5, rows=6)))
+    with pytest.raises(InvalidFieldError, match=r"state\.covariance: found 1e.300"):
+        ask(TossUncertainty(), 1e300 * np.eye(12))
+    with pytest.raises(InvalidFieldError, match=r"lasting_factors: found 1e.300"):
+        TossUncertainty(lasting_factors=[1e300])
