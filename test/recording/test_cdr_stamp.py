@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.recording.cdr_stamp import EventType, event_info, leading_stamp_ns
+from contact_dynamics.recording.cdr_stamp import EventType, event_info, event_type_of, leading_stamp_ns
 
 SECONDS = st.integers(-(2**31), 2**31 - 1)
 NANOSECONDS = st.integers(0, 10**9 - 1)
@@ -39,7 +39,9 @@ def test_event_head_as_rclpy_serialises_it(
     event.info.stamp.nanosec = nanoseconds
     event.info.client_gid = list(gid)
     event.info.sequence_number = number
-    info = event_info(bytes(serialization.serialize_message(event)))
+    data = bytes(serialization.serialize_message(event))
+    assert event_type_of(data) == kind
+    info = event_info(data)
     assert info.event_type is EventType(kind)
     assert info.stamp_ns == seconds * 10**9 + nanoseconds
     assert info.client_gid == gid
@@ -64,6 +66,11 @@ def test_too_short_is_refused_by_name(data: bytes) -> None:
         leading_stamp_ns(data)
     with pytest.raises(InvalidFieldError, match="data"):
         event_info(data)
+
+
+def test_bytes_that_are_no_event_have_no_kind() -> None:
+    assert event_type_of(b"") is None
+    assert event_type_of(b"\0\1\0\0") is None
 
 
 def test_unknown_event_type_is_refused() -> None:
