@@ -27,6 +27,9 @@ LENGTH_ROUNDING: Final = 1e-15
 """Dimensionless. A vector whose length is 1 within this is not scaled again, so that scaling twice changes
 nothing."""
 
+SQUARES_UNDERFLOW: Final = 1e-140
+"""Any unit. The length of a shorter vector is not found from squares, which lose digits below 1e-154."""
+
 LARGEST_NUMBER: Final = 1e60
 """In SI units: s, rad/s, kg m^2, m, m/s, m/s^2. A motion is refused if its numbers are larger, or if its
 moments of inertia are below the inverse, because fourth powers and products of such numbers leave the range

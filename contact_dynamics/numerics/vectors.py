@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 
 from contact_dynamics.numerics.elementwise import Real, sign
-from contact_dynamics.tolerances import ROW_TOLERANCE
+from contact_dynamics.tolerances import ROW_TOLERANCE, SQUARES_UNDERFLOW
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -80,6 +80,8 @@ def array_of(vectors: Sequence[Vector3]) -> FloatArray:
 def normalised(a: Vector3) -> Vector3:
     """Return the unit vector along ``a``, which is not zero."""
     size = math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
+    if size < SQUARES_UNDERFLOW:
+        size = math.hypot(*a)
     return (a[0] / size, a[1] / size, a[2] / size)
 
 

@@ -13,6 +13,7 @@ from contact_dynamics.numerics.vectors import (
     cross,
     dot,
     near_x,
+    normalised,
     point_jacobians,
     tangent_rows,
     tangents,
@@ -98,3 +99,11 @@ def test_point_jacobians_give_the_velocities_of_points() -> None:
     assert found.shape == (5, 3, 6)
     assert found @ np.concatenate([v, w]) == pytest.approx(v + np.cross(w, arms), abs=4.0 * ROUNDING)
     assert point_jacobians(np.zeros((0, 3))).shape == (0, 3, 6)
+
+
+@pytest.mark.parametrize("exponent", [0, -100, -139, -141, -150, -155, -162, -170, -300, -307, -320])
+def test_a_vector_of_any_length_has_a_unit_vector(exponent: int) -> None:
+    """Its squares may underflow. Below 1e-308 numbers have fewer digits, so their directions do too."""
+    length = float(f"1e{exponent}")
+    found = normalised((0.6 * length, 0.0, -0.8 * length))
+    assert found == pytest.approx((0.6, 0.0, -0.8), rel=4e-16 if exponent > -307 else 1e-3)

@@ -45,6 +45,15 @@ def test_contacts_are_found_from_the_shape() -> None:
         answer(replace(AT_REST, state=state()), KNOWLEDGE)
 
 
+@pytest.mark.parametrize("exponent", [-30, -100, -139, -141, -155, -162, -200, -300, -318])
+@pytest.mark.parametrize("problem", Problem)
+def test_a_weight_of_any_size_is_answered(problem: Problem, exponent: int) -> None:
+    """Squares of such a force are zero, and it is not."""
+    gravity_W = np.array([0.0, 0.0, -float(f"1e{exponent}")])
+    found = answer(replace(AT_REST, gravity_W=gravity_W, problem=problem, plane=FROM_THE_SIDE), KNOWLEDGE)
+    assert [mode.mode for mode in found.modes] == ["ffff"]
+
+
 @pytest.mark.parametrize("problem", [Problem.PLANAR, Problem.SPATIAL])
 def test_a_push_beyond_friction_makes_it_slide(problem: Problem) -> None:
     """In the plane of motion it slides right, in space along x, with (F - mu m g) / m."""
