@@ -102,7 +102,7 @@ class _Waiting(NamedTuple):
 
     shown: _Shown
     data: bytes  # the event
-    came: int  # this many states had come
+    came_ns: int  # when DDS received it
     now_ns: int | None  # the stamp of the newest of them
 
 
@@ -180,11 +180,12 @@ class Visualizer(InboxNode):
         self._events = [self._listen(shown, f"{server}/{shown.name}") for shown in _SHOWN]
         self._wait_for_server(server, self._events, server_wait)
         self._static = TransformTree()
+        handed_on = _HandedOn(self._states)
         self._topics = subscribe_to_states(
             self,
             state_sources(parameters, static=self._static),
-            states=_HandedOn(self._states),
-            record=lambda _topic, _taken: None,
+            states=handed_on,
+            record=handed_on.note,
             offered=lambda _topic, _offers: None,
             faults=TopicFaults(self.get_logger().warning),
         )
@@ -237,8 +238,8 @@ class Visualizer(InboxNode):
     def _listen(self, shown: _Shown, service: str) -> Subscription:
         def receive(taken: Taken) -> None:
             if event_type_of(taken.data) == EventType.RESPONSE_SENT:
-                came, now_ns = self._states.came, self._states.newest_stamp_ns()
-                self._answers.append(_Waiting(shown, taken.data, came, now_ns))
+                now_ns = self._states.newest_stamp_ns()
+                self._answers.append(_Waiting(shown, taken.data, taken.received_ns, now_ns))
 
         topic = f"{service}/_service_event"
         return self.subscribe(shown.service_type.Event, topic, receive, EVENT_QOS, in_rounds=False)
@@ -262,7 +263,7 @@ class Visualizer(InboxNode):
             self._picture.tell(shown.kind, refused, stamp_ns=now_ns, is_error=True)
             return
         answer = shown.from_msg(response, world=self._configuration.world)
-        self._states.draw_before(answer, came=waiting.came)
+        self._states.draw_before(answer, came_ns=waiting.came_ns)
         shown.show(
             self._picture,
             answer,
@@ -312,10 +313,15 @@ class _HandedOn(StateStore):
     def __init__(self, states: StatesInTurn) -> None:
         super().__init__(history=0.0, timeout=0.0)
         self._states = states
+        self._came_ns = 0
+
+    def note(self, topic: str, taken: Taken) -> None:  # noqa: ARG002  of all topics alike
+        """Note when the message came whose states are handed on next."""
+        self._came_ns = taken.received_ns
 
     def add(self, body_name: str, state: KnownState, *, now_ns: int | None = None) -> None:  # noqa: ARG002
         """Hand on a state whatever its stamp: those of a log are not of this clock."""
-        self._states.add(body_name, state_of(state))
+        self._states.add(body_name, state_of(state), came_ns=self._came_ns)
 
     def add_unread(
         self,

@@ -21,7 +21,6 @@ class StatesInTurn:
 
     Attributes:
         count: How many there are.
-        came: How many have ever come.
         pace: The pace at which all of them are drawn.
     """
 
@@ -32,47 +31,46 @@ class StatesInTurn:
             picture: The picture that they are drawn into.
             guarded: A function that is given what is drawn, in words, and what draws it.
         """
-        self.count = self.came = 0
+        self.count = 0
         self.pace = Pace()
         self._picture = picture
         self._guarded = guarded
-        self._waiting: dict[str, list[tuple[int, BodyState]]] = {}  # with their numbers, from 1 on
+        self._waiting: dict[str, list[tuple[int, BodyState]]] = {}  # with when they came, ns
         self._newest_ns: dict[str, int] = {}
 
-    def add(self, body_name: str, state: BodyState) -> None:
-        """Keep a state of a body."""
+    def add(self, body_name: str, state: BodyState, *, came_ns: int = 0) -> None:
+        """Keep a state of a body, which came at that time, ns, by the clock that tells it of answers."""
         self.count += 1
-        self.came += 1
-        self._waiting.setdefault(body_name, []).append((self.came, state))
+        self._waiting.setdefault(body_name, []).append((came_ns, state))
         self._newest_ns[body_name] = max(state.stamp_ns, self._newest_ns.get(body_name, state.stamp_ns))
 
     def draw(self) -> None:
         """Draw all states."""
         with self.pace.drawing():
             for body_name in list(self._waiting):
-                self._draw_of(body_name, came=self.came)
+                self._draw_of(body_name)
 
-    def draw_before(self, answer: Any, *, came: int | None = None) -> None:
+    def draw_before(self, answer: Any, *, came_ns: int | None = None) -> None:
         """Draw the states of a body before an answer about it, and those of bodies whose curves it may end.
 
         If each answer had those of all bodies drawn, there would be no pace where many questions are asked.
-        If the answer waited, only those are drawn that had come before: the first ``came``.
+        If the answer itself waited, only those are drawn that came before it, which was at ``came_ns``.
         """
         predicts_motion = isinstance(answer, TumblingAnswer | TossAnswer)
         others = self._picture.bodies_with_curves if predicts_motion else set()
         for each in {answer.body_name, *others}:
-            self._draw_of(each, came=self.came if came is None else came)
+            self._draw_of(each, came_ns=came_ns)
 
     def newest_stamp_ns(self) -> int | None:
         """Return the stamp of the newest state, or else of the last drawn answer, if there is either."""
         return self._picture.newest_stamp_ns(self._newest_ns)
 
-    def _draw_of(self, body_name: str, *, came: int) -> None:
-        """Draw the states of one body, as far as they are among the first that came."""
+    def _draw_of(self, body_name: str, *, came_ns: int | None = None) -> None:
+        """Draw the states of one body, if a time is given those that came up to then."""
         waiting = self._waiting.pop(body_name, [])
-        states = [state for number, state in waiting if number <= came]
-        if len(states) < len(waiting):
-            self._waiting[body_name] = waiting[len(states) :]
+        states = [state for each_ns, state in waiting if came_ns is None or each_ns <= came_ns]
+        if came_ns is not None and len(states) < len(waiting):
+            self._waiting[body_name] = [each for each in waiting if each[0] > came_ns]
         else:
             self._newest_ns.pop(body_name, None)
         self.count -= len(states)

@@ -71,10 +71,10 @@ def test_before_an_answer_only_what_it_needs_is_drawn(
 def test_an_answer_that_waited_has_no_states_before_it_that_came_after(
     states: StatesInTurn, state: BodyState, two_contacts: ContactSet, read: Callable[[], Drawn]
 ) -> None:
-    add(states, state, 2, 1)
-    came = states.came
-    add(states, state, 4, 3)
-    states.draw_before(an_impact(state, two_contacts, name="ball"), came=came)
+    for came_ns, after_ns in ((1000, 2), (1001, 1), (1003, 4), (1002, 3)):
+        for name in NAMES:
+            states.add(name, replace(state, stamp_ns=STAMP_NS + after_ns), came_ns=came_ns)
+    states.draw_before(an_impact(state, two_contacts, name="ball"), came_ns=1001)
     assert states.count == 10
     assert states.newest_stamp_ns() == STAMP_NS + 4
     stamps = read().stamps("/world/bodies/ball", POSE)
