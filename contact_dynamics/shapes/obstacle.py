@@ -61,7 +61,9 @@ class Obstacle(Record):
         object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
         features = hull_features(vertices) if len(vertices) > 0 else None
         if features is None or len(features.normals) == 0:
-            raise InvalidFieldError("vertices", f"{len(vertices)} corners", "three or more, not on a line")
+            places = len({*map(tuple, vertices.tolist())})
+            found = f"{places} different corner{'' if places == 1 else 's'}"
+            raise InvalidFieldError("vertices", found, "three or more, not on a line")
         object.__setattr__(self, "features", features)
 
 
