@@ -8,7 +8,9 @@ import sys
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
+import numpy as np
 import pytest
+import scipy
 
 import contact_dynamics
 
@@ -24,7 +26,7 @@ def stated() -> str:
 
 def ask(folder: Path) -> subprocess.CompletedProcess[str]:
     """Import the package from a folder alone, without what is installed besides the standard library."""
-    libraries = {str(Path(sys.modules[name].__file__ or "").parents[1]) for name in ("numpy", "scipy")}
+    libraries = {str(Path(module.__file__ or "").parents[1]) for module in (np, scipy)}
     program = f"import sys; sys.path[:0] = {[str(folder), *libraries]!r}; {ASK}"
     return subprocess.run(
         [sys.executable, "-I", "-c", program], capture_output=True, text=True, check=False, cwd=folder
