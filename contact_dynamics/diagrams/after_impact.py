@@ -29,6 +29,11 @@ LATE_S: Final = 0.003
 """s. A strike may come this much later than predicted. Poses before that are left out."""
 
 
+KEPT_S: Final = 0.5
+"""s. States of this time are kept for answers that come after them. Where states are drawn seldom, or an
+answer takes long, it comes a few tenths of a second late."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class AfterImpact:
     """What a body did after an impact, beside the prediction.
@@ -63,38 +68,47 @@ class AfterImpact:
 
 
 class AwaitedImpacts:
-    """The predicted impacts of bodies that are still to come, or of which too little has been seen."""
+    """The predicted impacts of bodies that are still to come, or of which too little has been seen.
+
+    An answer may come after the states that show what became of it. So the newest states are kept.
+    """
 
     def __init__(self, *, gravity_W: FloatArray) -> None:
         """Begin without any. ``gravity_W`` is (3,), m/s^2, world axes."""
         self._gravity_W = gravity_W
         self._awaited: dict[str, list[tuple[int, ImpactAnswer]]] = {}
-        self._seen: dict[str, list[BodyState]] = {}  # since the first awaited impact
+        self._seen: dict[str, list[BodyState]] = {}  # since the first awaited impact, and the newest
 
-    def expect(self, answer: ImpactAnswer, *, now_ns: int) -> None:
-        """Wait for an impact. It takes the place of those that had not come by ``now_ns``, ns, either.
+    def expect(self, answer: ImpactAnswer, *, now_ns: int) -> list[AfterImpact]:
+        """Wait for an impact, and return the impacts that are now compared, because it has been seen already.
 
-        Without a stamp there is no knowing when it comes.
+        It takes the place of those that had not come by ``now_ns``, ns, either. Without a stamp there is no
+        knowing when it comes.
         """
         strike_ns = answer.impact.state.stamp_ns or answer.state.stamp_ns
         if not strike_ns:
-            return
+            return []
         begun = [each for each in self._awaited.get(answer.body_name, []) if each[0] < now_ns]
         self._awaited[answer.body_name] = [*begun, (strike_ns, answer)]
+        return self._compared(answer.body_name)
 
     def see(self, body_name: str, states: Sequence[BodyState]) -> list[AfterImpact]:
         """Take measured states in the order of their stamps, and return the impacts that are now compared."""
-        awaited = self._awaited.get(body_name)
-        if not awaited or not states:
+        self._seen.setdefault(body_name, []).extend(states)
+        return self._compared(body_name)
+
+    def _compared(self, body_name: str) -> list[AfterImpact]:
+        """Return the impacts of which enough has been seen, and forget them, with states that are too old."""
+        seen, awaited = self._seen.get(body_name), self._awaited.get(body_name, [])
+        if not seen:
             return []
-        seen = self._seen.setdefault(body_name, [])
-        seen += [state for state in states if state.stamp_ns >= awaited[0][0]]
-        newest_ns = states[-1].stamp_ns
+        newest_ns = seen[-1].stamp_ns
         over = [each for each in awaited if newest_ns > each[0] + to_ns(SPAN_S)]
-        self._awaited[body_name] = awaited = awaited[len(over) :]
+        self._awaited[body_name] = awaited = [each for each in awaited if each not in over]
         compared = [self._compare(answer, strike_ns, seen) for strike_ns, answer in over]
-        first_ns = awaited[0][0] if awaited else newest_ns + 1
-        self._seen[body_name] = [state for state in seen if state.stamp_ns >= first_ns]
+        first_ns = min([newest_ns - to_ns(KEPT_S), *(strike_ns for strike_ns, _ in awaited)])
+        if seen[0].stamp_ns < first_ns:
+            self._seen[body_name] = [state for state in seen if state.stamp_ns >= first_ns]
         return [each for each in compared if each is not None]
 
     def _compare(self, answer: ImpactAnswer, strike_ns: int, seen: list[BodyState]) -> AfterImpact | None:

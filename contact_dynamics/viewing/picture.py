@@ -191,7 +191,7 @@ class Picture:
         strike_ns = ns_after(stamp_ns, answer.seconds_to_contact)
         self._impacts.come(name, stamp_ns=stamp_ns, strike_ns=strike_ns)
         draw_impact(self._recording, self._bodies.shape(name), answer, other_shape=other_shape)
-        self._awaited.expect(answer, now_ns=stamp_ns)
+        seen_already = self._awaited.expect(answer, now_ns=stamp_ns)
         drawn = self._diagrams.draw_impact(
             answer,
             body=self._bodies.mass_properties(name),
@@ -200,6 +200,8 @@ class Picture:
         self._bring_up(IMPACTS, ANSWERS, *drawn)
         words = impact_in_words(answer)
         self._tell_answer(IMPACT, name, words, remark, computation_time, stamp_ns=stamp_ns)
+        for found in seen_already:
+            self._show_after_impact(found)
 
     def show_contact_modes(
         self,

@@ -93,6 +93,27 @@ def test_it_does_not_matter_in_which_portions_states_come() -> None:
     assert found[0] == found[1] == found[2]
 
 
+@pytest.mark.parametrize("late", [0.06, 0.2, 0.45])
+def test_an_answer_that_comes_after_the_states_is_compared_with_them(late: float) -> None:
+    in_time, awaited = AwaitedImpacts(gravity_W=GRAVITY), AwaitedImpacts(gravity_W=GRAVITY)
+    assert in_time.expect(prediction(), now_ns=STRIKE_NS - 100_000_000) == []
+    states = flight(end=late)
+    (expected,) = in_time.see("brick", states)
+    for state in states:
+        assert awaited.see("brick", [state]) == []
+    (compared,) = awaited.expect(prediction(), now_ns=STRIKE_NS - 100_000_000)
+    assert compared.v_WB_W.tolist() == expected.v_WB_W.tolist()
+    assert compared.stamps_ns == expected.stamps_ns
+    assert awaited.see("brick", states[-1:]) == []
+
+
+def test_an_answer_that_comes_much_later_finds_no_states_of_its_time() -> None:
+    awaited = AwaitedImpacts(gravity_W=GRAVITY)
+    for state in flight(end=0.8):
+        awaited.see("brick", [state])
+    assert awaited.expect(prediction(), now_ns=STRIKE_NS - 100_000_000) == []
+
+
 def test_the_newest_prediction_counts_that_was_made_before_the_impact() -> None:
     awaited = AwaitedImpacts(gravity_W=GRAVITY)
     for before_ns, v_W in ((80_000_000, (9.0, 9.0, 9.0)), (20_000_000, (0.4, -1.2, 1.6))):

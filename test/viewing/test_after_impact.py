@@ -55,3 +55,18 @@ def test_the_measured_velocity_stands_beside_the_predicted_one(
         in text
     )
     assert "they differ by 0.1 m/s" in text
+
+
+def test_an_answer_that_comes_after_the_states_is_drawn_alike(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], world: World
+) -> None:
+    answer, states = prediction(), flight()
+    awaited = AwaitedImpacts(gravity_W=world.gravity_W)
+    awaited.see("brick", states)
+    (found,) = awaited.expect(answer, now_ns=STRIKE_NS - 1)
+    picture = Picture(recording, world, surface_side=0.5)
+    picture.add_states("brick", states)
+    picture.show_impact(answer)
+    drawn = read()
+    np.testing.assert_array_equal(drawn.series(f"{SPEED}measured", "Scalars:scalars"), found.measured_speeds)
+    assert drawn.last("/world/impact/brick/velocity_label", "Points3D:labels")[1].startswith("measured after")
