@@ -449,10 +449,14 @@ CHATTER_HEIGHT: Final = 1e-7
 """m. Lower rebounds are not followed. This height is a hundred times `GRAZING_DEPTH`, and far below the
 roughness of surfaces."""
 
+LEAST_FRICTION: Final = 1e-20
+"""Dimensionless. Less friction in an impact in space counts as none: it changes velocities by far less than
+they are rounded by. Below 1e-34 the energetic law gave bodies energy out of rounding, without a limit."""
+
 SAME_CORNER: Final = 1e-5
 """m. Corners of a body nearer to each other are one corner in a whole toss: ten times the height of rebounds
-that are not followed. Of 300 drawn boxes with two corners in place of each, 12 did not come to rest where
-these were less than 1 micrometre apart, 4 of 400 between 1 and 2.5, and none beyond."""
+that are not followed. Of 200 drawn boxes with two corners in place of each, up to 10 micrometres apart, 12
+did not come to rest, all of them below 1 micrometre. Of 700 others 5 did not, none beyond 2.5."""
 
 SAME_CORNER_SHARE: Final = 1e-4
 """The same, relative to the reach of the body, for small bodies."""

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from contact_dynamics.impact.law import ImpactOutcome
-from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
 from contact_dynamics.impact.spatial.batch_paths import trace_all
 from contact_dynamics.impact.spatial.response import contact_axes, pushed, responding
-from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
+from contact_dynamics.impact.spatial.sliding_law import SlidingLaw, followed_friction
 from contact_dynamics.tolerances import STRIKES
 from contact_dynamics.toss.one_impact import Struck
 from contact_dynamics.toss.solid import arm_of, pose_of, velocity_of
@@ -32,7 +31,7 @@ def strike_together(asked: list[AskedImpact]) -> None:
     u1, u2, v_n = axes.components(velocity_of(pose, body.r))
     still = np.sqrt(u1 * u1 + u2 * u2) <= STRIKES
     u1, u2, v_n = np.where(still, 0.0, u1), np.where(still, 0.0, u2), np.where(v_n >= -STRIKES, 0.0, v_n)
-    mu = np.minimum(flat.strike_friction[0], LARGEST_FRICTION)
+    mu = followed_friction(flat.strike_friction[0])
     sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, mu)
     # Formulas are also evaluated for cases that they are not meant for. Those values are not used.
     with np.errstate(all="ignore"):

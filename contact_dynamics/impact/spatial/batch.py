@@ -15,7 +15,6 @@ import numpy as np
 from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact.energy import ManyEnergies
 from contact_dynamics.impact.law import RestitutionLaw, check_law_rows
-from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
 from contact_dynamics.impact.spatial.batch_paths import trace_all
 from contact_dynamics.impact.spatial.response import (
     Responding,
@@ -24,7 +23,7 @@ from contact_dynamics.impact.spatial.response import (
     responding,
     velocity_at_contact,
 )
-from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
+from contact_dynamics.impact.spatial.sliding_law import SlidingLaw, followed_friction
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import (
     LARGEST_ARM,
@@ -253,7 +252,7 @@ def _strike(
     v_n[rests] = 0.0
     counted = zip(velocity, axes.in_world((u1, u2, v_n)), strict=True)
     velocity = tuple(np.where((still | rests) & ~apart, without, whole) for whole, without in counted)
-    mu = np.minimum(np.broadcast_to(rows["frictions"], count), LARGEST_FRICTION)
+    mu = followed_friction(np.broadcast_to(rows["frictions"], count))
     e = np.broadcast_to(rows["restitutions"], count)
     sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, mu)
     paths = trace_all(sliding, (u1, u2), v_n, restitution=e, law=law)

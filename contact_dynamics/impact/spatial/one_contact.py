@@ -21,7 +21,6 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact.law import RestitutionLaw
-from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
 from contact_dynamics.impact.spatial.path import trace
 from contact_dynamics.impact.spatial.response import (
     Responding,
@@ -32,7 +31,7 @@ from contact_dynamics.impact.spatial.response import (
     velocity_at_contact,
 )
 from contact_dynamics.impact.spatial.result import SpatialImpact
-from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
+from contact_dynamics.impact.spatial.sliding_law import SlidingLaw, followed_friction
 from contact_dynamics.tolerances import LARGEST_ARM, LARGEST_NUMBER, VELOCITY_TOLERANCE
 from contact_dynamics.validation import (
     check_choice,
@@ -138,7 +137,7 @@ def _impact(
         v_n = 0.0
     if still or rests:
         velocity = axes.in_world((u1, u2, v_n))
-    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, min(contact.friction, LARGEST_FRICTION))
+    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, followed_friction(contact.friction))
     path = trace(sliding, (u1, u2), v_n, restitution=contact.restitution, law=law)
 
     impulse = axes.in_world(path.impulse)

@@ -23,8 +23,16 @@ from __future__ import annotations
 import math
 from typing import Final, NamedTuple
 
-from contact_dynamics.numerics.elementwise import Number, larger, sqrt
-from contact_dynamics.tolerances import ESCAPE_ARRIVED, SETTLED_TURN, SMALLEST, STRAIGHT, UNCOUPLED
+from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
+from contact_dynamics.numerics.elementwise import Number, larger, smaller, sqrt
+from contact_dynamics.tolerances import (
+    ESCAPE_ARRIVED,
+    LEAST_FRICTION,
+    SETTLED_TURN,
+    SMALLEST,
+    STRAIGHT,
+    UNCOUPLED,
+)
 
 ESCAPE_ROUNDS: Final = 60
 """Bound on the iterations for the direction in which a contact leaves. They converge quadratically."""
@@ -32,6 +40,15 @@ ESCAPE_ROUNDS: Final = 60
 TERMS_ROUNDING: Final = 1.0 / 16.0
 """Share of the terms that a turning is summed from which counts beside the attraction: 16 times less than
 `SETTLED_TURN` are two roundings."""
+
+
+def followed_friction(mu: Number) -> Number:
+    """Return the coefficient with which a path is followed: none where it is too small to change anything.
+
+    Otherwise the path would be followed to a stop that is farther away than numbers reach.
+    """
+    followed: Number = smaller(mu, LARGEST_FRICTION) * (mu >= LEAST_FRICTION)
+    return followed
 
 
 class SlidingLaw(NamedTuple):
