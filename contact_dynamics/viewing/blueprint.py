@@ -92,14 +92,14 @@ class Eye:
     up_W: FloatArray
 
 
-def eye_on(points_W: FloatArray, *, up_W: FloatArray, margin: float) -> Eye:
-    """Return an eye that sees a path, (n, 3), m, world, and ``margin``, m, about it.
+def eye_on(path_W: FloatArray, *, about_W: FloatArray, up_W: FloatArray, margin: float) -> Eye:
+    """Return an eye that sees points, (k, 3), m, world, and ``margin``, m, about them.
 
-    It looks across the path, from the side that the path bulges to.
+    It looks across a path, (n, 3), m, from the side that the path bulges to.
     """
-    low, high = points_W.min(axis=0), points_W.max(axis=0)
+    low, high = about_W.min(axis=0), about_W.max(axis=0)
     target = 0.5 * (low + high)
-    level = points_W - np.outer(points_W @ up_W, up_W)
+    level = path_W - np.outer(path_W @ up_W, up_W)
     travel = level[-1] - level[0]
     side = np.cross(travel, up_W) if float(np.linalg.norm(travel)) > NO_TRAVEL else -tangents_near_x(up_W)[1]
     side = side / np.linalg.norm(side)

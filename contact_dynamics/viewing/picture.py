@@ -30,7 +30,7 @@ from contact_dynamics.questions.many import ManyImpactsAnswer
 from contact_dynamics.tumbling.regime import Regime
 from contact_dynamics.viewing.after_impact import draw_after_impact
 from contact_dynamics.viewing.answers_in_words import AnswersInWords, sentence
-from contact_dynamics.viewing.blueprint import WINDOW_S, Eye, eye_on, make_blueprint
+from contact_dynamics.viewing.blueprint import WINDOW_S, make_blueprint
 from contact_dynamics.viewing.contact_modes import draw_contact_modes
 from contact_dynamics.viewing.diagrams_in_view import DiagramsInView
 from contact_dynamics.viewing.entities import (
@@ -45,6 +45,7 @@ from contact_dynamics.viewing.entities import (
     PREDICTED,
     TOSSES,
 )
+from contact_dynamics.viewing.framing import Framing
 from contact_dynamics.viewing.impact import draw_impact
 from contact_dynamics.viewing.in_view import ImpactsInView, LettersInView
 from contact_dynamics.viewing.legend import LEGEND_TEXT
@@ -68,6 +69,7 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.validation import FloatArray
+    from contact_dynamics.viewing.blueprint import Eye
     from contact_dynamics.world import World
 
 
@@ -102,7 +104,7 @@ class Picture:
         self._diagrams = DiagramsInView(recording)
         self._poinsot = PoinsotInView(recording)
         self._predictions = PredictionsInView(recording, self._bodies, up_W=self._world.up_W)
-        self._framed = False
+        self._framing = Framing(self._world.up_W)
         self._eye: Eye | None = None
         self._shown: set[str] = set()  # what the arrangement has views of
         self._recent: deque[tuple[int, FloatArray]] = (
@@ -123,6 +125,7 @@ class Picture:
         before = self._newest.get(body_name)
         if before is None:  # it was not in the picture before
             self._world.add_body(body_name, stamp_ns=states[0].stamp_ns)
+            self._look(self._framing.add_body(body_name, states[0].p_WB_W))
         gravity_W = self._world.gravity_W
         if self._predictions.add_states(body_name, states, before=before, gravity_W=gravity_W):
             self._bring_up(ERROR)
@@ -162,8 +165,7 @@ class Picture:
             place = earlier.number % self._earlier
             draw_earlier_path(self._recording, name, earlier.trajectory, place=place)
         curves = self._predict(name, trajectory, begin_ns=stamp_ns)
-        if len(trajectory) > 0 and not self._framed:
-            self._framed = True
+        if len(trajectory) > 0 and self._eye is None:
             self._look_at(trajectory.p_WB_W)  # after that the view belongs to the user
         if rotation is not None and answer.curves is not None and rotation.regime is not Regime.AT_REST:
             self._poinsot.come(name, rotation, answer.curves, answer.state, stamp_ns=stamp_ns)
@@ -245,8 +247,7 @@ class Picture:
         set_time(self._recording, stamp_ns)
         draw_toss(self._recording, self._bodies.shape(name), answer, up_W=self._world.up_W)
         curves = self._predict(name, answer.toss.trajectory, begin_ns=stamp_ns)
-        if not self._framed:
-            self._framed = True
+        if self._eye is None:
             self._look_at(answer.toss.trajectory.p_WB_W)
         self._bring_up(TOSSES, ANSWERS, *curves)
         self._tell_answer(TOSS, name, toss_in_words(answer), remark, computation_time, stamp_ns=stamp_ns)
@@ -280,6 +281,7 @@ class Picture:
     def frame_all(self) -> None:
         """Make the view show all that is there at the end, for the user who opens the file."""
         if self._recent:
+            self._framing = Framing(self._world.up_W)  # where bodies were first seen is long ago
             self._look_at(np.array([p_WB_W for _, p_WB_W in self._recent]))
 
     @property
@@ -329,9 +331,15 @@ class Picture:
         self.tell(kind, said, stamp_ns=stamp_ns)
 
     def _look_at(self, points_W: FloatArray) -> None:
-        """Turn the view towards a path, and put the ground below it."""
-        self._world.center_at(0.5 * (points_W.min(axis=0) + points_W.max(axis=0)))
-        self._eye = eye_on(points_W, up_W=self._world.up_W, margin=self._bodies.largest_size)
+        """Turn the view towards a path and the bodies about it."""
+        self._look(self._framing.turn_to(points_W, margin=self._bodies.largest_size))
+
+    def _look(self, eye: Eye | None) -> None:
+        """Look from another place, if there is one, and put the ground below what is in sight."""
+        if eye is None:
+            return
+        self._eye = eye
+        self._world.center_at(self._framing.center_W)
         self._arrange()
 
     def _bring_up(self, *shown: str) -> None:

@@ -40,7 +40,7 @@ FALL = np.column_stack([np.linspace(3.0, 3.5, 20), np.full(20, 4.0), np.linspace
     ids=["fall", "far fall", "one place", "rise", "straight up"],
 )
 def test_the_eye_sees_all_from_above_and_from_the_side(points: np.ndarray) -> None:
-    eye = eye_on(points, up_W=UP, margin=0.2)
+    eye = eye_on(points, about_W=points, up_W=UP, margin=0.2)
     line_of_sight = eye.target_W - eye.position_W
     distance = np.linalg.norm(line_of_sight)
     assert distance >= LOWEST_DISTANCE
@@ -57,7 +57,7 @@ def test_the_eye_sees_all_from_above_and_from_the_side(points: np.ndarray) -> No
 def test_the_eye_is_where_the_path_bulges_to() -> None:
     corner = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]])
     for points in (corner, corner[::-1]):
-        eye = eye_on(points, up_W=UP, margin=0.2)
+        eye = eye_on(points, about_W=points, up_W=UP, margin=0.2)
         nearest = np.linalg.norm(points - eye.position_W, axis=1).argmin()
         assert nearest == 1
 
