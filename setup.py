@@ -58,7 +58,7 @@ setup(
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
-        (f"share/{NAME}/config", files("config/*.yaml")),
+        (f"share/{NAME}/config", files("config/*.yaml") + files("config/*.xml")),
         (f"share/{NAME}/launch", files("launch/*.launch.py")),
         # Where `ros2 run` looks.  As console scripts, names like `server` would stand in every bin folder.
         (f"lib/{NAME}", files("executables/*")),

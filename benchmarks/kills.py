@@ -11,6 +11,9 @@ each start would compile all of them, and take twice as long.
 
 One server has been killed before the next one starts, so these are not two of one name. The other processes
 stay, and must find the new one.
+
+Client and publisher have queues of the usual depth, and the profile of `config/fast_dds_back_at_once.xml`,
+which says what takes longer without it. With `--plain` they have no profile.
 """
 
 from __future__ import annotations
@@ -34,6 +37,7 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
 from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics.nodes.dds_profile import VARIABLE
 from contact_dynamics.recording import BagReader
 from contact_dynamics_interfaces.srv import PredictTumbling
 
@@ -46,12 +50,12 @@ LONGEST_LIFE_S: Final = 1.5  # between two kills
 ASK_AGAIN_S: Final = 0.1
 PATIENCE_S: Final = 60.0
 SEED: Final = 12
-DEEP: Final = QoSProfile(depth=1000)
+USUAL: Final = QoSProfile(depth=10)
 ROOT: Final = Path(__file__).parents[1]
 ROLES: Final = ("server", "publisher", "client")
 
 
-def run(times: int = TIMES) -> int:
+def run(times: int = TIMES, *, plain: bool = False) -> int:
     """Kill and measure; return 1 if an answer came later than the aim."""
     os.environ.update(ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST", ROS_DOMAIN_ID=str(claim_domain()))
     draw = random.Random(SEED)  # noqa: S311  nothing is secret
@@ -68,7 +72,9 @@ def run(times: int = TIMES) -> int:
             "publisher": [sys.executable, "-m", "benchmarks.kills", "--role", "publisher"],
             "client": [sys.executable, "-m", "benchmarks.kills", "--role", "client"],
         }
-        running = {role: _started(commands[role]) for role in ROLES}
+        profile = {} if plain else {VARIABLE: str(ROOT / "config" / "fast_dds_back_at_once.xml")}
+        own: dict[str, dict[str, str]] = {"server": {}, "publisher": profile, "client": profile}
+        running = {role: _started(commands[role], own[role]) for role in ROLES}
         try:
             _wait_for_answer(running["client"], what="the first start")
             for _ in range(times):
@@ -77,7 +83,7 @@ def run(times: int = TIMES) -> int:
                 running[role].kill()
                 running[role].communicate()
                 begun_ns = time.time_ns()
-                running[role] = _started(commands[role])
+                running[role] = _started(commands[role], own[role])
                 _forget_answers(running["client"])
                 took[role].append(_wait_for_answer(running["client"], what=role, after_ns=begun_ns))
                 cpu[role].append(_cpu_s(running[role].pid))
@@ -110,8 +116,9 @@ def _messages(log: Path) -> int:
         return sum(1 for _ in BagReader(log).messages())
 
 
-def _started(command: list[str]) -> subprocess.Popen[bytes]:
-    return subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE)  # noqa: S603  our own
+def _started(command: list[str], own: dict[str, str]) -> subprocess.Popen[bytes]:
+    """Start a process, which has variables of its own."""
+    return subprocess.Popen(command, cwd=ROOT, env=os.environ | own, stdout=subprocess.PIPE)  # noqa: S603  ours
 
 
 def _cpu_s(pid: int) -> float:
@@ -145,7 +152,7 @@ def _wait_for_answer(client: subprocess.Popen[bytes], *, what: str, after_ns: in
 def _publish() -> None:
     """Publish the state of the brick for ever."""
     rclpy.init()
-    publisher = Node("publisher").create_publisher(Odometry, "/brick/odometry", DEEP)
+    publisher = Node("publisher").create_publisher(Odometry, "/brick/odometry", USUAL)
     message = Odometry(child_frame_id="brick")
     message.header.frame_id = "world"
     while True:
@@ -160,7 +167,7 @@ def _ask() -> None:
     node = Node("client")
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    client = node.create_client(PredictTumbling, "/contact_dynamics/predict_tumbling", qos_profile=DEEP)
+    client = node.create_client(PredictTumbling, "/contact_dynamics/predict_tumbling", qos_profile=USUAL)
     while True:
         asked_ns = time.time_ns()
         future: Any = client.call_async(PredictTumbling.Request(body_name="brick", times=[0.1]))
@@ -179,12 +186,13 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.kills", description=__doc__)
     parser.add_argument("--times", type=int, default=TIMES, help=f"how many are killed (default {TIMES})")
     parser.add_argument("--role", choices=ROLES[1:], help=argparse.SUPPRESS)
+    parser.add_argument("--plain", action="store_true", help="start client and publisher without a profile")
     given = parser.parse_args()
     if given.role == "publisher":
         _publish()
     elif given.role == "client":
         _ask()
-    return run(given.times)
+    return run(given.times, plain=given.plain)
 
 
 if __name__ == "__main__":

@@ -6,19 +6,13 @@ This works on Linux only. The claim is a socket in the abstract namespace, which
 from __future__ import annotations
 
 import os
-import re
 import socket
-from pathlib import Path
 from typing import Final
+
+from contact_dynamics.nodes.domain_ports import FIRST_PORT, PORTS_OF_DOMAIN, ports_in_use
 
 _DOMAINS: Final = 100
 """Number of ROS domains to choose from. Domains 1 to 100 use ports below the ephemeral ones of Linux."""
-
-_FIRST_PORT: Final = 7400
-_PORTS: Final = 250
-"""A domain's ports begin at `_FIRST_PORT` + `_PORTS` times its number (OMG, DDSI-RTPS 2.2, section 9.6.1)."""
-
-_LOCAL_PORT: Final = re.compile(r"^ *\d+: [0-9A-F]+:([0-9A-F]{4}) ", re.MULTILINE)
 
 
 def claim_domain() -> int:
@@ -48,7 +42,4 @@ def _claim(domain: int) -> bool:
 
 def _domains_in_use() -> set[int]:
     """Return the domains on whose ports any process listens."""
-    tables = [Path("/proc/net/udp"), Path("/proc/net/udp6")]
-    text = "\n".join(table.read_text(encoding="ascii") for table in tables if table.is_file())
-    ports = [int(port, 16) for port in _LOCAL_PORT.findall(text)]
-    return {(port - _FIRST_PORT) // _PORTS for port in ports}
+    return {(port - FIRST_PORT) // PORTS_OF_DOMAIN for port in ports_in_use()}

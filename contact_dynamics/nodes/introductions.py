@@ -20,11 +20,9 @@ from typing import Final
 
 import rclpy
 
-_DISCOVERY_RANGE: Final = "ROS_AUTOMATIC_DISCOVERY_RANGE"
-_FIRST_PORT: Final = 7410
-"""Port at which the first participant of domain 0 discovers others. Further ones take the next even ports."""
+from contact_dynamics.nodes.domain_ports import FIRST_DISCOVERY, PORTS_OF_PARTICIPANT, first_port
 
-_DOMAIN_PORTS: Final = 250
+_DISCOVERY_RANGE: Final = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 _MOST_PARTICIPANTS: Final = 32
 """Participants of one machine that ROS looks for where it looks on this machine alone."""
 
@@ -44,8 +42,8 @@ def ask_for_introductions(domain_id: int) -> None:
         return
     if os.environ.get(_DISCOVERY_RANGE) == "OFF":
         return
-    first = _FIRST_PORT + _DOMAIN_PORTS * domain_id
-    ports = range(first, first + 2 * _MOST_PARTICIPANTS, 2)
+    first = first_port(domain_id) + FIRST_DISCOVERY
+    ports = range(first, first + PORTS_OF_PARTICIPANT * _MOST_PARTICIPANTS, PORTS_OF_PARTICIPANT)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         for own in _own_ports() & set(ports):
             message = _introduction(own)

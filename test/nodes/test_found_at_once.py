@@ -7,6 +7,7 @@ import errno
 import os
 import re
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -14,7 +15,10 @@ from pathlib import Path
 
 import pytest
 
+from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics.nodes import dds_profile
 from contact_dynamics.nodes.dds_profile import FIRST_OFFSET, PORTS, VARIABLE, profile_of_fast_dds
+from contact_dynamics.nodes.domain_ports import first_port, next_participant
 from running_server import DOMAIN_ID, PATIENCE_S, ROOT, environment, process, wait_for
 
 ARGUMENTS = ["--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", "-p", "log:=false"]
@@ -38,6 +42,19 @@ node = rclpy.create_node("waits")
 client = node.create_client(PredictTumbling, "/contact_dynamics/predict_tumbling")
 print("waits", flush=True)
 print("found" if client.wait_for_service(float(sys.argv[1])) else "nobody", flush=True)
+"""
+
+STAYS = """
+import rclpy
+from contact_dynamics_interfaces.srv import PredictTumbling
+
+rclpy.init()
+node = rclpy.create_node("stays")
+client = node.create_client(PredictTumbling, "/contact_dynamics/predict_tumbling")
+client.wait_for_service()
+rclpy.spin_until_future_complete(node, client.call_async(PredictTumbling.Request()))
+print("answered", flush=True)
+input()
 """
 
 
@@ -79,6 +96,49 @@ def test_a_client_that_says_only_once_who_it_is_finds_a_server_that_comes_later(
             wait_for(client, "waits")
             with process("server", *ARGUMENTS, ready="ready"):
                 assert client.communicate(timeout=2.0 * PATIENCE_S)[0] == "found\n"
+
+
+def test_the_port_is_nobodys_although_other_participants_are_there(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Participants come at ports two apart, so that the number of this one moves its port."""
+    monkeypatch.delenv(VARIABLE, raising=False)
+    monkeypatch.setattr(dds_profile, "_SHARED_MEMORY", tmp_path)
+    domain = claim_domain()
+    first = first_port(domain)
+    with contextlib.ExitStack() as stack:
+        for before in range(4):
+            assert next_participant(domain) == before
+            ports = {FIRST_OFFSET + 2 * (before + each) for each in range(PORTS)}
+            for free in (FIRST_OFFSET + 2 * before, FIRST_OFFSET + 2 * (before + 31), max(ports)):
+                for port in ports:
+                    (tmp_path / f"fastrtps_port{first + port}").touch()
+                (tmp_path / f"fastrtps_port{first + free}").unlink()
+                with profile_of_fast_dds(domain):
+                    text = Path(os.environ[VARIABLE]).read_text()
+                assert f"<offsetd3>{free - 2 * before}</offsetd3>" in text
+            other = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
+            other.bind(("127.0.0.1", first + 10 + 2 * before))
+
+
+def test_a_client_with_the_profile_for_it_is_answered_over_udp() -> None:
+    """It has nothing in shared memory that a server could take for that of one that was killed."""
+    profile = ROOT / "config" / "fast_dds_back_at_once.xml"
+    with process("server", *ARGUMENTS, ready="ready") as server:
+        for variables, is_in_memory in (({}, True), ({VARIABLE: str(profile)}, False)):
+            with subprocess.Popen(
+                [sys.executable, "-c", STAYS],
+                cwd=ROOT,
+                env=environment() | variables,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                text=True,
+            ) as client:
+                wait_for(client, "answered")
+                # Fast DDS counts the port itself from the number of the participant, which is 1.
+                own = f"/dev/shm/fastrtps_port{first_port(DOMAIN_ID) + 11 + 2 * 1}\n"  # noqa: S108
+                assert (own in Path(f"/proc/{server.pid}/maps").read_text()) is is_in_memory
+                client.communicate("end\n", timeout=PATIENCE_S)
 
 
 def test_the_environment_is_as_before(monkeypatch: pytest.MonkeyPatch) -> None:
