@@ -1,4 +1,4 @@
-"""Contact modes, impacts and free tumbling of rigid bodies (Mason's lectures 24 to 27).
+"""Contact modes, impacts, free tumbling and whole tosses of rigid bodies (Mason's lectures 24 to 27).
 
 This page has what most users need: bodies and their states, contacts, problems, and one call for each
 question. Everything else is in the chapters, which are listed in reading order. Each chapter's docstring says

@@ -47,7 +47,7 @@ VERBS: Final = {
         "contact_dynamics.nodes.server",
         "contact_dynamics.nodes.arguments:server_parser",
         _ROS,
-        "serve contact modes, impacts and tumbling over ROS 2",
+        "serve contact modes, impacts, tumbling and tosses over ROS 2",
     ),
     "visualizer": Verb(
         "contact_dynamics.nodes.visualizer",
@@ -178,7 +178,7 @@ def _parser() -> argparse.ArgumentParser:
     verbs = "\n".join(f"  {name:15} {verb.help}" for name, verb in VERBS.items())
     parser = argparse.ArgumentParser(
         prog="contact-dynamics",
-        description="Contact modes, impacts and free tumbling of rigid bodies.",
+        description="Contact modes, impacts, free tumbling and whole tosses of rigid bodies.",
         epilog=f"verbs:\n{verbs}\n\n`contact-dynamics <verb> --help` explains each.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

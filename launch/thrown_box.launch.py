@@ -1,6 +1,7 @@
-"""Starts the server, throws its brick as it was recorded, and a client asks about it and prints the answers.
+"""Starts the server, a client that asks about its brick and prints the answers, and what throws the brick.
 
-The command is `ros2 launch contact_dynamics thrown_box.launch.py`. To ask, too, while the brick flies:
+The throw is a recorded one. The command is `ros2 launch contact_dynamics thrown_box.launch.py`. You can
+ask, too, while the brick flies:
 
     ros2 service call /contact_dynamics/predict_impact contact_dynamics_interfaces/srv/PredictImpact \
         "{body_name: brick, fit_window: 0.1}"

@@ -63,7 +63,7 @@ def server_parser() -> argparse.ArgumentParser:
     """Return the parser of `contact-dynamics server`."""
     return _parser(
         "server",
-        "Serve contact modes, impacts and tumbling over ROS 2.",
+        "Serve contact modes, impacts, tumbling and whole tosses over ROS 2.",
         f"parameters, which config/server.yaml explains:\n{_listed(SERVER_PARAMETERS)}",
     )
 

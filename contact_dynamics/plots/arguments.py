@@ -16,8 +16,8 @@ def plot_parser() -> argparse.ArgumentParser:
         prog="contact-dynamics plot",
         usage="%(prog)s [options] --output DIR LOG",
         description="Draw the diagrams of a log's answers into files: trajectories, Poinsot's picture, "
-        "impacts in impulse space, contact modes with their forces, maps of modes and force duals. It needs "
-        "the log alone, no ROS and no viewer.",
+        "impacts in impulse space, contact modes with their forces, maps of modes and force duals, whole "
+        "tosses, many states. It needs the log alone, no ROS and no viewer.",
         epilog="Each file's name has the question's number in the log, its service, its body and the "
         "diagram. The exit code is 0 if something was drawn, 1 if the log has no answer with a diagram, and "
         "2 if it is no log of the server or a file cannot be written.",
