@@ -34,10 +34,13 @@ form. This command asks all of them here, and of MuJoCo in the same run if it is
 contact-dynamics cases
 ```
 
+`contact-dynamics cases NAME` asks one case, and `--list` prints the names. `--without-mujoco` leaves out the simulations, which take most of
+the time.
+
 **How to read the table.** MuJoCo's numbers are measured in simulations with its default settings and time step, unless the code of the case
 says otherwise. They are no verdict on MuJoCo: it computes the motion of whole robots with contacts that are soft on purpose, and smaller
 steps and other settings come closer. Where a restitution is asked for, its contact is a spring and damper made for it, resolved by ten
-steps. They show how large an artefact can be where nobody looks for it. [When to use what](when-to-use-what.md) says what each is for.
+steps. MuJoCo's numbers show how large an artefact can be where nobody looks for it. [When to use what](when-to-use-what.md) says what each is for.
 
 The package answers what its rigid bodies and Coulomb's law imply, to rounding. Whether the world obeys them is another question, and the
 coefficients of the real world are yours to know.
