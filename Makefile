@@ -100,13 +100,13 @@ $(MADE)/interfaces: $(addprefix $(INTERFACES)/,CMakeLists.txt package.xml msg sr
 # are linked to where ROS looks for them. They are linked one by one, because `ros2 launch` does not follow a linked folder.
 SHARE := $(VENV)/share/contact_dynamics
 INDEX := $(VENV)/share/ament_index/resource_index/packages
-$(MADE)/package: setup.py package.xml pyproject.toml Makefile $(wildcard config launch config/*.yaml launch/*.launch.py) $(MADE)/wheels
+$(MADE)/package: setup.py package.xml pyproject.toml Makefile $(wildcard config launch config/*.yaml config/*.xml launch/*.launch.py) $(MADE)/wheels
 	@touch $@.begun
 	@$(INSTALL) --no-deps --no-build-isolation --editable .
 	@rm -rf $(SHARE)
 	@mkdir -p $(SHARE)/config $(SHARE)/launch $(INDEX)
 	@ln -sf "$(CURDIR)"/package.xml $(SHARE)/
-	@ln -sf "$(CURDIR)"/config/*.yaml $(SHARE)/config/
+	@ln -sf "$(CURDIR)"/config/*.yaml "$(CURDIR)"/config/*.xml $(SHARE)/config/
 	@ln -sf "$(CURDIR)"/launch/*.launch.py $(SHARE)/launch/
 	@ln -sf "$(CURDIR)"/resource/contact_dynamics $(INDEX)/
 	@ln -sfn "$(CURDIR)"/executables $(VENV)/lib/contact_dynamics

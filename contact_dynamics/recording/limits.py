@@ -9,7 +9,7 @@ from typing import Final
 from contact_dynamics.errors import InvalidFieldError
 
 LEAST_FILE_BYTES: Final = 64 * 1024
-"""The smallest limit of a file's size. With less than a chunk, every chunk would be a file."""
+"""The smallest limit of a file's size. With less, nearly every chunk would be a file of its own."""
 
 LEAST_FILE_SECONDS: Final = 1.0
 """s, the shortest limit of a file's time."""
