@@ -45,7 +45,8 @@ class Asker:
         self.inside: list[float] = []  # ms
         self.cpu = 0.0  # ms, of all calls that were kept
 
-    def ask(self, request: Any) -> None:
+    def ask(self, request: Any) -> Any:
+        """Ask, keep the times, and return the answer."""
         start = time.perf_counter()
         future = self._client.call_async(request)
         while not future.done():
@@ -55,6 +56,7 @@ class Asker:
         if answer.status != answer.OK:
             raise RuntimeError(answer.message)
         self.inside.append(1e3 * answer.computation_time)
+        return answer
 
     def forget(self) -> None:
         """Forget all times so far."""

@@ -1,7 +1,9 @@
 """Round trip of each service, between processes, beside an empty service of the same type in the same run.
 
 The empty service returns its response untouched, so the ratio of both times shows what the answer costs
-beside the middleware. Calls alternate between the two, so that a change of the machine's speed affects both.
+beside the middleware. A third service has the server's answer ready, and publishes its service events as the
+server does. It computes nothing, so the ratio of its time shows what ROS takes for messages of this size.
+Calls alternate between the three, so that a change of the machine's speed affects all.
 
 "Inside" is the time that an answer takes in the server, as the response says. "CPU" is that of the server's
 process for each call, including the log and the service events.
@@ -14,6 +16,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import signal
 import statistics
 import subprocess
 import sys
@@ -29,6 +32,8 @@ from geometry_msgs.msg import Inertia
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
+from rclpy.serialization import deserialize_message, serialize_message
+from rclpy.service_introspection import ServiceIntrospectionState
 
 from benchmarks._quotes import quote
 from benchmarks._service_calls import PATIENCE_S, QOS, ROOT, SERVICES, Asker, cpu_ms, questions
@@ -64,7 +69,7 @@ def run() -> None:
             str(ROOT / "config" / "server.yaml"),
         ]
         server += ["--ros-args", "-p", f"log_directory:={log}", "--log-level", "warn"]
-        empty = [sys.executable, "-m", "benchmarks.services", "empty"]
+        myself = [sys.executable, "-m", "benchmarks.services"]
         processes: list[subprocess.Popen[bytes]] = []
 
         def start(command: list[str]) -> int:
@@ -73,8 +78,17 @@ def run() -> None:
             )
             return processes[-1].pid
 
+        def start_ready(name: str, answer: Any) -> int:
+            file = Path(log) / f"{name}.cdr"
+            file.write_bytes(serialize_message(answer))
+            return start([*myself, "ready", name, str(file)])
+
         try:
-            _measure(start_server=lambda: start(server), start_empty=lambda: start(empty))
+            _measure(
+                start_server=lambda: start(server),
+                start_empty=lambda: start([*myself, "empty"]),
+                start_ready=start_ready,
+            )
         finally:
             for process in processes:
                 process.terminate()
@@ -82,7 +96,12 @@ def run() -> None:
                 process.wait(PATIENCE_S)
 
 
-def _measure(*, start_server: Callable[[], int], start_empty: Callable[[], int]) -> None:
+def _measure(
+    *,
+    start_server: Callable[[], int],
+    start_empty: Callable[[], int],
+    start_ready: Callable[[str, Any], int],
+) -> None:
     rclpy.init()
     node = Node("benchmark")
     executor = SingleThreadedExecutor()
@@ -99,21 +118,26 @@ def _measure(*, start_server: Callable[[], int], start_empty: Callable[[], int])
     print(f"{CALLS} calls of each, alternating; ms")
     print(
         f"{'question':34} {'p50':>6} {'p99':>6} {'CPU':>6}   {'empty p50':>9} {'p99':>6} {'CPU':>6}"
-        f"   {'ratio':>6}   {'inside':>7} {'of CPU':>6}"
+        f"   {'ratio':>6}   {'inside':>7} {'of CPU':>6}   {'ready p50':>9} {'CPU':>6} {'ratio':>6}"
     )
-    inside, ratios, singles = [], {}, {}
+    inside, ratios, singles, of_messages = [], {}, {}, []
     for title, name, request in questions():
-        askers = [Asker(node, executor, server, name) for server in ("contact_dynamics", "empty")]
-        for asker, pid in zip(askers, (server_pid, empty_pid), strict=True):
+        ours, empty = (Asker(node, executor, server, name) for server in ("contact_dynamics", "empty"))
+        ready_pid = start_ready(name, ours.ask(request))
+        ready = Asker(node, executor, f"ready_{name}", name)
+        for asker, pid in zip((ours, empty, ready), (server_pid, empty_pid, ready_pid), strict=True):
             asker.pid = pid
-        _alternate(askers, request)
-        print(_line(title, *askers), flush=True)
-        medians = [statistics.median(asker.trips) for asker in askers]
+        _alternate([ours, empty, ready], request)
+        medians = [statistics.median(asker.trips) for asker in (ours, empty, ready)]
         ratios[title] = medians[0] / medians[1]
+        of_messages.append(medians[2] / medians[1])
+        beside = f"   {medians[2]:9.2f} {ready.cpu / CALLS:6.2f} {of_messages[-1]:6.2f}"
+        print(_line(title, ours, empty) + beside, flush=True)
         singles[title] = medians[0]
-        inside.append(statistics.median(askers[0].inside))
-        for asker in askers:
+        inside.append(statistics.median(ours.inside))
+        for asker in (ours, empty, ready):
             asker.close()
+        os.kill(ready_pid, signal.SIGTERM)
     for title, name, request in _batches():
         askers = [Asker(node, executor, server, name) for server in ("contact_dynamics", "empty")]
         for asker, pid in zip(askers, (server_pid, empty_pid), strict=True):
@@ -127,6 +151,7 @@ def _measure(*, start_server: Callable[[], int], start_empty: Callable[[], int])
         for asker in askers:
             asker.close()
     quote("services.ratio", list(ratios.values()))
+    quote("services.ratio.of_messages", of_messages)
     quote("services.ratio.one_time", ratios["tumbling, one time"])
     quote("services.ratio.impact_in_space", ratios["impact, one contact in space"])
     quote("services.inside", inside, "ms")
@@ -193,6 +218,21 @@ def _serve_empty() -> None:
     untouched: Callable[[Any, Any], Any] = lambda request, response: response  # noqa: ARG005, E731
     for name, service in SERVICES.items():
         node.create_service(service, f"~/{name}", untouched, qos_profile=QOS)
+    _spin(node)
+
+
+def _serve_ready(name: str, file: str) -> None:
+    """Answer one service with what is in a file, and publish the service events."""
+    rclpy.init()
+    node = Node(f"ready_{name}")
+    answer = deserialize_message(Path(file).read_bytes(), SERVICES[name].Response)
+    same: Callable[[Any, Any], Any] = lambda request, response: answer  # noqa: ARG005, E731
+    service = node.create_service(SERVICES[name], f"~/{name}", same, qos_profile=QOS)
+    service.configure_introspection(node.get_clock(), QOS, ServiceIntrospectionState.CONTENTS)
+    _spin(node)
+
+
+def _spin(node: Node) -> None:
     executor = EventsExecutor()  # the same as the server's
     executor.add_node(node)
     with contextlib.suppress(ExternalShutdownException):
@@ -200,5 +240,8 @@ def _serve_empty() -> None:
             executor.spin_once(timeout_sec=0.1)
 
 
-if __name__ == "__main__" and sys.argv[1:] == ["empty"]:
-    _serve_empty()
+if __name__ == "__main__":
+    if sys.argv[1:] == ["empty"]:
+        _serve_empty()
+    elif sys.argv[1:2] == ["ready"]:
+        _serve_ready(*sys.argv[2:])
