@@ -122,12 +122,16 @@ def _new_bag(
     """Return a bag in a folder named by the time. Servers that start at one time have different folders."""
     name = datetime.now(timezone.utc).astimezone().strftime("contact_dynamics_%Y_%m_%d-%H_%M_%S")
     number = 1
-    while True:
-        folder = Path(directory).expanduser() / (name if number == 1 else f"{name}_{number}")
-        try:
-            return BagWriter(folder, run=run, limits=limits, on_deleted=on_deleted)
-        except LogExistsError:
-            number += 1
-        except OSError as error:
-            message = f"log_directory: found {directory!r}, allowed is a folder to write to ({error})"
-            raise ConfigurationError(message) from None
+    try:
+        # A link to a disk that is not mounted exists, and yet nothing can be made in it, under any name.
+        parent = Path(directory).expanduser()
+        parent.mkdir(parents=True, exist_ok=True)
+        while True:
+            folder = parent / (name if number == 1 else f"{name}_{number}")
+            try:
+                return BagWriter(folder, run=run, limits=limits, on_deleted=on_deleted)
+            except LogExistsError:
+                number += 1
+    except (OSError, RuntimeError) as error:  # the latter for the home of a user who is not there
+        message = f"log_directory: found {directory!r}, allowed is a folder to write to ({error})"
+        raise ConfigurationError(message) from None

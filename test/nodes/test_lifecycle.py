@@ -7,13 +7,18 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from builtin_interfaces.msg import Time
 from lifecycle_msgs.msg import State, Transition
 from lifecycle_msgs.srv import ChangeState, GetState
 from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
 
+from contact_dynamics.nodes.log import Log
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.recording import BagReader
+from contact_dynamics.recording.limits import UNLIMITED
 from contact_dynamics_interfaces.srv import PredictTumbling
-from running_server import PATIENCE_S, ROOT, SERVICES, Client, process
+from running_server import PATIENCE_S, ROOT, SERVICES, Client, process, wait_for
 
 
 class Manager:
@@ -87,6 +92,39 @@ def test_a_manager_brings_the_server_up_and_down_and_up_again(manager: Manager, 
     logs = [BagReader(folder) for folder in tmp_path.iterdir()]
     assert all(any(message.topic == "/brick/odometry" for message in log.messages()) for log in logs)
     assert all(log.damage is None for log in logs)
+
+
+def test_a_log_whose_disk_is_not_mounted_is_refused_and_written_once_it_is(tmp_path: Path) -> None:
+    """The simulation begins anew meanwhile, of which a server that could not be configured hears, too."""
+    disk = tmp_path / "disk"
+    (tmp_path / "logs").symlink_to(disk)
+    arguments = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", "-p", "autostart:=false")
+    arguments += ("-p", f"log_directory:={tmp_path / 'logs'}", "-p", "use_sim_time:=true")
+    with process("server", *arguments, ready="autostart is false") as server:
+        manager = Manager()
+        try:
+            clock = manager.client.publisher(Clock, "/clock")
+            for _ in range(20):
+                assert not manager.change(Transition.TRANSITION_CONFIGURE)
+            assert "log_directory: found" in wait_for(server, "cannot be configured")
+            assert manager.state() == State.PRIMARY_STATE_UNCONFIGURED
+            for seconds in range(200, 100, -1):
+                clock.publish(Clock(clock=Time(sec=seconds)))
+                manager.state()
+            disk.mkdir()
+            assert manager.change(Transition.TRANSITION_CONFIGURE)
+            assert manager.change(Transition.TRANSITION_ACTIVATE)
+        finally:
+            manager.client.close()
+    assert len(list(disk.iterdir())) == 1
+
+
+@pytest.mark.parametrize("where", ["~nobody_of_this_name/logs", "{}/link", "{}/link/logs", "{}/file/logs"])
+def test_a_log_that_nobody_can_write_is_refused_by_name(where: str, tmp_path: Path) -> None:
+    (tmp_path / "link").symlink_to(tmp_path / "gone")
+    (tmp_path / "file").touch()
+    with pytest.raises(ConfigurationError, match="log_directory: found .*, allowed is a folder to write to"):
+        Log(where.format(tmp_path), run={}, limits=UNLIMITED, on_problem=print, on_deleted=print)
 
 
 def test_an_autostarted_server_is_active(tmp_path: Path) -> None:
