@@ -92,11 +92,6 @@ class Serving:
             future_tolerance=parameters.future_tolerance,
             most_states=parameters.most_states,
         )
-        # A simulation or a log that is played again: without this its new states would count as old ones.
-        set_back = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
-        self._jumps = node.get_clock().create_jump_callback(
-            set_back, post_callback=lambda _: states.clear(CLOCK_SET_BACK)
-        )
         self._asked_ns = 0  # when the present question came, by the node's clock
         self._knowledge = Knowledge(
             world=parameters.world,
@@ -139,6 +134,13 @@ class Serving:
         self._took_events = 0.0
         self._fronts = [self._serve(service) for service in SERVICES]
         self._log.start()
+        # A simulation or a log that is played again: without this its new states would count as old ones.
+        # It comes last, since the clock goes on to call what is not unregistered, and ends the process if
+        # that is not there any more.
+        set_back = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
+        self._jumps = node.get_clock().create_jump_callback(
+            set_back, post_callback=lambda _: states.clear(CLOCK_SET_BACK)
+        )
 
     def __str__(self) -> str:
         """Return in words what is served."""
