@@ -116,7 +116,9 @@ class StateTopic:
         self.name: str = self._subscription.topic_name
         self.type_name = source.type_name
         self._publishers = OfferedQosWatch(node, self.name, offered)
-        self.traffic = TopicTraffic(topic=self.name, faults=faults, one_publisher=source.is_whole)
+        self.traffic = TopicTraffic(
+            topic=self.name, faults=faults, one_publisher=source.is_whole, may_rest=source.is_latched
+        )
 
     def look(self, *, awake_for: float) -> None:
         """Look, once a second, at who publishes and for how long nothing came.

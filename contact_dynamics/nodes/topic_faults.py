@@ -86,6 +86,7 @@ class TopicTraffic:
     Attributes:
         topic: The topic.
         one_publisher: Whether its messages should come from a single publisher.
+        may_rest: Whether nothing has to come, as where transforms are told once that stand still.
         received: How many messages came.
         lost: How many did not, as the numbers of those that came tell.
         age: s, since the newest message, at the last look. None while none came.
@@ -97,6 +98,7 @@ class TopicTraffic:
     topic: str
     faults: TopicFaults
     one_publisher: bool
+    may_rest: bool = False
     received: int = 0
     lost: int = 0
     age: float | None = None
@@ -144,6 +146,7 @@ class TopicTraffic:
         self._looked, self._received_before = now, self.received
         self.age = now - self._newest
         self.silence = min(self.age, awake_for)
-        was_silent, self.is_silent = self.is_silent, self.silence > self.faults.limits.silent_after
+        is_quiet = self.silence > self.faults.limits.silent_after
+        was_silent, self.is_silent = self.is_silent, is_quiet and not self.may_rest
         if self.is_silent and not was_silent:
             self.faults.add(self.topic, "silent", 1, f"nothing came for {self.silence:.1f} s")

@@ -8,18 +8,24 @@ import time
 from pathlib import Path
 from typing import Any
 
+import rclpy
 import yaml
 from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import TransformStamped
 from nav_msgs.msg import Odometry
+from rclpy.context import Context
 from rclpy.qos import QoSProfile
 from rclpy.serialization import serialize_message
 from rosgraph_msgs.msg import Clock
 
-from contact_dynamics.nodes.inbox import Taken
+from contact_dynamics.nodes.inbox import InboxNode, Taken
+from contact_dynamics.nodes.state_sources import BodyReader, StateSource
+from contact_dynamics.nodes.state_subscriptions import LATCHED_QOS, StateTopic
 from contact_dynamics.nodes.topic_faults import FaultLimits, TopicFaults, TopicTraffic
+from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
-from running_server import ROOT, Client, process, wait_for
+from running_server import DOMAIN_ID, PATIENCE_S, ROOT, Client, process, wait_for
 
 SHALLOW = QoSProfile(depth=10)
 STOOD_STILL_S = 6.0  # longer than a topic may be silent before it is subscribed to anew
@@ -163,6 +169,44 @@ def test_a_machine_clock_that_jumps_makes_no_topic_silent_and_no_rate_wrong() ->
     traffic.look(1, awake_for=now[0])
     assert traffic.is_silent
     assert told == ["/a: nothing came for 3.0 s (1 such so far)"]
+
+
+def test_transforms_that_stand_still_are_told_once_and_their_topic_is_not_silent_for_that() -> None:
+    """They come over real DDS, and the clock that counts silence goes on. `tf2_msgs` has no wheel."""
+    now, told = [100.0], list[str]()
+    context = Context()
+    rclpy.init(context=context, domain_id=DOMAIN_ID)
+    node = InboxNode("listener", context=context)
+    source = StateSource(
+        topic="/standing",
+        full_name="/standing",
+        type_name="geometry_msgs/msg/TransformStamped",
+        readers=(BodyReader("", lambda _: None),),
+        is_latched=True,
+    )
+    topic = StateTopic(
+        node,
+        source,
+        states=StateStore(history=5.0, timeout=1.0),
+        record=lambda *_: None,
+        offered=lambda *_: None,
+        faults=TopicFaults(told.append, clock=lambda: now[0]),
+    )
+    (before,) = node.inbox
+    publisher = node.create_publisher(TransformStamped, "/standing", LATCHED_QOS)
+    publisher.publish(TransformStamped())
+    deadline = time.monotonic() + PATIENCE_S
+    while not topic.traffic.received:
+        assert time.monotonic() < deadline
+        node.take_messages()
+    for _ in range(10):
+        now[0] += 1000.0
+        topic.look(awake_for=now[0])
+        assert not topic.traffic.is_silent
+    assert told == []
+    assert node.inbox == [before]
+    node.destroy_node()
+    rclpy.shutdown(context=context)
 
 
 def test_what_got_lost_fell_silent_and_has_two_publishers_is_told(tmp_path: Path) -> None:
