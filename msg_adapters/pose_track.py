@@ -47,11 +47,15 @@ class PoseTrack:
         self._window_ns = to_ns(settings.velocity_window)
         self._p_FB_F = settings.p_FB_F
         self._poses: deque[_Pose] = deque(maxlen=MOST_POSES)
+        self._far_behind = 0  # poses in turn
 
     def add(
         self, p_WF: FloatArray, q_WF: FloatArray, *, stamp_ns: int, covariance: FloatArray | None = None
     ) -> KnownState | None:
         """Take a pose and return the state at it, or None for the first poses and for one that comes late.
+
+        `FEWEST_FRAMES` in turn that are behind the newest by more than `LONGEST_GAP` windows are no late ones:
+        the clock of who publishes was set back, or a simulation began anew. The poses before are then forgotten.
 
         Args:
             p_WF: (3,), m, the frame's origin.
@@ -69,7 +73,11 @@ class PoseTrack:
         )
         poses = self._poses
         if poses and stamp_ns <= poses[-1].stamp_ns:
-            return None
+            self._far_behind += poses[-1].stamp_ns - stamp_ns > LONGEST_GAP * self._window_ns
+            if self._far_behind < FEWEST_FRAMES:
+                return None
+            poses.clear()
+        self._far_behind = 0
         if poses and stamp_ns - poses[-1].stamp_ns > LONGEST_GAP * self._window_ns:
             poses.clear()
         poses.append(pose)

@@ -348,6 +348,23 @@ def test_poses_that_come_late_or_after_a_gap() -> None:
     assert read(flying(0.5)[0]) is None, "after ten windows of silence it begins anew"
 
 
+def test_poses_after_a_clock_was_set_back_become_states_again() -> None:
+    """Of who publishes, such as a camera's computer that is told the time late, or of a simulation."""
+    (read,) = POSE.readers(settings(np.zeros(3)))
+    before = [read(flying(3600.0 + 0.01 * i)[0]) for i in range(5)]
+    assert before[-1] is not None
+    found = [read(flying(0.01 * i, np.zeros(3))[0]) for i in range(20)]
+    assert [state is None for state in found] == [i < 8 for i in range(20)]
+    same_state(found[-1], flying(0.19, np.zeros(3))[1], atol=1e-6)
+
+
+def test_a_second_publisher_that_is_behind_does_not_blind_the_first_one() -> None:
+    (read,) = POSE.readers(settings())
+    found = [read(flying(t)[0]) for i in range(20) for t in (10.0 + 0.01 * i, 0.01 * i)]
+    assert all(state is not None for state in found[8::2])
+    assert all(state is None for state in found[1::2])
+
+
 def test_half_a_turn_within_the_window_is_refused() -> None:
     """A body at 5 rad/s turns by half a turn in 0.63 s."""
     (read,) = POSE.readers(settings(window=0.7))
