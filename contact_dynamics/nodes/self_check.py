@@ -32,6 +32,9 @@ SOON_S: Final = 10.0
 UNHEARD_CHECKS: Final = 2
 """So many checks in turn must fail. On a starved machine a single one may fail for want of time."""
 
+LONGEST_S: Final = 60.0
+"""s. The process of a check needs a quarter of it at most, so that one that takes longer hangs in DDS."""
+
 _SENDER: Final = "contact_dynamics.nodes.self_check_sender"
 
 
@@ -70,12 +73,15 @@ class SelfCheck:
             if self._period is not None:
                 wait = SOON_S if is_suspicious or self.unheard else self._period
                 if time.monotonic() - self._begun >= min(wait, self._period):
-                    self._begin()
+                    return self._begin()
             return ""
         self._node.empty(self._tokens)
         code = self._sender.poll()
         if code is None:
-            return ""
+            if time.monotonic() - self._begun < LONGEST_S:
+                return ""
+            self.end()
+            return f"the self-check could not be made, since its process does not end within {LONGEST_S:g} s"
         said = self._sender.communicate()[1].strip()
         self._sender, token, self._token = None, self._token, ""
         if not token:  # it was heard
@@ -94,17 +100,23 @@ class SelfCheck:
             self._sender.communicate()
             self._sender = None
 
-    def _begin(self) -> None:
+    def _begin(self) -> str:
+        """Begin a check; return why it cannot be made, or nothing."""
         self._begun = time.monotonic()
         self._token = uuid.uuid4().hex
         topic: str = self._node.resolve_topic_name(TOPIC)
-        self._sender = subprocess.Popen(  # noqa: S603  our own
-            [sys.executable, "-m", _SENDER, topic, self._token, str(self._node.context.get_domain_id())],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
+        try:
+            self._sender = subprocess.Popen(  # noqa: S603  our own
+                [sys.executable, "-m", _SENDER, topic, self._token, str(self._node.context.get_domain_id())],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.PIPE,
+                text=True,
+                errors="replace",
+            )
+        except OSError as error:  # the machine has no room for a process, or Python is being replaced
+            return f"the self-check could not be made: {error}"
+        return ""
 
     def _receive(self, taken: Taken) -> None:
         try:

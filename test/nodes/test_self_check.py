@@ -3,18 +3,29 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import resource
+import signal
+import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import pytest
+import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
 from rcl_interfaces.srv import SetParametersAtomically
+from rclpy.context import Context
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 
+from contact_dynamics.nodes import self_check
+from contact_dynamics.nodes.inbox import InboxNode
+from contact_dynamics.nodes.self_check import SelfCheck
 from contact_dynamics.recording import BagReader
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
-from running_server import DOMAIN_ID, PATIENT, ROOT, Client, process, wait_for
+from running_server import DOMAIN_ID, PATIENCE_S, PATIENT, ROOT, Client, process, wait_for
 
 LEAST_PORT = 7400 + 250 * DOMAIN_ID
 """The least port of DDS in the domain of this test run."""
@@ -95,6 +106,76 @@ def test_a_server_that_hears_goes_on(tmp_path: Path) -> None:
         finally:
             client.close()
     assert len(list(tmp_path.iterdir())) == 1 + anew
+
+
+@pytest.fixture
+def listener() -> Iterator[InboxNode]:
+    context = Context()
+    rclpy.init(context=context, domain_id=DOMAIN_ID)
+    node = InboxNode("listener", context=context)
+    yield node
+    node.destroy_node()
+    rclpy.shutdown(context=context)
+
+
+def told(check: SelfCheck, until: Callable[[], object]) -> str:
+    """What a check says until something is so."""
+    said = ""
+    deadline = time.monotonic() + PATIENCE_S
+    while not until():
+        assert time.monotonic() < deadline
+        said += check.look(is_suspicious=False)
+        time.sleep(0.01)
+    return said
+
+
+def test_checks_leave_no_files_in_the_log_folder_of_ros(
+    listener: InboxNode, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path))
+    check = SelfCheck(listener, 0.0)
+    assert told(check, lambda: check.heard) == ""
+    check.end()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_machine_without_room_for_the_process_of_a_check_does_not_end_the_server(
+    listener: InboxNode,
+) -> None:
+    check = SelfCheck(listener, 0.0)
+    before = resource.getrlimit(resource.RLIMIT_NOFILE)
+    lowest_free = os.dup(0)
+    os.close(lowest_free)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (lowest_free, before[1]))
+    try:
+        said = check.look(is_suspicious=False)
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, before)
+    assert said.startswith("the self-check could not be made: [Errno 24] Too many open files")
+    assert check.unheard == 0
+    assert told(check, lambda: check.heard) == ""
+    check.end()
+
+
+def test_a_check_whose_process_hangs_is_told_and_the_next_one_is_made(
+    listener: InboxNode, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    check = SelfCheck(listener, 0.0)
+    assert check.look(is_suspicious=False) == ""
+    (hanging,) = children()
+    os.kill(hanging, signal.SIGSTOP)
+    monkeypatch.setattr(self_check, "LONGEST_S", 0.1)
+    said = told(check, lambda: hanging not in children())
+    assert said == "the self-check could not be made, since its process does not end within 0.1 s"
+    monkeypatch.undo()
+    assert told(check, lambda: check.heard) == ""
+    check.end()
+
+
+def children() -> list[int]:
+    """The processes of checks that this process has started."""
+    started = Path(f"/proc/{os.getpid()}/task/{os.getpid()}/children").read_text(encoding="ascii").split()
+    return [pid for pid in map(int, started) if b"self_check" in Path(f"/proc/{pid}/cmdline").read_bytes()]
 
 
 def test_a_topic_that_falls_silent_while_somebody_publishes_is_subscribed_to_anew(tmp_path: Path) -> None:
