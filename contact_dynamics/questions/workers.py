@@ -151,7 +151,8 @@ class Workers:
     def _run(self, worker: _Worker) -> None:
         # Ctrl-C reaches all processes of a terminal. Those that this thread starts inherit what it blocks, so
         # that they do not end with a traceback while they still import. They end with this process.
-        resource_tracker.ensure_running()  # first, since its start unblocks the signal again
+        with contextlib.suppress(OSError):  # the machine has no room for it
+            resource_tracker.ensure_running()  # first, since its start unblocks the signal again
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         asked: list[_Job | None] = []
         with contextlib.suppress(queue.Empty):
@@ -160,13 +161,14 @@ class Workers:
             return
         worker.start()
         while not self._closing and (job := asked.pop() if asked else self._jobs.get()) is not None:
+            worker.restart_if_dead()
             outcome = worker.outcome(job)
             with self._lock:
                 self._open -= 1
             if self._closing:
                 break
             job.done(outcome)
-            worker.restart_if_killed()
+            worker.restart_if_dead()
         worker.close()
 
 
@@ -221,11 +223,15 @@ class _Worker:
         self._is_killed = True
         return outcome
 
-    def restart_if_killed(self) -> None:
-        if self._is_killed:
-            self._is_killed = False
-            self._pipe.close()
+    def restart_if_dead(self) -> None:
+        """Have another process started if this one was killed, here or by a machine short of memory."""
+        if not self._is_killed and self._process is not None and self._process.is_alive():
+            return
+        self._is_killed = True
+        self._pipe.close()
+        with contextlib.suppress(OSError):  # the machine has no room for it; the next question tries again
             self._pipe, self._its_end = self._context.Pipe()
+            self._is_killed = False
             self.start()
 
 

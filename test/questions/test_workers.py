@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import operator
+import os
 import pickle
 import queue
+import resource
 import time
 from collections.abc import Callable, Iterator
+from multiprocessing import active_children
 from typing import Any
 
 import numpy as np
@@ -113,6 +116,39 @@ def test_past_its_deadline_a_worker_is_killed_and_the_next_question_is_answered(
         while outcome(workers, pow, 2, 5) != 32:  # a busy machine may need more than the 2 s to start one
             assert time.monotonic() < deadline
     finally:
+        workers.close()
+
+
+def test_a_worker_that_was_killed_while_it_waited_costs_no_question() -> None:
+    """As by a kernel that is short of memory: it was not the question that is asked next."""
+    others = active_children()
+    workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, most_waiting=1))
+    try:
+        for _ in range(3):
+            assert outcome(workers, pow, 2, 5) == 32
+            (process,) = set(active_children()) - set(others)
+            process.kill()
+            process.join(PATIENCE_S)
+    finally:
+        workers.close()
+
+
+def test_a_worker_for_whom_there_was_no_room_is_started_when_there_is() -> None:
+    workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, most_waiting=1))
+    before = resource.getrlimit(resource.RLIMIT_NOFILE)
+    try:
+        assert outcome(workers, pow, 2, 5) == 32
+        workers.limits = WorkerLimits(count=1, deadline=0.1, memory=300, most_waiting=1)
+        lowest_free = os.dup(0)
+        os.close(lowest_free)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (lowest_free, before[1]))
+        assert isinstance(outcome(workers, pow, 3, FOR_EVER), TookTooLongError)
+        assert isinstance(outcome(workers, pow, 2, 5), WorkerFault)
+        resource.setrlimit(resource.RLIMIT_NOFILE, before)
+        workers.limits = WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, most_waiting=1)
+        assert outcome(workers, pow, 2, 5) == 32
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, before)
         workers.close()
 
 
