@@ -58,7 +58,8 @@ class BagFile:
         self._opened_ns = opened_ns
         self._counts: dict[str, int] = {}  # messages given, by topic
         self._safe_counts: dict[str, int] = {}  # messages in the file
-        self._channels: dict[str, int] = {}
+        self._defined: dict[tuple[str, str, tuple[str, ...]], int] = {}  # channels by topic, type and QoS
+        self._channels: dict[str, int] = {}  # the present ones, by topic
         self._schemas: dict[str, int] = {}
         self._file = AppendFile(path)
         self._safe_size = 0
@@ -101,15 +102,18 @@ class BagFile:
             if type_name not in self._schemas:
                 text = definition.text.encode()
                 self._schemas[type_name] = self._writer.register_schema(type_name, "ros2msg", text)
-            self._channels[name] = self._writer.register_channel(
-                topic=name,
-                message_encoding="cdr",
-                schema_id=self._schemas[type_name],
-                metadata={
-                    OFFERED_QOS: "\n".join(qos),
-                    TYPE_HASH: definition.type_hash,
-                },
-            )
+            key = (name, type_name, qos)
+            if key not in self._defined:  # a file has 65535 channels at most, and publishers come and go
+                self._defined[key] = self._writer.register_channel(
+                    topic=name,
+                    message_encoding="cdr",
+                    schema_id=self._schemas[type_name],
+                    metadata={
+                        OFFERED_QOS: "\n".join(qos),
+                        TYPE_HASH: definition.type_hash,
+                    },
+                )
+            self._channels[name] = self._defined[key]
         self._counts.setdefault(name, 0)
         self._safe_counts.setdefault(name, 0)
 

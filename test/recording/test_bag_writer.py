@@ -133,6 +133,20 @@ def test_qos_of_rclpy_in_words(tmp_path: Path) -> None:
     assert found["lifespan"] == {"sec": 9223372036, "nsec": 854775807}
 
 
+def test_publishers_may_come_and_go_for_ever(tmp_path: Path, pose_cdr: PoseCdr) -> None:
+    """MCAP numbers the channels of a file with 16 bits; a definition takes some 300 bytes, and stands there twice."""
+    one, two = OfferedQos(depth=1), OfferedQos(depth=2)
+    with BagWriter(tmp_path / "log") as writer:
+        writer.add_topic("/pose", POSE)
+        for i in range(2000):
+            writer.set_qos("/pose", [one, two] if i % 2 else [one])
+        writer.write("/pose", pose_cdr(0, 0.0), log_time_ns=NOW_NS)
+    bag = BagReader(tmp_path / "log")
+    assert [message.topic for message in bag.messages()] == ["/pose"]
+    assert bag.damage is None
+    assert writer.path.stat().st_size < 20_000
+
+
 @pytest.mark.parametrize("kind", ["folder", "file"])
 def test_never_overwrites(tmp_path: Path, kind: str) -> None:
     path = tmp_path / "log"
