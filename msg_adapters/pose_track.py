@@ -54,8 +54,8 @@ class PoseTrack:
     ) -> KnownState | None:
         """Take a pose and return the state at it, or None for the first poses and for one that comes late.
 
-        `FEWEST_FRAMES` in turn that are behind the newest by more than `LONGEST_GAP` windows are no late ones:
-        the clock of who publishes was set back, or a simulation began anew. The poses before are then forgotten.
+        `FEWEST_FRAMES` in turn that are behind the newest by more than `LONGEST_GAP` windows are not late:
+        the clock of who publishes was set back, or a simulation began anew. The poses before are forgotten.
 
         Args:
             p_WF: (3,), m, the frame's origin.

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.recording.bag_writer import BagWriter
 from contact_dynamics.recording.errors import LogExistsError
-from contact_dynamics.recording.recorder import Recorder
+from contact_dynamics.recording.recorder import Recorder, RecorderStatus
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from rclpy.qos import QoSProfile
 
     from contact_dynamics.recording.limits import LogLimits
-    from contact_dynamics.recording.recorder import RecorderStatus
 
 _SETTLES_IN_S: Final = 1.0  # how long an answer waits for the disk
 _TRUSTS_AFTER_S: Final = 10.0  # how long answers do not wait for a disk that took longer
@@ -35,6 +34,7 @@ class Log:
         limits: LogLimits,
         on_problem: Callable[[str], object],
         on_deleted: Callable[[str], object],
+        is_needed: bool = True,
     ) -> None:
         """Create a folder in ``directory``, where empty means the current folder and None means no log.
 
@@ -44,12 +44,23 @@ class Log:
             limits: what bounds the files of the log.
             on_problem: told once, from the log's thread, what goes wrong first.
             on_deleted: told, from the log's thread, of each file that ``limits`` cost.
+            is_needed: whether it is an error that the folder cannot be made. Otherwise that is a problem.
 
         Raises:
             ConfigurationError: the folder cannot be made, so that a log that was asked for is never missing
                 silently.
         """
-        self._writer = _new_bag(directory, run, limits, on_deleted) if directory is not None else None
+        self._writer: BagWriter | None = None
+        self._missing = ""  # why there is none, where one was asked for
+        self._unlogged = 0  # messages that it does not have for that reason
+        if directory is not None:
+            try:
+                self._writer = _new_bag(directory, run, limits, on_deleted)
+            except ConfigurationError as error:
+                if is_needed:
+                    raise
+                self._missing = f"no log is written: {error}"
+                on_problem(self._missing)
         self.folder = self._writer.folder if self._writer is not None else None
         self._recorder: Recorder | None = None
         self._on_problem = on_problem
@@ -80,6 +91,8 @@ class Log:
         if self._recorder is not None:
             when_ns = time.time_ns() if log_time_ns is None else log_time_ns
             self._recorder.record(topic, data, log_time_ns=when_ns, publish_time_ns=publish_time_ns)
+        elif self._missing:
+            self._unlogged += 1
 
     def settle(self) -> None:
         """Wait until the disk itself has all that was recorded so far, but for a second at most.
@@ -105,7 +118,13 @@ class Log:
     @property
     def status(self) -> RecorderStatus | None:
         """The state of the log now, or None if none is written."""
-        return None if self._recorder is None else self._recorder.status
+        if self._recorder is not None:
+            return self._recorder.status
+        if not self._missing:
+            return None
+        return RecorderStatus(
+            written=0, lost=self._unlogged, waiting=0, most_waiting_bytes=0, problem=self._missing
+        )
 
     def close(self) -> str:
         """Finish the file, and return in words where it is and whether messages are missing."""

@@ -70,16 +70,12 @@ class SelfCheck:
             is_suspicious: whether something looks as if the node were deaf, so that a check is due soon.
         """
         if self._sender is None:
-            if self._period is not None:
-                wait = SOON_S if is_suspicious or self.unheard else self._period
-                if time.monotonic() - self._begun >= min(wait, self._period):
-                    return self._begin()
-            return ""
+            return self._begin() if self._is_due(is_suspicious=is_suspicious) else ""
         self._node.empty(self._tokens)
         code = self._sender.poll()
+        if code is None and time.monotonic() - self._begun < LONGEST_S:
+            return ""
         if code is None:
-            if time.monotonic() - self._begun < LONGEST_S:
-                return ""
             self.end()
             return f"the self-check could not be made, since its process does not end within {LONGEST_S:g} s"
         said = self._sender.communicate()[1].strip()
@@ -99,6 +95,12 @@ class SelfCheck:
             self._sender.kill()
             self._sender.communicate()
             self._sender = None
+
+    def _is_due(self, *, is_suspicious: bool) -> bool:
+        if self._period is None:
+            return False
+        wait = SOON_S if is_suspicious or self.unheard else self._period
+        return time.monotonic() - self._begun >= min(wait, self._period)
 
     def _begin(self) -> str:
         """Begin a check; return why it cannot be made, or nothing."""

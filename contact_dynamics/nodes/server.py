@@ -79,12 +79,17 @@ class Server(InboxNode, LifecycleNode):
         self._configuration: ServerParameters | None = None
         self._ros_arguments = ros_arguments
         self._successions = 0 if predecessor is None else predecessor.successions + 1
+        self._takes_over = predecessor is not None  # now, from a server that answered
         super().__init__(NODE_NAME, **node_options)
         refuse_lost_sections(self, ros_arguments)
         source = NodeParameters(
             self,
             ros_arguments=ros_arguments,
-            also_known=VISUALIZER_PARAMETERS,  # one file may configure both nodes
+            also_known=[
+                *VISUALIZER_PARAMETERS,  # one file may configure both nodes
+                # What a file says of bodies and surfaces that were taken away meanwhile was checked long ago.
+                *(self._parameter_overrides if predecessor is not None else ()),
+            ],
             read_only=False,
         )
         self._source = source
@@ -98,6 +103,7 @@ class Server(InboxNode, LifecycleNode):
         self.trigger_configure()
         if self._problem is not None:
             raise self._problem
+        self._takes_over = False
         if is_active:
             self.trigger_activate()
 
@@ -114,7 +120,10 @@ class Server(InboxNode, LifecycleNode):
             Server,
             ros_arguments=self._ros_arguments,
             predecessor=predecessor,
-            parameter_overrides=[Parameter(name, value=value) for name, value in values.items()],
+            # Names alone may be an empty list, which ROS takes where it sets a parameter and not as a start.
+            parameter_overrides=[
+                Parameter(name, value=[""] if value == [] else value) for name, value in values.items()
+            ],
         )
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002  it is known
@@ -125,7 +134,9 @@ class Server(InboxNode, LifecycleNode):
             return TransitionCallbackReturn.FAILURE
         run = self._run(self._values())
         try:
-            self._serving = Serving(self, configuration, run=run, successions=self._successions)
+            self._serving = Serving(
+                self, configuration, run=run, successions=self._successions, must_log=not self._takes_over
+            )
         except (ContactDynamicsError, OSError) as error:
             self._problem = error
             self.get_logger().error(f"cannot be configured: {error}")

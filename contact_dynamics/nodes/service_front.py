@@ -158,7 +158,9 @@ class ServiceFront:
                 return False
 
             def done(outcome: Answer | Exception) -> None:
-                self._node.executor.create_task(finish, partial(_fill, fill, outcome))
+                executor = self._node.executor
+                if executor is not None:  # otherwise the node has stopped serving, and ends
+                    executor.create_task(finish, partial(_fill, fill, outcome))
 
             self._workers.ask(answer, question, excerpt(question, knowledge), done)
             return True

@@ -71,6 +71,7 @@ class Serving:
         *,
         run: Mapping[str, str],
         successions: int = 0,
+        must_log: bool = True,
     ) -> None:
         """Begin the log, subscribe and create the services, which refuse all questions for now.
 
@@ -79,6 +80,7 @@ class Serving:
             parameters: how it is configured.
             run: what the log says of the run.
             successions: how many times the server has joined the domain anew.
+            must_log: whether it does not serve if the log cannot be begun.
 
         Raises:
             ConfigurationError: a source or the log's folder is not there.
@@ -113,6 +115,7 @@ class Serving:
             parameters.log_directory if parameters.log else None,
             run=run,
             limits=parameters.log_limits,
+            is_needed=must_log,
             on_problem=node.get_logger().error,
             on_deleted=node.get_logger().warning,
         )

@@ -98,7 +98,13 @@ def test_a_log_whose_disk_is_not_mounted_is_refused_and_written_once_it_is(tmp_p
     """The simulation begins anew meanwhile, of which a server that could not be configured hears, too."""
     disk = tmp_path / "disk"
     (tmp_path / "logs").symlink_to(disk)
-    arguments = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", "-p", "autostart:=false")
+    arguments = (
+        "--params-file",
+        str(ROOT / "config" / "server.yaml"),
+        "--ros-args",
+        "-p",
+        "autostart:=false",
+    )
     arguments += ("-p", f"log_directory:={tmp_path / 'logs'}", "-p", "use_sim_time:=true")
     with process("server", *arguments, ready="autostart is false") as server:
         manager = Manager()
@@ -123,7 +129,7 @@ def test_a_log_whose_disk_is_not_mounted_is_refused_and_written_once_it_is(tmp_p
 def test_a_log_that_nobody_can_write_is_refused_by_name(where: str, tmp_path: Path) -> None:
     (tmp_path / "link").symlink_to(tmp_path / "gone")
     (tmp_path / "file").touch()
-    with pytest.raises(ConfigurationError, match="log_directory: found .*, allowed is a folder to write to"):
+    with pytest.raises(ConfigurationError, match=r"log_directory: found .*, allowed is a folder to write to"):
         Log(where.format(tmp_path), run={}, limits=UNLIMITED, on_problem=print, on_deleted=print)
 
 

@@ -49,11 +49,11 @@ def falling() -> PredictImpact.Request:
     return request
 
 
-def set_friction(client: Client, friction: float) -> None:
+def set_parameter(client: Client, parameter: Parameter) -> None:
     setter = client.node.create_client(SetParametersAtomically, "/contact_dynamics/set_parameters_atomically")
     assert setter.wait_for_service(30.0)
-    parameter = Parameter("surface.floor.friction", value=friction).to_parameter_msg()
-    future = setter.call_async(SetParametersAtomically.Request(parameters=[parameter]))
+    request = SetParametersAtomically.Request(parameters=[parameter.to_parameter_msg()])
+    future = setter.call_async(request)
     client.spin_until(future.done)
     assert future.result().result.successful
 
@@ -63,7 +63,7 @@ def test_a_server_whose_ports_are_removed_joins_anew_with_its_parameters(tmp_pat
     arguments += ["-p", f"log_directory:={tmp_path}", "-p", "self_check_period:=1.0"]
     with process("server", *arguments, ready="ready") as server:
         client = Client()
-        set_friction(client, 0.125)
+        set_parameter(client, Parameter("surface.floor.friction", value=0.125))
         client.close()
         assert remove_ports(server.pid) == 1
         printed = wait_for(server, "joins the domain anew") + wait_for(server, "ready")
@@ -79,6 +79,38 @@ def test_a_server_whose_ports_are_removed_joins_anew_with_its_parameters(tmp_pat
     run = BagReader(after).run()
     assert run["joined_anew"] == "1"
     assert json.loads(run["parameters"])["surface.floor.friction"] == 0.125
+
+
+def test_a_server_joins_anew_without_surfaces_and_without_a_disk(tmp_path: Path) -> None:
+    """It answered before without any surface, and after its disk was gone; so it does afterwards.
+
+    The file of parameters still describes the surface that was taken away.
+    """
+    link, disk = tmp_path / "logs", tmp_path / "disk"
+    disk.mkdir()
+    link.symlink_to(disk)
+    arguments = ["--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args"]
+    arguments += ["-p", f"log_directory:={link}", "-p", "self_check_period:=1.0"]
+    with process("server", *arguments, ready="ready") as server:
+        client = Client()
+        set_parameter(client, Parameter("surfaces", Parameter.Type.STRING_ARRAY, []))
+        client.close()
+        link.unlink()
+        link.symlink_to(tmp_path / "gone")
+        assert remove_ports(server.pid) == 1
+        printed = wait_for(server, "joins the domain anew") + wait_for(server, "ready: bodies brick; log off")
+        assert "no log is written: log_directory: found" in printed
+        reports: list[DiagnosticArray] = []
+        client = Client()
+        try:
+            assert "touches no surface" in client.ask(falling()).message
+            client.node.create_subscription(DiagnosticArray, "/diagnostics", reports.append, 10)
+            client.spin_until(lambda: reports)
+        finally:
+            client.close()
+    (log,) = (each for each in reports[0].status if each.name.endswith("log"))
+    assert log.message.startswith("no log is written: log_directory: found")
+    assert int({pair.key: pair.value for pair in log.values}["lost"]) > 0
 
 
 def test_a_server_that_hears_goes_on(tmp_path: Path) -> None:

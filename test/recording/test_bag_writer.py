@@ -134,7 +134,7 @@ def test_qos_of_rclpy_in_words(tmp_path: Path) -> None:
 
 
 def test_publishers_may_come_and_go_for_ever(tmp_path: Path, pose_cdr: PoseCdr) -> None:
-    """MCAP numbers the channels of a file with 16 bits; a definition takes some 300 bytes, and stands there twice."""
+    """MCAP numbers the channels of a file with 16 bits. Each takes some 300 bytes, and stands there twice."""
     one, two = OfferedQos(depth=1), OfferedQos(depth=2)
     with BagWriter(tmp_path / "log") as writer:
         writer.add_topic("/pose", POSE)
