@@ -22,6 +22,7 @@ from rosgraph_msgs.msg import Clock
 from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.nodes.introductions import ask_for_introductions
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
+from contact_dynamics.nodes.ros_services import refuse_what_ros_cannot_do
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -72,6 +73,7 @@ class InboxNode(Node):
         self._emptied = 0.0  # when, s
         self._question_ns = 0
         super().__init__(*arguments, **options)
+        refuse_what_ros_cannot_do(self)
         ask_for_introductions(self.context.get_domain_id())
 
     @property

@@ -11,6 +11,8 @@ from builtin_interfaces.msg import Time
 from lifecycle_msgs.msg import State, Transition
 from lifecycle_msgs.srv import ChangeState, GetState
 from nav_msgs.msg import Odometry
+from rcl_interfaces.msg import Parameter, ParameterValue
+from rcl_interfaces.srv import SetParameters
 from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.nodes.log import Log
@@ -92,6 +94,33 @@ def test_a_manager_brings_the_server_up_and_down_and_up_again(manager: Manager, 
     logs = [BagReader(folder) for folder in tmp_path.iterdir()]
     assert all(any(message.topic == "/brick/odometry" for message in log.messages()) for log in logs)
     assert all(log.damage is None for log in logs)
+
+
+def test_transitions_that_are_none_of_the_state_are_refused_and_the_server_goes_on(manager: Manager) -> None:
+    """Managers ask so: one that brings up all its nodes asks one to configure that is active already."""
+    up = (Transition.TRANSITION_CONFIGURE, Transition.TRANSITION_ACTIVATE)
+    down = (Transition.TRANSITION_DEACTIVATE, Transition.TRANSITION_CLEANUP)
+    possible = {
+        State.PRIMARY_STATE_UNCONFIGURED: {Transition.TRANSITION_CONFIGURE},
+        State.PRIMARY_STATE_INACTIVE: {Transition.TRANSITION_ACTIVATE, Transition.TRANSITION_CLEANUP},
+        State.PRIMARY_STATE_ACTIVE: {Transition.TRANSITION_DEACTIVATE},
+    }
+    for then in (*up, *down):
+        state = manager.state()
+        for asked in {*up, *down, 77} - possible[state]:
+            assert not manager.change(asked)
+            assert manager.state() == state
+        assert manager.change(then)
+
+
+def test_a_parameter_of_no_type_is_refused_and_the_server_goes_on(manager: Manager) -> None:
+    client = manager.client.node.create_client(SetParameters, "/contact_dynamics/set_parameters")
+    assert client.wait_for_service(PATIENCE_S)
+    strange = Parameter(name="state_timeout", value=ParameterValue(type=77))
+    future = client.call_async(SetParameters.Request(parameters=[strange]))
+    manager.client.spin_until(future.done)
+    assert not any(result.successful for result in future.result().results)
+    assert manager.state() == State.PRIMARY_STATE_UNCONFIGURED
 
 
 def test_a_log_whose_disk_is_not_mounted_is_refused_and_written_once_it_is(tmp_path: Path) -> None:
