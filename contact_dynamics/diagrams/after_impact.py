@@ -88,13 +88,22 @@ class AwaitedImpacts:
         strike_ns = answer.impact.state.stamp_ns or answer.state.stamp_ns
         if not strike_ns:
             return []
-        begun = [each for each in self._awaited.get(answer.body_name, []) if each[0] < now_ns]
+        oldest_ns = now_ns - to_ns(KEPT_S)  # one before that is of a body whose states do not come
+        awaited = self._awaited.get(answer.body_name, [])
+        begun = [each for each in awaited if oldest_ns <= each[0] < now_ns]
         self._awaited[answer.body_name] = [*begun, (strike_ns, answer)]
         return self._compared(answer.body_name)
 
     def see(self, body_name: str, states: Sequence[BodyState]) -> list[AfterImpact]:
-        """Take measured states in the order of their stamps, and return the impacts that are now compared."""
-        self._seen.setdefault(body_name, []).extend(states)
+        """Take measured states in the order of their stamps, and return the impacts that are now compared.
+
+        Where stamps fall by more than `KEPT_S`, the clock was set back, and what was before is forgotten.
+        """
+        seen = self._seen.setdefault(body_name, [])
+        if seen and states and states[0].stamp_ns < seen[-1].stamp_ns - to_ns(KEPT_S):
+            seen.clear()
+            self._awaited.pop(body_name, None)
+        seen.extend(states)
         return self._compared(body_name)
 
     def _compared(self, body_name: str) -> list[AfterImpact]:

@@ -52,6 +52,10 @@ _MOST_ACCELERATION: Final = 20.0
 _SLACK: Final = 0.05
 """m. The same for one whose measured velocities are off."""
 
+SET_BACK_S: Final = 0.5
+"""s. Where the stamps of a body fall by more than this, its clock was set back, as by a simulation that
+begins anew. States that come late are late by less."""
+
 
 def curves_of(
     trajectory: Trajectory,
@@ -127,7 +131,8 @@ def draw_states(
 def _put_elsewhere(way: Trajectory) -> NDArray[np.bool_]:
     """Tell which states after the first cannot be where velocities took the body from the state before."""
     seconds, speeds = np.diff(way.seconds), np.linalg.norm(way.v_WB_W, axis=1)
-    reach = (speeds[:-1] + speeds[1:]) * seconds + _MOST_ACCELERATION * seconds**2 + _SLACK
+    onwards = np.maximum(seconds, 0.0)  # where a clock is set back, no way leads from one state to the next
+    reach = (speeds[:-1] + speeds[1:]) * onwards + _MOST_ACCELERATION * onwards**2 + _SLACK
     return np.asarray(np.linalg.norm(np.diff(way.p_WB_W, axis=0), axis=1) > reach)
 
 

@@ -50,7 +50,7 @@ from contact_dynamics.viewing.impact import draw_impact
 from contact_dynamics.viewing.in_view import ImpactsInView, LettersInView
 from contact_dynamics.viewing.legend import LEGEND_TEXT
 from contact_dynamics.viewing.many_states import draw_many_states
-from contact_dynamics.viewing.measured import set_time
+from contact_dynamics.viewing.measured import SET_BACK_S, set_time
 from contact_dynamics.viewing.poinsot_in_view import PoinsotInView
 from contact_dynamics.viewing.predictions_in_view import PredictionsInView
 from contact_dynamics.viewing.toss import draw_toss
@@ -96,6 +96,7 @@ class Picture:
         self._world = WorldInView(recording, world, surface_side=surface_side)
         self._bodies = self._world.bodies
         self._newest: dict[str, BodyState] = {}
+        self._stamps_ns: dict[str, int] = {}  # of the newest states, since a clock was last set back
         self._impacts = ImpactsInView(recording)
         self._letters = LettersInView(recording)
         self._answers = AnswersInWords(recording)
@@ -107,9 +108,8 @@ class Picture:
         self._framing = Framing(self._world.up_W)
         self._eye: Eye | None = None
         self._shown: set[str] = set()  # what the arrangement has views of
-        self._recent: deque[tuple[int, FloatArray]] = (
-            deque()
-        )  # stamp, ns, position, m, of the last `WINDOW_S`
+        # Stamps, ns, and positions, m, of the last `WINDOW_S`.
+        self._recent: deque[tuple[int, FloatArray]] = deque()
         legend = rr.TextDocument(LEGEND_TEXT, media_type=rr.MediaType.MARKDOWN)
         recording.log(LEGEND, legend, static=True)
         self._arrange()
@@ -134,8 +134,11 @@ class Picture:
             self._show_after_impact(found)
         self._impacts.pass_by(body_name, states[-1].stamp_ns)
         self._newest[body_name] = states[-1]
+        if states[-1].stamp_ns < self._stamps_ns.get(body_name, 0) - to_ns(SET_BACK_S):
+            self._stamps_ns.clear()
+        self._stamps_ns[body_name] = states[-1].stamp_ns
         self._recent.extend((state.stamp_ns, state.p_WB_W) for state in states)
-        while self._recent[-1][0] - self._recent[0][0] > to_ns(WINDOW_S):
+        while abs(self._recent[-1][0] - self._recent[0][0]) > to_ns(WINDOW_S):
             self._recent.popleft()
 
     def show_tumbling(
@@ -299,7 +302,7 @@ class Picture:
 
         ``waiting_ns`` are the newest stamps of bodies that have states which are not drawn yet.
         """
-        stamps_ns = {name: state.stamp_ns for name, state in self._newest.items()} | (waiting_ns or {})
+        stamps_ns = self._stamps_ns | (waiting_ns or {})
         return max(stamps_ns.values(), default=self._told_ns)
 
     def _show_after_impact(self, found: AfterImpact) -> None:

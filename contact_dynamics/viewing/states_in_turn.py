@@ -5,12 +5,14 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from contact_dynamics.constants import to_ns
 from contact_dynamics.questions.toss import TossAnswer
 from contact_dynamics.questions.tumbling import TumblingAnswer
+from contact_dynamics.viewing.measured import SET_BACK_S
 from contact_dynamics.viewing.pace import Pace
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.viewing.picture import Picture
@@ -75,5 +77,18 @@ class StatesInTurn:
             self._newest_ns.pop(body_name, None)
         self.count -= len(states)
         if states:
-            states.sort(key=lambda state: state.stamp_ns)
-            self._guarded("states", partial(self._picture.add_states, body_name, states))
+            for each in _by_stamps(states):
+                self._guarded("states", partial(self._picture.add_states, body_name, each))
+
+
+def _by_stamps(states: list[BodyState]) -> Iterator[list[BodyState]]:
+    """Yield states by their stamps, and those since the clock was last set back after the others."""
+    falls = (i for i in range(len(states) - 1, 0, -1) if _is_set_back(states[i - 1], states[i]))
+    begin = next(falls, 0)
+    for part in (states[:begin], states[begin:]):
+        if part:
+            yield sorted(part, key=lambda state: state.stamp_ns)
+
+
+def _is_set_back(before: BodyState, after: BodyState) -> bool:
+    return before.stamp_ns - after.stamp_ns > to_ns(SET_BACK_S)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import warnings
 from dataclasses import replace
 
@@ -112,6 +113,29 @@ def test_an_answer_that_comes_much_later_finds_no_states_of_its_time() -> None:
     for state in flight(end=0.8):
         awaited.see("brick", [state])
     assert awaited.expect(prediction(), now_ns=STRIKE_NS - 100_000_000) == []
+
+
+@pytest.mark.parametrize("back", [0.6, 1000.0])
+def test_nothing_is_kept_of_before_the_clock_was_set_back(back: float) -> None:
+    """What is kept of half a second or more is as much as without that, and is not compared either."""
+    late, awaited, fresh = 0.8, AwaitedImpacts(gravity_W=GRAVITY), AwaitedImpacts(gravity_W=GRAVITY)
+    awaited.expect(prediction(stamp_ns=STRIKE_NS + 10**9), now_ns=STRIKE_NS)  # which does not come any more
+    awaited.see("brick", flight(end=late))
+    for state in flight(end=10.0):
+        early = replace(state, stamp_ns=state.stamp_ns - round(1e9 * back))
+        for each in (awaited, fresh):
+            assert each.see("brick", [early]) == []
+    assert len(pickle.dumps(awaited)) == pytest.approx(len(pickle.dumps(fresh)), rel=0.01)
+
+
+def test_impacts_of_a_body_that_is_not_seen_are_not_kept() -> None:
+    """As where questions state the body's states and nobody publishes them."""
+    sizes, awaited = [], AwaitedImpacts(gravity_W=GRAVITY)
+    for i in range(200):
+        strike_ns = STRIKE_NS + 50_000_000 * i
+        awaited.expect(prediction(stamp_ns=strike_ns), now_ns=strike_ns - 10_000_000)
+        sizes.append(len(pickle.dumps(awaited)))
+    assert sizes[199] < 1.01 * sizes[19]
 
 
 def test_the_newest_prediction_counts_that_was_made_before_the_impact() -> None:

@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pytest
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.rigid_body.body import BodyState
@@ -72,6 +73,16 @@ def test_the_trail_has_a_gap_where_the_body_was_put_elsewhere(
     lengths = np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)
     assert np.flatnonzero(lengths == 0.0).tolist() == [0, 4]
     np.testing.assert_allclose(segments[3, 0], states[2].p_WB_W, rtol=1e-6)
+
+
+@pytest.mark.parametrize("back_s", [0.6, 10.0, 1000.0])
+def test_the_trail_has_a_gap_where_the_clock_was_set_back(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], state: BodyState, back_s: float
+) -> None:
+    anew = replace(state, p_WB_W=state.p_WB_W + UP, stamp_ns=STAMP_NS - round(1e9 * back_s))
+    draw_states(recording, "brick", [anew], before=state, up_W=UP)
+    ((begin, end),) = read().series("/world/trails/brick", "LineStrips3D:strips")
+    np.testing.assert_array_equal(begin, end)
 
 
 def test_height_counts_against_gravity(

@@ -206,6 +206,24 @@ def test_the_last_look_is_at_what_is_in_view_then(
     np.testing.assert_allclose(patch.mean(axis=0), [70.0, 80.0, 0.0], atol=1e-5)
 
 
+def test_after_the_clock_was_set_back_the_newest_states_are_those_that_came_last(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], world: World, state: BodyState
+) -> None:
+    """The last look has them in view alone, and their stamp is that of answers which have none.
+
+    Another body's states have ended before.
+    """
+    picture = Picture(recording, world, surface_side=0.5)
+    for name in ("ball", "brick"):
+        picture.add_states(name, [state])
+    back_ns = STAMP_NS - 60_000_000_000
+    picture.add_states("brick", [moved(replace(state, p_WB_W=np.array([70.0, 80.0, 9.0])), back_ns)])
+    assert picture.newest_stamp_ns() == back_ns
+    picture.frame_all()
+    patch = read().array("/world/surfaces/floor/patch", "Mesh3D:vertex_positions")
+    np.testing.assert_allclose(patch.mean(axis=0), [70.0, 80.0, 0.0], atol=1e-5)
+
+
 def test_the_newest_answer_of_each_kind_stands_in_words_and_all_in_the_log(
     recording: rr.RecordingStream, read: Callable[[], Drawn], world: World
 ) -> None:

@@ -59,6 +59,16 @@ def test_all_are_drawn_by_their_stamps(
         assert [stamp - STAMP_NS for stamp in stamps] == [1, 2, 3]
 
 
+def test_those_since_the_clock_was_set_back_are_drawn_after_the_others(
+    picture: Picture, states: StatesInTurn, state: BodyState
+) -> None:
+    back_ns = -60_000_000_000
+    add(states, state, 1, 3, 2, back_ns + 5, back_ns, back_ns + 7, back_ns + 6)
+    states.draw()
+    assert states.count == 0
+    assert picture.newest_stamp_ns() == STAMP_NS + back_ns + 7
+
+
 def test_before_an_answer_only_what_it_needs_is_drawn(
     states: StatesInTurn, state: BodyState, two_contacts: ContactSet, read: Callable[[], Drawn]
 ) -> None:
