@@ -81,6 +81,7 @@ class KeptRecording(rr.RecordingStream):
         super().__init__(APPLICATION, recording_id=self.id, send_properties=False)
         super().set_sinks()
         self._places: list[rr.RecordingStream] = []
+        self._left: list[rr.RecordingStream] = []
         self._arrangement = Arrangement(APPLICATION)
         self._static: dict[tuple[str, type], Sequence[rr.DescribedComponentBatch]] = {}
         self._rows: dict[str, dict[type, _Row]] = {}  # by path and kind
@@ -121,6 +122,11 @@ class KeptRecording(rr.RecordingStream):
                 _set_time(place, drawn.stamp_ns, start_ns=self._start_ns, step=step)
             place.log(drawn.path, drawn.parts)
         _set_time(place, self._stamp_ns, start_ns=self._start_ns, step=self._step)
+
+    def leave(self, place: rr.RecordingStream) -> None:
+        """Draw nothing more into a place that takes nothing. rerun could wait for ever to close it."""
+        self._places.remove(place)
+        self._left.append(place)
 
     def set_time(self, timeline: str, **time: Any) -> None:
         """Set the time of what is logged next. If it is a stamp, it is so on all three timelines."""

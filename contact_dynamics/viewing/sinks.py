@@ -138,22 +138,31 @@ class OpenRecording:
     def close(self, *, timeout: float = 5.0) -> bool:
         """Write what is left and leave the viewer, which stays open. Return whether it took everything.
 
-        If it did not within ``timeout``, s, rerun would wait for it for ever when the process exits.
+        If it did not within ``timeout``, s, or if a file could not be written, rerun would wait for ever when
+        the process exits.
         """
         for opened in (self._web, self._viewer):
             if opened is not None:
                 opened.close()
+        if self._files is not None:
+            self._files.check()
         thread = threading.Thread(target=self.stream.disconnect, daemon=True)
         thread.start()
         thread.join(timeout)
         if thread.is_alive():
             self._on_problem(f"the viewer did not take all that was drawn within {timeout:g} s")
-        return not thread.is_alive()
+        return not thread.is_alive() and (self._files is None or self._files.hold_all)
 
     def _open(self) -> list[str]:
         sinks, names = self._sinks, []
         if sinks.rrd_path:
-            self._files = RrdFiles(self.stream, sinks.rrd_path, size=sinks.rrd_size, most=sinks.rrd_files)
+            self._files = RrdFiles(
+                self.stream,
+                sinks.rrd_path,
+                size=sinks.rrd_size,
+                most=sinks.rrd_files,
+                on_problem=self._on_problem,
+            )
             names.append(sinks.rrd_path)
         url = self._viewer_url()
         if sinks.viewer is ViewerMode.SERVE:
