@@ -9,6 +9,7 @@ topics, and its own (`config/visualizer.yaml`). A drawing that fails is told onc
 
 from __future__ import annotations
 
+import math
 import os
 import sys
 import time
@@ -208,9 +209,15 @@ class Visualizer(InboxNode):
     def close(self) -> bool:
         """Draw what is left and close the sinks. Return whether they took everything."""
         until = time.monotonic() + _LEFT_S
-        self.draw_all()
+        self.take_messages()
         while self._answers and time.monotonic() < until:
-            self.draw_all()
+            self._draw_answers(until=until)
+            self.take_messages()
+        if self._answers:
+            self.get_logger().warning(
+                f"{len(self._answers)} answers are not drawn: they still waited after {_LEFT_S:g} s"
+            )
+        self._states.draw()
         if self._sinks.viewer is ViewerMode.NONE:
             self._guarded("the last look", self._picture.frame_all)
         return self._recording.close()
@@ -244,9 +251,11 @@ class Visualizer(InboxNode):
         topic = f"{service}/_service_event"
         return self.subscribe(shown.service_type.Event, topic, receive, EVENT_QOS, in_rounds=False)
 
-    def _draw_answers(self) -> None:
+    def _draw_answers(self, *, until: float = math.inf) -> None:
         """Draw the answers that wait, and let states that come meanwhile not overflow their queues."""
         for _ in range(len(self._answers)):
+            if time.monotonic() > until:
+                return
             waiting = self._answers.popleft()
             self._guarded(f"{self._server}/{waiting.shown.name}", partial(self._show, waiting))
             self.attend()

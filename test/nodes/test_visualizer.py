@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import time
 import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 from geometry_msgs.msg import Vector3
+from rclpy.serialization import serialize_message
 from scipy.spatial.transform import Rotation
 from service_msgs.msg import ServiceEventInfo
 
@@ -273,6 +275,21 @@ def test_what_cannot_be_drawn_is_told_once_and_the_rest_goes_on(bench: Bench) ->
     drawn = bench.drawn()
     assert "/world/predicted/brick/path" in drawn.entities
     assert "/world/impact/brick/impulse" not in drawn.entities
+
+
+def test_it_stops_in_time_although_many_answers_wait(bench: Bench, capfd: pytest.CaptureFixture[str]) -> None:
+    """A launch kills a process that does not stop, and the end of its file is lost then."""
+    count = 5000
+    info = ServiceEventInfo(event_type=ServiceEventInfo.RESPONSE_SENT)
+    event = PredictImpact.Event(info=info, response=[impact_answer(two_contacts())])
+    data = bytes(serialize_message(event))
+    for _ in range(count):
+        bench.visualizer.deliver("/contact_dynamics/predict_impact/_service_event", data)
+    began = time.monotonic()
+    drawn = bench.drawn()
+    assert time.monotonic() - began < 10.0  # of which the answers took 2; all would take half a minute
+    assert 0 < len(drawn.values["/answers/log", "TextLog:text"]) < count
+    assert "answers are not drawn: they still waited after 2 s" in capfd.readouterr().err
 
 
 def test_strictly_it_raises(bench: Bench) -> None:
