@@ -105,6 +105,9 @@ class KeptRecording(rr.RecordingStream):
         A recording of rerun keeps threads and memory after its end, so a place is not thrown away.
         """
         place.set_sinks(*sinks)
+        if place in self._left:
+            self._left.remove(place)
+            self._places.append(place)
         if not sinks:
             return
         self._arrangement.send_to(place)
@@ -124,7 +127,10 @@ class KeptRecording(rr.RecordingStream):
         _set_time(place, self._stamp_ns, start_ns=self._start_ns, step=self._step)
 
     def leave(self, place: rr.RecordingStream) -> None:
-        """Draw nothing more into a place that takes nothing. rerun could wait for ever to close it."""
+        """Draw nothing more into a place that takes nothing, unless it is opened anew.
+
+        It is kept, since rerun could wait for ever to close it.
+        """
         self._places.remove(place)
         self._left.append(place)
 

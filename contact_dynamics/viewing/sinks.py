@@ -151,6 +151,9 @@ class OpenRecording:
         thread.join(timeout)
         if thread.is_alive():
             self._on_problem(f"the viewer did not take all that was drawn within {timeout:g} s")
+        if self._viewer is not None and self._viewer.hangs:
+            self._on_problem("the viewer hangs, and did not take all that was drawn")
+            return False
         return not thread.is_alive() and (self._files is None or self._files.hold_all)
 
     def _open(self) -> list[str]:

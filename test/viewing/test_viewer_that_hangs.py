@@ -1,0 +1,86 @@
+"""rerun's own server, in the place of a viewer, hangs and goes on."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+import rerun as rr
+
+from contact_dynamics.viewing.kept_recording import KeptRecording
+from contact_dynamics.viewing.live_viewer import MOST_BEHIND, LiveViewer
+from contact_dynamics.viewing.measured import set_time
+from contact_dynamics.viewing.ports import LOCAL, connection_problem, local_url
+from contact_dynamics.viewing.viewer_process import viewer_executable
+from viewing.drawn import STAMP_NS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+FILL = rr.Points3D(np.random.default_rng(1).normal(size=(20_000, 3)))  # 240 kB
+
+
+@pytest.fixture
+def server(free_port: int) -> Iterator[subprocess.Popen[bytes]]:
+    command = [viewer_executable(), "--serve-grpc", "--bind", LOCAL, "--port", str(free_port)]
+    quiet = subprocess.DEVNULL
+    environment = {**os.environ, "RERUN_APP_ONLY": "true"}
+    with subprocess.Popen(command, env=environment, stdin=quiet, stdout=quiet, stderr=quiet) as process:
+        try:
+            deadline = time.monotonic() + 60.0
+            while connection_problem(LOCAL, free_port):
+                assert time.monotonic() < deadline, "it does not listen"
+                time.sleep(0.1)
+            yield process
+        finally:
+            process.kill()
+
+
+def resident() -> int:
+    """The memory of this process, bytes."""
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE")
+
+
+def draw(recording: KeptRecording, count: int) -> None:
+    for i in range(count):
+        set_time(recording, STAMP_NS + i)
+        recording.log("fill", FILL)
+
+
+def test_nothing_is_drawn_to_it_until_it_goes_on(server: subprocess.Popen[bytes], free_port: int) -> None:
+    told: list[str] = []
+    url = local_url(free_port)
+    recording = KeptRecording()
+    viewer = LiveViewer(recording, url, on_problem=told.append)
+    for _ in range(2 * MOST_BEHIND):  # it keeps up
+        draw(recording, 1)
+        viewer.look()
+        time.sleep(0.01)
+    assert told == []
+    server.send_signal(signal.SIGSTOP)
+    draw(recording, 100)  # more than the sockets take
+    for _ in range(MOST_BEHIND):
+        viewer.look()
+    assert told == [f"the viewer at {url} hangs: it gets the picture when it goes on"]
+    assert viewer.hangs
+    before = resident()
+    draw(recording, 500)  # 120 MB
+    assert resident() - before < 60e6
+    server.send_signal(signal.SIGCONT)
+    deadline = time.monotonic() + 60.0
+    while viewer.hangs:
+        assert time.monotonic() < deadline, "it does not go on"
+        viewer.look()
+        time.sleep(0.05)
+    assert told[1:] == [f"the viewer at {url} goes on, and has the picture"]
+    draw(recording, 1)
+    recording.flush(timeout_sec=10.0)
+    viewer.close()
+    recording.disconnect()
