@@ -16,41 +16,22 @@ from rerun.chunk import Chunk
 from contact_dynamics.viewing.strips import strips_3d
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from contact_dynamics.validation import FloatArray
 
 
-class _Times(NamedTuple):
-    """Times on one timeline, as rerun takes them."""
+class _Made(NamedTuple):
+    """Times on one timeline, or values of one component, as rerun takes them."""
 
-    timeline: str
+    of: Any  # the timeline's name, or the component's descriptor
     array: pa.Array
 
     def timeline_name(self) -> str:
-        return self.timeline
-
-    def as_arrow_array(self) -> pa.Array:
-        return self.array
-
-
-class _Values(NamedTuple):
-    """Values of one component at each time, as rerun takes them."""
-
-    descriptor: Any
-    array: pa.Array
+        return str(self.of)
 
     def component_descriptor(self) -> Any:
-        return self.descriptor
-
-    def as_arrow_array(self) -> pa.Array:
-        return self.array
-
-
-class _Array(NamedTuple):
-    """Values of one component, as rerun takes them."""
-
-    array: pa.Array
+        return self.of
 
     def as_arrow_array(self) -> pa.Array:
         return self.array
@@ -59,38 +40,37 @@ class _Array(NamedTuple):
 class Columns(NamedTuple):
     """The values of a thing's components at many times."""
 
-    times: tuple[_Times, ...]
-    values: tuple[_Values, ...]
+    times: tuple[_Made, ...]
+    values: tuple[_Made, ...]
 
     @classmethod
     def made_of(cls, times: Iterable[rr.TimeColumn], values: Iterable[rr.ComponentColumn]) -> Columns:
         """Make them ready."""
         return cls(
-            tuple(_Times(each.timeline_name(), each.as_arrow_array()) for each in times),
-            tuple(_Values(each.component_descriptor(), each.as_arrow_array()) for each in values),
+            tuple(_Made(each.timeline_name(), each.as_arrow_array()) for each in times),
+            tuple(_Made(each.component_descriptor(), each.as_arrow_array()) for each in values),
         )
 
     @property
     def kind(self) -> tuple[str, ...]:
         """What is the same in columns that can be joined."""
-        return (
-            *(each.timeline for each in self.times),
-            *(str(each.descriptor) for each in self.values),
-        )
+        return tuple(str(each.of) for each in (*self.times, *self.values))
 
     def joined(self, others: Iterable[Columns]) -> Columns:
         """Return these columns and further ones of their kind, one after the other."""
         every = (self, *others)
-        times = (pa.concat_arrays([each.times[i].array for each in every]) for i in range(len(self.times)))
-        values = (pa.concat_arrays([each.values[i].array for each in every]) for i in range(len(self.values)))
-        return Columns(
-            tuple(each._replace(array=array) for each, array in zip(self.times, times, strict=True)),
-            tuple(each._replace(array=array) for each, array in zip(self.values, values, strict=True)),
-        )
+        return Columns(_joined([each.times for each in every]), _joined([each.values for each in every]))
 
     def chunk(self, path: str) -> Chunk:
         """Return what rerun draws at a path. It may be sent to several places."""
         return Chunk.from_columns(path, self.times, self.values)  # type: ignore[arg-type]
+
+
+def _joined(parts: Sequence[tuple[_Made, ...]]) -> tuple[_Made, ...]:
+    return tuple(
+        _Made(same[0].of, pa.concat_arrays([each.array for each in same]))
+        for same in zip(*parts, strict=True)
+    )
 
 
 def scalar_columns(values: FloatArray) -> list[rr.ComponentColumn]:
@@ -118,4 +98,4 @@ def _vectors(numbers: FloatArray, kind: Any) -> pa.Array:
 def _column(descriptor: rr.ComponentDescriptor, array: pa.Array) -> rr.ComponentColumn:
     """Return a column with one value at each time."""
     offsets = np.arange(len(array) + 1, dtype=np.int32)
-    return rr.ComponentColumn(descriptor, _Array(array), offsets=offsets)
+    return rr.ComponentColumn(descriptor, _Made(descriptor, array), offsets=offsets)
