@@ -96,7 +96,7 @@ class Picture:
         self._world = WorldInView(recording, world, surface_side=surface_side)
         self._bodies = self._world.bodies
         self._newest: dict[str, BodyState] = {}
-        self._stamps_ns: dict[str, int] = {}  # of the newest states, since a clock was last set back
+        self._stamps_ns: dict[str, int] = {}  # the newest, since a clock was last set back
         self._impacts = ImpactsInView(recording)
         self._letters = LettersInView(recording)
         self._answers = AnswersInWords(recording)

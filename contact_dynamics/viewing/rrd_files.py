@@ -60,7 +60,7 @@ class RrdFiles:
         self._on_problem = on_problem
         self.hold_all = True
         self._told = False
-        self._bytes = -1  # of the newest file when it was last looked at
+        self._bytes = -1  # the newest file had when it was last looked at
         self._count = 0
         self._written: deque[Path] = deque()
         self._place: rr.RecordingStream | None = picture.open(self._next())
