@@ -76,13 +76,15 @@ def draw(
     drawing = _Drawing(
         Picture(recording.stream, events.world, surface_side=surface_side), on_problem=on_problem
     )
-    for event in events:
-        drawing.show(event)
-        if isinstance(event, StateCame):
+    try:
+        for event in events:
+            drawing.show(event)
             recording.tend()
-            on_progress(event.state.stamp_ns)
-    drawing.finish(look_at_all=sinks.viewer is ViewerMode.NONE)
-    took_all = recording.close()
+            if isinstance(event, StateCame):
+                on_progress(event.state.stamp_ns)
+        drawing.finish(look_at_all=sinks.viewer is ViewerMode.NONE)
+    finally:  # also if the user stops it: what is drawn so far can be opened
+        took_all = recording.close()
     return Drawn(
         states=drawing.states,
         answers=drawing.answers,

@@ -12,8 +12,16 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 FAR: Final = 20.0
-"""Relative to the extent of the path, or to `LOWEST_DISTANCE` if that is more. A body that is farther from
-it is not looked at, because the path could no longer be made out."""
+"""Relative to the extent of what is looked at, or to `LOWEST_DISTANCE` if that is more. A body that is
+farther from it is not looked at, because nothing else could be made out any more."""
+
+
+def near_most(points_W: FloatArray) -> FloatArray:
+    """Return those of some points, (n, 3), m, that are not far from most of them."""
+    with np.errstate(over="ignore"):  # a distance that overflows is far
+        distances = np.linalg.norm(points_W - np.median(points_W, axis=0), axis=1)
+    reach = FAR * max(LOWEST_DISTANCE, float(np.median(distances)))
+    return np.asarray(points_W[distances <= reach])
 
 
 class Framing:

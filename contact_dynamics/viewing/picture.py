@@ -45,7 +45,7 @@ from contact_dynamics.viewing.entities import (
     PREDICTED,
     TOSSES,
 )
-from contact_dynamics.viewing.framing import Framing
+from contact_dynamics.viewing.framing import Framing, near_most
 from contact_dynamics.viewing.impact import draw_impact
 from contact_dynamics.viewing.in_view import ImpactsInView, LettersInView
 from contact_dynamics.viewing.legend import LEGEND_TEXT
@@ -285,7 +285,7 @@ class Picture:
         """Make the view show all that is there at the end, for the user who opens the file."""
         if self._recent:
             self._framing = Framing(self._world.up_W)  # where bodies were first seen is long ago
-            self._look_at(np.array([p_WB_W for _, p_WB_W in self._recent]))
+            self._look_at(near_most(np.array([p_WB_W for _, p_WB_W in self._recent])))
 
     @property
     def shown(self) -> frozenset[str]:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics.viewing.blueprint import LOWEST_DISTANCE, Eye
-from contact_dynamics.viewing.framing import FAR, Framing
+from contact_dynamics.viewing.framing import FAR, Framing, near_most
 
 UP = np.array([0.0, 0.0, 1.0])
 PATH = np.column_stack([np.linspace(0.0, 0.3, 20), np.zeros(20), np.linspace(1.0, 0.0, 20) ** 2])
@@ -60,6 +60,17 @@ def test_the_view_stays_when_a_body_comes_that_is_in_sight() -> None:
     framing = Framing(UP)
     framing.turn_to(PATH, margin=MARGIN)
     assert framing.add_body("other", PATH[7] + 0.5 * MARGIN) is None
+
+
+@pytest.mark.parametrize("far", [1e3, 1e15, 1e160, 1e300])
+def test_one_body_far_away_does_not_take_the_view_from_all_others(far: float) -> None:
+    bodies = np.vstack(
+        [PATH + np.array(aside) for aside in ([0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, 2.0, 0.0])]
+    )
+    lost = np.full((10, 3), far)
+    np.testing.assert_array_equal(near_most(np.vstack([bodies, lost])), bodies)
+    np.testing.assert_array_equal(near_most(bodies), bodies)
+    np.testing.assert_array_equal(near_most(lost), lost)
 
 
 def test_a_single_point_without_size_is_looked_at_with_its_neighbours() -> None:
