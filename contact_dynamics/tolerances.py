@@ -367,6 +367,17 @@ ON_PYRAMIDS_SIDE: Final = 1e-9
 """Relative to the largest force. A force this far outside of a pyramid still counts as on its side. A force
 as small as this has no direction."""
 
+LEAST_FORCE_SEEN: Final = 1e-13
+"""Relative to the largest effect of unit forces. Rounding hides smaller effects, so forces without a larger
+one are free."""
+
+LEAST_FORCE_MET: Final = 1e-12
+"""Relative to the wrench. The search for the least forces ends when they leave no more of it."""
+
+LEAST_FORCE_FLAT: Final = 1e-3
+"""Share of what is left of the wrench, for unit curvature. It makes steps of the search for the least forces
+finite, and is small enough that they double the number of right digits."""
+
 BEHIND_BOUNDARY: Final = 1e-5
 """Relative to the wrench. The search for neighbouring modes looks this far behind a boundary of a mode's
 wrenches, a thousand times `STRICT`."""

@@ -28,7 +28,11 @@ from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.contact_modes.result import SOME_MODE, ModeVerdict, verdict_on
 from contact_dynamics.contact_modes.spatial.completeness import Known, completed, has_none
 from contact_dynamics.contact_modes.spatial.exact_modes import by_letters, each_once, is_exact, letters_of
-from contact_dynamics.contact_modes.spatial.mode_with_forces import are_the_same, mode_with_forces
+from contact_dynamics.contact_modes.spatial.mode_with_forces import (
+    are_the_same,
+    mode_with_forces,
+    with_least_forces,
+)
 from contact_dynamics.contact_modes.spatial.narrowly import narrowly
 from contact_dynamics.contact_modes.spatial.one_contact import modes_of_one
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
@@ -129,6 +133,7 @@ def modes_of_case(
             found = found._replace(undecided=_NOT_REFUTED)
     if not found.modes and not found.undecided and search.at_rest:
         found = found._replace(undecided=SOME_MODE)
+    found = found._replace(modes=[(with_least_forces(case, mode), one) for mode, one in found.modes])
     return _answer(problem, found, examined=search.examined)
 
 

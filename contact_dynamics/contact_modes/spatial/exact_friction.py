@@ -37,18 +37,6 @@ _FAST: Final = 0.1
 more, Newton's method, which needs derivatives, takes over."""
 
 
-class Sharpened(NamedTuple):
-    """Forces with exact friction at the contacts that slide.
-
-    Attributes:
-        forces: (n, 3), in the units of the motion.
-        edges: The edges, (k, 3), that may act at each contact.
-    """
-
-    forces: FloatArray
-    edges: list[FloatArray]
-
-
 class Sliding(NamedTuple):
     """A mode whose friction is to be turned.
 
@@ -67,8 +55,8 @@ class Sliding(NamedTuple):
     free: FloatArray
 
 
-def sharpened(mode: Sliding, forces: FloatArray) -> Sharpened | None:
-    """Return forces with exact friction, or None if the directions do not settle with these letters.
+def sharpened(mode: Sliding, forces: FloatArray) -> FloatArray | None:
+    """Return forces, (n, 3), with exact friction, or None if the directions do not settle with these letters.
 
     Args:
         mode: The mode, as it was found.
@@ -76,10 +64,11 @@ def sharpened(mode: Sliding, forces: FloatArray) -> Sharpened | None:
     """
     turning = [i for i, one in enumerate(mode.pyramids) if mode.letters[i] == STAYS and one.frame is not None]
     angles: FloatArray = np.asarray([_against(mode.pyramids[i], forces[i]) for i in turning])
-    return _followed(mode, turning, angles) or _by_newton(mode, turning, angles)
+    followed = _followed(mode, turning, angles)
+    return _by_newton(mode, turning, angles) if followed is None else followed
 
 
-def _followed(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpened | None:
+def _followed(mode: Sliding, turning: list[int], angles: FloatArray) -> FloatArray | None:
     """Turn friction against the sliding while that settles fast, as where all contacts slide one way."""
     last = math.inf
     while True:
@@ -95,7 +84,7 @@ def _followed(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpene
         angles, last = angles + errors, error
 
 
-def _by_newton(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpened | None:
+def _by_newton(mode: Sliding, turning: list[int], angles: FloatArray) -> FloatArray | None:
     """Turn friction against the sliding by Newton's method, from given angles."""
     step: FloatArray = np.zeros(len(turning))
     for _ in range(_MOST_STEPS):
@@ -132,7 +121,7 @@ def _against(pyramid: Pyramid, force: FloatArray) -> float:
     return math.atan2(-float(two @ force), -float(one @ force))
 
 
-def _solved(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpened | None:
+def _solved(mode: Sliding, turning: list[int], angles: FloatArray) -> FloatArray | None:
     """Return forces of a mode whose contacts have friction against given directions."""
     edges = [
         one.edges if mode.letters[i] != SEPARATES else one.edges[:0] for i, one in enumerate(mode.pyramids)
@@ -141,13 +130,12 @@ def _solved(mode: Sliding, turning: list[int], angles: FloatArray) -> Sharpened 
         one, two = mode.pyramids[i].frame or (np.zeros(3), np.zeros(3))
         way = math.cos(angle) * one + math.sin(angle) * two
         edges[i] = (mode.touching[i].normal - mode.touching[i].friction * way)[None, :]
-    found = _forces(mode, edges)
-    return None if found is None else Sharpened(found, edges)
+    return _forces(mode, edges)
 
 
-def _errors(mode: Sliding, turning: list[int], angles: FloatArray, found: Sharpened) -> FloatArray:
+def _errors(mode: Sliding, turning: list[int], angles: FloatArray, forces: FloatArray) -> FloatArray:
     """Return the angles, (k,), from given directions to the sliding, in (-pi, pi], or NaN where it stops."""
-    motion = np.append(mode.free + mode.of_forces @ found.forces.ravel(), 1.0)
+    motion = np.append(mode.free + mode.of_forces @ forces.ravel(), 1.0)
     actual = []
     for i in turning:
         x, y = np.array(mode.pyramids[i].frame) @ (mode.touching[i].point @ motion)

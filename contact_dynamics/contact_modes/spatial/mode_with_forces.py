@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
-from contact_dynamics.contact_modes.spatial.least_forces import misdirection
+from contact_dynamics.contact_modes.spatial.least_forces import least_forces, misdirection
 from contact_dynamics.contact_modes.spatial.result import SpatialMode
-from contact_dynamics.tolerances import SAME_MOTION, STRICT
+from contact_dynamics.tolerances import MODE_STRAIGHT, SAME_MOTION, STRICT
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialCase
@@ -64,6 +65,29 @@ def mode_with_forces(
         misdirection=misdirection(forces, directions, contacts.normals_W),
         forces_unique=forces_unique,
         motion_unique=motion_unique,
+    )
+
+
+def with_least_forces(case: SpatialCase, mode: SpatialMode) -> SpatialMode:
+    """Return a mode with those of its forces that have the least sum of squares."""
+    if (
+        mode.forces_unique or mode.misdirection > MODE_STRAIGHT
+    ):  # friction on the edges of pyramids stays there
+        return mode
+    acting = [i for i, letter in enumerate(mode.mode) if letter != SEPARATES]
+    normals, frictions = case.contacts.normals_W[acting], case.contacts.frictions[acting]
+    slides = mode.tangential_directions_W[acting]
+    rays = slides.any(axis=1)
+    axes = normals - frictions[:, None] * slides
+    axes /= np.linalg.norm(axes, axis=1)[:, None]
+    columns = (3 * np.array(acting)[:, None] + np.arange(3)).ravel()
+    effects = (case.motion.points / case.motion.lengths).T[:, columns]
+    forces = mode.contact_forces_W.copy()
+    forces[acting] = least_forces(effects, forces[acting], axes, np.where(rays, 0.0, frictions))
+    return replace(
+        mode,
+        contact_forces_W=forces,
+        misdirection=misdirection(forces, mode.tangential_directions_W, case.contacts.normals_W),
     )
 
 

@@ -1,7 +1,6 @@
 """Forces that realise a mode which the search found, exactly where they can be exact.
 
-Friction is turned exactly against the sliding (`exact_friction`). A body that stays rests to rounding. The
-least of many forces are given (`least_forces`).
+Friction is turned exactly against the sliding (`exact_friction`). A body that stays rests to rounding.
 """
 
 from __future__ import annotations
@@ -12,7 +11,6 @@ import numpy as np
 
 from contact_dynamics.contact_modes.letters import STICKS
 from contact_dynamics.contact_modes.spatial.exact_friction import Sliding, sharpened
-from contact_dynamics.contact_modes.spatial.least_forces import least_forces
 from contact_dynamics.contact_modes.spatial.mode_with_forces import mode_with_forces
 from contact_dynamics.contact_modes.spatial.round_cones import held_by_round_cones, polished, sticking
 from contact_dynamics.tolerances import MODE_BETTER, MODE_RESTS, ROUND_CONE_APART, ROW_TOLERANCE, STRICT
@@ -33,11 +31,9 @@ def realised(case: SpatialCase, search: Search, found: Found, *, sharpen: bool) 
         shares = 0.5 * (low + high)  # this is away from the borders of the mode
     mixture = np.random.default_rng(26).normal(size=len(search.edges))
     forces_unique = found.program.ends(mixture @ search.edges).unique
-    own, acting = (search.edges @ shares).reshape(-1, 3), search.acting(found)
+    own = (search.edges @ shares).reshape(-1, 3)
     if sharpen and motion_unique:
-        own, acting = _sharpened(search, found, own, acting)
-    if not forces_unique:
-        own = least_forces(search.of_forces, own, acting)
+        own = _sharpened(search, found, own)
     letters = "".join(one.letter for one in found.letters)
     if set(letters) == {STICKS}:
         own = _rested(search, own)
@@ -75,16 +71,11 @@ def _rested(search: Search, forces: FloatArray) -> FloatArray:
     return best
 
 
-def _sharpened(
-    search: Search, found: Found, forces: FloatArray, acting: list[FloatArray]
-) -> tuple[FloatArray, list[FloatArray]]:
-    """Return forces with friction exactly against the sliding, and the edges that may act.
-
-    Where friction could not be turned, they are those that were given.
-    """
+def _sharpened(search: Search, found: Found, forces: FloatArray) -> FloatArray:
+    """Return forces with friction exactly against the sliding, or the given ones if it cannot be turned."""
     letters = "".join(one.letter for one in found.letters)
     if all(one.item < 0 for one in found.letters):
-        return forces, acting
+        return forces
     mode = Sliding(search.touching, search.pyramids, letters, search.of_forces, search.motion[:, -1])
     exact = sharpened(mode, forces)
-    return (forces, acting) if exact is None else (exact.forces, exact.edges)
+    return forces if exact is None else exact

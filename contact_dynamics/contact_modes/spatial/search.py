@@ -113,13 +113,6 @@ class Search(PyramidPrograms):
             facets=self._facets,
         )
 
-    def acting(self, found: Found) -> list[FloatArray]:
-        """Return the edges of each contact's pyramid that its letter allows to act."""
-        return [
-            np.array([e for j, e in enumerate(p.edges) if p.first + j not in letter.zeroed]).reshape(-1, 3)
-            for p, letter in zip(self.pyramids, found.letters, strict=True)
-        ]
-
     def _decide_who_stays(self, program: AnyProgram, trials: list[Option], at: int) -> None:
         if at == len(trials):
             self._decide_common_motion(program, trials)
