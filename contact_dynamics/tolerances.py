@@ -336,6 +336,10 @@ LARGEST_GRIP: Final = 1e10
 in radii of gyration, acts as that one does. The two differ in forces whose normal part is less than 1e-10 of
 the wrench of the tangential one, and wrenches are not known to that accuracy."""
 
+GRIP_TOLERANCE: Final = 1e-2
+"""Dimensionless, in the plane. The tolerance of forces, times friction, times the arm in radii of gyration,
+stays below it. Otherwise the friction of a normal force that counts as zero would hold or stop the body."""
+
 BEYOND_MARGIN: Final = 1e-5
 """Share of a margin, or of the wrench if the margin is less. The wrench is moved this far beyond the boundary
 to see which modes are there. It is far more than the tolerances of the boundary, and far less than the

@@ -21,7 +21,12 @@ from contact_dynamics.contact_modes.planar.coincident import coincident
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.judgement import Judged, judge_all
 from contact_dynamics.contact_modes.planar.one_contact import single_contact_modes
-from contact_dynamics.contact_modes.planar.problem import beyond_grip, never_slipping, planar_case
+from contact_dynamics.contact_modes.planar.problem import (
+    accuracy_of,
+    beyond_grip,
+    never_slipping,
+    planar_case,
+)
 from contact_dynamics.contact_modes.planar.result import PlanarMode, PlanarModeAnswer
 from contact_dynamics.contact_modes.result import SOME_MODE, ModeVerdict, RefusedMode, verdict_on
 from contact_dynamics.tolerances import LARGEST_GRIP, LARGEST_PLANAR_ARM
@@ -44,7 +49,7 @@ def planar_contact_modes(problem: PlanarContactProblem) -> PlanarModeAnswer:
     Source: lecture 26, table and "Basic approach".
     """
     body, contacts, wrench = problem.body, problem.contacts, problem.wrench
-    accuracy = problem.acceleration_tolerance
+    accuracy = accuracy_of(problem)
     velocities = problem.contact_velocities()
     approaching = tuple([i for i, (_, v_n) in enumerate(velocities) if v_n < 0.0])
     modes: list[PlanarMode] = []

@@ -10,7 +10,7 @@ from contact_dynamics.contact_modes.letters import SEPARATES
 from contact_dynamics.contact_modes.planar.answer import planar_contact_modes
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.judgement import judge_all
-from contact_dynamics.contact_modes.planar.problem import check_length, touching_case
+from contact_dynamics.contact_modes.planar.problem import accuracy_of, check_length, touching_case
 from contact_dynamics.contact_modes.planar.wrench_sets import (
     PlanarWrenchSet,
     WrenchHalfSpace,
@@ -39,7 +39,8 @@ class PlanarModeMargin(Record):
             length)^2. It is infinite if no change does.
         length: m, the length in that metric.
         change: The least change itself, or zero if no change leaves the mode.
-        verdict_beyond: The verdict just behind the boundary, or the present one if there is no boundary.
+        verdict_beyond: The verdict where the wrench has changed by `BEYOND_MARGIN` more than that, or the
+            present one if there is no boundary. It holds further on only up to the next boundary.
         modes_beyond: The consistent modes there.
     """
 
@@ -71,7 +72,7 @@ def planar_mode_margins(
     Raises:
         InvalidFieldError: the length is not > 0.
     """
-    body, wrench, accuracy = problem.body, problem.wrench, problem.acceleration_tolerance
+    body, wrench, accuracy = problem.body, problem.wrench, accuracy_of(problem)
     length = check_length(margin_length, body)
     case = touching_case(problem)
     if case is None:

@@ -190,7 +190,8 @@ def _sliding(axes: _ContactAxes, *, direction: float, at_rest: bool) -> _Solutio
     arm = axes.r_t - slope * axes.r_n
     factor = axes.per_mass + axes.r_t * arm * axes.per_inertia  # c + slope b, lecture 26, eq. 2
     gain = slope * axes.per_mass - axes.r_n * arm * axes.per_inertia  # b + slope a
-    unique = abs(factor) > ROW_TOLERANCE * math.sqrt(axes.along(0.0, 1.0) * axes.along(slope, 1.0))
+    sizes = axes.per_mass + (axes.r_t * axes.r_t + abs(slope * axes.r_t * axes.r_n)) * axes.per_inertia
+    unique = abs(factor) > ROW_TOLERANCE * sizes
     if axes.w_n == 0.0:
         # If the factor is zero too, any f_n keeps a_n at 0. Friction then pushes against the sliding, so the
         # contact slides with some force only if it slides without any.

@@ -31,6 +31,7 @@ from contact_dynamics.plane.types import PlanarVelocity
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import (
     ACCELERATION_TOLERANCE,
+    GRIP_TOLERANCE,
     LARGEST_GRIP,
     LARGEST_NUMBER,
     ROW_TOLERANCE,
@@ -62,7 +63,8 @@ class PlanarContactProblem(Record):
         velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero. An
             angular velocity counts as zero if it moves no contact relative to the centre of mass by more.
         acceleration_tolerance: >= 0, relative to the applied wrench and the centripetal terms. Forces and
-            accelerations count as zero if a change of the wrench by that share can turn their sign.
+            accelerations count as zero if a change of the wrench by that share can turn their sign. Where
+            friction times the arm in radii of gyration exceeds `GRIP_TOLERANCE` over it, it is smaller.
         uncertainty: How well the contacts are known. If they are not known exactly, the answer says which
             verdicts occur.
 
@@ -284,6 +286,20 @@ def effective_friction(contact: PlanarContact, length: float) -> float:
         return contact.friction
     arms = max(1.0, abs(contact.r[0]) / length, abs(contact.r[1]) / length)
     return max(1.0, min(contact.friction, LARGEST_GRIP / arms))
+
+
+def accuracy_of(problem: PlanarContactProblem) -> float:
+    """Return the relative size up to which forces and accelerations count as zero.
+
+    It is the problem's ``acceleration_tolerance``, or less where friction is so large that a normal force of
+    that size would hold or stop the body.
+    """
+    accuracy, rho = problem.acceleration_tolerance, problem.body.radius_of_gyration
+    for contact in problem.contacts:
+        if contact.friction > 1.0:
+            arms = max(1.0, abs(contact.r[0]) / rho, abs(contact.r[1]) / rho)
+            accuracy = min(accuracy, GRIP_TOLERANCE / (effective_friction(contact, rho) * arms))
+    return accuracy
 
 
 def beyond_grip(contact: PlanarContact, length: float) -> bool:

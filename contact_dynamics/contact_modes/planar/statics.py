@@ -24,6 +24,7 @@ from contact_dynamics.contact_modes.planar.friction_edges import edge_forces, sh
 from contact_dynamics.contact_modes.planar.judgement import EVIDENCE
 from contact_dynamics.contact_modes.planar.problem import (
     AT_REST,
+    accuracy_of,
     check_length,
     contact_rows,
     effective_friction,
@@ -58,7 +59,7 @@ def planar_statics(problem: PlanarContactProblem, *, margin_length: float | None
     wedging.
     """
     body, contacts, wrench = problem.body, problem.contacts, problem.wrench
-    accuracy = problem.acceleration_tolerance
+    accuracy = accuracy_of(problem)
     length = check_length(margin_length, body)
     answer = planar_contact_modes(replace(problem, velocity=AT_REST))
     target = (wrench.f[0], wrench.f[1], wrench.moment / length)
@@ -107,7 +108,7 @@ def _stays(mode: PlanarMode, problem: PlanarContactProblem) -> bool:
     load = math.hypot(*wrench.f, wrench.moment / rho)
     forces = sum(abs(f_t) + f_n for f_t, f_n in mode.contact_forces)
     size = body.mass * math.hypot(*mode.acceleration, rho * mode.angular_acceleration)
-    return size <= EVIDENCE * (problem.acceleration_tolerance + FORCES_ROUNDING) * (load + forces)
+    return size <= EVIDENCE * (accuracy_of(problem) + FORCES_ROUNDING) * (load + forces)
 
 
 def _holds(balance: PolyhedralCone, target: Vector3, accuracy: float) -> bool:

@@ -25,6 +25,7 @@ from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVeloci
 from contact_modes.evidence import planar_problem
 from oracles.contact_mode_cases import contact, draw, resting, rounded
 from oracles.contact_modes import ExactCase, consistent_modes, kinematic_modes
+from sweeps import sweep
 
 # Fine enough for the angles between contact rows at these arms, and still far above rounding.
 ACCURACY = 1e-13
@@ -61,6 +62,23 @@ def test_long_and_short_arms(seed: int, power: int) -> None:
 @pytest.mark.parametrize("seed", range(5000, 5300))
 def test_many_long_and_short_arms(seed: int, power: int) -> None:
     compare(seed, power, most_contacts=5)
+
+
+@pytest.mark.parametrize("power", [6, 7, 8, 9, 10])
+@pytest.mark.parametrize("seed", [10, 62, 66, 90, 128, 207, 213, 220, 252, 286, *sweep(0, whole=400)])
+def test_no_friction_up_to_the_limit_gives_a_wrong_verdict(seed: int, power: int) -> None:
+    # Each of the first ten seeds had a wrong verdict at 1e9 or 1e10.
+    exact = draw(seed, 4)
+    grip = Fraction(10) ** power
+    exact = replace(
+        exact, contacts=tuple(replace(one, friction=one.friction * grip) for one in exact.contacts)
+    )
+    answer = contact_modes(planar_problem(*rounded(exact)))
+    assert answer.verdict != ModeVerdict.IMPACT
+    possible = {mode.mode for mode in answer.modes}
+    true = consistent_modes(exact, kinematic_modes(exact))
+    assert possible <= true <= possible.union(answer.undecided_modes)
+    assert (answer.verdict == ModeVerdict.UNDECIDED) or possible == true
 
 
 @pytest.mark.parametrize("reach", [Fraction(1, 1000), Fraction(1), Fraction(1000), Fraction(10**6)])
