@@ -11,10 +11,18 @@ class Arrivals:
 
     Attributes:
         came: How many came.
+        rejected: How many of them were rejected, some of which were kept unread before.
+        old: How many were too old for a question about now when they came.
+        age: s. How old the last of these was.
+        reason: Why the last one was rejected, in words, if none was kept since; otherwise empty.
         fate: What happened to those that are not kept, or to the last of them, in words.
     """
 
     came: int = 0
+    rejected: int = 0
+    old: int = 0
+    age: float = 0.0
+    reason: str = ""
     fate: str = "they could not be read"
 
     def __str__(self) -> str:
@@ -23,9 +31,16 @@ class Arrivals:
             return "none was published yet"
         return f"none of {self.came} that came is kept; {self.fate}"
 
+    def keep(self) -> None:
+        """Note a state that came and is kept."""
+        self.came += 1
+        self.reason = ""
+
     def refuse(self, reason: object, *, was_kept: bool) -> None:
         """Note a state that came and was not kept, or that was counted and kept, and cannot be read."""
         self.came += not was_kept
+        self.rejected += 1
+        self.reason = str(reason)
         self.fate = f"the last was refused: {reason}"
 
     def throw_away(self, reason: str) -> None:

@@ -94,6 +94,10 @@ class StateStore:
         """Note, for whoever asks and finds none, that a state is not kept, or was kept and cannot be read."""
         self._arrivals[body_name].refuse(reason, was_kept=was_kept)
 
+    def arrivals(self, body_name: str) -> Arrivals:
+        """Return what became of the states of a body that came."""
+        return self._arrivals.get(body_name, Arrivals())
+
     def forget(self, body_name: str, reason: str) -> None:
         """Forget the states of a body; the reason says, after "when", what happened."""
         track = self._tracks.pop(body_name, None)
@@ -117,7 +121,7 @@ class StateStore:
         track = self._tracks.get(body_name, _Track())
         state = track.last(len(track.stamps))
         if state is None:
-            message = f"state of {body_name!r}: {self._arrivals.get(body_name, Arrivals())}"
+            message = f"state of {body_name!r}: {self.arrivals(body_name)}"
             raise NoStateError(message)
         return state if now_ns is None else self._fresh(body_name, state, now_ns)
 
@@ -145,7 +149,7 @@ class StateStore:
         track = self._tracks.get(body_name, _Track())
         earlier = track.last(bisect_right(track.stamps, stamp_ns))
         if earlier is None:
-            arrivals = self._arrivals.get(body_name, Arrivals())
+            arrivals = self.arrivals(body_name)
             kept = f"the oldest kept has {track.stamps[0]} ns" if track.stamps else str(arrivals)
             message = f"state of {body_name!r} at {stamp_ns} ns: {kept}"
             raise NoStateError(message)
@@ -196,7 +200,7 @@ class StateStore:
                 last_ns = newest.stamp_ns if stamp_ns is None else stamp_ns
                 for state in track.around(last_ns - to_ns(min(seconds, self._history)), last_ns):
                     part.add(body_name, state)
-            part._arrivals[body_name] = replace(self._arrivals.get(body_name, Arrivals()))
+            part._arrivals[body_name] = replace(self.arrivals(body_name))
         return part
 
     def _keep(self, body_name: str, stamp_ns: int, state: KnownState | ReadState, now_ns: int | None) -> None:
@@ -209,7 +213,11 @@ class StateStore:
                     f"at most {to_seconds(self._future_tolerance_ns):g} s (future_tolerance)",
                 )
             self._forget_future(body_name, now_ns)
-        self._arrivals[body_name].came += 1
+        arrivals = self._arrivals[body_name]
+        arrivals.keep()
+        if now_ns is not None and now_ns - stamp_ns > self._timeout_ns:
+            arrivals.old += 1
+            arrivals.age = to_seconds(now_ns - stamp_ns)
         track = self._tracks.get(body_name)
         if track is None:
             track = self._tracks[body_name] = _Track()
@@ -231,6 +239,9 @@ class StateStore:
                 f"state of {body_name!r}: the newest is {to_seconds(age_ns):.3f} s old, "
                 f"allowed is at most {to_seconds(self._timeout_ns):g} s (state_timeout)"
             )
+            reason = self.arrivals(body_name).reason
+            if reason:
+                message += f"; states that came since were rejected, the last because {reason}"
             raise StaleStateError(message)
         return state
 

@@ -47,8 +47,12 @@ def test_no_state_says_what_became_of_those_that_came(tmp_path: Path) -> None:
             wait_for("none of 3 that came is kept; the last was refused: stamp: found 7200.000 s ahead of")
             states.publish(odometry(2 * HOUR_NS))
             client.spin_until(lambda: newest(client).status == 0)
+            states.publish(odometry(2 * HOUR_NS, frame="map"))
+            clock.publish(Clock(clock=stamp_to_msg(2 * HOUR_NS + 1_000_000_000)))
+            wait_for("the newest is 1.000 s old, allowed is at most 0.5 s (state_timeout)")
+            wait_for("states that came since were rejected, the last because header.frame_id: found 'map'")
             clock.publish(Clock(clock=stamp_to_msg(HOUR_NS)))
-            wait_for("none of 4 that came is kept; they were thrown away when the clock was set back")
+            wait_for("none of 5 that came is kept; they were thrown away when the clock was set back")
         finally:
             client.close()
     (log,) = tmp_path.iterdir()

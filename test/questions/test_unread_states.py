@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from contact_dynamics.errors import NoStateError
+from contact_dynamics.errors import NoStateError, StaleStateError
 from contact_dynamics.questions import StateStore
 from contact_dynamics.rigid_body.body import BodyState
 
@@ -114,3 +114,27 @@ def test_who_finds_no_state_is_told_how_many_came_and_what_became_of_them() -> N
         NoStateError, match=r"none of 6 .* when the clock turned out to be behind their stamps"
     ):
         store.newest("ball", now_ns=1)
+
+
+def stale(store: StateStore, *, now_ns: int) -> str:
+    with pytest.raises(StaleStateError) as caught:
+        store.newest("ball", now_ns=now_ns)
+    with pytest.raises(StaleStateError) as in_a_worker:
+        store.excerpt([("ball", None, 1.0)]).newest("ball", now_ns=now_ns)
+    assert str(in_a_worker.value) == str(caught.value)
+    return str(caught.value)
+
+
+def test_a_state_that_is_too_old_says_whether_newer_ones_were_rejected() -> None:
+    store = StateStore(history=1.0, timeout=1.0)
+    store.add("ball", state(1))
+    assert "rejected" not in stale(store, now_ns=2_000_000_000)
+    store.refuse("ball", "header.frame_id: found 'map', allowed is 'world'")
+    assert stale(store, now_ns=2_000_000_000).endswith(
+        "allowed is at most 1 s (state_timeout); states that came since were rejected, the last because "
+        "header.frame_id: found 'map', allowed is 'world'"
+    )
+    store.add("ball", state(2))
+    assert "rejected" not in stale(store, now_ns=2_000_000_000)
+    store.add_unread("ball", 3, lambda: store.refuse("ball", "it is NaN", was_kept=True))
+    assert stale(store, now_ns=2_000_000_000).endswith("the last because it is NaN")
