@@ -79,7 +79,7 @@ def excerpt(question: object, knowledge: Knowledge) -> Knowledge:
         if name and isinstance(source, PublishedState):
             wanted.append((name, source.stamp_ns, source.fit_window))
     now_ns = None if knowledge.now_ns is None else knowledge.now_ns()
-    states = knowledge.states.excerpt(wanted)
+    states = knowledge.states.excerpt(wanted, now_ns=now_ns)
     return replace(knowledge, states=states, now_ns=partial(_same, now_ns))
 
 

@@ -128,8 +128,7 @@ class StateStore:
     def window(self, body_name: str, newest: KnownState, seconds: float) -> list[KnownState]:
         """Return the states of the last ``seconds`` up to ``newest``, by time, and one for each stamp."""
         track = self._tracks.get(body_name, _Track())
-        # No more than the history is kept, so a longer window is as long as the history.
-        first_ns = newest.stamp_ns - to_ns(min(seconds, self._history))
+        first_ns = self._first_of_window(newest.stamp_ns, seconds)
         return list({state.stamp_ns: state for state in track.between(first_ns, newest.stamp_ns)}.values())
 
     def around(
@@ -149,8 +148,9 @@ class StateStore:
         track = self._tracks.get(body_name, _Track())
         earlier = track.last(bisect_right(track.stamps, stamp_ns))
         if earlier is None:
+            oldest = track.first(0)
             arrivals = self.arrivals(body_name)
-            kept = f"the oldest kept has {track.stamps[0]} ns" if track.stamps else str(arrivals)
+            kept = str(arrivals) if oldest is None else f"the oldest kept has {oldest.stamp_ns} ns"
             message = f"state of {body_name!r} at {stamp_ns} ns: {kept}"
             raise NoStateError(message)
         if earlier.stamp_ns == stamp_ns:
@@ -169,23 +169,22 @@ class StateStore:
         return earlier, later
 
     def count(self, body_name: str, stamp_ns: int | None, seconds: float) -> int:
-        """Return how many states there are in the ``seconds`` up to a stamp, or the newest; none is read."""
+        """Return how many states a window has up to a stamp, or to the newest state; none of them is read."""
         stamps = self._tracks.get(body_name, _Track()).stamps
-        if not stamps:
-            return 0
-        last_ns = stamps[-1] if stamp_ns is None else stamp_ns
-        return bisect_right(stamps, last_ns) - bisect_left(
-            stamps, last_ns - to_ns(min(seconds, self._history))
-        )
+        end = len(stamps) if stamp_ns is None else bisect_right(stamps, stamp_ns)
+        return end - bisect_left(stamps, self._first_of_window(stamps[end - 1], seconds)) if end else 0
 
-    def excerpt(self, wanted: Iterable[tuple[str, int | None, float]]) -> StateStore:
+    def excerpt(
+        self, wanted: Iterable[tuple[str, int | None, float]], *, now_ns: int | None = None
+    ) -> StateStore:
         """Return a store that answers as this one does about bodies at a stamp and some time before it.
 
         All of its states are read, so that another process can take it.
 
         Args:
             wanted: for each body its name, the stamp, ns, or None for that of the newest state, and how long
-                before that, s.
+                the `window` up to there is, s.
+            now_ns: the present time, ns, if it is known.
         """
         part = StateStore(
             history=self._history,
@@ -194,14 +193,27 @@ class StateStore:
             most_states=self._most_states,
         )
         for body_name, stamp_ns, seconds in wanted:
+            if now_ns is not None:
+                self._forget_future(body_name, now_ns)
             track = self._tracks.get(body_name, _Track())
-            newest = track.last(len(track.stamps))
+            end = len(track.stamps) if stamp_ns is None else bisect_right(track.stamps, stamp_ns)
+            newest = track.last(end)
             if newest is not None:
-                last_ns = newest.stamp_ns if stamp_ns is None else stamp_ns
-                for state in track.around(last_ns - to_ns(min(seconds, self._history)), last_ns):
+                first_ns = self._first_of_window(newest.stamp_ns, seconds)
+                for state in track.between(first_ns, newest.stamp_ns):
                     part.add(body_name, state)
+            later = None if stamp_ns is None else track.first(bisect_right(track.stamps, stamp_ns))
+            if later is not None:
+                part.add(body_name, later)
             part._arrivals[body_name] = replace(self.arrivals(body_name))
         return part
+
+    def _first_of_window(self, newest_ns: int, seconds: float) -> int:
+        """Return the earliest stamp, ns, in the window of the last ``seconds`` up to the state ``newest_ns``.
+
+        No more than the history is kept, so a longer window is as long as the history.
+        """
+        return newest_ns - to_ns(min(seconds, self._history))
 
     def _keep(self, body_name: str, stamp_ns: int, state: KnownState | ReadState, now_ns: int | None) -> None:
         if now_ns is not None:
@@ -292,15 +304,6 @@ class _Track:
             self._states[begin:end] = readable
             self.stamps[begin:end] = [state.stamp_ns for state in readable]
         return readable
-
-    def around(self, first_ns: int, last_ns: int) -> list[KnownState]:
-        """Return the states from one stamp to another, and the next one on both sides."""
-        before, after = (
-            self.last(bisect_left(self.stamps, first_ns)),
-            self.first(bisect_right(self.stamps, last_ns)),
-        )
-        found = [before, *self.between(first_ns, last_ns), after]
-        return [state for state in found if state is not None]
 
     def forget_before(self, oldest_ns: int, *, most: int) -> None:
         surplus = max(bisect_left(self.stamps, oldest_ns), len(self.stamps) - most)

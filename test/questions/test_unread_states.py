@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 
-from contact_dynamics.errors import NoStateError, StaleStateError
+from contact_dynamics.errors import ContactDynamicsError, NoStateError, StaleStateError
 from contact_dynamics.questions import StateStore
 from contact_dynamics.rigid_body.body import BodyState
 
@@ -120,7 +121,7 @@ def stale(store: StateStore, *, now_ns: int) -> str:
     with pytest.raises(StaleStateError) as caught:
         store.newest("ball", now_ns=now_ns)
     with pytest.raises(StaleStateError) as in_a_worker:
-        store.excerpt([("ball", None, 1.0)]).newest("ball", now_ns=now_ns)
+        store.excerpt([("ball", None, 1.0)], now_ns=now_ns).newest("ball", now_ns=now_ns)
     assert str(in_a_worker.value) == str(caught.value)
     return str(caught.value)
 
@@ -138,3 +139,43 @@ def test_a_state_that_is_too_old_says_whether_newer_ones_were_rejected() -> None
     assert "rejected" not in stale(store, now_ns=2_000_000_000)
     store.add_unread("ball", 3, lambda: store.refuse("ball", "it is NaN", was_kept=True))
     assert stale(store, now_ns=2_000_000_000).endswith("the last because it is NaN")
+
+
+def known_of(store: StateStore, stamp_ns: int | None, seconds: float, now_ns: int | None) -> object:
+    """What a question finds: the states of its window and the one after its stamp, or why there is none."""
+    try:
+        if stamp_ns is None:
+            newest, later = store.newest("ball", now_ns=now_ns), None
+        else:
+            newest, later = store.around("ball", stamp_ns, now_ns=now_ns)
+    except ContactDynamicsError as error:
+        return str(error)
+    window = [each.stamp_ns for each in store.window("ball", newest, seconds)]
+    return newest.stamp_ns, None if later is None else later.stamp_ns, window
+
+
+def test_an_excerpt_answers_as_the_whole() -> None:
+    """Windows that end between, at, before and after states; unreadable ones, and some ahead of the clock."""
+    rng = np.random.default_rng(24)
+    kinds = set()
+    for _ in range(2000):
+        stamps = [int(each) for each in rng.integers(100, 160, size=rng.integers(0, 12))]
+        broken = (
+            frozenset(int(each) for each in rng.choice(stamps, size=len(stamps) // 4)) if stamps else set()
+        )
+        stamp_ns = None if rng.random() < 0.3 else int(rng.integers(90, 170))
+        now_ns = None if rng.random() < 0.3 else int(rng.integers(130, 200))
+        seconds = 1e-9 * int(rng.integers(0, 40))
+        whole, other = (
+            StateStore(history=30e-9, timeout=20e-9, future_tolerance=5e-9, most_states=10) for _ in range(2)
+        )
+        for store in (whole, other):
+            for each in stamps:
+                store.add_unread("ball", each, Reads().of(each, readable=each not in broken))
+        expected = known_of(whole, stamp_ns, seconds, now_ns)
+        part = other.excerpt([("ball", stamp_ns, seconds)], now_ns=now_ns)
+        assert known_of(part, stamp_ns, seconds, now_ns) == expected
+        if not broken and now_ns is None and isinstance(expected, tuple):
+            assert other.count("ball", stamp_ns, seconds) >= len(expected[2])
+        kinds.add(type(expected))
+    assert kinds == {str, tuple}

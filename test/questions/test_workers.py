@@ -72,13 +72,22 @@ def brick_world() -> Knowledge:
 
 
 @pytest.mark.parametrize(
-    "source", [PublishedState(), PublishedState(stamp_ns=55_500_000), PublishedState(fit_window=0.02)]
+    "source",
+    [
+        PublishedState(),
+        PublishedState(stamp_ns=55_500_000),
+        PublishedState(fit_window=0.02),
+        PublishedState(fit_window=0.01, stamp_ns=55_900_000),  # 9 ms before it, 10 ms before the last state
+        PublishedState(fit_window=0.01, stamp_ns=205_000_000),  # after the newest state
+    ],
 )
 def test_a_worker_answers_as_this_process_does(workers: Workers, source: PublishedState) -> None:
     question = TumblingQuestion(body="brick", state=source, sampling=AtTimes(times=[0.0, 0.1]))
     known = brick_world()
     answer = outcome(workers, tumbling.answer, question, excerpt(question, known))
-    np.testing.assert_array_equal(answer.trajectory.p_WB_W, ask(question, known).trajectory.p_WB_W)
+    here = ask(question, known)
+    np.testing.assert_array_equal(answer.trajectory.p_WB_W, here.trajectory.p_WB_W)
+    assert answer.fit == here.fit
     assert len(pickle.dumps(excerpt(question, known))) < 20_000  # of 200 states only those that it needs
 
 
