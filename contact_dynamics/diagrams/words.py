@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from contact_dynamics.diagrams.after_impact import AfterImpact
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.questions.impact_answer import ImpactAnswer
+    from contact_dynamics.questions.many_contact_modes import ManyContactModesAnswer
     from contact_dynamics.questions.resolved_impact import ResolvedImpact
     from contact_dynamics.questions.settled_impact import SettledImpact
     from contact_dynamics.questions.tumbling import TumblingAnswer
@@ -27,10 +28,11 @@ if TYPE_CHECKING:
 
 TUMBLING: Final = "Tumbling"
 IMPACT: Final = "Impact"
-CONTACT_MODE: Final = "Contact mode"
+CONTACT_MODES: Final = "Contact modes"
 TOSS: Final = "Toss"
 MANY_TUMBLINGS: Final = "Tumbling of many"
 MANY_IMPACTS: Final = "Impacts of many"
+MANY_CONTACT_MODES: Final = "Contact modes of many"
 """The kinds of answers."""
 
 AFTER_IMPACT: Final = "After the impact"
@@ -175,6 +177,18 @@ def many_in_words(answer: ManyTumblingsAnswer | ManyImpactsAnswer) -> list[str]:
         for outcome, separates in zip(answer.outcomes, answer.separates, strict=True)
     ]
     return [count, *(f"{number} {word}" for word, number in Counter(words).most_common())]
+
+
+def many_contact_modes_in_words(answer: ManyContactModesAnswer) -> list[str]:
+    """Return words for how many candidates there are, and the verdicts on them."""
+    ends = np.cumsum(answer.mode_counts).tolist()
+    words = [
+        _verdict_in_words(ModeVerdict(verdict), list(answer.modes[end - count : end]))
+        for verdict, count, end in zip(
+            answer.verdicts.tolist(), answer.mode_counts.tolist(), ends, strict=True
+        )
+    ]
+    return [f"has {len(answer)} candidates", *(f"{n} {word}" for word, n in Counter(words).most_common())]
 
 
 def outcome_in_words(outcome: ImpactOutcome | None) -> str:

@@ -117,6 +117,7 @@ class ServiceFront:
         self._times = CallTimes(lambda: node.get_clock().now().nanoseconds)
         self.is_active = False
         self.gone = gone
+        served.prepare()
         self._service = service = node.create_service(
             served.service_type, f"~/{served.name}", self._take, qos_profile=qos
         )

@@ -1,72 +1,69 @@
-"""This file lists the services: which question each answers, and the adapters on both sides of it."""
+"""Each service has one record: what it is asked, what answers, how answers are read, drawn and listed.
+
+The server, the visualizer, replay, tables and plots take what they need from here, so that a service is added
+in one place. Functions are named by their place and imported when they are needed: the server imports no
+viewer, and a log is checked before there are classes of its messages.
+"""
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Protocol, TypeAlias, TypeVar
+from functools import cached_property
+from importlib import import_module
+from typing import TYPE_CHECKING, Final, Generic, Protocol, TypeAlias, TypeVar
 
-from contact_dynamics.questions import contact_modes, impact, many, many_contact_modes, toss, tumbling
-from contact_dynamics_interfaces.srv import (
-    PredictContactMode,
-    PredictContactModeBatch,
-    PredictImpact,
-    PredictImpactBatch,
-    PredictToss,
-    PredictTumbling,
-    PredictTumblingBatch,
+from contact_dynamics.diagrams.words import (
+    CONTACT_MODES,
+    IMPACT,
+    MANY_CONTACT_MODES,
+    MANY_IMPACTS,
+    MANY_TUMBLINGS,
+    TOSS,
+    TUMBLING,
 )
-from msg_adapters.batches import (
-    impacts_answer_to_msg,
-    impacts_question_from_msg,
-    tumblings_answer_to_msg,
-    tumblings_question_from_msg,
-)
-from msg_adapters.contact_mode import contact_mode_answer_to_msg
-from msg_adapters.contact_mode_batch import contact_modes_answer_to_msg, contact_modes_question_from_msg
-from msg_adapters.impact import impact_answer_to_msg
-from msg_adapters.questions import (
-    contact_mode_question_from_msg,
-    impact_question_from_msg,
-    tumbling_question_from_msg,
-)
-from msg_adapters.toss import toss_answer_to_msg, toss_question_from_msg
-from msg_adapters.tumbling import tumbling_answer_to_msg
+from contact_dynamics.errors import NotSupportedError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
+    from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
+    from contact_dynamics.questions.contact_modes import ContactModeAnswer
+    from contact_dynamics.questions.impact_answer import ImpactAnswer
+    from contact_dynamics.questions.impact_question import ImpactQuestion
     from contact_dynamics.questions.knowledge import Knowledge
-    from contact_dynamics.world import World
+    from contact_dynamics.questions.many import (
+        ManyImpactsAnswer,
+        ManyImpactsQuestion,
+        ManyTumblingsAnswer,
+        ManyTumblingsQuestion,
+    )
+    from contact_dynamics.questions.many_contact_modes import ManyContactModesAnswer, ManyContactModesQuestion
+    from contact_dynamics.questions.toss import TossAnswer, TossQuestion
+    from contact_dynamics.questions.tumbling import TumblingAnswer, TumblingQuestion
+    from contact_dynamics.rigid_body.body import BodyState
     from msg_adapters.status import Response
 
 Request: TypeAlias = object
 """A message, of which only its adapter knows what it holds."""
 
-Question = TypeVar("Question")
-Answer = TypeVar("Answer")
-Question_co = TypeVar("Question_co", covariant=True)
-Answer_contra = TypeVar("Answer_contra", contravariant=True)
+Question: TypeAlias = (
+    "ContactModeQuestion | ImpactQuestion | TumblingQuestion | TossQuestion"
+    " | ManyImpactsQuestion | ManyTumblingsQuestion | ManyContactModesQuestion"
+)
+Answer: TypeAlias = (
+    "ContactModeAnswer | ImpactAnswer | TumblingAnswer | TossAnswer"
+    " | ManyImpactsAnswer | ManyTumblingsAnswer | ManyContactModesAnswer"
+)
+Result = TypeVar("Result")
 
 
 class ServiceType(Protocol):
     """What rosidl makes of a service's file."""
 
+    Request: Callable[[], object]
     Response: Callable[[], Response]
     Event: type
-
-
-class FromMsg(Protocol[Question_co]):
-    """Makes a question of a request."""
-
-    def __call__(self, request: Request, /, *, world: World, world_frame: str) -> Question_co:
-        """Return the question."""
-
-
-class ToMsg(Protocol[Answer_contra]):
-    """Makes a response of an answer."""
-
-    def __call__(self, answer: Answer_contra, /, *, world_frame: str, into: Response) -> Response:
-        """Return the response, which is the one to fill."""
 
 
 class Elsewhere(Protocol):
@@ -82,10 +79,73 @@ class Elsewhere(Protocol):
         """Have a question answered, and call ``fill`` with its answer later; return False if it is quick."""
 
 
-class Serve(Protocol):
-    """Answers a request."""
+class ImportedOnUse(Generic[Result]):
+    """A function that is imported when it is used first."""
 
-    def __call__(
+    def __init__(self, place: str) -> None:
+        """Name it, as "package.module:function" or "package.module:Class.function"."""
+        self.place = place
+
+    @cached_property
+    def function(self) -> Callable[..., Result]:
+        """The function itself."""
+        module, _, name = self.place.partition(":")
+        found = import_module(module)
+        for part in name.split("."):
+            found = getattr(found, part)
+        return found  # type: ignore[return-value]
+
+    def __call__(self, *args: object, **options: object) -> Result:
+        """Call the function."""
+        return self.function(*args, **options)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Service:
+    """A service of the server, and all that is known about it.
+
+    Attributes:
+        type_name: The name of its type, "PredictImpact".
+        kind: The kind of its answers, in words.
+        digest: The digest of its fields (`replay.same_definitions`). A test compares it with the interface.
+        question_from_msg: Makes a question of a request.
+        answer: Answers a question; a function that a worker imports.
+        answer_to_msg: Makes a response of an answer.
+        answer_from_msg: Makes an answer of a response.
+        draw: Draws an answer; a method of `viewing.picture.Picture`.
+        rows: Makes the cells of an answer for a table, as `replay.answer_rows` says.
+        predicted: Returns the state that an answer predicts, which may be measured later. It is None if an
+            answer predicts none, or none at a time of its own.
+    """
+
+    type_name: str
+    kind: str
+    digest: str
+    question_from_msg: ImportedOnUse[Question]
+    answer: ImportedOnUse[Answer]
+    answer_to_msg: ImportedOnUse[Response]
+    answer_from_msg: ImportedOnUse[Answer]
+    draw: ImportedOnUse[None]
+    rows: ImportedOnUse[Iterator[dict[str, str | int | float | None]]]
+    predicted: ImportedOnUse[BodyState | None] | None
+
+    @property
+    def name(self) -> str:
+        """Its name below the node's, which is that of its type as ROS writes names of topics."""
+        return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", self.type_name).lower()
+
+    @property
+    def service_type(self) -> ServiceType:
+        """The class that rosidl makes of its file."""
+        found: ServiceType = getattr(import_module("contact_dynamics_interfaces.srv"), self.type_name)
+        return found
+
+    def prepare(self) -> None:
+        """Import what answers a request, so that the first one does not wait for it."""
+        for each in (self.question_from_msg, self.answer, self.answer_to_msg):
+            each.function  # noqa: B018  it is imported by that
+
+    def serve(
         self,
         request: Request,
         response: Response,
@@ -99,90 +159,115 @@ class Serve(Protocol):
         Returns:
             Whether the response is filled. Otherwise it will be, when the answer comes from elsewhere.
         """
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Service:
-    """A service of the server.
-
-    Attributes:
-        service_type: Its type.
-        name: Its name below the node's, which is that of its type as ROS writes names of topics.
-        serve: Answers a request.
-    """
-
-    service_type: ServiceType
-    name: str
-    serve: Serve
-
-    @property
-    def type_name(self) -> str:
-        """Return the name of its type."""
-        return "".join(part.capitalize() for part in self.name.split("_"))
-
-
-def _serving(
-    from_msg: FromMsg[Question], answer: Callable[[Question, Knowledge], Answer], to_msg: ToMsg[Answer]
-) -> Serve:
-    """Return what takes a request the whole way: to a question, to its answer, to the response."""
-
-    def serve(
-        request: Request,
-        response: Response,
-        knowledge: Knowledge,
-        *,
-        world_frame: str,
-        elsewhere: Elsewhere | None = None,
-    ) -> bool:
-        question = from_msg(request, world=knowledge.world, world_frame=world_frame)
+        question = self.question_from_msg(request, world=knowledge.world, world_frame=world_frame)
 
         def fill(answered: Answer) -> None:
-            to_msg(answered, world_frame=world_frame, into=response)
+            self.answer_to_msg(answered, world_frame=world_frame, into=response)
 
-        if elsewhere is not None and elsewhere(answer, question, knowledge, fill):
+        if elsewhere is not None and elsewhere(self.answer.function, question, knowledge, fill):
             return False
-        fill(answer(question, knowledge))
+        fill(self.answer(question, knowledge))
         return True
-
-    return serve
 
 
 SERVICES: Final = (
     Service(
-        service_type=PredictContactMode,
-        name="predict_contact_mode",
-        serve=_serving(contact_mode_question_from_msg, contact_modes.answer, contact_mode_answer_to_msg),
+        type_name="PredictContactMode",
+        kind=CONTACT_MODES,
+        digest="daa8ba36d4c08594",
+        question_from_msg=ImportedOnUse("msg_adapters.questions:contact_mode_question_from_msg"),
+        answer=ImportedOnUse("contact_dynamics.questions.contact_modes:answer"),
+        answer_to_msg=ImportedOnUse("msg_adapters.contact_mode:contact_mode_answer_to_msg"),
+        answer_from_msg=ImportedOnUse("msg_adapters.contact_mode:contact_mode_answer_from_msg"),
+        draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.show_contact_modes"),
+        rows=ImportedOnUse("contact_dynamics.replay.answer_rows:row_of_contact_modes"),
+        predicted=None,
     ),
     Service(
-        service_type=PredictImpact,
-        name="predict_impact",
-        serve=_serving(impact_question_from_msg, impact.answer, impact_answer_to_msg),
+        type_name="PredictImpact",
+        kind=IMPACT,
+        digest="0e9a5c11c191d2d7",
+        question_from_msg=ImportedOnUse("msg_adapters.questions:impact_question_from_msg"),
+        answer=ImportedOnUse("contact_dynamics.questions.impact:answer"),
+        answer_to_msg=ImportedOnUse("msg_adapters.impact:impact_answer_to_msg"),
+        answer_from_msg=ImportedOnUse("msg_adapters.impact:impact_answer_from_msg"),
+        draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.show_impact"),
+        rows=ImportedOnUse("contact_dynamics.replay.answer_rows:row_of_impact"),
+        predicted=ImportedOnUse("contact_dynamics.replay.answer_rows:predicted_by_impact"),
     ),
     Service(
-        service_type=PredictTumbling,
-        name="predict_tumbling",
-        serve=_serving(tumbling_question_from_msg, tumbling.answer, tumbling_answer_to_msg),
+        type_name="PredictTumbling",
+        kind=TUMBLING,
+        digest="d8fea09495ab8bd5",
+        question_from_msg=ImportedOnUse("msg_adapters.questions:tumbling_question_from_msg"),
+        answer=ImportedOnUse("contact_dynamics.questions.tumbling:answer"),
+        answer_to_msg=ImportedOnUse("msg_adapters.tumbling:tumbling_answer_to_msg"),
+        answer_from_msg=ImportedOnUse("msg_adapters.tumbling:tumbling_answer_from_msg"),
+        draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.show_tumbling"),
+        rows=ImportedOnUse("contact_dynamics.replay.answer_rows:row_of_tumbling"),
+        predicted=ImportedOnUse("contact_dynamics.replay.answer_rows:predicted_by_tumbling"),
     ),
     Service(
-        service_type=PredictToss,
-        name="predict_toss",
-        serve=_serving(toss_question_from_msg, toss.answer, toss_answer_to_msg),
+        type_name="PredictToss",
+        kind=TOSS,
+        digest="754ae5479c39721f",
+        question_from_msg=ImportedOnUse("msg_adapters.toss:toss_question_from_msg"),
+        answer=ImportedOnUse("contact_dynamics.questions.toss:answer"),
+        answer_to_msg=ImportedOnUse("msg_adapters.toss:toss_answer_to_msg"),
+        answer_from_msg=ImportedOnUse("msg_adapters.toss:toss_answer_from_msg"),
+        draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.show_toss"),
+        rows=ImportedOnUse("contact_dynamics.replay.answer_rows:row_of_toss"),
+        predicted=ImportedOnUse("contact_dynamics.replay.answer_rows:predicted_by_toss"),
     ),
     Service(
-        service_type=PredictImpactBatch,
-        name="predict_impact_batch",
-        serve=_serving(impacts_question_from_msg, many.answer_impacts, impacts_answer_to_msg),
+        type_name="PredictImpactBatch",
+        kind=MANY_IMPACTS,
+        digest="55370ec29df49426",
+        question_from_msg=ImportedOnUse("msg_adapters.batches:impacts_question_from_msg"),
+        answer=ImportedOnUse("contact_dynamics.questions.many:answer_impacts"),
+        answer_to_msg=ImportedOnUse("msg_adapters.batches:impacts_answer_to_msg"),
+        answer_from_msg=ImportedOnUse("msg_adapters.batches:impacts_answer_from_msg"),
+        draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.show_many"),
+        rows=ImportedOnUse("contact_dynamics.replay.answer_rows:rows_of_impacts"),
+        predicted=None,
     ),
     Service(
-        service_type=PredictTumblingBatch,
-        name="predict_tumbling_batch",
-        serve=_serving(tumblings_question_from_msg, many.answer_tumblings, tumblings_answer_to_msg),
+        type_name="PredictTumblingBatch",
+        kind=MANY_TUMBLINGS,
+        digest="f198a921773488f5",
+        question_from_msg=ImportedOnUse("msg_adapters.batches:tumblings_question_from_msg"),
+        answer=ImportedOnUse("contact_dynamics.questions.many:answer_tumblings"),
+        answer_to_msg=ImportedOnUse("msg_adapters.batches:tumblings_answer_to_msg"),
+        answer_from_msg=ImportedOnUse("msg_adapters.batches:tumblings_answer_from_msg"),
+        draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.show_many"),
+        rows=ImportedOnUse("contact_dynamics.replay.answer_rows:rows_of_tumblings"),
+        predicted=None,
     ),
     Service(
-        service_type=PredictContactModeBatch,
-        name="predict_contact_mode_batch",
-        serve=_serving(
-            contact_modes_question_from_msg, many_contact_modes.answer, contact_modes_answer_to_msg
-        ),
+        type_name="PredictContactModeBatch",
+        kind=MANY_CONTACT_MODES,
+        digest="d17cfac59f50e7c0",
+        question_from_msg=ImportedOnUse("msg_adapters.contact_mode_batch:contact_modes_question_from_msg"),
+        answer=ImportedOnUse("contact_dynamics.questions.many_contact_modes:answer"),
+        answer_to_msg=ImportedOnUse("msg_adapters.contact_mode_batch:contact_modes_answer_to_msg"),
+        answer_from_msg=ImportedOnUse("msg_adapters.contact_mode_batch:contact_modes_answer_from_msg"),
+        draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.show_many_contact_modes"),
+        rows=ImportedOnUse("contact_dynamics.replay.answer_rows:rows_of_contact_modes"),
+        predicted=None,
     ),
 )
+
+
+def service_of_type(service_type: str) -> Service:
+    """Return the service of a type, which is given as "package/srv/Name".
+
+    Raises:
+        NotSupportedError: there is none.
+    """
+    for service in SERVICES:
+        if service.type_name == service_type.rpartition("/")[2]:
+            return service
+    message = (
+        f"service type must be one of {', '.join(each.type_name for each in SERVICES)}, got {service_type}"
+    )
+    raise NotSupportedError(message)

@@ -23,7 +23,6 @@ from rclpy.clock import Clock, ClockType
 from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 
-from contact_dynamics.diagrams.words import CONTACT_MODE, IMPACT, MANY_IMPACTS, MANY_TUMBLINGS, TOSS, TUMBLING
 from contact_dynamics.nodes import parameter_event
 from contact_dynamics.nodes.arguments import VISUALIZER_PARAMETERS, visualizer_parser
 from contact_dynamics.nodes.given_parameters import GivenParameters
@@ -35,6 +34,7 @@ from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.nodes.reconfiguring import bodies_read_otherwise, check_change
 from contact_dynamics.nodes.run_record import plain
 from contact_dynamics.nodes.running import run_node
+from contact_dynamics.nodes.services import SERVICES
 from contact_dynamics.nodes.state_sources import state_sources
 from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
 from contact_dynamics.nodes.topic_faults import TopicFaults
@@ -46,21 +46,8 @@ from contact_dynamics.viewing.pace import SHORTEST_S
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import OpenRecording, ViewerMode, raise_errors
 from contact_dynamics.viewing.states_in_turn import StatesInTurn
-from contact_dynamics_interfaces.srv import (
-    PredictContactMode,
-    PredictImpact,
-    PredictImpactBatch,
-    PredictToss,
-    PredictTumbling,
-    PredictTumblingBatch,
-)
-from msg_adapters.batches import impacts_answer_from_msg, tumblings_answer_from_msg
-from msg_adapters.contact_mode import contact_mode_answer_from_msg
-from msg_adapters.impact import impact_answer_from_msg
 from msg_adapters.stamps import stamp_ns_from_msg
-from msg_adapters.toss import toss_answer_from_msg
 from msg_adapters.transforms import TransformTree
-from msg_adapters.tumbling import tumbling_answer_from_msg
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -68,6 +55,7 @@ if TYPE_CHECKING:
     from rclpy.subscription import Subscription
 
     from contact_dynamics.nodes.inbox import Taken
+    from contact_dynamics.nodes.services import Service
     from contact_dynamics.questions.uncertain_state import KnownState
 
 NODE_NAME: Final = "contact_dynamics_visualizer"
@@ -88,47 +76,13 @@ _LEFT_S: Final = 2.0
 """How long answers that are left are drawn at the end, before a launch would kill the process."""
 
 
-class _Shown(NamedTuple):
-    """A service whose answers are drawn."""
-
-    service_type: Any
-    name: str  # below the server's
-    kind: str  # the kind of its answers, in words
-    from_msg: Callable[..., Any]  # makes an answer of a response
-    show: Callable[..., None]  # draws an answer
-
-
 class _Waiting(NamedTuple):
     """An answer that is not drawn yet."""
 
-    shown: _Shown
+    shown: Service
     data: bytes  # the event
     came_ns: int  # when DDS received it
     now_ns: int | None  # the stamp of the newest of them
-
-
-_SHOWN: Final = (
-    _Shown(PredictTumbling, "predict_tumbling", TUMBLING, tumbling_answer_from_msg, Picture.show_tumbling),
-    _Shown(PredictImpact, "predict_impact", IMPACT, impact_answer_from_msg, Picture.show_impact),
-    _Shown(
-        PredictContactMode,
-        "predict_contact_mode",
-        CONTACT_MODE,
-        contact_mode_answer_from_msg,
-        Picture.show_contact_modes,
-    ),
-    _Shown(PredictToss, "predict_toss", TOSS, toss_answer_from_msg, Picture.show_toss),
-    _Shown(
-        PredictTumblingBatch,
-        "predict_tumbling_batch",
-        MANY_TUMBLINGS,
-        tumblings_answer_from_msg,
-        Picture.show_many,
-    ),
-    _Shown(
-        PredictImpactBatch, "predict_impact_batch", MANY_IMPACTS, impacts_answer_from_msg, Picture.show_many
-    ),
-)
 
 
 class Visualizer(InboxNode):
@@ -178,7 +132,7 @@ class Visualizer(InboxNode):
         self._server = server
         self._values = {name: plain(parameter.value) for name, parameter in self._parameters.items()}
         self.create_subscription(ParameterEvent, parameter_event.TOPIC, self._follow, EVENT_QOS)
-        self._events = [self._listen(shown, f"{server}/{shown.name}") for shown in _SHOWN]
+        self._events = [self._listen(shown, f"{server}/{shown.name}") for shown in SERVICES]
         self._wait_for_server(server, self._events, server_wait)
         self._static = TransformTree()
         handed_on = _HandedOn(self._states)
@@ -242,7 +196,7 @@ class Visualizer(InboxNode):
                 return
             time.sleep(_POLL_S)
 
-    def _listen(self, shown: _Shown, service: str) -> Subscription:
+    def _listen(self, shown: Service, service: str) -> Subscription:
         def receive(taken: Taken) -> None:
             if event_type_of(taken.data) == EventType.RESPONSE_SENT:
                 now_ns = self._states.newest_stamp_ns()
@@ -271,9 +225,9 @@ class Visualizer(InboxNode):
             refused = f"refused ({response.status}): {response.message}"
             self._picture.tell(shown.kind, refused, stamp_ns=now_ns, is_error=True)
             return
-        answer = shown.from_msg(response, world=self._configuration.world)
+        answer = shown.answer_from_msg(response, world=self._configuration.world)
         self._states.draw_before(answer, came_ns=waiting.came_ns)
-        shown.show(
+        shown.draw(
             self._picture,
             answer,
             now_ns=now_ns,

@@ -28,6 +28,7 @@ from contact_dynamics.questions.contact_modes import ContactModeAnswer
 from contact_dynamics.questions.impact_answer import ImpactAnswer
 from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
 from contact_dynamics.questions.toss import TossAnswer
+from contact_dynamics.questions.tumbling import TumblingAnswer
 from contact_dynamics.shapes.convex import NO_SHAPE
 from contact_dynamics.tumbling.regime import Regime
 
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from contact_dynamics.questions.tumbling import TumblingAnswer
+    from contact_dynamics.questions.many_contact_modes import ManyContactModesAnswer
     from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.shapes.convex import ConvexShape
     from contact_dynamics.validation import FloatArray
@@ -61,7 +62,8 @@ def figures_of(
     | ContactModeAnswer
     | TossAnswer
     | ManyTumblingsAnswer
-    | ManyImpactsAnswer,
+    | ManyImpactsAnswer
+    | ManyContactModesAnswer,
     *,
     gravity_W: FloatArray,
     body: MassProperties | None = None,
@@ -86,7 +88,7 @@ def figures_of(
         yield from _of_toss(answer, shape)
     elif isinstance(answer, (ManyTumblingsAnswer, ManyImpactsAnswer)):
         yield from _of_many(answer)
-    else:
+    elif isinstance(answer, TumblingAnswer):
         yield from _of_tumbling(answer, body, gravity_W)
 
 

@@ -6,12 +6,13 @@ import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from contact_dynamics.nodes.services import Answer, service_of_type
+from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.errors import DamagedLogWarning
 from contact_dynamics.recording.service_calls import ServiceCall
 from contact_dynamics.records import Record
 from contact_dynamics.replay.event_parts import part_of
-from contact_dynamics.replay.events import Answer
 from contact_dynamics.replay.of_log import server_of_log
 from contact_dynamics.replay.timeline import in_order
 from contact_dynamics.validation import FloatArray
@@ -23,15 +24,6 @@ if TYPE_CHECKING:
 
     from contact_dynamics.world import World
 
-_KINDS: Final = {
-    "PredictTumbling": "tumbling",
-    "PredictImpact": "impact",
-    "PredictContactMode": "contact-modes",
-    "PredictToss": "toss",
-    "PredictTumblingBatch": "tumbling-of-many",
-    "PredictImpactBatch": "impacts-of-many",
-}
-
 OK: Final = 0
 """The status of a response that has an answer, in all services."""
 
@@ -42,7 +34,7 @@ class LoggedAnswer(Record):
 
     Attributes:
         number: Number of its question among all of the log, from 1.
-        kind: "tumbling", "impact", "contact-modes", "toss", "tumbling-of-many" or "impacts-of-many".
+        kind: The kind of its service's answers, in words.
         answer: The answer as the server gave it.
         body: The body that the question was about, or None if the log does not describe it.
         other: A second body that was struck, or None.
@@ -78,21 +70,21 @@ def logged_answers(path: Path) -> Iterator[LoggedAnswer]:
                 server.receive(call)
                 continue
             number += 1
-            kind = _KINDS.get(call.service_type.rpartition("/")[2])
-            if kind is None or call.request_event is None or call.response_event is None:
+            if call.request_event is None or call.response_event is None:
                 continue
             response = part_of(call.response_event, "response")
             if response.status != OK:
                 continue
             question = server.question_from(call.service_type, part_of(call.request_event, "request"))
             answer = server.answer_from(call.service_type, response)
-            gravity_W = getattr(question, "gravity_W", None)  # an impact needs none
+            about = question.asked if isinstance(question, ManyContactModesQuestion) else question
+            gravity_W = getattr(about, "gravity_W", None)  # an impact needs none
             yield LoggedAnswer(
                 number=number,
-                kind=kind,
+                kind=service_of_type(call.service_type).kind,
                 answer=answer,
-                body=_body(question.body, server.world),
-                other=_body(getattr(question, "other", None), server.world),
+                body=_body(about.body, server.world),
+                other=_body(getattr(about, "other", None), server.world),
                 gravity_W=server.world.gravity_W if gravity_W is None else gravity_W,
             )
 

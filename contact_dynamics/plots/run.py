@@ -61,8 +61,9 @@ def _write(logged: LoggedAnswer, folder: Path, suffix: str) -> list[Path]:
         shape=NO_SHAPE if body is None else body.shape,
     )
     written = []
+    kind = logged.kind.lower().replace(" ", "-")
     for name, figure in figures:
-        words = filter(None, (f"{logged.number:03d}", logged.kind, logged.answer.body_name, name))
+        words = filter(None, (f"{logged.number:03d}", kind, logged.answer.body_name, name))
         path = folder / f"{_UNUSUAL.sub('_', '-'.join(words))}.{suffix}"
         save_figure(figure, path)
         written.append(path)

@@ -113,6 +113,10 @@ class ManyTumblingsAnswer(Record):
     p_FB_F: FloatArray
     states: ManyStates
 
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return len(self.states)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ManyImpactsQuestion(Record):
@@ -173,6 +177,10 @@ class ManyImpactsAnswer(Record):
     separates: NDArray[np.bool_]
     states: ManyStates
     impulses_W: FloatArray
+
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return len(self.states)
 
 
 def answer_tumblings(

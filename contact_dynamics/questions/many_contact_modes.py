@@ -140,6 +140,10 @@ class ManyContactModesAnswer(Record):
     angular_accelerations_W: FloatArray
     margins: FloatArray | None
 
+    def __len__(self) -> int:
+        """Return how many candidates there are."""
+        return len(self.verdicts)
+
 
 def answer(question: ManyContactModesQuestion, knowledge: Knowledge | None = None) -> ManyContactModesAnswer:
     """Answer a question about many candidates.

@@ -6,7 +6,6 @@ answers, and responses are written by the same functions. It needs no ROS.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
@@ -16,7 +15,7 @@ from contact_dynamics.nodes.parameter_event import changed_values
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.nodes.reconfiguring import CONFIGURED_ANEW, bodies_read_otherwise
 from contact_dynamics.nodes.run_record import LoggedParameters
-from contact_dynamics.nodes.services import SERVICES
+from contact_dynamics.nodes.services import service_of_type
 from contact_dynamics.nodes.state_sources import no_message, state_sources
 from contact_dynamics.questions.extent import check_believable
 from contact_dynamics.questions.knowledge import Knowledge
@@ -24,52 +23,21 @@ from contact_dynamics.questions.state_store import CLOCK_SET_BACK, StateStore
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr import decode_without_ros
 from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
-from contact_dynamics.replay.events import Answer, Question
-from msg_adapters.batches import (
-    impacts_answer_from_msg,
-    impacts_question_from_msg,
-    tumblings_answer_from_msg,
-    tumblings_question_from_msg,
-)
-from msg_adapters.contact_mode import contact_mode_answer_from_msg
 from msg_adapters.field_names import renamed
-from msg_adapters.impact import impact_answer_from_msg
-from msg_adapters.questions import (
-    contact_mode_question_from_msg,
-    impact_question_from_msg,
-    tumbling_question_from_msg,
-)
 from msg_adapters.status import report_error
-from msg_adapters.toss import toss_answer_from_msg, toss_question_from_msg
 from msg_adapters.transforms import TransformTree
-from msg_adapters.tumbling import tumbling_answer_from_msg
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
     from contact_dynamics.nodes.parameter_reader import ParameterSource
+    from contact_dynamics.nodes.services import Answer, Question
     from contact_dynamics.recording.bag_reader import LoggedMessage
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.world import World
     from msg_adapters.state_adapter import Reader
 
 CLOCK: Final = "/clock"
-
-_QUESTIONS: Final[Mapping[str, Callable[..., Question]]] = {
-    "PredictContactMode": contact_mode_question_from_msg,
-    "PredictImpact": impact_question_from_msg,
-    "PredictToss": toss_question_from_msg,
-    "PredictTumbling": tumbling_question_from_msg,
-    "PredictImpactBatch": impacts_question_from_msg,
-    "PredictTumblingBatch": tumblings_question_from_msg,
-}
-
-_ANSWERS: Final[Mapping[str, Callable[..., Answer]]] = {
-    "PredictContactMode": contact_mode_answer_from_msg,
-    "PredictImpact": impact_answer_from_msg,
-    "PredictToss": toss_answer_from_msg,
-    "PredictTumbling": tumbling_answer_from_msg,
-    "PredictImpactBatch": impacts_answer_from_msg,
-    "PredictTumblingBatch": tumblings_answer_from_msg,
-}
 
 
 @dataclass(slots=True, kw_only=True)
@@ -193,7 +161,7 @@ class ServerAgain:
         Raises:
             ContactDynamicsError: the request is refused.
         """
-        read = _QUESTIONS[service_type.rpartition("/")[2]]
+        read = service_of_type(service_type).question_from_msg
         return read(request, world=self.world, world_frame=self._parameters.world_frame)
 
     def answer_from(self, service_type: str, response: Any) -> Answer:
@@ -202,7 +170,7 @@ class ServerAgain:
         Raises:
             ContactDynamicsError: a number in it is not allowed.
         """
-        return _ANSWERS[service_type.rpartition("/")[2]](response, world=self.world)
+        return service_of_type(service_type).answer_from_msg(response, world=self.world)
 
     def answer(
         self, service_type: str, request: object, make_response: Callable[[], Any], *, asked_ns: int
@@ -216,8 +184,7 @@ class ServerAgain:
             asked_ns: when the request came, ns, on the clock of the states' stamps.
         """
         self._asked_ns = asked_ns
-        name = service_type.rpartition("/")[2]
-        service = next(service for service in SERVICES if service.type_name == name)
+        service = service_of_type(service_type)
         response = make_response()
         try:
             service.serve(request, response, self._knowledge, world_frame=self._parameters.world_frame)

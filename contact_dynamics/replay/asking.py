@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.constants import ns_after
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
+from contact_dynamics.nodes.services import service_of_type
 from contact_dynamics.questions.asking import ask
 from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
 from contact_dynamics.questions.impact_question import ImpactQuestion
@@ -29,20 +30,17 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from contact_dynamics.nodes.parameter_reader import ParameterSource
+    from contact_dynamics.nodes.services import Answer
     from contact_dynamics.questions.knowledge import Knowledge
     from contact_dynamics.recording.file_messages import Span
     from contact_dynamics.replay.again import Refused, ServerAgain
-    from contact_dynamics.replay.events import Answer, Event
+    from contact_dynamics.replay.events import Event
 
 LANDING: Final = "landing"
 IMPACT: Final = "impact"
 MODES: Final = "modes"
-QUESTIONS: Final = {
-    LANDING: "predict_tumbling",
-    IMPACT: "predict_impact",
-    MODES: "predict_contact_mode",
-}
-"""What can be asked, and the service that would have been asked."""
+QUESTIONS: Final = {LANDING: "PredictTumbling", IMPACT: "PredictImpact", MODES: "PredictContactMode"}
+"""What can be asked, and the type of the service that would have been asked."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -146,9 +144,11 @@ class AskedEvents:
             answer = _ask(name, body_name, state, self._server.knowledge_at(stamp_ns))
         except ContactDynamicsError as error:
             status, message = code_name(error), str(error)
+        service = service_of_type(QUESTIONS[name])
         window = {"fit_window": self._asking.fit_window} if self._asking.fit_window > 0.0 else {}
         return Answered(
-            service=QUESTIONS[name],
+            service_name=service.name,
+            service=service,
             number=self._numbers[name],
             log_time_ns=log_time_ns,
             asked_ns=stamp_ns,

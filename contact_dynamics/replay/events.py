@@ -9,36 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol, TypeAlias
 
-from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
-from contact_dynamics.questions.contact_modes import ContactModeAnswer
-from contact_dynamics.questions.impact_answer import ImpactAnswer
-from contact_dynamics.questions.impact_question import ImpactQuestion
-from contact_dynamics.questions.many import (
-    ManyImpactsAnswer,
-    ManyImpactsQuestion,
-    ManyTumblingsAnswer,
-    ManyTumblingsQuestion,
-)
-from contact_dynamics.questions.toss import TossAnswer, TossQuestion
-from contact_dynamics.questions.tumbling import TumblingAnswer, TumblingQuestion
-
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from contact_dynamics.nodes.services import Answer, Service
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.world import World
-
-Question: TypeAlias = (
-    TumblingQuestion
-    | ImpactQuestion
-    | ContactModeQuestion
-    | TossQuestion
-    | ManyTumblingsQuestion
-    | ManyImpactsQuestion
-)
-BatchAnswer: TypeAlias = ManyTumblingsAnswer | ManyImpactsAnswer
-SingleAnswer: TypeAlias = TumblingAnswer | ImpactAnswer | ContactModeAnswer | TossAnswer
-Answer: TypeAlias = SingleAnswer | BatchAnswer
 
 OK = "OK"
 """The status of a question that was answered."""
@@ -75,7 +51,8 @@ class Answered:
     """A question was answered or refused.
 
     Attributes:
-        service: The service that was asked, as "predict_impact".
+        service_name: The name of the service that was asked, as "predict_impact".
+        service: The service that was asked.
         number: Number of the question among those to this service, from 1.
         log_time_ns: When it came, ns since the epoch by the machine's clock. It is None if nobody asked it
             then.
@@ -87,7 +64,8 @@ class Answered:
         computation_time: s, how long the answer took.
     """
 
-    service: str
+    service_name: str
+    service: Service
     number: int
     log_time_ns: int | None
     asked_ns: int

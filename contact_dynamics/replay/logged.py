@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.nodes.services import service_of_type
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.errors import DamagedLogWarning
 from contact_dynamics.recording.message_types import Message
@@ -22,9 +23,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
+    from contact_dynamics.nodes.services import Answer
     from contact_dynamics.recording.file_messages import Span
     from contact_dynamics.replay.again import Refused
-    from contact_dynamics.replay.events import Answer, Event
+    from contact_dynamics.replay.events import Event
 
 
 class LoggedEvents:
@@ -92,7 +94,8 @@ class LoggedEvents:
         except (ContactDynamicsError, AttributeError) as error:  # the latter of a log with other fields
             status, message, seconds = "UNREADABLE", f"this version cannot read it: {error}", 0.0
         return Answered(
-            service=call.service.rpartition("/")[2],
+            service_name=call.service.rpartition("/")[2],
+            service=service_of_type(call.service_type),
             number=number,
             log_time_ns=call.request_event.log_time_ns,
             asked_ns=call.request_event.publish_time_ns,

@@ -1,7 +1,7 @@
 """Makes a row for each question of a recording: what was asked, what the answer was, what was then measured.
 
-A question about many states has a row for each of them. Positions are those of the body's published frame,
-linear velocities those of its centre of mass, in world axes.
+A question about many states or candidates has a row for each of them. Positions are those of the body's
+published frame, linear velocities those of its centre of mass, in world axes.
 
 `then_measured` says what stands beside an answer as measured.
 """
@@ -11,27 +11,24 @@ from __future__ import annotations
 import json
 import math
 from collections import deque
+from collections.abc import Sized
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.constants import ns_after
-from contact_dynamics.questions.contact_modes import ContactModeAnswer
 from contact_dynamics.questions.impact_answer import ImpactAnswer
-from contact_dynamics.questions.toss import TossAnswer
-from contact_dynamics.questions.tumbling import TumblingAnswer
-from contact_dynamics.replay.batch_rows import STATE, rows_of_batch
-from contact_dynamics.replay.events import Answered, BatchAnswer, StateCame, WorldChanged
+from contact_dynamics.replay.answer_rows import STATE
+from contact_dynamics.replay.events import StateCame, WorldChanged
 from contact_dynamics.replay.then_measured import Measuring
-from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rigid_body.published_frame import origin_of_published_frame
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from contact_dynamics.replay.batch_rows import Cell
-    from contact_dynamics.replay.events import Events, SingleAnswer
+    from contact_dynamics.replay.answer_rows import Cell
+    from contact_dynamics.replay.events import Answered, Events
+    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import World
 
@@ -65,8 +62,8 @@ COLUMNS: Final[dict[str, type]] = {
 }
 """The columns of a row and their types. Any cell can be empty.
 
-If a question is about many states, ``state`` is the row's place among them, from 0. Times are ns,
-``computation_time`` is s. The state that the answer used is stamped ``state_stamp_ns``: the one that was
+If a question is about many states or candidates, ``state`` is the row's place among them, from 0. Times are
+ns, ``computation_time`` is s. The state that the answer used is stamped ``state_stamp_ns``: the one that was
 taken, or the newest of ``states_fitted``. Lengths are m, quaternions x, y, z, w, velocities m/s and rad/s.
 The errors are the distance, m, the angle, rad, and the differences of the velocities, m/s and rad/s.
 """
@@ -74,15 +71,14 @@ The errors are the distance, m, the angle, rad, and the differences of the veloc
 
 @dataclass(slots=True, kw_only=True)
 class _Waiting:
-    row: dict[str, Cell]
-    measuring: Measuring | None  # None if nothing of it can be measured
-    batch: Answered | None = None  # None if it is one row
+    row: dict[str, Cell]  # what holds for all rows of the question
+    answered: Answered
+    measuring: Measuring | None = None  # None if nothing of it can be measured
 
     @property
     def weight(self) -> int:
         """About how many rows it is."""
-        answer = None if self.batch is None else self.batch.answer
-        return len(answer.states) if isinstance(answer, BatchAnswer) else 1
+        return len(self.answered.answer) if isinstance(self.answered.answer, Sized) else 1
 
 
 class Rows:
@@ -121,24 +117,24 @@ class Rows:
         return waiting.measuring is None or waiting.measuring.is_complete
 
     def _finished(self, waiting: _Waiting) -> Iterator[dict[str, Cell]]:
-        if waiting.batch is not None:
-            for cells in rows_of_batch(waiting.batch):
-                yield waiting.row | cells
-            return
-        measuring = waiting.measuring
+        row, answered, measuring = waiting.row, waiting.answered, waiting.measuring
         measured = None if measuring is None else measuring.result()
         if measuring is not None and measured is not None:
-            waiting.row["measured_ns"] = measured.stamp_ns
-            waiting.row |= self._cells("measured", measuring.body_name, measured)
-            waiting.row |= _errors(measuring.predicted, measured)
-        yield waiting.row
+            row["measured_ns"] = measured.stamp_ns
+            row |= self._cells("measured", measuring.body_name, measured)
+            row |= _errors(measuring.predicted, measured)
+        if answered.answer is None:
+            yield row
+            return
+        for cells in answered.service.rows(answered.answer, answered.question):
+            yield row | cells
 
     def _row(self, answered: Answered) -> _Waiting:
         row: dict[str, Cell] = dict.fromkeys(COLUMNS)
         body = answered.question.get("body_name", "")
         row |= {
             "log": self._log,
-            "service": answered.service,
+            "service": answered.service_name,
             "number": answered.number,
             "log_time_ns": answered.log_time_ns,
             "asked_ns": answered.asked_ns,
@@ -148,27 +144,27 @@ class Rows:
             "message": answered.message,
             "computation_time": answered.computation_time,
         }
-        if answered.answer is None:
-            return _Waiting(row=row, measuring=None)
-        if isinstance(answered.answer, BatchAnswer):
-            row["body"] = answered.answer.body_name
-            return _Waiting(row=row, measuring=None, batch=answered)
-        row |= _said(answered.answer)
-        name, predicted = answered.answer.body_name, _predicted(answered.answer)
-        if predicted is not None:
-            row["predicted_ns"] = predicted.stamp_ns
-            row |= self._cells("predicted", name, predicted)
+        answer, predicted_by = answered.answer, answered.service.predicted
+        if answer is None:
+            return _Waiting(row=row, answered=answered)
+        row["body"] = name = answer.body_name
+        predicted = None if predicted_by is None else predicted_by(answer)
+        if predicted is None:
+            return _Waiting(row=row, answered=answered)
+        row["predicted_ns"] = predicted.stamp_ns
+        row |= self._cells("predicted", name, predicted)
         newest = self._newest.get(name)
-        if predicted is None or predicted.stamp_ns == 0 or newest is None:
-            return _Waiting(row=row, measuring=None)
+        if predicted.stamp_ns == 0 or newest is None:
+            return _Waiting(row=row, answered=answered)
         return _Waiting(
             row=row,
+            answered=answered,
             measuring=Measuring(
                 body=self._world.body(name),
                 predicted=predicted,
                 newest=newest,
                 gravity_W=self._world.gravity_W,
-                is_impact=isinstance(answered.answer, ImpactAnswer),
+                is_impact=isinstance(answer, ImpactAnswer),
             ),
         )
 
@@ -185,60 +181,6 @@ class Rows:
     def _offset(self, body_name: str) -> FloatArray:
         known = [body.p_FB_F for body in self._world.bodies if body.name == body_name]
         return known[0] if known else np.zeros(3)
-
-
-def _said(answer: SingleAnswer) -> dict[str, Cell]:
-    """Return the cells of what an answer says and of the states that it used."""
-    fit = None if isinstance(answer, ContactModeAnswer) else answer.fit
-    fitted = 0 if fit is None else fit.count
-    if isinstance(answer, TumblingAnswer):
-        event = answer.event
-        says, surface = ("flight", "") if event is None else (event.kind.name.lower(), event.surface)
-        stamp_ns = answer.state.stamp_ns
-    elif isinstance(answer, ImpactAnswer):
-        outcome = answer.impact.outcome
-        says = "several at once" if outcome is None else outcome.name.lower()
-        surface = ", ".join(dict.fromkeys(answer.contacts.surfaces))
-        stamp_ns = answer.state.stamp_ns and ns_after(answer.state.stamp_ns, -answer.seconds_to_contact)
-    elif isinstance(answer, TossAnswer):
-        corners = " ".join(map(str, answer.toss.resting_corners))
-        end = answer.toss.end.name.lower()
-        says = f"{end} on {corners}" if corners else end
-        surface = ", ".join(
-            dict.fromkeys(name for event in answer.toss.events[-1:] for name in event.surfaces)
-        )
-        stamp_ns = answer.state.stamp_ns
-    else:
-        modes = ", ".join(mode.mode for mode in answer.modes)
-        says = f"{answer.verdict.name.lower()}: {modes}" if modes else answer.verdict.name.lower()
-        surface = ", ".join(dict.fromkeys(answer.contacts.surfaces))
-        stamp_ns = answer.state.stamp_ns
-    return {
-        "body": answer.body_name,
-        "state_stamp_ns": stamp_ns or None,
-        "states_fitted": fitted,
-        "says": says,
-        "surface": surface,
-    }
-
-
-def _predicted(answer: SingleAnswer) -> BodyState | None:
-    """Return the state that an answer predicts: at the end of a trajectory, or just after an impact."""
-    if isinstance(answer, ImpactAnswer):
-        return answer.impact.state
-    if isinstance(answer, ContactModeAnswer):
-        return None
-    path = answer.toss.trajectory if isinstance(answer, TossAnswer) else answer.trajectory
-    if len(path) == 0:
-        return None
-    stamp_ns = answer.state.stamp_ns
-    return BodyState(
-        p_WB_W=path.p_WB_W[-1],
-        q_WB=path.q_WB[-1],
-        v_WB_W=path.v_WB_W[-1],
-        w_WB_W=path.w_WB_W[-1],
-        stamp_ns=stamp_ns and ns_after(stamp_ns, float(path.seconds[-1])),
-    )
 
 
 def _errors(predicted: BodyState, measured: BodyState) -> dict[str, Cell]:

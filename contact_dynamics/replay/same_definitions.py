@@ -11,6 +11,7 @@ import hashlib
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.nodes.services import SERVICES
 from contact_dynamics.recording.definitions import EVENT_SUFFIX
 from contact_dynamics.recording.message_types import message_types
 from contact_dynamics.replay.timeline import INTERFACES
@@ -20,17 +21,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _PACKAGE: Final = INTERFACES.partition("/")[0] + "/"
-
-DIGESTS: Final = {
-    "PredictContactMode": "daa8ba36d4c08594",
-    "PredictImpact": "0e9a5c11c191d2d7",
-    "PredictContactModeBatch": "d17cfac59f50e7c0",
-    "PredictImpactBatch": "55370ec29df49426",
-    "PredictTumblingBatch": "f198a921773488f5",
-    "PredictToss": "754ae5479c39721f",
-    "PredictTumbling": "d8fea09495ab8bd5",
-}
-"""The digest of each service's fields (`digest`). A test compares them with the interface files."""
 
 
 def digest(event_type: str, definition: str) -> str:
@@ -59,13 +49,16 @@ def check_definitions(path: Path, definitions: Mapping[str, str], version: str |
         version: The version of this package that wrote it, as far as it says so.
 
     Raises:
-        NotSupportedError: there is such a service. The message names it, and the version that wrote the log.
+        NotSupportedError: there is such a service, or one that this version does not have. The message names
+            it, and the version that wrote the log.
     """
+    known = {f"{INTERFACES}{service.type_name}{EVENT_SUFFIX}": service.digest for service in SERVICES}
     differing = [
-        name
-        for name, known in DIGESTS.items()
-        if (event_type := f"{INTERFACES}{name}{EVENT_SUFFIX}") in definitions
-        and digest(event_type, definitions[event_type]) != known
+        name.removeprefix(INTERFACES).removesuffix(EVENT_SUFFIX)
+        for name, text in definitions.items()
+        if name.startswith(INTERFACES)
+        and name.endswith(EVENT_SUFFIX)
+        and digest(name, text) != known.get(name)
     ]
     if differing:
         raise NotSupportedError(

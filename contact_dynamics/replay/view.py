@@ -6,11 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.diagrams.words import CONTACT_MODE, IMPACT, MANY_IMPACTS, MANY_TUMBLINGS, TOSS, TUMBLING
-from contact_dynamics.questions.impact_answer import ImpactAnswer
-from contact_dynamics.questions.toss import TossAnswer
-from contact_dynamics.questions.tumbling import TumblingAnswer
-from contact_dynamics.replay.events import Answered, BatchAnswer, StateCame, WorldChanged
+from contact_dynamics.replay.events import StateCame, WorldChanged
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode, raise_errors
 from contact_dynamics.viewing.states_in_turn import StatesInTurn
@@ -18,16 +14,7 @@ from contact_dynamics.viewing.states_in_turn import StatesInTurn
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from contact_dynamics.replay.events import Event, Events
-
-KINDS: Final = {
-    "predict_tumbling": TUMBLING,
-    "predict_impact": IMPACT,
-    "predict_contact_mode": CONTACT_MODE,
-    "predict_toss": TOSS,
-    "predict_tumbling_batch": MANY_TUMBLINGS,
-    "predict_impact_batch": MANY_IMPACTS,
-}
+    from contact_dynamics.replay.events import Answered, Event, Events
 
 _AT_ONCE: Final = 1000
 """States that are drawn together, because a batch costs what a single state does."""
@@ -118,7 +105,7 @@ class _Drawing:
             self._guarded("a change of the world", change)
             return
         self.answers += 1
-        self._guarded(event.service, lambda: self._show_answer(event))
+        self._guarded(event.service_name, lambda: self._show_answer(event))
 
     def finish(self, *, look_at_all: bool) -> None:
         """Draw what is left, and look at all of it where no viewer was open from the beginning."""
@@ -133,19 +120,11 @@ class _Drawing:
             self._waiting.draw_before(answer)
         if answer is None:
             refused = f"refused ({answered.status}): {remark}"
-            self._picture.tell(
-                KINDS.get(answered.service, answered.service), refused, stamp_ns=now_ns, is_error=True
-            )
-        elif isinstance(answer, TumblingAnswer):
-            self._picture.show_tumbling(answer, now_ns=now_ns, remark=remark, computation_time=seconds)
-        elif isinstance(answer, ImpactAnswer):
-            self._picture.show_impact(answer, now_ns=now_ns, remark=remark, computation_time=seconds)
-        elif isinstance(answer, TossAnswer):
-            self._picture.show_toss(answer, now_ns=now_ns, remark=remark, computation_time=seconds)
-        elif isinstance(answer, BatchAnswer):
-            self._picture.show_many(answer, now_ns=now_ns, remark=remark, computation_time=seconds)
+            self._picture.tell(answered.service.kind, refused, stamp_ns=now_ns, is_error=True)
         else:
-            self._picture.show_contact_modes(answer, now_ns=now_ns, remark=remark, computation_time=seconds)
+            answered.service.draw(
+                self._picture, answer, now_ns=now_ns, remark=remark, computation_time=seconds
+            )
 
     def _guarded(self, kind: str, show: Callable[[], object]) -> None:
         try:

@@ -14,8 +14,9 @@ from contact_dynamics.diagrams.planar_scene import silhouette
 from contact_dynamics.diagrams.toss_words import toss_in_words
 from contact_dynamics.diagrams.words import (
     AFTER_IMPACT,
-    CONTACT_MODE,
+    CONTACT_MODES,
     IMPACT,
+    MANY_CONTACT_MODES,
     MANY_IMPACTS,
     MANY_TUMBLINGS,
     TOSS,
@@ -23,6 +24,7 @@ from contact_dynamics.diagrams.words import (
     after_impact_in_words,
     contact_modes_in_words,
     impact_in_words,
+    many_contact_modes_in_words,
     many_in_words,
     tumbling_in_words,
 )
@@ -64,6 +66,7 @@ if TYPE_CHECKING:
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.questions.impact_answer import ImpactAnswer
     from contact_dynamics.questions.many import ManyTumblingsAnswer
+    from contact_dynamics.questions.many_contact_modes import ManyContactModesAnswer
     from contact_dynamics.questions.toss import TossAnswer
     from contact_dynamics.questions.tumbling import TumblingAnswer
     from contact_dynamics.rigid_body.body import BodyState
@@ -232,7 +235,7 @@ class Picture:
             self._bring_up(CONTACTS, ANSWERS, *drawn)
         self._bring_up(CONTACTS, ANSWERS)
         words = contact_modes_in_words(answer)
-        self._tell_answer(CONTACT_MODE, name, words, remark, computation_time, stamp_ns=stamp_ns)
+        self._tell_answer(CONTACT_MODES, name, words, remark, computation_time, stamp_ns=stamp_ns)
 
     def show_toss(
         self,
@@ -273,6 +276,23 @@ class Picture:
         self._bring_up(MANY, ANSWERS)
         kind = MANY_IMPACTS if isinstance(answer, ManyImpactsAnswer) else MANY_TUMBLINGS
         self._tell_answer(kind, name, many_in_words(answer), remark, computation_time, stamp_ns=now_ns)
+
+    def show_many_contact_modes(
+        self,
+        answer: ManyContactModesAnswer,
+        *,
+        now_ns: int = 0,
+        remark: str = "",
+        computation_time: float | None = None,
+    ) -> None:
+        """Tell the verdicts on many candidates.
+
+        Arguments are those of `show_tumbling`.
+        """
+        words, stamp_ns = many_contact_modes_in_words(answer), answer.state.stamp_ns or now_ns
+        self._tell_answer(
+            MANY_CONTACT_MODES, answer.body_name, words, remark, computation_time, stamp_ns=stamp_ns
+        )
 
     def tell(self, kind: str, text: str, *, stamp_ns: int, is_error: bool = False) -> None:
         """Write an answer in words, both into the list of all answers and as the newest of its kind."""

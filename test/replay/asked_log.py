@@ -12,12 +12,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from builtin_interfaces.msg import Time
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from nav_msgs.msg import Odometry
 
 from contact_dynamics_interfaces.msg import BodyStates
 from contact_dynamics_interfaces.srv import (
     PredictContactMode,
+    PredictContactModeBatch,
     PredictImpact,
     PredictImpactBatch,
     PredictToss,
@@ -27,7 +29,7 @@ from contact_dynamics_interfaces.srv import (
 from running_server import ROOT, server_and_client
 
 ROUNDS = 8
-MANY = 3  # states of a question about many
+MANY = 3  # states or candidates of a question about many
 BLOCKED = """
 import sys
 class NoRos:
@@ -63,7 +65,7 @@ class Asked:
     @property
     def rows(self) -> int:
         """How many rows a table of it has."""
-        batches = self.counts["PredictImpactBatch"] + self.counts["PredictTumblingBatch"]
+        batches = sum(count for name, count in self.counts.items() if name.endswith("Batch"))
         return sum(self.counts.values()) + (MANY - 1) * batches
 
 
@@ -78,10 +80,12 @@ def odometry(stamp: Any, number: int) -> Odometry:
     return msg
 
 
-def questions(number: int) -> list[Any]:
+def questions(number: int, now: Time) -> list[Any]:
     """What depends on the newest states, and what depends on the question alone; some are refused."""
     until = PredictTumbling.Request(body_name="brick", sampling=PredictTumbling.Request.UNTIL_CONTACT)
     fitted = PredictTumbling.Request(body_name="brick", fit_window=0.2, want_covariance=True)
+    at_stamp = PredictTumbling.Request(body_name="brick", fit_window=0.02, want_covariance=True)
+    at_stamp.state_source, at_stamp.stamp = at_stamp.STATE_AT_STAMP, now  # after the newest state
     standing = PredictContactMode.Request(
         state_source=PredictContactMode.Request.STATE_EXPLICIT, body_name="brick", want_margins=True
     )
@@ -90,6 +94,7 @@ def questions(number: int) -> list[Any]:
     return [
         until,
         fitted,
+        *([] if number % 4 else [at_stamp]),
         PredictImpact.Request(body_name="brick"),
         standing,
         PredictImpact.Request(body_name=f"cat {number}"),
@@ -127,7 +132,25 @@ def about_many(number: int) -> list[Any]:
     impacts = PredictImpactBatch.Request(body_name="brick", states=states, restitutions=[0.5])
     impacts.contact_positions = [0.05, 0.0, 0.98, 0.45, 0.0, 0.98, 1.0, 0.0, 0.98]
     impacts.contact_normals, impacts.frictions = [0.0, 0.0, 1.0], [0.1, 0.2, 0.3]
-    return [impacts, PredictTumblingBatch.Request(body_name="brick", states=states, times=[0.1, 0.2, 0.3])]
+    flights = PredictTumblingBatch.Request(body_name="brick", states=states, times=[0.1, 0.2, 0.3])
+    return [impacts, flights, *about_candidates(number)]
+
+
+def about_candidates(number: int) -> list[Any]:
+    """The brick that stands: under three wrenches, and on each of three sets of its four contacts."""
+    explicit = PredictContactModeBatch.Request.STATE_EXPLICIT
+    pushed = PredictContactModeBatch.Request(body_name="brick", state_source=explicit)
+    pushed.state.pose.position.z = 0.025
+    pushed.forces = [0.0, 0.0, 0.0, 0.1 + 0.01 * number, 0.0, 0.0, 9.0, 0.0, 0.0]
+    standing = PredictContactModeBatch.Request(body_name="brick", state_source=explicit)
+    standing.state.pose.position.z = 0.025
+    standing.contact_source = PredictContactModeBatch.Request.CONTACTS_EXPLICIT
+    standing.contacts.positions = [0.05, 0.0, 0.0, -0.05, 0.0, 0.0, 0.05, 0.0, 0.0, -0.02, 0.0, 0.0]
+    standing.contacts.normals, standing.contacts.frictions = [0.0, 0.0, 1.0] * 4, [0.1, 0.2, 0.3, 0.4]
+    standing.contacts.restitutions = [0.0] * 4
+    standing.contacts.surface_names = ["floor", "floor", "table", "ramp"]
+    standing.contact_counts = [2, 1, 1]
+    return [pushed, standing]
 
 
 def configured(folder: Path) -> Path:
@@ -175,7 +198,7 @@ def session(folder: Path) -> Asked:
         for number in range(ROUNDS):
             for step in range(4):
                 publish(4 * number + step)
-            for request in questions(number):
+            for request in questions(number, client.node.get_clock().now().to_msg()):
                 ask(request)
         time.sleep(3.3)
         stale = ask(PredictImpact.Request(body_name="brick"))

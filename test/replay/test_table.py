@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 from rosbags.rosbag2 import CompressionMode, StoragePlugin
 
+from contact_dynamics.contact_modes import ModeVerdict
 from contact_dynamics.recording import BagReader, decode_without_ros, service_calls
 from contact_dynamics.replay.rows import COLUMNS
 from contact_dynamics.replay.run import main
@@ -78,6 +79,37 @@ def test_a_question_about_many_states_has_a_row_for_each(asked: Asked, tmp_path:
     assert second["contact_normals"] == [0.0, 0.0, 1.0]
     assert [json.loads(row["question"])["times"] for row in flights[:MANY]] == [0.1, 0.2, 0.3]
     assert {row["says"] for row in flights} == {"flight"}
+
+
+def test_a_question_about_many_candidates_has_a_row_for_each(asked: Asked, tmp_path: Path) -> None:
+    assert main(["table", str(asked.log), "--out", str(tmp_path / "table.csv")]) == 0
+    rows = [row for row in rows_of(tmp_path / "table.csv") if row["service"] == "predict_contact_mode_batch"]
+    responses = [
+        decode_without_ros(call.response_event).response[0]
+        for call in service_calls(BagReader(asked.log).messages())
+        if call.service.endswith("contact_mode_batch") and call.response_event is not None
+    ]
+    assert len(rows) == MANY * len(responses)
+    for number, response in enumerate(responses, start=1):
+        group = [row for row in rows if int(row["number"]) == number]
+        assert [int(row["state"]) for row in group] == list(range(MANY))
+        modes = iter(response.modes)
+        for row, verdict, count in zip(group, response.verdicts, response.mode_counts, strict=True):
+            name = ModeVerdict(verdict).name.lower()
+            expected = [next(modes) for _ in range(count)]
+            assert row["says"] == (f"{name}: {', '.join(expected)}" if expected else name)
+            assert (row["body"], row["status"], row["states_fitted"]) == ("brick", "OK", "0")
+    pushed, standing = rows[:MANY], rows[MANY : 2 * MANY]
+    assert [json.loads(row["question"])["forces"] for row in pushed] == [
+        [0.0, 0.0, 0.0],
+        [0.1, 0.0, 0.0],
+        [9.0, 0.0, 0.0],
+    ]
+    assert len({row["says"] for row in pushed}) > 1
+    assert [row["surface"] for row in standing] == ["floor", "table", "ramp"]
+    asked_contacts = [json.loads(row["question"])["contacts"] for row in standing]
+    assert [each["frictions"] for each in asked_contacts] == [[0.1, 0.2], [0.3], [0.4]]
+    assert asked_contacts[2]["positions"] == [-0.02, 0.0, 0.0]
 
 
 def test_parquet_has_the_cells_of_csv_and_needs_no_ros(asked: Asked, tmp_path: Path) -> None:
