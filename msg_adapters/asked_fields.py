@@ -46,7 +46,6 @@ class ContactRequest(Protocol):
     CONTACTS_EXPLICIT: int
     contact_source: int
     contacts: ContactSetMsg
-    out_of_plane_tolerance: Sequence[float]
 
 
 class GravityRequest(Protocol):
@@ -62,11 +61,6 @@ def optional(field: str, numbers: Sequence[Number]) -> Number | None:
     if len(numbers) > 1:
         raise InvalidFieldError(field, f"{len(numbers)} numbers", "one, or none")
     return numbers[0] if numbers else None
-
-
-def asked_out_of_plane_tolerance(request: ContactRequest) -> float | None:
-    """Return how far a request lets things be out of the plane of motion, or None for the default."""
-    return optional("out_of_plane_tolerance", request.out_of_plane_tolerance)
 
 
 def asked_contacts(request: ContactRequest) -> ContactSet | None:

@@ -12,7 +12,6 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.questions.subject import NEWEST, PublishedState, changed_body
-from contact_dynamics.validation import check_not_negative
 from contact_dynamics.world import LONGEST_NAME, Body
 from msg_adapters.body_state import known_state_from_msg
 from msg_adapters.geometry import mass_properties_from_msg
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.numerics.vectors import Vector3 as Vector
     from contact_dynamics.questions.subject import StateSource
+    from contact_dynamics.questions.uncertain_state import KnownState
     from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.world import World
     from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
@@ -54,14 +54,9 @@ def asked_subject(
         ContactDynamicsError: the body is not known, or a field about the state holds what is not allowed.
     """
     stamp_ns = _stamp_ns(request)
-    is_explicit = request.state_source == request.STATE_EXPLICIT
-    if is_explicit and check_not_negative("fit_window", fit_window) > 0.0:
-        raise InvalidFieldError(
-            "fit_window", fit_window, "0 for an explicit state: published states are fitted"
-        )
     body = asked_body(request.body_name, request.inertia, world)
-    if is_explicit:
-        return body, known_state_from_msg(request.state, world_frame=world_frame, p_FB_F=body.p_FB_F)
+    if request.state_source == request.STATE_EXPLICIT:
+        return body, _explicit("state", request.state, body, world_frame)
     return body, _published(stamp_ns, fit_window)
 
 
@@ -72,23 +67,30 @@ def asked_other(
     explicit = request.other_state[0] if request.other_state else None
     if not request.other_body_name and explicit is None and not _is_described(request.other_inertia):
         return None, NEWEST
-    body = asked_body(request.other_body_name, request.other_inertia, world)
+    body = asked_body(request.other_body_name, request.other_inertia, world, field="other_body_name")
     if explicit is None:
         return body, _published(_stamp_ns(request))
-    return body, known_state_from_msg(explicit, world_frame=world_frame, p_FB_F=body.p_FB_F)
+    return body, _explicit("other_state[0]", explicit, body, world_frame)
 
 
-def asked_body(name: str, inertia: Inertia, world: World) -> Body:
-    """Return the body that a request names or describes.
+def _explicit(field: str, msg: BodyStateMsg, body: Body, world_frame: str) -> KnownState:
+    """Return a state that a request has. If it names a body, that is the body of the request."""
+    if body.name and msg.body_name not in {"", body.name}:
+        raise InvalidFieldError(f"{field}.body_name", msg.body_name, f"{body.name!r}, or none")
+    return known_state_from_msg(msg, world_frame=world_frame, p_FB_F=body.p_FB_F)
+
+
+def asked_body(name: str, inertia: Inertia, world: World, *, field: str = "body_name") -> Body:
+    """Return the body that a request names, in that field, or describes.
 
     Raises:
         ContactDynamicsError: the name is not known or too long, or the numbers are no body's.
     """
     if len(name) > LONGEST_NAME:
-        raise TooLargeError("body_name", f"{len(name)} characters", f"at most {LONGEST_NAME}")
+        raise TooLargeError(field, f"{len(name)} characters", f"at most {LONGEST_NAME}")
     is_described = _is_described(inertia)
     if not name and not is_described:
-        raise InvalidFieldError("body_name", name, "the name of a configured body, or an inertia of mass > 0")
+        raise InvalidFieldError(field, name, "the name of a configured body, or an inertia of mass > 0")
     # The body is looked up here, because an explicit state is that of the body's published frame.
     known = world.body(name) if name else None
     if known is not None and not is_described:
@@ -119,9 +121,6 @@ def _stamp_ns(request: _SubjectRequest) -> int | None:
     if request.state_source not in {request.STATE_NEWEST, request.STATE_EXPLICIT}:
         allowed = "STATE_NEWEST (0), STATE_EXPLICIT (1) or STATE_AT_STAMP (2)"
         raise InvalidFieldError("state_source", request.state_source, allowed)
-    if request.stamp.sec or request.stamp.nanosec:
-        found = f"{stamp_ns_from_msg(request.stamp)} ns"
-        raise InvalidFieldError("stamp", found, "zero, or with state_source STATE_AT_STAMP (2) any time")
     return None
 
 

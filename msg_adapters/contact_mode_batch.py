@@ -15,6 +15,7 @@ from msg_adapters.contacts import contacts_from_msg, contacts_to_msg, flat
 from msg_adapters.field_names import renamed
 from msg_adapters.questions import asked_contact_modes
 from msg_adapters.requests import write_contact_modes
+from msg_adapters.unread_fields import CONTACT_MODE_BATCH
 
 if TYPE_CHECKING:
     from contact_dynamics.world import World
@@ -31,7 +32,7 @@ def contact_modes_question_from_msg(
     forces = flat_rows("forces", request.forces, 3)
     torques = flat_rows("torques", request.torques, 3)
     none = np.zeros((max(len(forces), len(torques), 1), 3))
-    asked = asked_contact_modes(request, world, world_frame, compares_torques=request.want_margins)
+    asked = asked_contact_modes(request, world, world_frame, read_if=CONTACT_MODE_BATCH)
     try:
         return ManyContactModesQuestion(
             asked=asked,

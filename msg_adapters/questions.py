@@ -3,8 +3,8 @@
 Its neighbours `batches`, `contact_mode_batch` and `toss` read the requests of the other services. All of them
 read shared fields with `asked_fields`.
 
-A number that a question leaves out is an empty list in a request. Fields without meaning for a question, such
-as a horizon if the contacts are given, are not read.
+A number that a question leaves out is an empty list in a request. A value in a field that the request leaves
+unread, such as a horizon if the contacts are given, is refused (`unread_fields`).
 """
 
 from __future__ import annotations
@@ -15,14 +15,12 @@ from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertai
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
 from contact_dynamics.questions.impact_question import ImpactQuestion
-from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.tumbling import TumblingQuestion
 from msg_adapters.asked_fields import (
     NOTHING,
     asked_contacts,
     asked_drag,
     asked_gravity,
-    asked_out_of_plane_tolerance,
     asked_plane,
     asked_problem,
     asked_restitution_law,
@@ -35,8 +33,11 @@ from msg_adapters.asked_subject import asked_other, asked_subject
 from msg_adapters.field_names import WRENCH_FIELDS, renamed
 from msg_adapters.geometry import vector_from_msg
 from msg_adapters.geometry_margins import uncertainty_from_msg
+from msg_adapters.unread_fields import CONTACT_MODE, IMPACT, TUMBLING, check_unread
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import World
     from contact_dynamics_interfaces.srv import (
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
         PredictImpact,
         PredictTumbling,
     )
+    from msg_adapters.unread_fields import ReadIf
 
 
 def tumbling_question_from_msg(
@@ -62,10 +64,12 @@ def tumbling_question_from_msg(
     """
     gravity_W, wrench, drag = asked_gravity(request), asked_wrench(request), asked_drag(request)
     body, state = asked_subject(request, world, world_frame, fit_window=request.fit_window)
+    sampling = asked_sampling(request)
+    check_unread(request, TUMBLING)
     return TumblingQuestion(
         body=body,
         state=state,
-        sampling=asked_sampling(request),
+        sampling=sampling,
         gravity_W=gravity_W,
         wrench=wrench,
         drag=drag,
@@ -87,25 +91,25 @@ def impact_question_from_msg(
     Raises:
         ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
     """
-    problem = asked_problem(request.problem)
-    is_planar = problem is Problem.PLANAR
+    problem, law = asked_problem(request.problem), asked_several_contacts_law(request)
     body, state = asked_subject(request, world, world_frame, fit_window=request.fit_window)
     other, other_state = asked_other(request, world, world_frame)
     contacts = asked_contacts(request)
+    check_unread(request, IMPACT)
     return ImpactQuestion(
         body=body,
         state=state,
         other=other,
         other_state=other_state,
         contacts=contacts,
-        horizon=optional("horizon", request.horizon) if contacts is None else None,
+        horizon=optional("horizon", request.horizon),
         restitution_law=asked_restitution_law(request.restitution_law),
-        several_contacts_law=asked_several_contacts_law(request),
+        several_contacts_law=law,
         want_orders=request.want_orders,
         want_covariance=request.want_covariance,
         problem=problem,
-        plane=asked_plane(request.plane_normal) if is_planar else None,
-        out_of_plane_tolerance=asked_out_of_plane_tolerance(request) if is_planar else None,
+        plane=asked_plane(request.plane_normal),
+        out_of_plane_tolerance=optional("out_of_plane_tolerance", request.out_of_plane_tolerance),
         velocity_tolerance=optional("velocity_tolerance", request.velocity_tolerance),
         distance_tolerance=optional("distance_tolerance", request.distance_tolerance),
     )
@@ -129,7 +133,7 @@ def contact_mode_question_from_msg(
             request,
             world,
             world_frame,
-            compares_torques=request.want_margins or request.want_statics,
+            read_if=CONTACT_MODE,
             force_W=vector_from_msg(request.applied_wrench.force),
             torque_W=vector_from_msg(request.applied_wrench.torque),
             want_wrenches=request.want_wrenches,
@@ -147,7 +151,7 @@ def asked_contact_modes(
     world: World,
     world_frame: str,
     *,
-    compares_torques: bool,
+    read_if: Iterable[ReadIf],
     force_W: FloatArray = NOTHING,
     torque_W: FloatArray = NOTHING,
     want_wrenches: bool = False,
@@ -162,7 +166,7 @@ def asked_contact_modes(
         request: The request.
         world: The bodies that it can name.
         world_frame: The frame that an explicit state must be in.
-        compares_torques: Whether its margin_length matters.
+        read_if: The fields of it that are not always read.
         force_W: The question's own, as what follows.
         torque_W: As the question's.
         want_wrenches: As the question's.
@@ -174,21 +178,25 @@ def asked_contact_modes(
     Raises:
         ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
     """
-    problem = asked_problem(request.problem)
-    may_be_planar = problem is not Problem.SPATIAL
+    problem, contacts, gravity_W = (
+        asked_problem(request.problem),
+        asked_contacts(request),
+        asked_gravity(request),
+    )
     body, state = asked_subject(request, world, world_frame)
+    check_unread(request, read_if)
     return ContactModeQuestion(
         body=body,
         state=state,
-        contacts=asked_contacts(request),
-        gravity_W=asked_gravity(request),
+        contacts=contacts,
+        gravity_W=gravity_W,
         problem=problem,
-        plane=asked_plane(request.plane_normal) if may_be_planar else None,
-        out_of_plane_tolerance=asked_out_of_plane_tolerance(request) if may_be_planar else None,
+        plane=asked_plane(request.plane_normal),
+        out_of_plane_tolerance=optional("out_of_plane_tolerance", request.out_of_plane_tolerance),
         velocity_tolerance=optional("velocity_tolerance", request.velocity_tolerance),
         distance_tolerance=optional("distance_tolerance", request.distance_tolerance),
         friction_facets=optional("friction_facets", request.friction_facets),
-        margin_length=optional("margin_length", request.margin_length) if compares_torques else None,
+        margin_length=optional("margin_length", request.margin_length),
         force_W=force_W,
         torque_W=torque_W,
         want_margins=request.want_margins,

@@ -32,6 +32,7 @@ from msg_adapters.geometry import vector_from_msg, vector_to_msg
 from msg_adapters.requests import asked_optional, write_fitted_subject
 from msg_adapters.toss_distribution import distribution_from_msg, distribution_to_msg
 from msg_adapters.tumbling import read_fit, trajectory_from_msg, trajectory_to_msg, write_fit
+from msg_adapters.unread_fields import TOSS, check_unread
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
@@ -50,6 +51,7 @@ def toss_question_from_msg(request: PredictToss.Request, *, world: World, world_
         ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
     """
     body, state = asked_subject(request, world, world_frame, fit_window=request.fit_window)
+    check_unread(request, TOSS)
     return TossQuestion(
         body=body,
         state=state,

@@ -200,14 +200,19 @@ def contact_mode_answers(draw: st.DrawFn, p_FB_F: np.ndarray = NO_OFFSET) -> Con
 @st.composite
 def contact_mode_questions(draw: st.DrawFn) -> ContactModeQuestion:
     """The questions ask for each option or not, without the fields that play no part."""
-    problem = draw(st.sampled_from(Problem))
-    may_be_planar = problem is not Problem.SPATIAL
+    problem, contacts = draw(st.sampled_from(Problem)), draw(some(contact_sets()))
+    uncertainty, geometry_margins = draw(uncertainties()), draw(flags)
+    may_be_planar = problem is Problem.PLANAR or (
+        problem is Problem.AUTOMATIC
+        and not (geometry_margins or np.any(uncertainty.points) or np.any(uncertainty.normals))
+    )
+    finds_or_mirrors = contacts is None or problem is not Problem.SPATIAL
     margins, statics = draw(flags), draw(flags)
     newest = st.builds(PublishedState, stamp_ns=some(st.integers(0, 10**18)))
     return ContactModeQuestion(
         body=draw(bodies()),
         state=draw(st.one_of(newest, known_states())),
-        contacts=draw(some(contact_sets())),
+        contacts=contacts,
         force_W=draw(arrays(3)),
         torque_W=draw(arrays(3)),
         gravity_W=draw(gravities),
@@ -215,13 +220,13 @@ def contact_mode_questions(draw: st.DrawFn) -> ContactModeQuestion:
         plane=draw(planes) if may_be_planar else None,
         out_of_plane_tolerance=draw(some(not_negative)) if may_be_planar else None,
         velocity_tolerance=draw(some(not_negative)),
-        distance_tolerance=draw(some(not_negative)),
-        friction_facets=draw(st.sampled_from([None, 3, 8, 32])),
+        distance_tolerance=draw(some(not_negative)) if finds_or_mirrors else None,
+        friction_facets=None if problem is Problem.PLANAR else draw(st.sampled_from([None, 3, 8, 32])),
         margin_length=draw(some(positive)) if margins or statics else None,
         want_margins=margins,
         want_wrenches=draw(flags),
         want_statics=statics,
         want_impact=draw(flags),
-        uncertainty=draw(uncertainties()),
-        want_geometry_margins=draw(flags),
+        uncertainty=uncertainty,
+        want_geometry_margins=geometry_margins,
     )

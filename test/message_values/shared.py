@@ -43,6 +43,8 @@ def same(one: Any, other: Any, *, rounding: float = 0.0) -> bool:
 
     Numbers may differ by ``rounding``.
     """
+    if one is None or other is None:
+        return one is other
     if isinstance(one, float) and isinstance(other, float):
         return bool(np.isclose(one, other, rtol=0.0, atol=rounding, equal_nan=True))
     if isinstance(one, np.ndarray):

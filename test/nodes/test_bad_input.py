@@ -12,6 +12,7 @@ from nav_msgs.msg import Odometry
 
 from changed_requests import put
 from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics_interfaces.msg import BodyState, ContactSet
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from running_server import Client, server_and_client
 
@@ -36,7 +37,33 @@ def good(service: Any) -> Any:
     return request
 
 
+def published(request: Any) -> None:
+    """Ask about a published state, of a body without a name."""
+    request.state_source, request.state = request.STATE_NEWEST, BodyState()
+
+
+def from_geometry(request: Any) -> None:
+    """Ask for contacts of a body without a shape."""
+    request.contact_source, request.contacts = request.CONTACTS_FROM_GEOMETRY, ContactSet()
+
+
+def until_contact(request: Any) -> None:
+    """Ask when a body without a shape lands."""
+    request.sampling, request.times = request.UNTIL_CONTACT, []
+
+
+def unread_state(request: Any) -> None:
+    """Fill in a state and ask about the newest one of a known body."""
+    request.body_name = "brick"
+    request.state_source, request.state.pose.position.z = request.STATE_NEWEST, 0.5
+
+
 EVERY_SERVICE = [
+    (
+        unread_state,
+        "INVALID_FIELD",
+        "state.pose.position.z: found 0.5, allowed is the default unless state_source is STATE_EXPLICIT (1)",
+    ),
     (put("inertia.m", -1.0), "INVALID_FIELD", "mass: found -1.0, allowed is a number > 0"),
     (put("inertia.m", math.nan), "INVALID_FIELD", "mass: found nan"),
     (put("inertia.m", math.inf), "INVALID_FIELD", "mass: found inf"),
@@ -62,7 +89,7 @@ EVERY_SERVICE = [
     (put("body_name", "cat"), "UNKNOWN_BODY", "found 'cat', allowed are the known bodies: 'brick'"),
     (put("body_name", "x" * 1000), "TOO_LARGE", "body_name: found 1000 characters"),
     (put("state_source", 7), "INVALID_FIELD", "state_source: found 7"),
-    (put("state_source", 0), "INVALID_FIELD", "body_name: found nothing"),
+    (published, "INVALID_FIELD", "body_name: found nothing"),
 ]
 CONTACTS = [
     (
@@ -89,7 +116,12 @@ CONTACTS = [
     (put("contacts.kinds", [3]), "INVALID_FIELD", "contacts.kinds[0]: found 3"),
     (put("contacts.kinds", [2]), "INVALID_FIELD", "contacts.body_curvatures: found 0 numbers"),
     (put("contact_source", 9), "INVALID_FIELD", "contact_source: found 9"),
-    (put("contact_source", 0), "NO_CONTACT", "has no shape"),
+    (from_geometry, "NO_CONTACT", "has no shape"),
+    (
+        put("contact_source", 0),
+        "INVALID_FIELD",
+        "contacts.positions: found [0.0, 0.0, -1.0]",
+    ),
     (put("velocity_tolerance", [-1.0]), "INVALID_FIELD", "velocity_tolerance: found -1.0"),
     (put("velocity_tolerance", [math.nan]), "INVALID_FIELD", "velocity_tolerance: found nan"),
     (put("problem", 9), "INVALID_FIELD", "problem: found 9"),
@@ -162,7 +194,7 @@ CASES = [
         PredictTumbling,
         put("fit_window", 0.1),
         "INVALID_FIELD",
-        "fit_window: found 0.1, allowed is 0 for",
+        "fit_window: found 0.1, allowed is the default unless",
     ),
     (
         PredictTumbling,
@@ -170,7 +202,8 @@ CASES = [
         "INVALID_FIELD",
         "linear_drag: found -0.1, allowed is a number >= 0",
     ),
-    (PredictTumbling, put("sampling", 3), "NO_CONTACT", "has no shape"),
+    (PredictTumbling, until_contact, "NO_CONTACT", "has no shape"),
+    (PredictTumbling, put("sampling", 3), "INVALID_FIELD", "times: found [0.0, 0.1], allowed is the default"),
     (PredictTumbling, put("sampling", 4), "INVALID_FIELD", "plane_normal: found [0.0, 0.0, 0.0] of norm 0"),
     (PredictTumbling, put("sampling", 17), "INVALID_FIELD", "sampling: found 17"),
 ]
@@ -237,12 +270,12 @@ def test_an_unknown_constant_is_refused_with_the_known_ones(
 
 
 def bad_rate(request: Any) -> None:
-    request.sampling = request.AT_RATE
+    request.sampling, request.times = request.AT_RATE, []
     request.rate = [-5.0]
 
 
 def too_long(request: Any) -> None:
-    request.sampling = request.AT_RATE
+    request.sampling, request.times = request.AT_RATE, []
     request.rate, request.duration = [1000.0], [1e9]
 
 

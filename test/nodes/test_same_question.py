@@ -139,7 +139,6 @@ def tumbling_asked_twice() -> Iterator[tuple[Any, TumblingQuestion]]:
         wrench_in_body_axes=True,
         linear_drag=0.1,
         want_covariance=True,
-        curve_points=7,
     )
     pushed.applied_wrench.force.x, pushed.applied_wrench.torque.z = 0.5, 0.25
     pushed.state.covariance = COVARIANCE.ravel().tolist()
@@ -152,7 +151,6 @@ def tumbling_asked_twice() -> Iterator[tuple[Any, TumblingQuestion]]:
             wrench=ConstantWrench(force=[0.5, 0, 0], torque=[0, 0, 0.25], axes=WrenchAxes.BODY),
             drag=Drag(linear=0.1),
             want_covariance=True,
-            curve_points=7,
         ),
     )
 

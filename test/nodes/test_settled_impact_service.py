@@ -27,7 +27,7 @@ def asking(problem: str, points: list[tuple[float, float]], normals: list[float]
     request.contacts.normals = [number for n_z in normals for number in (0.0, 0.0, n_z)]
     request.contacts.frictions = [mu] * len(points)
     request.contacts.restitutions = [0.0] * len(points)
-    request.plane_normal.y = -1.0
+    request.plane_normal.y = -1.0 if problem == "PLANAR" else 0.0
     return request
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -32,8 +33,14 @@ def planar_request(
     request.contacts.normals = [0.0, 0.0, 1.0]
     request.contacts.frictions = [mu]
     request.contacts.restitutions = [0.0]
-    request.problem = request.PLANAR
-    request.plane_normal.x, request.plane_normal.y, request.plane_normal.z = OUT_OF_PAGE
+    use_problem(request, "PLANAR")
+
+
+def use_problem(request: Any, problem: str) -> None:
+    """Ask in the plane of the page, or in space."""
+    request.problem = getattr(request, problem)
+    normal = OUT_OF_PAGE if problem == "PLANAR" else (0.0, 0.0, 0.0)
+    request.plane_normal.x, request.plane_normal.y, request.plane_normal.z = normal
 
 
 def test_1_inconsistent_rod(client: Client) -> None:
@@ -117,7 +124,7 @@ def test_every_row_of_the_lectures_table(
     _, v_n, v_t, f_t, f_n, verdict, letter, friction = row
     request = PredictContactMode.Request()
     planar_request(request, np.zeros(3), 0.5)
-    request.problem = getattr(request, problem)
+    use_problem(request, problem)
     request.gravity = request.GRAVITY_NONE
     request.state.linear_velocity.x, request.state.linear_velocity.z = v_t, v_n
     request.applied_wrench.force.x, request.applied_wrench.force.z = f_t, f_n
@@ -149,7 +156,7 @@ def test_3_left_drifting_particle(client: Client) -> None:
 def test_4_sliding_rod(client: Client, problem: str) -> None:
     request = PredictImpact.Request()
     planar_request(request, np.array([-1.0, 0.0, -4.0]), math.tan(ALPHA))
-    request.problem = getattr(request, problem)
+    use_problem(request, problem)
     request.contacts.restitutions = [0.5]
     request.state.linear_velocity.x = -1.0
     answer = client.ask(request)

@@ -1,0 +1,197 @@
+"""Refuses a request with a value in a field that its other fields leave unread.
+
+An explicit state with the flag of the newest one, or a plane's normal for a problem in space, would otherwise
+be ignored, and the answer would be that to another question. Each table has the fields of a service that are
+read under some condition only. All other fields of its request are always read. A field has no value if it is
+at the default of its message.
+"""
+
+from __future__ import annotations
+
+from operator import attrgetter
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from contact_dynamics.errors import InvalidFieldError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Sequence
+
+
+class When(NamedTuple):
+    """A condition on one field of a request.
+
+    Attributes:
+        field: The field, which may be one of a message in the request.
+        constants: Names of constants of the request, one of which the field has. Without any, the field is
+            not zero.
+        is_zero: Whether the field must be zero instead.
+    """
+
+    field: str
+    constants: tuple[str, ...] = ()
+    is_zero: bool = False
+
+    def is_met(self, request: object) -> bool:
+        """Return whether a request meets the condition."""
+        if self.constants:
+            value: object = getattr(request, self.field)
+            return value in {getattr(request, name) for name in self.constants}
+        return self.is_zero is not any(
+            _is_not_zero(leaf.read(request)) for leaf in _leaves(request, self.field)
+        )
+
+    def words(self, request: object) -> str:
+        """Return the condition in words."""
+        if self.constants:
+            return f"{self.field} is " + _either(
+                [f"{name} ({getattr(request, name)})" for name in self.constants]
+            )
+        value: object = attrgetter(self.field)(request)
+        of_flags, of_numbers = ("true", "false"), ("not zero", "zero")
+        return f"{self.field} is {(of_flags if isinstance(value, bool) else of_numbers)[self.is_zero]}"
+
+
+class ReadIf(NamedTuple):
+    """Fields of a request that are read only if it meets one of some conditions."""
+
+    fields: tuple[str, ...]
+    conditions: tuple[When, ...]
+
+
+def check_unread(request: object, table: Iterable[ReadIf]) -> None:
+    """Raise `InvalidFieldError` for a value in a field that is not read, and name the field."""
+    for fields, conditions in table:
+        if any(condition.is_met(request) for condition in conditions):
+            continue
+        for field in fields:
+            for leaf in _leaves(request, field):
+                found = leaf.read(request)
+                if found != leaf.default and not _is_empty(found):
+                    known = _either([condition.words(request) for condition in conditions])
+                    allowed = f"the default unless {known}, since it is not read otherwise"
+                    shown = found if isinstance(found, str) or not hasattr(found, "__iter__") else list(found)
+                    raise InvalidFieldError(leaf.path, shown, allowed)
+
+
+class _Leaf(NamedTuple):
+    """A number, a text or a list in a request, and its default."""
+
+    path: str
+    read: Callable[[object], object]
+    default: object
+
+
+_KNOWN: Final[dict[tuple[type, str], tuple[_Leaf, ...]]] = {}
+
+
+def _leaves(request: object, field: str) -> tuple[_Leaf, ...]:
+    """Return the leaves of a field of a request, whose type has the defaults."""
+    key = (type(request), field)
+    if key not in _KNOWN:
+        _KNOWN[key] = tuple(_leaves_of(field, attrgetter(field)(type(request)())))
+    return _KNOWN[key]
+
+
+def _leaves_of(path: str, default: object) -> Iterator[_Leaf]:
+    names = _field_names(default)
+    if not names:
+        yield _Leaf(path, attrgetter(path), default)
+    for name in names:
+        yield from _leaves_of(f"{path}.{name}", getattr(default, name))
+
+
+def _field_names(value: object) -> Sequence[str]:
+    """Return the names of the fields of a message. A value that is none has no fields."""
+    if hasattr(value, "get_fields_and_field_types"):  # made by ROS; others are made from a log's texts
+        return tuple(value.get_fields_and_field_types())
+    return tuple(field.name for field in getattr(value, "FIELDS", ()))
+
+
+def _is_empty(value: object) -> bool:
+    """Return whether a value is a list without elements, which is the default of every list in a request."""
+    return hasattr(value, "__len__") and len(value) == 0
+
+
+def _is_not_zero(value: object) -> bool:
+    return any(value) if hasattr(value, "__iter__") else bool(value)
+
+
+def _either(words: list[str]) -> str:
+    return " or ".join([", ".join(words[:-1]), words[-1]] if words[1:] else words)
+
+
+_EXPLICIT: Final = When("state_source", ("STATE_EXPLICIT",))
+_PUBLISHED: Final = When("state_source", ("STATE_NEWEST", "STATE_AT_STAMP"))
+_FOUND: Final = When("contact_source", ("CONTACTS_FROM_GEOMETRY",))
+_IN_PLANE: Final = When("problem", ("PLANAR",))
+_MAY_BE_PLANAR: Final = When("problem", ("AUTOMATIC", "PLANAR"))
+_IN_TIME: Final = When("several_contacts_law", ("SEQUENTIAL_IN_TIME",))
+_PLANE: Final = ("plane_normal", "out_of_plane_tolerance")
+
+_STATE: Final = (
+    ReadIf(("state",), (_EXPLICIT,)),
+    ReadIf(("stamp",), (When("state_source", ("STATE_AT_STAMP",)),)),
+)
+_FITTED_STATE: Final = (*_STATE, ReadIf(("fit_window",), (_PUBLISHED,)))
+_CONTACTS: Final = ReadIf(("contacts",), (When("contact_source", ("CONTACTS_EXPLICIT",)),))
+_CONTACT_MODES: Final = (
+    *_STATE,
+    _CONTACTS,
+    ReadIf(_PLANE, (_MAY_BE_PLANAR,)),
+    ReadIf(("distance_tolerance",), (_FOUND, _MAY_BE_PLANAR)),
+    ReadIf(("friction_facets",), (When("problem", ("AUTOMATIC", "SPATIAL")),)),
+)
+
+CONTACT_MODE: Final = (
+    *_CONTACT_MODES,
+    # AUTOMATIC solves these in space, because no plane holds uncertain contacts.
+    ReadIf(_PLANE, (_IN_PLANE, When("want_geometry_margins", is_zero=True))),
+    ReadIf(_PLANE, (_IN_PLANE, When("uncertainty_points", is_zero=True))),
+    ReadIf(_PLANE, (_IN_PLANE, When("uncertainty_normals", is_zero=True))),
+    ReadIf(("margin_length",), (When("want_margins"), When("want_statics"))),
+)
+"""The fields of `PredictContactMode`."""
+
+CONTACT_MODE_BATCH: Final = (*_CONTACT_MODES, ReadIf(("margin_length",), (When("want_margins"),)))
+"""The fields of `PredictContactModeBatch`."""
+
+IMPACT: Final = (
+    *_FITTED_STATE,
+    _CONTACTS,
+    ReadIf(("horizon",), (_FOUND,)),
+    ReadIf(_PLANE, (_IN_PLANE,)),
+    ReadIf(("distance_tolerance",), (_FOUND, _IN_TIME, _IN_PLANE)),
+    ReadIf(("strike_window", "most_strikes", "hold_step"), (_IN_TIME,)),
+)
+"""The fields of `PredictImpact`."""
+
+TUMBLING: Final = (
+    *_FITTED_STATE,
+    ReadIf(("times",), (When("sampling", ("AT_TIMES",)),)),
+    ReadIf(("stamps_ns",), (When("sampling", ("AT_STAMPS",)),)),
+    ReadIf(("rate", "duration"), (When("sampling", ("AT_RATE", "UNTIL_CONTACT", "UNTIL_PLANE")),)),
+    ReadIf(("plane_point", "plane_normal", "body_point"), (When("sampling", ("UNTIL_PLANE",)),)),
+    # Only a body without a torque has polhode and herpolhode.
+    ReadIf(("curve_points",), (When("applied_wrench.torque", is_zero=True),)),
+    ReadIf(("curve_points",), (When("linear_angular_drag", is_zero=True),)),
+    ReadIf(("curve_points",), (When("quadratic_angular_drag", is_zero=True),)),
+)
+"""The fields of `PredictTumbling`."""
+
+TOSS: Final = (
+    *_FITTED_STATE,
+    ReadIf(
+        (
+            "strikes",
+            "to_rest",
+            "seed",
+            "parameter_covariance",
+            "velocity_spread",
+            "spin_spread",
+            "height_spread",
+            "lasting_factor_stds",
+        ),
+        (When("samples"),),
+    ),
+)
+"""The fields of `PredictToss`."""
