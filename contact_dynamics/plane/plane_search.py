@@ -1,4 +1,9 @@
-"""Finds the plane in which a problem in space is planar, or most nearly so."""
+"""Finds the plane in which a problem in space is planar, or most nearly so.
+
+Its normal is chosen so that the letters for left and right mean the same under every load and motion: seen
+with the normal towards the viewer and up as up, +x is to the right, or +y if the plane is nearer to y. In the
+vertical plane halfway between +x and -y, +x is to the right. A plane that is nearly level is seen from above.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +15,15 @@ import numpy as np
 from contact_dynamics.errors import OutOfPlaneError
 from contact_dynamics.numerics.linear_spaces import rough_span
 from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, scaled, without
-from contact_dynamics.plane.projection import PlaneOfMotion, fit_of, in_floats, projected, rows_of, three_of
+from contact_dynamics.plane.projection import (
+    STEEP,
+    PlaneOfMotion,
+    fit_of,
+    in_floats,
+    projected,
+    rows_of,
+    three_of,
+)
 from contact_dynamics.tolerances import OUT_OF_PLANE_RATIO, OUT_OF_PLANE_SPEED
 
 if TYPE_CHECKING:
@@ -56,6 +69,9 @@ def best_plane(
     ``speed_tolerance`` (m/s) and couples no inertia beyond `OUT_OF_PLANE_RATIO`. If none does, it is the one
     that leaves out least.
 
+    Of the two unit normals of a plane, the one is returned that does not depend on load and motion, as the
+    head of this file says.
+
     Raises:
         OutOfPlaneError: no plane contains all contact normals and the force.
     """
@@ -71,7 +87,7 @@ def _best_fit(
             "contact normals", "normals and an applied force that span space", "vectors in a common plane"
         )
     if len(fixed) == 2:
-        return fit_of(seen, PlaneOfMotion(normal_W=np.array(cross(fixed[0], fixed[1]))))
+        return fit_of(seen, PlaneOfMotion(normal_W=np.array(_seen_from(cross(fixed[0], fixed[1])))))
     best: PlaneFit | None = None
     for seed in _axis_candidates(seen, fixed, three_of(torque_W)):
         across = seed
@@ -80,7 +96,7 @@ def _best_fit(
         length = norm(across)
         if length <= OUT_OF_PLANE_RATIO * norm(seed):
             continue
-        fit = fit_of(seen, PlaneOfMotion(normal_W=np.array(scaled(across, 1.0 / length))))
+        fit = fit_of(seen, PlaneOfMotion(normal_W=np.array(_seen_from(scaled(across, 1.0 / length)))))
         if fit.speed <= speed_tolerance and fit.coupling <= OUT_OF_PLANE_RATIO:
             return fit
         if best is None or fit.speed < best.speed:
@@ -88,6 +104,16 @@ def _best_fit(
     if best is None:  # cannot be: of the world's axes at least two are not parallel to one direction
         raise OutOfPlaneError("plane_normal", "no candidate", "an explicit normal")
     return best
+
+
+def _seen_from(normal: Vector3) -> Vector3:
+    """Return the unit normal of a plane, or its opposite, that points to whom the letters are meant for."""
+    n_x, n_y, n_z = normal
+    right_x, right_y = -n_y, n_x  # times the sine of its slope: what is to the right of whom the normal sees
+    towards = right_x + right_y
+    if abs(towards) <= OUT_OF_PLANE_RATIO:
+        towards = right_x
+    return normal if (n_z if abs(n_z) >= STEEP else towards) > 0.0 else scaled(normal, -1.0)
 
 
 def _axis_candidates(seen: ProblemInFloats, fixed: list[Vector3], torque: Vector3) -> Iterator[Vector3]:

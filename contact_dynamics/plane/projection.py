@@ -1,7 +1,8 @@
 """This file projects questions onto a plane of motion, and says by how much they are not planar.
 
 The plane passes through the centre of mass. Look at it with its normal towards you and a contact's normal up:
-then the mode letter for *right* means to your right. Turning the plane over swaps left and right.
+then the mode letter for *right* means to your right. Turning the plane over swaps left and right. A plane
+that `plane_search` finds is seen from a side that does not depend on load and motion.
 
 A spatial problem is planar if nothing couples it to motion out of the plane. This is so if velocities,
 contact normals and the applied force lie in the plane, and the plane's normal is a principal axis. Contacts
@@ -29,7 +30,7 @@ from contact_dynamics.validation import FloatArray, check_unit
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-_STEEP: Final = 0.8
+STEEP: Final = 0.8
 """Cosine to the world's up above which a normal counts as upright. It is then over 36 degrees off x."""
 
 
@@ -58,7 +59,7 @@ class PlaneOfMotion(Record):
         """Check the normal, and complete the axes."""
         object.__setattr__(self, "normal_W", check_unit("plane_normal", self.normal_W, 3))
         normal = three_of(self.normal_W)
-        y = normalised(without((0.0, 0.0, 1.0) if abs(normal[2]) < _STEEP else (1.0, 0.0, 0.0), normal))
+        y = normalised(without((0.0, 0.0, 1.0) if abs(normal[2]) < STEEP else (1.0, 0.0, 0.0), normal))
         axes = np.array((cross(y, normal), y))
         axes.flags.writeable = False
         object.__setattr__(self, "axes_W", axes)

@@ -70,6 +70,41 @@ def test_a_push_beyond_friction_makes_it_slide(problem: Problem) -> None:
         np.testing.assert_allclose(mode.tangential_directions_W, [[1, 0, 0]] * 4, rtol=0.0, atol=1e-9)
 
 
+@pytest.mark.parametrize("degrees", [*range(-180, 180, 15), -46, -44, 134, 136])
+@pytest.mark.parametrize("moves", ["by a push", "already", "turning"])
+def test_right_is_the_same_direction_under_every_load_and_motion(degrees: int, moves: str) -> None:
+    """Towards +x or +y, whichever is nearer to the plane; +x where both are."""
+    azimuth = math.radians(degrees)
+    along = np.array([math.cos(azimuth), math.sin(azimuth), 0.0])
+    asked = ContactModeQuestion(body="cube", state=state(), contacts=below())
+    if moves == "by a push":
+        asked = replace(asked, force_W=9.0 * HOLDS * along)
+    elif moves == "already":
+        asked = replace(asked, state=state(v=tuple(0.3 * along)))
+    else:  # the foot is half a side below the centre of mass
+        spin = np.cross(along, [0.0, 0.0, 1.0]) * 0.3 / HALF
+        asked = replace(asked, state=state(w=tuple(spin)))
+    found = answer(asked, KNOWLEDGE)
+    assert found.plane is not None
+    towards = along[0] + along[1] if abs(along[0] + along[1]) > 1e-9 else along[0]
+    assert [mode.mode for mode in found.modes] == ["r" if towards > 0.0 else "l"]
+    right_W = np.cross([0.0, 0.0, 1.0], found.plane.normal_W)
+    np.testing.assert_allclose(right_W, math.copysign(1.0, towards) * along, rtol=0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_level_plane_is_seen_from_above(sign: float) -> None:
+    """A wall in front, in weightlessness: what is to the right of who looks at it from above is -y."""
+    wall = ContactSet(p_WC_W=[[-HALF, 0, 1]], normals_W=[[1, 0, 0]], frictions=0.1, restitutions=0.0)
+    push = ContactModeQuestion(
+        body="cube", state=state(), contacts=wall, gravity_W=[0, 0, 0], force_W=[-1, sign, 0]
+    )
+    found = answer(push, KNOWLEDGE)
+    assert found.plane is not None
+    np.testing.assert_array_equal(found.plane.normal_W, [0, 0, 1])
+    assert [mode.mode for mode in found.modes] == ["l" if sign > 0.0 else "r"]
+
+
 def test_the_margin_is_what_is_left_of_friction() -> None:
     """The margin is the shortest way in the metric. Along the push alone it would be mu m g - F."""
     push = 0.25 * HOLDS
