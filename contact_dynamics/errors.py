@@ -27,6 +27,14 @@ class InvalidFieldError(ContactDynamicsError, ValueError):
         return type(self), (self.field, _short(self.found), self.allowed)
 
 
+class WrongTypeError(InvalidFieldError, TypeError):
+    """An argument or a field has another type than its annotation says: a `Body` for a `MassProperties`."""
+
+    def __init__(self, field: str, found: object, allowed: str) -> None:
+        super().__init__(field, found, allowed)
+        self.args = (f"{field} must be {allowed}, got {_short(found)}",)
+
+
 class TooLargeError(InvalidFieldError):
     """A list is longer than the stated limit."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import enum
 import html
+import inspect
 import math
 from collections.abc import Iterable, Mapping
 from decimal import Decimal
@@ -12,6 +13,8 @@ from fractions import Fraction
 from typing import Any, Final
 
 import numpy as np
+
+from contact_dynamics.validation_types import checks_fields
 
 _DIGITS: Final = 6
 """Significant digits of a number that is shown. `to_dict` keeps all of them."""
@@ -44,10 +47,17 @@ class Record:
     """A value of named fields, made by `dataclasses.dataclass` with ``repr=False``.
 
     Fields whose name begins with an underscore, functions, and fields of ``field(repr=False)``, which are how
-    a value works inside, are not shown.
+    a value works inside, are not shown. A record that checks its fields when it is made, in
+    ``__post_init__``, has their types checked first.
     """
 
     __slots__ = ()
+
+    def __init_subclass__(cls) -> None:
+        """Have the types of fields checked, once, although `dataclass` makes a class with slots anew."""
+        post_init = vars(cls).get("__post_init__")
+        if post_init is not None and not hasattr(post_init, "__wrapped__"):
+            type.__setattr__(cls, "__post_init__", checks_fields(post_init, inspect.get_annotations(cls)))
 
     def __repr__(self) -> str:
         """Return the fields in one line: short numbers, names of enumerations, shapes of long arrays."""

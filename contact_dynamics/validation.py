@@ -6,8 +6,7 @@ Only constructors of domain types and public functions call these. The code behi
 from __future__ import annotations
 
 import math
-from enum import Enum
-from typing import TYPE_CHECKING, Any, Final, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 
@@ -18,7 +17,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 FloatArray: TypeAlias = "NDArray[np.float64]"
-Choice = TypeVar("Choice", bound=Enum)
 
 _FEW: Final = 20
 
@@ -29,7 +27,7 @@ def check_finite(field: str, value: Any) -> float:
         return value
     try:
         number = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidFieldError(field, value, "a finite number") from None
     if not math.isfinite(number):
         raise InvalidFieldError(field, value, "a finite number")
@@ -69,14 +67,6 @@ def check_whole(field: str, value: Any, lowest: int, highest: int | None = None)
     return int(value)
 
 
-def check_choice(field: str, value: Any, kind: type[Choice]) -> Choice:
-    """Return ``value`` if it is a member of the enumeration ``kind``. Names and numbers are refused."""
-    if isinstance(value, kind):
-        return value
-    found = f"{type(value).__name__}.{value.name}" if isinstance(value, Enum) else repr(value)
-    raise InvalidFieldError(field, found, " or ".join(f"{kind.__name__}.{one.name}" for one in kind))
-
-
 def check_array(field: str, value: ArrayLike, shape: tuple[int | None, ...]) -> FloatArray:
     """Return a read-only float64 copy of ``value`` with the given shape, all finite. None is any length.
 
@@ -86,7 +76,7 @@ def check_array(field: str, value: ArrayLike, shape: tuple[int | None, ...]) -> 
         raise InvalidFieldError(field, value, f"real numbers of shape {_in_words(shape)}")
     try:
         array = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidFieldError(field, value, f"numbers of shape {_in_words(shape)}") from None
     if array.shape != shape and not _fits(array.shape, shape):
         raise InvalidFieldError(field, f"shape {array.shape}", f"shape {_in_words(shape)}")

@@ -44,7 +44,7 @@ def check_rows(
     try:
         single = np.ndim(value) == len(shape)
         array = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidFieldError(field, value, f"numbers, (N, *{shape}) or {shape}") from None
     rows = check_array(field, array[None] if single else array, (None, *shape))
     if test is not None:

@@ -20,6 +20,7 @@ from contact_dynamics.calibration.result import Calibration, Estimate, MeasuredG
 from contact_dynamics.calibration.slides import lasting_frictions
 from contact_dynamics.calibration.strikes import strikes_of
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.evaluation.motion import MeasuredMotion
 from contact_dynamics.numerics.vectors import tangents
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.shapes.convex import ConvexShape
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     from contact_dynamics.calibration.first_flights import Gravity
     from contact_dynamics.calibration.observed import Observed
     from contact_dynamics.calibration.slides import LastingFriction
-    from contact_dynamics.evaluation.motion import MeasuredMotion
     from contact_dynamics.validation import FloatArray
 
 DIRECTION_SHARE: Final = 0.2

@@ -13,6 +13,7 @@ from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact.uncertainty import ContactUncertainty
 from contact_dynamics.contact.velocities import spatial_contact_velocities
+from contact_dynamics.validation_types import check_types_of
 
 __all__ = [
     "Contact",
@@ -23,6 +24,8 @@ __all__ = [
     "linearised_cone",
     "spatial_contact_velocities",
 ]
+
+check_types_of(globals())
 
 
 def __dir__() -> list[str]:

@@ -56,6 +56,7 @@ from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
 from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial.sliding import spatial_sliding_modes
 from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
+from contact_dynamics.validation_types import check_types_of
 
 __all__ = [
     "BodyStatics",
@@ -86,6 +87,8 @@ __all__ = [
     "statics",
     "wrench_sets",
 ]
+
+check_types_of(globals())
 
 
 def __dir__() -> list[str]:

@@ -11,7 +11,7 @@ from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.questions.impact_question import InTime
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import HOLD_STEP
-from contact_dynamics.validation import check_choice, check_positive
+from contact_dynamics.validation import check_positive
 
 HORIZONS: Final = (0.02, 0.05, 0.1, 0.2)
 """s before an event."""
@@ -83,6 +83,4 @@ class Settings(Record):
             raise InvalidFieldError("horizons, laws", "an empty list", "one at least of each")
         horizons = tuple(sorted({check_positive("horizons", horizon) for horizon in self.horizons}))
         object.__setattr__(self, "horizons", horizons)
-        for law in self.laws:
-            check_choice("laws", law, Law)
         object.__setattr__(self, "fit_window", check_positive("fit_window", self.fit_window))

@@ -46,6 +46,7 @@ from contact_dynamics.impact.several.settling import settling_impact
 from contact_dynamics.impact.spatial.batch import SpatialImpacts, StrikingBodies, spatial_impacts
 from contact_dynamics.impact.spatial.one_contact import spatial_impact, spatial_pair_impact
 from contact_dynamics.impact.spatial.result import SpatialImpact
+from contact_dynamics.validation_types import check_types_of
 
 __all__ = [
     "BodiesImpact",
@@ -87,6 +88,8 @@ __all__ = [
     "spatial_impacts",
     "spatial_pair_impact",
 ]
+
+check_types_of(globals())
 
 
 def __dir__() -> list[str]:

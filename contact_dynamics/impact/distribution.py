@@ -27,7 +27,6 @@ from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.validation import (
     FloatArray,
     check_array,
-    check_choice,
     check_magnitude,
     check_not_negative,
     check_whole,
@@ -158,7 +157,6 @@ def spatial_impact_distribution(
             semidefinite, or the number of samples is odd or outside [2, 1 000 000]. A covariance beyond
             `MOST_VARIANCE` and a seed that is no whole number >= 0 are refused too.
     """
-    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     check_striking(body, state, contact.p_WC_W)
     draws = _draw(covariance, 12, samples, seed)

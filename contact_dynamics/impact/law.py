@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
 import numpy as np
 
 from contact_dynamics.records import NamedInt
-from contact_dynamics.validation import check_choice
 from contact_dynamics.validation_batches import check_rows
+from contact_dynamics.validation_types import Expected, check_type
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -246,7 +246,7 @@ def check_law_rows(field: str, value: ArrayLike) -> FloatArray:
         given: Any = value if several else [value]
         for i, law in enumerate(given):
             if type(law) not in {int, float} and not isinstance(law, np.number):
-                check_choice(f"{field}[{i}]" if several else field, law, RestitutionLaw)
+                check_type(f"{field}[{i}]" if several else field, law, Expected((RestitutionLaw,)))
     known = [float(law) for law in RestitutionLaw]
     allowed = " or ".join(f"{law.name} ({law.value})" for law in RestitutionLaw)
     return check_rows(field, value, (), allowed, lambda x: np.isin(x, known))

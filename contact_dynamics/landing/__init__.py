@@ -7,6 +7,7 @@ of them use `acceleration_bounds`, which says for how long nothing can touch. `s
 
 from contact_dynamics.landing.earliest import Landing, next_landing
 from contact_dynamics.landing.plane_arrival import FirstContact, first_contact
+from contact_dynamics.validation_types import check_types_of
 
 __all__ = [
     "FirstContact",
@@ -14,6 +15,8 @@ __all__ = [
     "first_contact",
     "next_landing",
 ]
+
+check_types_of(globals())
 
 
 def __dir__() -> list[str]:

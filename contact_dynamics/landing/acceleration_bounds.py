@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.validation import FloatArray
 
-    Motion: TypeAlias = FreeMotion | ForcedMotion
+Motion: TypeAlias = FreeMotion | ForcedMotion
 
 _GYROSCOPIC: Final = 1.0 / math.sqrt(3.0)
 _DEGREE: Final = 7

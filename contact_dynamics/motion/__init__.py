@@ -20,6 +20,7 @@ from contact_dynamics.motion.free_fit import FitResult, StateNoise, fit_free_mot
 from contact_dynamics.motion.integrated import ChosenMotion, ForcedMotion, Method, forced_motion, motion_of
 from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
 from contact_dynamics.motion.integrated_fit import fit_motion
+from contact_dynamics.validation_types import check_types_of
 
 __all__ = [
     "CarriedCovariance",
@@ -42,6 +43,8 @@ __all__ = [
     "rotation_derivatives",
     "state_derivatives",
 ]
+
+check_types_of(globals())
 
 
 def __dir__() -> list[str]:

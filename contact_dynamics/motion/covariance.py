@@ -38,7 +38,7 @@ from contact_dynamics.rotations.many import rotation_vectors, turned
 from contact_dynamics.tolerances import NEGATIVE_VARIANCE_TOLERANCE
 from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
 from contact_dynamics.tumbling.poinsot_construction import polhode_period
-from contact_dynamics.validation import FloatArray, check_array, check_choice
+from contact_dynamics.validation import FloatArray, check_array
 from contact_dynamics.validation_batches import check_covariance
 
 if TYPE_CHECKING:
@@ -119,7 +119,6 @@ def covariance_along(
         InvalidFieldError: an error of `propagate_covariance`, or there are fewer than `FEWEST_SAMPLES`
             samples.
     """
-    check_choice("method", method, PropagationMethod)
     start = check_covariance("covariance", covariance)
     seconds = check_array("times", times, (None,))
     probes = _probes(motion, seconds)

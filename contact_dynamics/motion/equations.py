@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
@@ -17,11 +18,9 @@ from contact_dynamics.rotations.one import Quaternion, conjugate, normalised, pr
 from contact_dynamics.tumbling import Sample
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
     from contact_dynamics.validation import FloatArray
 
-    WrenchFunction: TypeAlias = Callable[[float, Sample], tuple[Sequence[float], Sequence[float]]]
+WrenchFunction: TypeAlias = Callable[[float, Sample], tuple[Sequence[float], Sequence[float]]]
 
 VARIABLES: Final = 13
 """Deviations of position (m) and velocity (m/s) from the free parabola, quaternion, L / I_max (rad/s)."""
@@ -108,7 +107,7 @@ class MotionLaw:
 def _checked(wrench: Any) -> tuple[Sequence[float], Sequence[float]]:
     try:
         force, torque = ([float(x) for x in vector] for vector in wrench)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidFieldError("wrench_of", wrench, "a function that returns two vectors") from None
     for name, vector in (("force", force), ("torque", torque)):
         if len(vector) != 3 or not all(map(math.isfinite, vector)):

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.records import NamedInt, Record
-from contact_dynamics.validation import FloatArray, check_array, check_choice, check_not_negative
+from contact_dynamics.validation import FloatArray, check_array, check_not_negative
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -55,7 +55,6 @@ class ConstantWrench(Record):
         """Check all fields."""
         object.__setattr__(self, "force", check_array("force", self.force, (3,)))
         object.__setattr__(self, "torque", check_array("torque", self.torque, (3,)))
-        check_choice("axes", self.axes, WrenchAxes)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)

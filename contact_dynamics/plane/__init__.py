@@ -15,6 +15,7 @@ from contact_dynamics.plane.projection import (
     project_onto_plane,
 )
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.validation_types import check_types_of
 
 __all__ = [
     "PlanarBody",
@@ -28,6 +29,8 @@ __all__ = [
     "planar_in_space",
     "project_onto_plane",
 ]
+
+check_types_of(globals())
 
 
 def __dir__() -> list[str]:

@@ -176,7 +176,7 @@ def check_vector2(field: str, value: Vector2) -> Vector2:
     """Return ``value`` as a pair of floats up to `LARGEST_NUMBER`, or raise `InvalidFieldError`."""
     try:
         x, y = value
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidFieldError(field, value, "two finite numbers") from None
     # The common case comes first. NaN compares as false.
     if type(x) is float and type(y) is float and abs(x) + abs(y) <= LARGEST_NUMBER:

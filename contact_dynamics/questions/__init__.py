@@ -46,6 +46,7 @@ from contact_dynamics.questions.subject import FitQuality, PublishedState
 from contact_dynamics.questions.toss import TossAnswer, TossPath, TossQuestion, TossSampling
 from contact_dynamics.questions.tumbling import TumblingAnswer, TumblingQuestion
 from contact_dynamics.questions.uncertain_state import UncertainState
+from contact_dynamics.validation_types import check_types_of
 
 __all__ = [
     "AtRate",
@@ -79,6 +80,8 @@ __all__ = [
     "UntilPlane",
     "ask",
 ]
+
+check_types_of(globals())
 
 
 def __dir__() -> list[str]:

@@ -14,7 +14,7 @@ from contact_dynamics.questions.knowledge import check_optional
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.subject import NEWEST, StateSource
 from contact_dynamics.records import Record
-from contact_dynamics.validation import FloatArray, check_array, check_choice, check_positive, check_whole
+from contact_dynamics.validation import FloatArray, check_array, check_positive, check_whole
 from contact_dynamics.world import Body
 
 if TYPE_CHECKING:
@@ -107,7 +107,6 @@ class ContactModeQuestion(Record):
 
     def __post_init__(self) -> None:
         """Check the vectors, the numbers and the choice of the problem."""
-        check_choice("problem", self.problem, Problem)
         object.__setattr__(self, "force_W", check_array("force_W", self.force_W, (3,)))
         object.__setattr__(self, "torque_W", check_array("torque_W", self.torque_W, (3,)))
         if self.gravity_W is not None:

@@ -13,7 +13,7 @@ from contact_dynamics.questions.knowledge import check_optional
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.subject import NEWEST, StateSource
 from contact_dynamics.records import Record
-from contact_dynamics.validation import check_choice, check_positive
+from contact_dynamics.validation import check_positive
 from contact_dynamics.world import Body
 
 
@@ -90,9 +90,5 @@ class ImpactQuestion(Record):
 
     def __post_init__(self) -> None:
         """Check the numbers and the choices."""
-        check_choice("problem", self.problem, Problem)
-        check_choice("restitution_law", self.restitution_law, RestitutionLaw)
-        if not isinstance(self.several_contacts_law, InTime):
-            check_choice("several_contacts_law", self.several_contacts_law, SeveralContactsLaw)
         for name in ("horizon", "out_of_plane_tolerance", "velocity_tolerance", "distance_tolerance"):
             object.__setattr__(self, name, check_optional(name, getattr(self, name)))

@@ -58,6 +58,9 @@ class Knowledge(Record):
     defaults: Defaults = field(default_factory=Defaults)
     now_ns: Callable[[], int | None] | None = None
 
+    def __post_init__(self) -> None:
+        """Leave the fields as they are, now that `Record` has checked their types."""
+
 
 def or_default(asked: float | None, default: float) -> float:
     """Return the value of a question's field, or the default if the field is None."""

@@ -18,7 +18,7 @@ from contact_dynamics.impact import ImpactOutcome, RestitutionLaw, StrikingBodie
 from contact_dynamics.questions.knowledge import Knowledge, check_optional, or_default
 from contact_dynamics.records import Record
 from contact_dynamics.tumbling import states_of_many
-from contact_dynamics.validation import FloatArray, check_array, check_choice
+from contact_dynamics.validation import FloatArray, check_array
 from contact_dynamics.validation_batches import (
     check_not_negative_rows,
     check_rows,
@@ -144,7 +144,6 @@ class ManyImpactsQuestion(Record):
 
     def __post_init__(self) -> None:
         """Check the lengths, the numbers and the law."""
-        check_choice("restitution_law", self.restitution_law, RestitutionLaw)
         n = len(self.states)
         points = check_array("p_WC_W", self.p_WC_W, (n, 3))
         object.__setattr__(self, "p_WC_W", points)

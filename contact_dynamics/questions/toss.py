@@ -30,7 +30,7 @@ from contact_dynamics.toss.one_toss import HORIZON, MOST_ALTERNATIVES
 from contact_dynamics.toss.sampled import MOST_SAMPLES, MOST_STRIKES
 from contact_dynamics.toss.uncertainty import EXACT, check_factors
 from contact_dynamics.tumbling import Trajectory
-from contact_dynamics.validation import FloatArray, check_choice, check_positive, check_whole
+from contact_dynamics.validation import FloatArray, check_positive, check_whole
 from contact_dynamics.world import Body
 
 STRIKES = 2
@@ -103,7 +103,6 @@ class TossQuestion(Record):
 
     def __post_init__(self) -> None:
         """Check the numbers and the law."""
-        check_choice("restitution_law", self.restitution_law, RestitutionLaw)
         for name in ("horizon", "rate"):
             value = getattr(self, name)
             object.__setattr__(self, name, None if value is None else check_positive(name, value))

@@ -14,6 +14,7 @@ from contact_dynamics.rigid_body.body import (
     momentum,
     rotational_energy,
 )
+from contact_dynamics.validation_types import check_types_of
 
 __all__ = [
     "BodyState",
@@ -24,6 +25,8 @@ __all__ = [
     "momentum",
     "rotational_energy",
 ]
+
+check_types_of(globals())
 
 
 def __dir__() -> list[str]:

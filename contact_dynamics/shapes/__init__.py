@@ -19,6 +19,7 @@ from contact_dynamics.shapes.convex import (
     sphere,
 )
 from contact_dynamics.shapes.obstacle import Obstacle
+from contact_dynamics.validation_types import check_types_of
 
 __all__ = [
     "ConvexShape",
@@ -34,6 +35,8 @@ __all__ = [
     "rounded",
     "sphere",
 ]
+
+check_types_of(globals())
 
 
 def __dir__() -> list[str]:

@@ -35,6 +35,7 @@ from contact_dynamics.toss.result import (
 )
 from contact_dynamics.toss.sampled import sampled_toss
 from contact_dynamics.toss.uncertainty import TossUncertainty
+from contact_dynamics.validation_types import check_types_of
 
 __all__ = [
     "Toss",
@@ -49,6 +50,8 @@ __all__ = [
     "sampled_toss",
     "toss",
 ]
+
+check_types_of(globals())
 
 
 def __dir__() -> list[str]:

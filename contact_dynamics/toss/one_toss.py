@@ -21,7 +21,7 @@ from contact_dynamics.toss.distinct_corners import with_distinct_corners
 from contact_dynamics.toss.following import Following
 from contact_dynamics.toss.solid import solid_of
 from contact_dynamics.toss.uncertainty import check_factors
-from contact_dynamics.validation import check_choice, check_positive, check_whole
+from contact_dynamics.validation import check_positive, check_whole
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -73,7 +73,6 @@ def toss(
         InvalidFieldError: a number is not allowed.
         TooLargeError: a flight takes too many steps of the search for its end.
     """
-    check_choice("restitution_law", restitution_law, RestitutionLaw)
     factors = check_factors("lasting_factors", lasting_factors)
     body, indices = with_distinct_corners(body)
     solid = solid_of(body, world, indices=indices, lasting_factors=factors)

@@ -15,6 +15,7 @@ from contact_dynamics.tumbling.many import flips_of_many, rotations_of_many, sta
 from contact_dynamics.tumbling.motion import FreeMotion, Sample, Trajectory, free_motion
 from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves, poinsot, rolling_curves
 from contact_dynamics.tumbling.regime import Regime
+from contact_dynamics.validation_types import check_types_of
 
 __all__ = [
     "Flips",
@@ -33,6 +34,8 @@ __all__ = [
     "rotations_of_many",
     "states_of_many",
 ]
+
+check_types_of(globals())
 
 
 def __dir__() -> list[str]:

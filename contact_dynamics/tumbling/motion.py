@@ -36,7 +36,7 @@ from contact_dynamics.rotations.one import (
 )
 from contact_dynamics.tolerances import LARGEST_NUMBER
 from contact_dynamics.tumbling.constants import constants_of
-from contact_dynamics.validation import FloatArray, check_array, check_choice, check_magnitude, check_within
+from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_within
 
 if TYPE_CHECKING:
     from decimal import Decimal
@@ -260,7 +260,6 @@ def free_motion(
         InvalidFieldError: gravity is not three finite numbers, or a number is beyond what doubles can square
             (`LARGEST_NUMBER`).
     """
-    check_choice("precision", precision, Precision)
     gravity = check_array("gravity_W", gravity_W, (3,))
     check_extent(body, state, gravity)
     constants = constants_of(body.I_B.tobytes(), state.q_WB.tobytes(), state.w_WB_W.tobytes(), precision)

@@ -20,6 +20,7 @@ CHAPTERS = (
     "errors",
     "constants",
     "tolerances",
+    "validation_types",
     "records",
     "version",
     "validation",
@@ -198,6 +199,7 @@ def test_the_root_keeps_few_files() -> None:
         "tolerances",
         "validation",
         "validation_batches",
+        "validation_types",
         "version",
         "world",
     }

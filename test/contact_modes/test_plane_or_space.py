@@ -77,7 +77,7 @@ def test_an_answer_belongs_to_its_problem() -> None:
         mode_margins(PLANAR, deep)  # type: ignore[call-overload]
     with pytest.raises(InvalidFieldError, match="SpatialContactProblem with PlanarModeAnswer"):
         refused_modes(SPATIAL, flat)  # type: ignore[call-overload]
-    with pytest.raises(InvalidFieldError, match="problem: found PlanarBody"):
+    with pytest.raises(InvalidFieldError, match=r"^problem must be .*, got a PlanarBody$"):
         statics(PLANAR.body)  # type: ignore[arg-type]
     with pytest.raises(InvalidFieldError, match="margin_length"):
         refused_modes(PLANAR, flat, margin_length=1.0)  # type: ignore[call-overload]

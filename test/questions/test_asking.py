@@ -21,5 +21,5 @@ def test_each_kind_is_answered() -> None:
 
 def test_what_is_no_question_is_refused() -> None:
     nothing: Any = "where?"
-    with pytest.raises(InvalidFieldError, match="question: found str, allowed is a TumblingQuestion, an Imp"):
+    with pytest.raises(InvalidFieldError, match="question must be a TumblingQuestion or an Imp"):
         ask(nothing)

@@ -173,7 +173,7 @@ def test_automatic_says_why_it_went_to_space() -> None:
 def test_numbers_without_sense_are_refused() -> None:
     with pytest.raises(InvalidFieldError, match="force_W"):
         ContactModeQuestion(body=CUBE, force_W=[math.nan, 0, 0])
-    with pytest.raises(InvalidFieldError, match=r"problem: found 1, allowed is Problem\.AUTOMATIC"):
+    with pytest.raises(InvalidFieldError, match=r"problem must be Problem\.AUTOMATIC .* got 1"):
         ContactModeQuestion(body=CUBE, problem=1)  # type: ignore[arg-type]
     with pytest.raises(InvalidFieldError, match="friction_facets: found 2"):
         ContactModeQuestion(body=CUBE, friction_facets=2)

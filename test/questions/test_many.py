@@ -115,7 +115,7 @@ def test_no_state_and_no_impact_are_answered() -> None:
             "normals_W: found 2 rows, allowed is 40, or one for all",
         ),
         ({"p_WC_W": np.ones((2, 3))}, "p_WC_W: found shape"),
-        ({"restitution_law": "newton"}, "restitution_law: found 'newton'"),
+        ({"restitution_law": "newton"}, "restitution_law must be .* got 'newton'"),
         ({"velocity_tolerance": -1.0}, "velocity_tolerance: found -1"),
     ],
 )

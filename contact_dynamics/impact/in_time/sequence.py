@@ -35,7 +35,6 @@ from contact_dynamics.tolerances import (
 )
 from contact_dynamics.validation import (
     check_array,
-    check_choice,
     check_not_negative,
     check_positive,
 )
@@ -86,7 +85,6 @@ def impact_sequence(
         InvalidFieldError: a number is not allowed.
         NoContactError: the body has no shape that could touch anything.
     """
-    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     held = None if hold_step is None else check_positive("hold_step", hold_step)
     work = SearchWork("strike_window")
@@ -144,7 +142,6 @@ def impact_sequence_of(
         InvalidFieldError: a number is not allowed, or a contact has curvature, so that it is no fixed point
             of the body.
     """
-    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     held = None if hold_step is None else check_positive("hold_step", hold_step)
     if contacts.body_curvatures is not None or contacts.surface_curvatures is not None:

@@ -17,7 +17,7 @@ from contact_dynamics.impact.energy import ManyEnergies
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw, refuse_unknown
 from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import FloatArray, check_choice, check_magnitude, check_not_negative
+from contact_dynamics.validation import FloatArray, check_magnitude, check_not_negative
 from contact_dynamics.validation_batches import (
     check_not_negative_rows,
     check_positive_rows,
@@ -110,7 +110,6 @@ def planar_impacts(
         InvalidFieldError: a number is not allowed or beyond `LARGEST_NUMBER`, or a mass or an inertia is
             below its inverse. The message names the field and the first row.
     """
-    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     fields = {
         "masses": check_sizes("masses", check_positive_rows("masses", masses)),

@@ -17,7 +17,7 @@ from contact_dynamics.impact.planar.result import PlanarImpact
 from contact_dynamics.impact.planar.routh import impulse_path, inverse_inertia
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, Vector2
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_choice, check_not_negative
+from contact_dynamics.validation import check_not_negative
 
 
 def planar_impact(
@@ -44,7 +44,6 @@ def planar_impact(
 
     Source: lecture 27, eqs. 2 to 10; Routh 1860; Stronge 1990 for the energetic law.
     """
-    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     n_x, n_y = contact.normal
     r_x, r_y = contact.r

@@ -38,7 +38,7 @@ from contact_dynamics.impact.several.sequential import (
     strike_in_turn,
 )
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_choice, check_positive, check_whole
+from contact_dynamics.validation import check_positive, check_whole
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -128,7 +128,6 @@ def outcomes_over_orders(
             number >= 1.
         TooLargeError: the orders take more strikes together than `MOST_STRIKES_OVER_ORDERS`.
     """
-    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     most_orders = check_whole("most_orders", most_orders, 1)
     touching = Touching([body], contacts, [(0, None)] * len(contacts), restitution_law, tolerance)
@@ -182,7 +181,6 @@ def outcomes_at_once(
         InvalidFieldError: there are no contacts, the tolerance is not > 0, ``most_orders`` is no whole number
             >= 1, or the law is the energetic one.
     """
-    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     most_orders = check_whole("most_orders", most_orders, 1)
     touching = Touching([body], contacts, [(0, None)] * len(contacts), restitution_law, tolerance)

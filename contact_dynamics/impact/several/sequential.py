@@ -26,7 +26,7 @@ from contact_dynamics.impact.spatial.one_contact import check_striking, spatial_
 from contact_dynamics.numerics.vectors import point_jacobians
 from contact_dynamics.rigid_body.body import inverse_mass_matrix
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_choice, check_positive
+from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -68,8 +68,6 @@ def bodies_impact(
         InvalidFieldError: there are no contacts, lists differ in length, an index has no body, the tolerance
             is not > 0, or ENERGETIC and SIMULTANEOUS are asked for together.
     """
-    check_choice("several_contacts_law", several_contacts_law, SeveralContactsLaw)
-    check_choice("restitution_law", restitution_law, RestitutionLaw)
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     _check_pairs(bodies, states, contacts, pairs)
     touching = Touching(bodies, contacts, pairs, restitution_law, tolerance)

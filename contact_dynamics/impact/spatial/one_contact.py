@@ -34,7 +34,6 @@ from contact_dynamics.impact.spatial.result import SpatialImpact
 from contact_dynamics.impact.spatial.sliding_law import SlidingLaw, followed_friction
 from contact_dynamics.tolerances import LARGEST_ARM, LARGEST_NUMBER, VELOCITY_TOLERANCE
 from contact_dynamics.validation import (
-    check_choice,
     check_not_negative,
 )
 
@@ -115,7 +114,6 @@ def _impact(
     velocity_tolerance: float,
 ) -> SpatialImpact:
     """Return the impact of a body on ``other``, or on the fixed world if ``other`` is None."""
-    check_choice("restitution_law", law, RestitutionLaw)
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
 
     first, second = _responding(body, state, contact.p_WC_W), None

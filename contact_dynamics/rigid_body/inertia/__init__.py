@@ -40,6 +40,7 @@ from contact_dynamics.rigid_body.inertia.solids import (
 )
 from contact_dynamics.rigid_body.inertia.system_of_particles import particles
 from contact_dynamics.rigid_body.inertia.triangle_mesh import convex_hull, mesh
+from contact_dynamics.validation_types import check_types_of
 
 __all__ = [
     "InertiaEllipsoid",
@@ -69,6 +70,8 @@ __all__ = [
     "tube",
     "without",
 ]
+
+check_types_of(globals())
 
 
 def __dir__() -> list[str]:

@@ -111,7 +111,7 @@ class _Edges:
 def _check_indices(triangles: ArrayLike, vertices: int) -> NDArray[np.int64]:
     try:
         given = np.asarray(triangles)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidFieldError("triangles", triangles, "whole numbers of shape (n, 3)") from None
     if given.ndim != 2 or given.shape[1] != 3:
         raise InvalidFieldError("triangles", f"shape {given.shape}", "shape (n, 3)")

@@ -1,0 +1,273 @@
+"""The check of types: what public functions and records are given is what their annotations say.
+
+A chapter's page checks the functions that it offers (`check_types_of`), so that functions call each other
+without a check. A record that checks its fields when it is made has their types checked first (`Record`).
+Numbers and arrays are left to the checks of `validation`, which take whatever NumPy makes numbers of.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import collections.abc
+import dataclasses
+import functools
+import inspect
+import re
+import sys
+import types
+import typing
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from enum import Enum
+from typing import Any, Final, NamedTuple, NoReturn, ParamSpec, TypeGuard, TypeVar
+
+import numpy as np
+
+from contact_dynamics.errors import WrongTypeError
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+_NUMBERS: Final = {"int", "float", "complex", "ArrayLike", "FloatArray", "IntArray", "NDArray", "Vector2"}
+_UNCHECKED: Final = {*_NUMBERS, "Any", "object"}
+_FUNCTION: Final[type] = Callable  # type: ignore[assignment]  # a class in all that it is used for here
+_SEQUENCES: Final = (collections.abc.Sequence, Collection, tuple, list)
+
+
+class Expected(NamedTuple):
+    """What an argument may be.
+
+    Attributes:
+        types: The types of which it may be.
+        elements: What the elements of a sequence may be, or None if no sequence is allowed.
+    """
+
+    types: tuple[type, ...]
+    elements: Expected | None = None
+
+
+def check_types_of(page: dict[str, Any]) -> None:
+    """Make the functions that a chapter's page offers check the types of their arguments.
+
+    Args:
+        page: The page's ``globals()``, with ``__all__``.
+    """
+    for name in page["__all__"]:
+        function = page[name]
+        if inspect.isfunction(function) and not hasattr(function, "__wrapped__"):
+            checked = checks_types(function)
+            if checked is not function:
+                checked.__module__ = page["__name__"]  # where pickle finds it
+                page[name] = checked
+
+
+def checks_types(function: Callable[P, R]) -> Callable[P, R]:
+    """Return the function with a check of its arguments' types, or itself if all of them are numbers.
+
+    The function raises `WrongTypeError` where an argument has another type than its annotation.
+    """
+    annotations = {name: text for name, text in function.__annotations__.items() if name != "return"}
+    if _is_numeric(annotations.values()):
+        return function
+    by_name: dict[str, Expected] = {}
+    by_place: list[tuple[str, Expected | None]] = []
+
+    @functools.wraps(function)
+    def checked(*args: P.args, **kwargs: P.kwargs) -> R:
+        if not by_place:
+            by_name.update(_expected(annotations, vars(sys.modules[function.__module__])))
+            by_place.extend((name, by_name.get(name)) for name in inspect.signature(function).parameters)
+        for value, (name, expected) in zip(args, by_place, strict=False):
+            if expected is not None and not isinstance(value, expected.types):
+                check_type(name, value, expected)
+        for name, value in kwargs.items():
+            if name in by_name and not isinstance(value, by_name[name].types):
+                check_type(name, value, by_name[name])
+        return function(*args, **kwargs)
+
+    return checked
+
+
+def checks_fields(post_init: Callable[[Any], None], annotations: Mapping[str, str]) -> Callable[[Any], None]:
+    """Return a record's ``__post_init__`` that checks the types of the fields first.
+
+    A sequence becomes a tuple, which nobody can change afterwards.
+    """
+    if _is_numeric(annotations.values()):
+        return post_init
+    expected_of: list[tuple[str, Expected]] | None = None
+
+    @functools.wraps(post_init)
+    def checked(self: Any) -> None:
+        nonlocal expected_of
+        if expected_of is None:
+            given = {
+                one.name: annotations[one.name]
+                for one in dataclasses.fields(self)
+                if one.init and one.name in annotations
+            }
+            expected_of = [*_expected(given, vars(sys.modules[type(self).__module__])).items()]
+        for name, expected in expected_of:
+            value = getattr(self, name)
+            if not isinstance(value, expected.types):
+                if type(value) is not tuple and expected.elements is not None and _is_iterable(value):
+                    value = tuple(value)
+                    object.__setattr__(self, name, value)
+                check_type(name, value, expected)
+        post_init(self)
+
+    return checked
+
+
+def check_type(field: str, value: object, expected: Expected) -> None:
+    """Raise `WrongTypeError` if a value is not what is expected."""
+    if isinstance(value, expected.types):
+        return
+    if expected.elements is None or not _is_iterable(value) or isinstance(value, Iterator):
+        _refuse(field, value, expected)
+    for i, element in enumerate(value):
+        if not isinstance(element, expected.elements.types):
+            check_type(f"{field}[{i}]", element, expected.elements)
+
+
+def in_words(value: object) -> str:
+    """Return what a value is, in the words of an error."""
+    if value is None:
+        return "None"
+    if isinstance(value, Enum):
+        return f"{type(value).__name__}.{value.name}"
+    if isinstance(value, type):
+        return f"the class {value.__name__}"
+    kind = _with_article(type(value).__name__)
+    return f"{value!r}, {kind}" if isinstance(value, str | bytes | int | float) else kind
+
+
+def members_in_words(kind: type[Enum]) -> str:
+    """Return the members of an enumeration in the words of an error."""
+    return " or ".join(f"{kind.__name__}.{one.name}" for one in kind)
+
+
+def _is_iterable(value: object) -> TypeGuard[Iterable[object]]:
+    """Tell whether a value can be gone through, without strings, and without mappings, which give keys."""
+    if isinstance(value, tuple | list):  # the common case
+        return True
+    scalar = isinstance(value, np.ndarray) and value.ndim == 0
+    return isinstance(value, Iterable) and not scalar and not isinstance(value, str | bytes | Mapping)
+
+
+def _refuse(field: str, value: object, expected: Expected) -> NoReturn:
+    """Raise the error, with a hint where a field of the value is what is expected."""
+    found = in_words(value)
+    for name in getattr(type(value), "__dataclass_fields__", ()):
+        if isinstance(getattr(value, name), tuple({*expected.types} - {type(None), str})):
+            found += f", whose {name} is one"
+            break
+    raise WrongTypeError(field, found, _expected_in_words(expected))
+
+
+def _expected_in_words(expected: Expected) -> str:
+    words = []
+    for kind in expected.types:
+        if kind is type(None):
+            words.append("None")
+        elif issubclass(kind, Enum):
+            words.append(members_in_words(kind))
+        elif kind is bool:
+            words.append("True or False")
+        elif kind is _FUNCTION:
+            words.append("a function")
+        elif kind is not np.bool_:
+            words.append(_with_article(kind.__name__))
+    if expected.elements is not None:
+        each = " or ".join(kind.__name__ for kind in expected.elements.types)
+        words.insert(0, f"a sequence of {each}")
+    return " or ".join(words)
+
+
+def _with_article(name: str) -> str:
+    return f"{'an' if name[0] in 'AEIOUaeiou' else 'a'} {name}"
+
+
+def _is_numeric(annotations: Collection[str]) -> bool:
+    """Tell whether annotations are of numbers and arrays alone, without a look at what the names mean."""
+    return {*re.findall(r"\w+", " ".join(annotations))} <= {*_UNCHECKED, "None"}
+
+
+def _expected(annotations: Mapping[str, str], module: Mapping[str, Any]) -> dict[str, Expected]:
+    """Return what arguments may be, by name, without those that are numbers or arrays."""
+    found = {
+        name: _expected_by(ast.parse(text, mode="eval").body, module) for name, text in annotations.items()
+    }
+    return {name: expected for name, expected in found.items() if expected is not None}
+
+
+def _expected_by(node: ast.expr, module: Mapping[str, Any]) -> Expected | None:
+    """Return what a value with this annotation may be, or None for numbers and arrays."""
+    if isinstance(node, ast.Constant):
+        return Expected((type(None),)) if node.value is None else _expected_of(node.value, module)
+    if isinstance(node, ast.BinOp):  # lazily, since the other side of a number need not be defined
+        return _either(_expected_by(side, module) for side in (node.left, node.right))
+    if isinstance(node, ast.Subscript):
+        return _generic(node, module)
+    if isinstance(node, ast.Name) and node.id not in _UNCHECKED:
+        return _expected_of(*_named(node.id, module))
+    return None
+
+
+def _generic(node: ast.Subscript, module: Mapping[str, Any]) -> Expected | None:
+    """Return what a value may be whose annotation has parameters."""
+    if not isinstance(node.value, ast.Name) or node.value.id in _UNCHECKED:
+        return None
+    outer, _ = _named(node.value.id, module)
+    inner: ast.expr | None = node.slice
+    if isinstance(inner, ast.Tuple):  # any length, as in tuple[Body, ...]
+        ellipsis = isinstance(inner.elts[-1], ast.Constant) and inner.elts[-1].value is ...
+        inner = inner.elts[0] if ellipsis else None
+    if outer in _SEQUENCES:
+        elements = None if inner is None else _expected_by(inner, module)
+        return None if elements is None else Expected((), elements)
+    return _expected_of(outer, module)
+
+
+def _expected_of(kind: object, module: Mapping[str, Any]) -> Expected | None:
+    """Return what a value of this type may be. A string is an annotation of the module."""
+    if isinstance(kind, str):
+        return _expected_by(ast.parse(kind, mode="eval").body, module)
+    if isinstance(kind, types.UnionType):
+        return _either(_expected_of(one, module) for one in typing.get_args(kind))
+    if kind is bool:
+        return Expected((bool, np.bool_))
+    if typing.get_origin(kind) is Callable:
+        kind = Callable
+    return Expected((kind,)) if isinstance(kind, type) and kind.__name__ not in _UNCHECKED else None
+
+
+def _either(options: Iterable[Expected | None]) -> Expected | None:
+    """Return what a value may be that is one or the other. If one is a number, it is not checked here."""
+    known = []
+    for one in options:
+        if one is None:
+            return None
+        known.append(one)
+    elements = [one.elements for one in known if one.elements is not None]
+    return Expected(
+        tuple(kind for one in known for kind in one.types), _either(elements) if elements else None
+    )
+
+
+def _named(name: str, module: Mapping[str, Any]) -> tuple[Any, Mapping[str, Any]]:
+    """Return what a name of an annotation means, and the names of the module where that was found.
+
+    Modules import what stands in annotations for the type checker only. A name means one thing in this
+    package, so that it is found where it is defined.
+    """
+    ours = (
+        vars(each)
+        for path, each in list(sys.modules.items())
+        if path.startswith(f"{__package__}.") and each is not None
+    )
+    for names in (module, vars(collections.abc), vars(typing), vars(builtins), *ours):
+        found = names.get(name)
+        if found is not None and not isinstance(found, types.ModuleType):
+            return found, names
+    raise NameError(f"{name} of an annotation in {module['__name__']} is not defined")

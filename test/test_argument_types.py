@@ -1,0 +1,166 @@
+"""What public functions and records are given has the types that their annotations say."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import pickle
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+
+from architecture.test_doors import CHAPTERS
+from contact_dynamics import (
+    Body,
+    ContactSet,
+    PlanarBody,
+    PlanarContact,
+    PlanarContactProblem,
+    PlanarWrench,
+    Surface,
+    World,
+    free_motion,
+    impact,
+    landing,
+    motion,
+    questions,
+    spatial_impact,
+    toss,
+)
+from contact_dynamics.contact_modes import contact_modes
+from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, WrongTypeError
+from contact_dynamics.records import Record
+from contact_dynamics.validation_types import checks_types
+from hostile_values.shared import BALL, BOX, CONTACT, CONTACTS, FLOOR, ROD, STATE, TIP, WORLD
+
+TOUCH = PlanarContact(**TIP)
+PUSH = PlanarWrench(f=(0.0, -1.0))
+
+WRONG: list[tuple[Any, dict[str, Any], str]] = [
+    (free_motion, {"body": BOX, "state": STATE}, "body must be a MassProperties, got a Body"),
+    (spatial_impact, {"body": BALL, "state": STATE, "contact": CONTACTS}, "contact must be a Contact, got a"),
+    (
+        impact.several_impact,
+        {"body": BALL, "state": STATE, "contacts": [CONTACT]},
+        "contacts must be a ContactSet, got a list",
+    ),
+    (World, {"bodies": BOX}, "bodies must be a sequence of Body, got a Body"),
+    (World, {"bodies": {"box": BOX}}, "bodies must be a sequence of Body, got a dict"),
+    (World, {"bodies": [BOX, "box"]}, "bodies[1] must be a Body, got 'box', a str"),
+    (World, {"surfaces": [BOX]}, "surfaces[0] must be a Surface or an Obstacle, got a Body"),
+    (Body, {"name": 3, "mass_properties": BALL}, "name must be a str, got 3, an int"),
+    (
+        PlanarContactProblem,
+        {"body": ROD, "contacts": [TOUCH], "wrench": (0, -1, 0)},
+        "wrench must be a PlanarWrench, got a tuple",
+    ),
+    (
+        PlanarContactProblem,
+        {"body": ROD, "contacts": TOUCH, "wrench": PUSH},
+        "contacts must be a sequence of PlanarContact, got a PlanarContact",
+    ),
+    (contact_modes, {"problem": ROD}, "problem must be a PlanarContactProblem or a SpatialContactProblem, "),
+    (
+        impact.spatial_impacts,
+        {"bodies": None, "normals_W": 0, "frictions": 0, "restitutions": 0},
+        "bodies must be a StrikingBodies, got None",
+    ),
+    (motion.motion_of, {"body": BALL, "state": STATE, "wrench_of": 3}, "wrench_of must be a function or"),
+    (motion.motion_of, {"body": BALL, "state": STATE, "wrench": [1.0]}, "wrench must be a ConstantWrench, "),
+    (toss.toss, {"body": BALL, "state": STATE, "world": WORLD}, "body must be a Body, got a MassProperties"),
+    (toss.toss, {"body": BOX, "state": STATE, "world": Body}, "world must be a World, got the class Body"),
+    (
+        questions.ImpactQuestion,
+        {"body": BOX, "want_orders": "no"},
+        "want_orders must be True or False, got 'no', a str",
+    ),
+    (questions.Knowledge, {"world": BOX}, "world must be a World, got a Body"),
+    (questions.ask, {"question": BOX}, "question must be a TumblingQuestion or an ImpactQuestion or a "),
+    (landing.next_landing, {"body": BOX, "state": STATE, "world": FLOOR, "horizon": 1}, "world must be a "),
+]
+"""Calls, their arguments, and how their errors begin."""
+
+
+@pytest.mark.parametrize(("call", "arguments", "text"), WRONG)
+def test_a_wrong_type_is_an_error_that_names_it(call: Any, arguments: dict[str, Any], text: str) -> None:
+    with pytest.raises(WrongTypeError) as raised:
+        call(**arguments)
+    assert str(raised.value).startswith(text)
+    assert isinstance(raised.value, ContactDynamicsError)
+    assert isinstance(raised.value, TypeError)
+    again = pickle.loads(pickle.dumps(raised.value))  # noqa: S301  our own
+    assert (type(again), str(again)) == (WrongTypeError, str(raised.value))
+
+
+def test_an_argument_is_checked_by_place_and_by_name() -> None:
+    with pytest.raises(WrongTypeError, match=r"^state must be a BodyState, got a MassProperties$"):
+        free_motion(BALL, BALL)
+    with pytest.raises(WrongTypeError, match=r"^state must be a BodyState, got a MassProperties$"):
+        free_motion(BALL, state=BALL)
+
+
+def test_the_field_that_was_meant_is_named() -> None:
+    with pytest.raises(WrongTypeError, match=r"got a Body, whose mass_properties is one$"):
+        free_motion(BOX, STATE)
+
+
+def test_a_sequence_may_be_any_and_becomes_a_tuple() -> None:
+    bodies = [BOX]
+    for given in (bodies, {"box": BOX}.values(), (one for one in bodies), np.array(bodies)):
+        assert World(bodies=given).bodies == (BOX,)
+    world = World(bodies=bodies)
+    bodies.append(BOX)
+    assert len(world.bodies) == 1
+
+
+def test_subclasses_and_numpys_booleans_are_of_the_type() -> None:
+    class Cup(Body):
+        pass
+
+    cup = Cup(name=np.str_("cup"), mass_properties=BALL)
+    assert World(bodies=[cup]).body("cup") is cup
+    assert questions.ImpactQuestion(body=cup, want_orders=np.True_).want_orders
+
+
+def public() -> list[tuple[str, Any]]:
+    """Return all functions and records of the chapters' pages."""
+    found = {}
+    for chapter in CHAPTERS:
+        page = importlib.import_module(f"contact_dynamics.{chapter}")
+        for name in page.__all__:
+            thing = getattr(page, name)
+            if inspect.isfunction(thing) or (inspect.isclass(thing) and issubclass(thing, Record)):
+                found[f"{chapter}.{name}"] = thing
+    return [*found.items()]
+
+
+@pytest.mark.parametrize(("name", "thing"), public())
+def test_a_check_leaves_no_trace(name: str, thing: Any) -> None:
+    """Help, signatures, and references between processes are as without a check."""
+    if inspect.isclass(thing):
+        return
+    inner = inspect.unwrap(thing)
+    assert (thing.__name__, thing.__doc__) == (inner.__name__, inner.__doc__)
+    assert inspect.signature(thing) == inspect.signature(inner)
+    assert pickle.loads(pickle.dumps(thing)) is thing  # noqa: S301  our own
+    assert getattr(sys.modules[inner.__module__], inner.__name__) is inner, name
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_functions_of_numbers_have_no_check(count: int) -> None:
+    def double(x: float, y: float | None = None) -> float:
+        return 2.0 * x + (y or 0.0)
+
+    assert checks_types(double) is double
+    assert double(count) == 2.0 * count
+
+
+def test_what_is_wrong_in_another_way_is_still_told_as_before() -> None:
+    with pytest.raises(InvalidFieldError, match=r"^normal_W: found"):
+        Surface(**{**FLOOR, "normal_W": [0, 0, 2]})
+    with pytest.raises(TypeError, match="missing 1 required positional argument: 'contact'"):
+        spatial_impact(BALL, STATE)
+    assert isinstance(ContactSet.of([CONTACT]), ContactSet)
+    assert isinstance(PlanarBody(mass=1, inertia=True), PlanarBody)
