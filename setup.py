@@ -5,6 +5,7 @@ package.xml has the version and the description of the package, and requirements
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -14,12 +15,21 @@ from setuptools import find_packages, setup
 HERE = Path(__file__).resolve().parent
 MANIFEST = ET.parse(HERE / "package.xml").getroot()
 NAME = MANIFEST.findtext("name")
+REPOSITORY = ""
+"""The address of the files, with a slash at the end, for README's links on a package index. It is empty until
+there is one."""
 
 
 def requirements(kind: str) -> list[str]:
     """Return the lines of one file of requirements/, without comments."""
     lines = (HERE / "requirements" / f"{kind}.txt").read_text(encoding="utf-8").splitlines()
     return [line for line in lines if line and not line.startswith("#")]
+
+
+def readme() -> str:
+    """Return the README with absolute links, since a package index has no files beside it."""
+    text = (HERE / "README.md").read_text(encoding="utf-8")
+    return re.sub(r"\]\((?!https?:|#)", lambda _: f"]({REPOSITORY}", text)
 
 
 def files(pattern: str) -> list[str]:
@@ -31,7 +41,7 @@ setup(
     name=NAME,
     version=MANIFEST.findtext("version"),
     description=MANIFEST.findtext("description"),
-    long_description=(HERE / "README.md").read_text(encoding="utf-8"),
+    long_description=readme(),
     long_description_content_type="text/markdown",
     license=MANIFEST.findtext("license"),
     keywords=["contact mechanics", "friction", "impact", "rigid body", "robotics", "ROS 2"],

@@ -146,6 +146,7 @@ def described(*fields: str) -> list[str]:
 def test_the_metadata_describe_the_package_and_invent_nobody() -> None:
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     assert "\n".join(described("long-description")).strip() == readme.strip()
+    assert "<!--" not in readme
     pythons = [f"Programming Language :: Python :: 3.{minor}" for minor in range(10, 15)]
     assert set(pythons) <= set(described("classifiers"))
     assert described("maintainer", "maintainer-email", "author", "author-email", "url") == ["None"] * 5
@@ -209,11 +210,10 @@ def test_colcon_finds_both_packages_from_the_root() -> None:
     ]
 
 
-def paths_of_readme(command: str) -> list[list[str]]:
-    """The folders that the README names in each line that begins so."""
-    lines = re.findall(
-        rf"^{command} ([^-\n]*)", (ROOT / "README.md").read_text(encoding="utf-8"), re.MULTILINE
-    )
+def paths_of_quick_start(command: str) -> list[list[str]]:
+    """The folders that the quick start names in each line that begins so."""
+    page = (ROOT / "docs" / "quick-start-ros.md").read_text(encoding="utf-8")
+    lines = re.findall(rf"^{command} ([^-\n]*)", page, re.MULTILINE)
     return [line.split() for line in lines]
 
 
@@ -227,8 +227,8 @@ def workspace(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_rosdep_finds_both_packages_in_the_folders_that_the_readme_names(workspace: Path) -> None:
-    named = paths_of_readme("rosdep install --from-paths")
+def test_rosdep_finds_both_packages_in_the_folders_that_the_quick_start_names(workspace: Path) -> None:
+    named = paths_of_quick_start("rosdep install --from-paths")
     assert len(named) == 2
     for folder, paths in zip((workspace, workspace / "src" / "contact_dynamics"), named, strict=True):
         # What rosdep asks; it looks no further below a folder that is a package.
@@ -237,7 +237,7 @@ def test_rosdep_finds_both_packages_in_the_folders_that_the_readme_names(workspa
 
 
 def test_colcon_finds_both_packages_from_the_root_of_a_workspace(workspace: Path) -> None:
-    (paths,) = paths_of_readme("colcon build --base-paths")
+    (paths,) = paths_of_quick_start("colcon build --base-paths")
     listing = "from colcon_core.command import main; raise SystemExit(main())"
     answer = subprocess.run(
         [sys.executable, "-c", listing, "list", "--names-only", "--base-paths", *paths],
