@@ -47,6 +47,10 @@ class SeparatingContactError(InvalidFieldError):
     """An impact was asked for at a contact whose bodies move apart."""
 
 
+NORMAL_HINT: Final = "does the normal point into the first body?"
+"""What to ask of a contact that separates, and would strike if its normal were the opposite one."""
+
+
 class NoContactError(ContactDynamicsError):
     """A question was asked about contacts, but nothing touches or will touch."""
 

@@ -22,7 +22,7 @@ import numpy as np
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.curvature import Curvatures
 from contact_dynamics.contact.on_flats import flat_touches
-from contact_dynamics.contact.on_obstacles import touches_of
+from contact_dynamics.contact.on_obstacles import lowest_along, site_of, touches_of
 from contact_dynamics.errors import NoContactError
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
 from contact_dynamics.validation import check_not_negative
@@ -83,6 +83,26 @@ def find_contacts(
         body_curvatures=_sides([touch.body for touch in touches]),
         surface_curvatures=_sides([touch.surface for touch in touches]),
     )
+
+
+def nearest_surface(
+    body: Body, state: BodyState, surfaces: Sequence[Surface | Obstacle]
+) -> tuple[Surface | Obstacle, float] | None:
+    """Return the surface that a body with a shape is nearest to, and the gap to it, m. There may be none.
+
+    The gap is negative where they penetrate. Of an obstacle it may be less than the distance (`site_of`).
+    """
+    shape, R_WB = body.shape, state.R_WB
+    nearest = None
+    for surface in surfaces:
+        if isinstance(surface, Surface):
+            lowest = lowest_along(shape, state.p_WB_W, R_WB, surface.normal_W[None])
+            gap = float(lowest[0] - surface.p_WS_W @ surface.normal_W)
+        else:
+            gap = site_of(shape, state.p_WB_W, R_WB, surface).gap
+        if nearest is None or gap < nearest[1]:
+            nearest = surface, gap
+    return nearest
 
 
 def check_has_shape(body: Body) -> None:

@@ -69,7 +69,7 @@ def site_of(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, obstacle: 
         if len(group) == 0:
             continue
         levels = (group @ theirs.corners.T).max(axis=1)
-        gaps = _lowest(shape, p_WB_W, R_WB, group) - levels
+        gaps = lowest_along(shape, p_WB_W, R_WB, group) - levels
         i = int(gaps.argmax())
         if gaps[i] > best.gap + SAME_POINT:
             best = Site(float(gaps[i]), group[i], float(levels[i]))
@@ -96,7 +96,7 @@ def _axes(
     return (*polyhedral, away[sizes > SAME_POINT] / sizes[sizes > SAME_POINT, None])
 
 
-def _lowest(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, axes: FloatArray) -> FloatArray:
+def lowest_along(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, axes: FloatArray) -> FloatArray:
     """Return how far down, (n,), m, a body reaches along directions, (n, 3): minus its support function."""
     parts = [(p_WB_W + shape.vertices @ R_WB.T) @ axes.T]
     for rim in shape.rims:
@@ -125,7 +125,7 @@ def touches_of(
     frame = tangent_rows(n_W)
     touches = list(flat_touches(shape, p_WB_W, R_WB, n_W, level=site.level, tolerance=tolerance))
     upper = outline(np.array([touch.p_WC_W for touch in touches]).reshape(-1, 3), frame)
-    lowest = float(_lowest(shape, p_WB_W, R_WB, n_W[None])[0])
+    lowest = float(lowest_along(shape, p_WB_W, R_WB, n_W[None])[0])
     lower = outline(theirs.corners[theirs.corners @ n_W >= lowest - tolerance], frame)
     rounded = Rounded(1.0 / shape.rounding, tolerance) if shape.rounding > 0.0 and not shape.rims else None
     return overlap([touches[i] for i in upper.order], upper, lower, frame, rounded)

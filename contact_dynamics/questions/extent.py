@@ -25,6 +25,9 @@ MOST_INERTIA: Final = 1e30
 """The largest mass and moment of inertia allowed, in kg and kg m^2. The smallest is its inverse."""
 
 
+MOST_PUBLISHED_DISTANCE: Final = 1e12
+"""m from the world's origin, almost seven times the distance to the Sun. Doubles resolve 0.1 mm there."""
+
 MOST_PUBLISHED_SPEED: Final = 1e5
 """m/s, ten times what leaves the Earth."""
 
@@ -33,13 +36,14 @@ MOST_PUBLISHED_SPIN: Final = 1e6
 
 
 def check_believable(state: BodyState) -> None:
-    """Refuse a published state that is so fast that it must be a fault, by name.
+    """Refuse a published state that is so far away or so fast that it must be a fault, by name.
 
     Raises:
-        InvalidFieldError: it is faster than `MOST_PUBLISHED_SPEED`, or spins faster than
-            `MOST_PUBLISHED_SPIN`.
+        InvalidFieldError: it is farther away than `MOST_PUBLISHED_DISTANCE`, faster than
+            `MOST_PUBLISHED_SPEED`, or spins faster than `MOST_PUBLISHED_SPIN`.
     """
     for name, vector, most, unit in (
+        ("p_WB_W", state.p_WB_W, MOST_PUBLISHED_DISTANCE, "m"),
         ("v_WB_W", state.v_WB_W, MOST_PUBLISHED_SPEED, "m/s"),
         ("w_WB_W", state.w_WB_W, MOST_PUBLISHED_SPIN, "rad/s"),
     ):

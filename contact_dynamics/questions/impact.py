@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.errors import NoContactError, SeparatingContactError
+from contact_dynamics.errors import NORMAL_HINT, NoContactError, SeparatingContactError
 from contact_dynamics.impact import (
     SequenceEnd,
     bodies_impact,
@@ -138,11 +138,13 @@ def _in_time(question: ImpactQuestion, law: InTime, strike: Strike, knowledge: K
         )
         raise NoContactError(message)
     if not sequence.strikes:
-        raise SeparatingContactError(
-            "contacts",
-            "none that strikes",
-            f"one that approaches or comes back within the strike_window of {law.strike_window:g} s",
-        )
+        allowed = f"one that approaches or comes back within the strike_window of {law.strike_window:g} s"
+        if question.contacts is not None:
+            velocities = strike.state.velocity_of_point(strike.contacts.p_WC_W)
+            speeds = np.einsum("ij,ij->i", velocities, strike.contacts.normals_W)
+            if (speeds > strike.velocity_tolerance).any():
+                allowed += f" ({NORMAL_HINT})"
+        raise SeparatingContactError("contacts", "none that strikes", allowed)
     return sequence
 
 

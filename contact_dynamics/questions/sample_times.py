@@ -51,10 +51,11 @@ class AtTimes(Record):
     """Samples at given times after the state.
 
     Attributes:
-        times: (n,), s after the state's stamp, ascending, >= 0 (`AtStamps` reaches into the past).
+        times: (n,), s after the state's stamp, ascending, >= 0 (`AtStamps` reaches into the past). At least
+            one.
 
     Raises:
-        InvalidFieldError: a time is negative, not finite, or before the one in front of it.
+        InvalidFieldError: there is no time, or one is negative, not finite, or before the one in front of it.
         TooLargeError: more than `MOST_SAMPLES` times.
     """
 
@@ -68,7 +69,9 @@ class AtTimes(Record):
     def __post_init__(self) -> None:
         """Check the times."""
         times = _ascending("times", self.times)
-        if len(times) > 0 and times[0] < 0.0:
+        if len(times) == 0:
+            raise InvalidFieldError("times", "none", "at least one time")
+        if times[0] < 0.0:
             raise InvalidFieldError("times[0]", times[0], "a number >= 0 (stamps reach into the past)")
         object.__setattr__(self, "times", times)
 
@@ -78,10 +81,11 @@ class AtStamps(Record):
     """Samples at given stamps.
 
     Attributes:
-        stamps_ns: (n,), ns on the clock of the state's stamp, ascending, before or after that stamp.
+        stamps_ns: (n,), ns on the clock of the state's stamp, ascending, before or after that stamp. At least
+            one.
 
     Raises:
-        InvalidFieldError: a stamp is before the one in front of it.
+        InvalidFieldError: there is no stamp, or one is before the one in front of it.
         TooLargeError: more than `MOST_SAMPLES` stamps.
     """
 
@@ -96,6 +100,8 @@ class AtStamps(Record):
         """Check the stamps."""
         stamps = tuple(self.stamps_ns)
         _check_count("stamps_ns", len(stamps))
+        if not stamps:
+            raise InvalidFieldError("stamps_ns", "none", "at least one stamp")
         for i, (earlier, later) in enumerate(itertools.pairwise(stamps)):
             if later < earlier:
                 before = seconds_between(later, earlier)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from contact_dynamics.contact.found import find_contacts
+from contact_dynamics.contact.found import find_contacts, nearest_surface
 from contact_dynamics.errors import NoContactError
 
 if TYPE_CHECKING:
@@ -31,7 +31,13 @@ def contacts_of(
     contacts = find_contacts(body, subject.state, world.surfaces, distance_tolerance=distance_tolerance)
     if len(contacts) == 0:
         message = f"contacts: no point of {body.name!r} is within {distance_tolerance:g} m of a surface"
-        raise NoContactError(message)
+        nearest = nearest_surface(body, subject.state, world.surfaces)
+        if nearest is None:
+            raise NoContactError(f"{message}: the world has none")
+        surface, gap = nearest
+        raise NoContactError(
+            f"{message} (distance_tolerance): the nearest, {surface.name!r}, is {gap:.6g} m away"
+        )
     return contacts
 
 

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.contact.found import find_contacts
+from contact_dynamics.contact.found import find_contacts, nearest_surface
 from contact_dynamics.contact.on_flats import RIM_POINTS
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.landing.earliest import next_landing
@@ -28,7 +28,8 @@ from contact_dynamics.shapes.convex import (
     rounded,
     sphere,
 )
-from contact_dynamics.world import Body, Surface, World
+from contact_dynamics.shapes.obstacle import Obstacle
+from contact_dynamics.world import Body, Surface, World, box_vertices
 
 STUFF = MassProperties(mass=1.0, I_B=np.eye(3))
 FLOOR = Surface(
@@ -133,6 +134,34 @@ def test_the_tolerance_decides_what_touches(gap: float, tolerance: float) -> Non
         )
         touches = (height + gap) - height <= tolerance
         assert (len(found) > 0) == touches
+
+
+@pytest.mark.parametrize(
+    ("shape", "turn", "reach"),
+    [
+        (sphere(radius=0.2), None, 0.2),
+        (box(size=[0.2, 0.4, 0.6]), None, 0.3),
+        (cylinder(radius=0.1, length=0.4), ON_SIDE, 0.1),
+        (rounded(box(size=[0.2, 0.2, 0.2]), radius=0.05), None, 0.15),
+    ],
+)
+@pytest.mark.parametrize("gap", [0.01, -0.01])
+def test_the_nearest_surface_and_its_gap(
+    shape: ConvexShape, turn: Rotation | None, reach: float, gap: float
+) -> None:
+    table = Obstacle(
+        name="table",
+        vertices_W=box_vertices([2.0, 2.0, 0.5]) + np.array([0.0, 0.0, 0.25]),
+        friction=0.5,
+        restitution=0.0,
+    )
+    nearest = nearest_surface(body(shape), at((0.0, 0.0, 0.5 + reach + gap), turn), [FLOOR, WALL, table])
+    assert nearest is not None
+    assert nearest[0] is table
+    assert nearest[1] == pytest.approx(gap, abs=1e-15)
+    above_floor = nearest_surface(body(shape), at((0.0, 0.0, reach + gap), turn), [WALL, FLOOR])
+    assert above_floor is not None
+    assert (above_floor[0], above_floor[1]) == (FLOOR, pytest.approx(gap, abs=1e-15))
 
 
 def test_a_shape_moves_with_its_parts() -> None:

@@ -120,8 +120,8 @@ def tumbling_answers(draw: st.DrawFn, p_FB_F: np.ndarray = NO_OFFSET) -> Tumblin
 
 
 sampled = st.one_of(
-    st.builds(AtTimes, times=st.lists(st.floats(0.0, 9.0), max_size=3).map(sorted)),
-    st.builds(AtStamps, stamps_ns=st.lists(st.integers(0, 10**18), max_size=3).map(sorted)),
+    st.builds(AtTimes, times=st.lists(st.floats(0.0, 9.0), min_size=1, max_size=3).map(sorted)),
+    st.builds(AtStamps, stamps_ns=st.lists(st.integers(0, 10**18), min_size=1, max_size=3).map(sorted)),
     st.builds(AtRate, rate=some(positive), duration=some(not_negative)),
     st.builds(UntilContact, rate=some(positive), duration=some(not_negative)),
     st.builds(

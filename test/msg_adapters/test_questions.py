@@ -54,7 +54,8 @@ def read(request: Any) -> Any:
 
 @pytest.mark.parametrize("service", FROM_MSG)
 def test_a_request_that_only_names_a_body_leaves_all_else_to_what_is_known(service: Any) -> None:
-    question = read(service.Request(body_name="cube"))
+    about_times = {"times": [0.0]} if service is PredictTumbling else {}
+    question = read(service.Request(body_name="cube", **about_times))
     assert question.body is CUBE
     assert question.state is NEWEST
     for name in ("contacts", "horizon", "plane", "gravity_W", "velocity_tolerance", "distance_tolerance"):
@@ -62,7 +63,7 @@ def test_a_request_that_only_names_a_body_leaves_all_else_to_what_is_known(servi
 
 
 def test_published_states_are_named_by_stamp_and_window() -> None:
-    request = PredictTumbling.Request(body_name="cube", fit_window=0.25)
+    request = PredictTumbling.Request(body_name="cube", fit_window=0.25, times=[0.0])
     assert read(request).state == PublishedState(stamp_ns=None, fit_window=0.25)
     request.state_source = request.STATE_AT_STAMP
     assert read(request).state == PublishedState(stamp_ns=0, fit_window=0.25)
@@ -101,7 +102,10 @@ def test_an_inertia_without_mass_is_not_taken_for_none() -> None:
 
 def explicit(service: Any) -> Any:
     """Return a request of a service with a state of its own."""
-    return service.Request(body_name="cube", state_source=service.Request.STATE_EXPLICIT)
+    request = service.Request(body_name="cube", state_source=service.Request.STATE_EXPLICIT)
+    if service is PredictTumbling:
+        request.times = [0.0]
+    return request
 
 
 def test_an_explicit_state_may_be_uncertain() -> None:
@@ -130,7 +134,11 @@ def test_an_inertia_makes_another_body_of_the_known_one() -> None:
 )
 def test_samplings(sampling: int, kind: type) -> None:
     request = PredictTumbling.Request(body_name="cube", sampling=sampling)
-    if sampling >= 2:
+    if kind is AtTimes:
+        request.times = [0.5]
+    elif kind is AtStamps:
+        request.stamps_ns = [5]
+    else:
         request.duration = [1.5]
     if kind is UntilPlane:
         request.plane_normal.z = 1.0
@@ -141,7 +149,8 @@ def test_samplings(sampling: int, kind: type) -> None:
 
 
 def test_forces() -> None:
-    request = PredictTumbling.Request(body_name="cube", gravity=PredictTumbling.Request.GRAVITY_NONE)
+    request = PredictTumbling.Request(body_name="cube", times=[0.0])
+    request.gravity = request.GRAVITY_NONE
     request.quadratic_drag = 0.5
     question = read(request)
     assert question.wrench is NO_WRENCH
@@ -173,7 +182,7 @@ def test_a_second_body_is_there_where_anything_is_said_of_it() -> None:
 
 
 READ_WITH: dict[str, dict[str, Any]] = {
-    "rate": {"sampling": 2},
+    "rate": {"sampling": 2, "times": []},
     "margin_length": {"want_margins": True},
     "strike_window": {"several_contacts_law": 2},
     "most_strikes": {"several_contacts_law": 2},

@@ -189,6 +189,7 @@ CASES = [
         "INVALID_FIELD",
         "times[0]: found -0.1, allowed is a number >= 0",
     ),
+    (PredictTumbling, put("times", []), "INVALID_FIELD", "times: found none, allowed is at least one time"),
     (PredictTumbling, put("times", [0.0, math.nan]), "INVALID_FIELD", "times"),
     (
         PredictTumbling,
@@ -303,7 +304,10 @@ def test_what_was_found_is_quoted_in_part_if_it_is_long(client: Client, service:
 
 @pytest.mark.parametrize("service", SERVICES)
 def test_no_state_published_yet(client: Client, service: Any) -> None:
-    answer = client.ask(service.Request(body_name="brick"))
+    request = service.Request(body_name="brick")
+    if service is PredictTumbling:
+        request.times = [0.0]
+    answer = client.ask(request)
     assert answer.status == answer.NO_STATE
     assert "state of 'brick': none was published yet" in answer.message
 
@@ -317,7 +321,7 @@ def client_alone(tmp_path: Path) -> Iterator[Client]:
 
 
 def test_states_that_are_stale_or_make_no_sense(client_alone: Client) -> None:
-    """A stale state is refused with its age; one with a NaN or in another frame, or bytes, are not taken."""
+    """A stale state is refused with its age. One with a NaN, in another frame or too far away is not kept."""
     client = client_alone
     publisher = client.publisher(Odometry, "/brick/odometry")
     nonsense = Odometry()
@@ -327,12 +331,16 @@ def test_states_that_are_stale_or_make_no_sense(client_alone: Client) -> None:
     elsewhere = Odometry()
     elsewhere.header.stamp = nonsense.header.stamp
     elsewhere.header.frame_id = "map"
+    far = Odometry()
+    far.header = nonsense.header
+    far.pose.pose.position.x = 1e300
     old = Odometry()
     old.header.frame_id = "world"
     old.header.stamp.sec = nonsense.header.stamp.sec - 3
     publisher.publish(b"\0\1\0\0no message at all")
     publisher.publish(nonsense)
     publisher.publish(elsewhere)
+    publisher.publish(far)
     publisher.publish(old)
     request = PredictTumbling.Request(body_name="brick", times=[0.1])
     answers: list[Any] = []

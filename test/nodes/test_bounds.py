@@ -52,6 +52,7 @@ def carried_under_strong_drag() -> Any:
     request.state.angular_velocity.x = 1.0
     request.state.covariance = (1e-6 * np.eye(12)).ravel().tolist()
     request.linear_drag, request.want_covariance = 1000.0, True
+    request.times = []
     request.sampling, request.duration, request.rate = request.AT_RATE, [10.0], [10.0]
     return request
 
@@ -61,6 +62,8 @@ def explicit(service: Any) -> Any:
     request = service.Request(body_name="brick")
     request.state_source = request.STATE_EXPLICIT
     request.state.pose.position.z = 0.025
+    if service is PredictTumbling:
+        request.times = [0.0]
     return request
 
 

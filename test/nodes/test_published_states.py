@@ -226,6 +226,14 @@ def test_tumbling_from_the_newest_state(servers: Servers) -> None:
     check_flight(answer.trajectory, bodies[2], BRICK_MOMENTS, AT_ORIGIN)
 
 
+def asking_at(service: Any, stamp_ns: int) -> Any:
+    """Return a request about the brick at a stamp."""
+    request = service.Request(body_name="brick", state_source=2, stamp=stamp_to_msg(stamp_ns))
+    if service is PredictTumbling:
+        request.times = [0.0]
+    return request
+
+
 @pytest.mark.parametrize("service", [PredictTumbling, PredictImpact])
 def test_a_past_stamp_takes_the_state_between_those_around_it(servers: Servers, service: Any) -> None:
     client = servers.brick
@@ -241,18 +249,14 @@ def test_a_past_stamp_takes_the_state_between_those_around_it(servers: Servers, 
         (middle_ns, replace(bodies[1], p=half, stamp_ns=middle_ns)),
         (bodies[3].stamp_ns, bodies[3]),
     ):
-        answer = client.ask(service.Request(body_name="brick", state_source=2, stamp=stamp_to_msg(asked_ns)))
+        answer = client.ask(asking_at(service, asked_ns))
         assert answer.status == answer.OK, answer.message
         if service is PredictTumbling:
             check_state(answer.state, body)
         else:
             landing_ns = stamp_ns_from_msg(answer.state_before.header.stamp)
             assert landing_ns - body.stamp_ns == pytest.approx(1e9 * answer.time_to_contact, abs=1.0)
-    too_old = client.ask(
-        service.Request(
-            body_name="brick", state_source=2, stamp=stamp_to_msg(bodies[0].stamp_ns - 3_600_000_000_000)
-        )
-    )
+    too_old = client.ask(asking_at(service, bodies[0].stamp_ns - 3_600_000_000_000))
     assert too_old.status == too_old.NO_STATE
     assert "the oldest kept has" in too_old.message
 
@@ -264,10 +268,7 @@ def test_a_stamp_ahead_of_the_newest_state_follows_its_flight(servers: Servers) 
     body = Body()
     states.publish(body.odometry("brick"))
     flight = known(client, "brick", body.stamp_ns).trajectory
-    request = PredictTumbling.Request(
-        body_name="brick", state_source=2, stamp=stamp_to_msg(body.stamp_ns + 250_000_000)
-    )
-    answer = client.ask(request)
+    answer = client.ask(asking_at(PredictTumbling, body.stamp_ns + 250_000_000))
     assert answer.status == answer.OK, answer.message
     assert stamp_ns_from_msg(answer.state.header.stamp) == body.stamp_ns + 250_000_000
     for found, samples in (

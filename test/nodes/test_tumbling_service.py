@@ -247,6 +247,7 @@ def test_numbers_beyond_reason_are_refused_by_name(client: Client, field: str, s
 
 def test_curves_of_poinsots_picture_on_request(client: Client) -> None:
     request = spinning(w=(0.3, -0.5, 1.2), moments=(0.1, 0.14, 0.19))
+    request.times = [0.0]
     picture = client.ask(request).poinsot
     assert (len(picture.polhode), len(picture.herpolhode), len(picture.curve_times)) == (0, 0, 0)
     request.curve_points = 101

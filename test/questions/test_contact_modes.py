@@ -14,6 +14,7 @@ from contact_dynamics.errors import InvalidFieldError, NoContactError, OutOfPlan
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import ContactModeQuestion, Problem
 from contact_dynamics.questions.contact_modes import answer
+from contact_dynamics.world import World
 from questions.known_world import CUBE, FRICTION, GRAVITY, KNOWLEDGE, MASS, RESTING, SIDE, below, state
 
 ROUNDING = 1e-12  # a few operations on numbers of order 1 to 10
@@ -41,8 +42,14 @@ def test_contacts_are_found_from_the_shape() -> None:
     assert [mode.mode for mode in found.modes] == ["ffff"]
     forces = found.modes[0].contact_forces_W
     np.testing.assert_allclose(forces.sum(axis=0), [0, 0, WEIGHT], rtol=0.0, atol=1e-9)
-    with pytest.raises(NoContactError, match="no point of 'cube' is within"):
-        answer(replace(AT_REST, state=state()), KNOWLEDGE)
+    with pytest.raises(NoContactError) as caught:
+        answer(replace(AT_REST, state=state(HALF + 2e-4)), KNOWLEDGE)
+    assert str(caught.value) == (
+        "contacts: no point of 'cube' is within 1e-09 m of a surface (distance_tolerance): the nearest, "
+        "'floor', is 0.0002 m away"
+    )
+    with pytest.raises(NoContactError, match="'cube' is within 1e-09 m of a surface: the world has none"):
+        answer(AT_REST, replace(KNOWLEDGE, world=World(bodies=(CUBE,))))
 
 
 @pytest.mark.parametrize("exponent", [-30, -100, -139, -141, -155, -162, -200, -300, -318])

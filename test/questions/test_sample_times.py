@@ -16,6 +16,8 @@ from contact_dynamics.questions import AtRate, AtStamps, AtTimes, UntilContact, 
     [
         (lambda: AtTimes(times=[0.0, 0.2, 0.1]), r"times\[2\]: found 0.1 s before times\[1\]"),
         (lambda: AtTimes(times=[-0.1]), r"times\[0\]: found -0.1"),
+        (lambda: AtTimes(times=[]), "times: found none, allowed is at least one time"),
+        (lambda: AtStamps(stamps_ns=[]), "stamps_ns: found none, allowed is at least one stamp"),
         (lambda: AtTimes(times=[0.0, math.nan]), r"times\[1\]: found nan"),
         (lambda: AtStamps(stamps_ns=[2_000_000_000, 0]), r"stamps_ns\[1\]: found 2 s before stamps_ns\[0\]"),
         (lambda: AtRate(rate=-1.0), "rate: found -1.0"),

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.errors import SeparatingContactError
+from contact_dynamics.errors import NORMAL_HINT, SeparatingContactError
 from contact_dynamics.impact.energy import ManyEnergies
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw, refuse_unknown
 from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
@@ -157,7 +157,7 @@ def _strike(
         raise SeparatingContactError(
             f"contact normal velocity of case {first + i}",
             f"v_n = {v_n[i]:.9g} m/s",
-            f"at most {tolerance:g} m/s, since above it nothing strikes",
+            f"at most {tolerance:g} m/s, since above it nothing strikes ({NORMAL_HINT})",
         )
     v_n[v_n >= -tolerance] = 0.0
     v_t[(v_t >= -tolerance) & (v_t <= tolerance)] = 0.0

@@ -11,7 +11,7 @@ Other files treat several contacts at once (`impact.several`), two moving bodies
 
 from __future__ import annotations
 
-from contact_dynamics.errors import SeparatingContactError
+from contact_dynamics.errors import NORMAL_HINT, SeparatingContactError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.planar.result import PlanarImpact
 from contact_dynamics.impact.planar.routh import impulse_path, inverse_inertia
@@ -82,6 +82,6 @@ def approach(v_t: float, v_n: float, tolerance: float) -> Vector2:
         raise SeparatingContactError(
             "contact normal velocity",
             f"v_n = {v_n:.9g} m/s",
-            f"at most {tolerance:g} m/s, since above it nothing strikes",
+            f"at most {tolerance:g} m/s, since above it nothing strikes ({NORMAL_HINT})",
         )
     return (0.0 if -tolerance <= v_t <= tolerance else v_t, 0.0 if v_n >= -tolerance else v_n)

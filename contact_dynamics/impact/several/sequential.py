@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
+from contact_dynamics.errors import NORMAL_HINT, InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import BodiesImpact, SeveralContactsLaw, SeveralVerdict
 from contact_dynamics.impact.several.simultaneous import simultaneous_impulses
@@ -123,7 +123,7 @@ def check_touching(touching: Touching, states: Sequence[BodyState]) -> FloatArra
         raise SeparatingContactError(
             "contact normal velocity",
             f"v_n >= {slowest:.9g} m/s at every contact",
-            f"one of at most {tolerance:g} m/s",
+            f"one of at most {tolerance:g} m/s ({NORMAL_HINT})",
         )
     return velocities
 

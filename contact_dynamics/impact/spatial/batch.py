@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
+from contact_dynamics.errors import NORMAL_HINT, InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact.energy import ManyEnergies
 from contact_dynamics.impact.law import RestitutionLaw, check_law_rows
 from contact_dynamics.impact.spatial.batch_paths import trace_all
@@ -243,7 +243,7 @@ def _strike(
         raise SeparatingContactError(
             f"contact normal velocity of case {cases[i]}",
             f"v_n = {v_n[i]:.9g} m/s",
-            f"at most {tolerance:g} m/s, since above it nothing strikes",
+            f"at most {tolerance:g} m/s, since above it nothing strikes ({NORMAL_HINT})",
         )
     still = np.sqrt(u1 * u1 + u2 * u2) <= tolerance
     rests = v_n >= -tolerance

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
+from contact_dynamics.errors import NORMAL_HINT, InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.spatial.path import trace
 from contact_dynamics.impact.spatial.response import (
@@ -126,7 +126,7 @@ def _impact(
         raise SeparatingContactError(
             "contact normal velocity",
             f"v_n = {v_n:.9g} m/s",
-            f"at most {tolerance:g} m/s, since above it nothing strikes",
+            f"at most {tolerance:g} m/s, since above it nothing strikes ({NORMAL_HINT})",
         )
     still, rests = math.sqrt(u1 * u1 + u2 * u2) <= tolerance, v_n >= -tolerance
     if still:
