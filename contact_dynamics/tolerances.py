@@ -401,6 +401,15 @@ error that the weight of a wrench's height in that distance leaves."""
 SAME_IMPULSES: Final = 1e-8
 """Relative to the largest impulse. Two ways to a solution that differ by less have found the same one."""
 
+TIED_APPROACH: Final = 1e-9
+"""Relative to the largest velocity of the contacts just before the impact. Contacts whose approaches differ
+by no more approach equally fast. Rounding of attitudes and of some strikes leaves 1e-14, and no measurement
+is as good as this."""
+
+NO_SHARED_RESPONSE: Final = 1e-12
+"""Relative to the response along the normal. If equal impulses at tied contacts change their mean velocity by
+no more, they change it by rounding."""
+
 ENERGY_TOLERANCE: Final = 1e-12
 """Relative to the energy that an impact exchanges. If the gain is larger, the law creates energy. Rounding is
 about 1e-15 of the terms of the energy."""

@@ -193,7 +193,7 @@ def resolved_impact_from_msg(
         kinetic_energy_before=msg.kinetic_energy_before,
         kinetic_energy_after=msg.kinetic_energy_after,
         creates_energy=msg.creates_energy,
-        orders=tuple(tuple(map(int, order.split(","))) for order in msg.orders),
+        orders=tuple(tuple(int(i) for i in order.split(",") if i) for order in msg.orders),
         order_velocities_W=rows(msg.order_velocities, 6),
         orders_complete=msg.orders_complete,
         orders_not_converged=msg.orders_not_converged,

@@ -78,7 +78,7 @@ def resolved_impacts(
     strikes = draw(strikes_in_time(state.stamp_ns)) if (draw(flags) if in_time is None else in_time) else ()
     law = SeveralContactsLaw.SEQUENTIAL if strikes else draw(st.sampled_from(SeveralContactsLaw))
     orders: tuple[tuple[int, ...], ...] = draw(
-        st.lists(st.lists(indices, min_size=1, max_size=3).map(tuple), max_size=2).map(tuple)
+        st.lists(st.lists(indices, max_size=3).map(tuple), max_size=2).map(tuple)
     )
     told, k = draw(flags), draw(st.integers(0, 3))
     staying = draw(st.lists(indices, max_size=2).map(tuple)) if strikes else ()

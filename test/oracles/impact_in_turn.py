@@ -1,4 +1,7 @@
-"""Frictionless strikes in turn, in exact fractions: each takes a normal impulse (1 + e) v / k."""
+"""Frictionless strikes in turn, in exact fractions: each takes a normal impulse (1 + e) v / k.
+
+Corners that tie share an impulse equally, which then acts at their mean place.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,7 @@ def strikes(
 ) -> tuple[tuple[int, ...], Vector]:
     """Return which corners of a level body strike the floor below, in order, and v_z, w_x, w_y afterwards.
 
-    Each time the first in ``priority`` that approaches is struck, or without one the fastest.
+    Each time the first in ``priority`` that approaches is struck, or without one all that are fastest.
     """
     w_x, w_y = Fraction(0), Fraction(0)
     order: list[int] = []
@@ -28,8 +31,9 @@ def strikes(
         approaching = [i for i in (priority or range(len(corners))) if speeds[i] < -tolerance]
         if not approaching:
             return tuple(order), (v_z, w_x, w_y)
-        i = approaching[0] if priority else min(approaching, key=lambda j: speeds[j])
-        x, y = corners[i]
-        impulse = -(1 + e) * speeds[i] / (1 / mass + y * y / moments[0] + x * x / moments[1])
+        fastest = min(speeds[i] for i in approaching)
+        struck = approaching[:1] if priority else [i for i in approaching if speeds[i] == fastest]
+        x, y = (sum((corners[i][k] for i in struck), Fraction(0)) / len(struck) for k in (0, 1))
+        impulse = -(1 + e) * speeds[struck[0]] / (1 / mass + y * y / moments[0] + x * x / moments[1])
         v_z, w_x, w_y = v_z + impulse / mass, w_x + y * impulse / moments[0], w_y - x * impulse / moments[1]
-        order.append(i)
+        order += struck

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import groupby
 
 from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.impact.energy import created
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.spatial.result import SpatialImpact
 from contact_dynamics.records import NamedInt, Record
@@ -57,10 +59,14 @@ class ImpactSequence(Record):
         contacts: The contacts that were given. If they were found from geometry, those that struck or stay,
             each where it first did.
         strikes: The strikes in the order of time. Those of one instant are in the order of resolution.
+            Contacts that approach equally fast strike as one, each with its share of the impulse and the
+            state after all of them.
         end: Why there is no further strike.
         state: The state just after the last strike, or the first state if there is no strike.
         staying: Indices of the contacts that stay, if ``end`` is STAYS or CHATTERS.
         limit_seconds: s after the first state's stamp, the time from which on they stay, or None.
+        order_is_open: Whether several contacts approached at one instant, so that rigid-body mechanics allows
+            other orders of their strikes.
     """
 
     restitution_law: RestitutionLaw
@@ -71,6 +77,7 @@ class ImpactSequence(Record):
     state: BodyState
     staying: tuple[int, ...]
     limit_seconds: float | None
+    order_is_open: bool = False
 
     @property
     def seconds(self) -> float:
@@ -104,5 +111,17 @@ class ImpactSequence(Record):
 
     @property
     def creates_energy(self) -> bool:
-        """Return whether a strike gave the body energy, beyond rounding. Only Newton's law can do that."""
-        return any(strike.impact.creates_energy for strike in self.strikes)
+        """Return whether a strike gave the body energy, beyond rounding. Only Newton's law can do that.
+
+        Contacts that strike as one count together, since one of them may give what another takes.
+        """
+        return any(
+            strikes[0].impact.creates_energy
+            if len(strikes) == 1
+            else created(
+                sum(one.impact.energy_change for one in strikes),
+                sum(abs(one.impact.energy_change) for one in strikes),
+            )
+            for _, group in groupby(self.strikes, key=lambda strike: id(strike.impact.state))
+            for strikes in [tuple(group)]
+        )

@@ -3,8 +3,9 @@
 In recordings of real bodies, contacts that look simultaneous are mostly not. One corner strikes, the body
 flies on, and another corner strikes. Each strike is Routh's impact at one contact (`impact.spatial`). Each
 flight is free motion in closed form (`tumbling`). The next strike is found to rounding (`landing`), and
-nothing is stepped. Contacts of one instant are struck one after the other, the fastest approach first, as in
-the sequential law (`impact.several`). Their order is a choice. The order of different instants is not.
+nothing is stepped. Contacts of one instant are struck one after the other, the fastest approach first and
+tied ones as one, as in the sequential law (`impact.several`). Their order is a choice. The order of different
+instants is not.
 
 The sequence ends where nothing strikes within a window, where a contact stays, or where strikes accumulate.
 Rebounds that shrink by a ratio r < 1 have all ended d / (1 - r) after a strike whose rebound takes d (Zeno).

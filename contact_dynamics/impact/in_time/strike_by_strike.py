@@ -10,13 +10,16 @@ import numpy as np
 
 from contact_dynamics.contact.kinds import velocity_accelerations
 from contact_dynamics.impact.in_time.result import ImpactSequence, SequenceEnd, TimedStrike
+from contact_dynamics.impact.several.tied import next_to_strike, strike_as_one
 from contact_dynamics.impact.spatial.one_contact import spatial_impact
 from contact_dynamics.rotations.one import cross_matrix
-from contact_dynamics.tolerances import CHATTER_HEIGHT, CHATTER_PAUSE, HELD_STILL
+from contact_dynamics.tolerances import CHATTER_HEIGHT, CHATTER_PAUSE, HELD_STILL, TIED_APPROACH
 from contact_dynamics.tumbling import Precision, free_motion
 from contact_dynamics.validation import check_whole
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.impact.in_time.meetings import Meetings
     from contact_dynamics.impact.law import RestitutionLaw
@@ -61,9 +64,10 @@ class StrikeByStrike:
         self.body, self.gravity_W, self.meetings = body, gravity_W, meetings
         self.law, self.tolerance, self.hold_step = law, tolerance, hold_step
         self.strikes: list[TimedStrike] = []
-        self.chattering: tuple[int, float] | None = None  # the contact struck last, if so, and its limit time
+        self.chattering: tuple[tuple[int, ...], float] | None = None  # struck last, if so, and the limit time
         self.limit: float | None = None
         self.staying: tuple[int, ...] = ()
+        self.order_is_open = False
 
     def run(self, state: BodyState, window: float, most_strikes: int) -> ImpactSequence:
         """Return the sequence from a state on. Each strike comes within a window, s, of the one before."""
@@ -81,6 +85,7 @@ class StrikeByStrike:
             state=self.strikes[-1].impact.state if self.strikes else state,
             staying=self.staying if stays else (),
             limit_seconds=self.limit if stays else None,
+            order_is_open=self.order_is_open,
         )
 
     def _strike_on(self, state: BodyState, window: float, most: int) -> SequenceEnd:
@@ -91,7 +96,7 @@ class StrikeByStrike:
             self.work.spend(ROUND, now)
             landing = self.meetings.next(state, until - now)
             if self.chattering is not None and not self._strikes_elsewhere(landing, now):
-                self._stay((self.chattering[0],), self.chattering[1])
+                self._stay(*self.chattering)
                 end, wait = SequenceEnd.CHATTERS, self.hold_step
             elif landing is None:
                 return SequenceEnd.NOTHING_STRIKES
@@ -104,7 +109,7 @@ class StrikeByStrike:
                 if landing.strikes and not self._approaches_by(landing, still):
                     if self._approaches_by(landing, HELD):
                         held += 1
-                        state = self._impact(landing, _fastest(landing), restitution=0.0).state
+                        state = self._impacts(landing, self._next(landing), held=True)[0].state
                         continue
                     if len(self.strikes) == most:
                         return SequenceEnd.MOST_STRIKES
@@ -157,37 +162,63 @@ class StrikeByStrike:
         return speed <= share * self.hold_step * -float(self._lifting(landing)[row])
 
     def _strike(self, landing: Landing, now: float) -> BodyState:
-        """Resolve the strike at the contact that approaches fastest, and return the state after it."""
-        contacts, row = landing.contacts, _fastest(landing)
-        contact = self.meetings.index(landing, row)
-        normal = contacts.normals_W[row]
-        impact = self._impact(landing, row, restitution=float(contacts.restitutions[row]))
-        approach, rebound = float(-impact.velocity_before_W @ normal), float(impact.velocity_after_W @ normal)
-        pressing = -float(self._lifting(landing)[row])
+        """Resolve the strike at the contacts that approach fastest, and return the state after it."""
+        contacts, group = landing.contacts, self._next(landing)
         self.chattering = None
-        if self.tolerance < rebound < approach and rebound * rebound <= 2.0 * CHATTER_HEIGHT * pressing:
-            flight = 2.0 * rebound / pressing
-            self.chattering = contact, now + flight / (1.0 - rebound / approach)
-        self.strikes.append(
-            TimedStrike(
-                seconds=now,
-                contact=contact,
-                p_WC_W=contacts.p_WC_W[row],
-                state_before=landing.state,
-                impact=impact,
+        limits = []
+        for row, impact in zip(group, self._impacts(landing, group, held=False), strict=True):
+            normal = contacts.normals_W[row]
+            approach, rebound = (
+                float(-impact.velocity_before_W @ normal),
+                float(impact.velocity_after_W @ normal),
             )
-        )
-        return impact.state
+            pressing = -float(self._lifting(landing)[row])
+            if self.tolerance < rebound < approach and rebound * rebound <= 2.0 * CHATTER_HEIGHT * pressing:
+                limits.append(now + 2.0 * rebound / pressing / (1.0 - rebound / approach))
+            self.strikes.append(
+                TimedStrike(
+                    seconds=now,
+                    contact=self.meetings.index(landing, row),
+                    p_WC_W=contacts.p_WC_W[row],
+                    state_before=landing.state,
+                    impact=impact,
+                )
+            )
+        if len(limits) == len(group):
+            self.chattering = tuple(one.contact for one in self.strikes[-len(group) :]), max(limits)
+        return self.strikes[-1].impact.state
 
-    def _impact(self, landing: Landing, row: int, *, restitution: float) -> SpatialImpact:
-        return spatial_impact(
+    def _next(self, landing: Landing) -> list[int]:
+        """Return the rows of the contacts that strike next: the fastest, and those that tie with it."""
+        approach = _normal_parts(landing.velocities_W, landing.contacts)
+        self.order_is_open = self.order_is_open or int((approach < -self.tolerance).sum()) > 1
+        tie = TIED_APPROACH * float(np.abs(landing.velocities_W).max())
+        return next_to_strike(approach, landing.contacts, tolerance=self.tolerance, tie=tie)
+
+    def _impacts(self, landing: Landing, rows: list[int], *, held: bool) -> Sequence[SpatialImpact]:
+        """Return the impact at each of these contacts, which strike as one, without restitution if held."""
+        contacts = landing.contacts.subset(rows)
+        if held:
+            contacts = replace(contacts, restitutions=np.zeros(len(rows)))
+        if len(rows) > 1:
+            shares, _ = strike_as_one(
+                [self.body],
+                [landing.state],
+                contacts,
+                [(0, None)] * len(rows),
+                law=self.law,
+                tolerance=self.tolerance,
+            )
+            return shares
+        impact = spatial_impact(
             self.body,
             landing.state,
-            replace(landing.contacts[row], restitution=restitution),
+            contacts[0],
             restitution_law=self.law,
             # Half the tolerance counts, because the approach was judged by a sum that rounds differently.
             velocity_tolerance=0.5 * self.tolerance,
         )
+        return [impact]
 
     def _time_to_leave(self, landing: Landing) -> float | None:
         """Return the time, s, in which the free motion takes resting contacts off, or None if they stay."""
@@ -203,8 +234,10 @@ class StrikeByStrike:
         """Return whether another contact strikes before the one that chatters has come to rest."""
         if landing is None or self.chattering is None or not landing.strikes:
             return False
-        contact, limit = self.chattering
-        return now + landing.seconds < limit and self.meetings.index(landing, _fastest(landing)) != contact
+        contacts, limit = self.chattering
+        return (
+            now + landing.seconds < limit and self.meetings.index(landing, _fastest(landing)) not in contacts
+        )
 
     def _lifting(self, landing: Landing) -> FloatArray:
         """Return the accelerations, (n,), m/s^2, that the contacts' gaps have in free motion."""

@@ -1,8 +1,8 @@
 """One body strikes at several contacts at once. No single law is accepted for this, so laws have names.
 
 * SEQUENTIAL (Routh 1860; Ivanov 1995; Smith et al. 2012) applies the law for one contact to one contact after
-  the other, until none approaches. The contact that approaches fastest comes first. Where contacts tie, the
-  first in the list comes first.
+  the other, until none approaches. The contact that approaches fastest comes first. Contacts that approach
+  equally fast strike as one (`tied`), so that the order of the list never decides.
 * SIMULTANEOUS demands that impulses and velocities are complementary over all contacts (`simultaneous`), with
   Newton's hypothesis (Moreau 1988) or Poisson's (Anitescu and Potra 1997). The energetic law has no such form
   here, because it needs the work at each contact along the path, and this law only knows the path's ends.
@@ -95,6 +95,7 @@ def several_impact(
         velocities_before_W=answer.velocities_before_W,
         velocities_after_W=answer.velocities_after_W,
         strikes=answer.strikes,
+        order_is_open=answer.order_is_open,
     )
 
 
@@ -110,9 +111,9 @@ def outcomes_over_orders(
     """Return the outcomes of the sequential law over its admissible orders.
 
     An order follows a priority of the contacts. Each time, the first contact in it that approaches is struck.
-    Different priorities can come to the same order, which is listed once. The order of `several_impact`
-    strikes the fastest approach first. It follows no priority if the fastest contact changes on the way, and
-    it is always among the outcomes.
+    Different priorities can come to the same order, which is listed once. The outcome of `several_impact`,
+    which strikes the fastest approach first, is always among them, and comes last if no priority leads to it.
+    Where it strikes tied contacts as one, it has an empty order, and comes first.
 
     Args:
         body: Mass and angular inertia.
@@ -132,20 +133,24 @@ def outcomes_over_orders(
     most_orders = check_whole("most_orders", most_orders, 1)
     touching = Touching([body], contacts, [(0, None)] * len(contacts), restitution_law, tolerance)
     check_touching(touching, [state])
+    own = strike_in_turn(touching, [state])
     found: dict[tuple[int, ...], FloatArray] = {}
-    lost = struck = 0
+    if own.ties and own.verdict == SeveralVerdict.RESOLVED:
+        found[()] = _velocities(own.states[0])
+    lost, struck = 0, len(own.strikes)
     priorities = permutations(range(len(contacts)))
-    for priority in (*islice(priorities, most_orders), None):
-        strikes, (after,), verdict = strike_in_turn(touching, [state], priority=priority)
-        struck += len(strikes)
+    for priority in islice(priorities, most_orders):
+        turn = strike_in_turn(touching, [state], priority=priority)
+        struck += len(turn.strikes)
         if struck > MOST_STRIKES_OVER_ORDERS:
             count = f"{len(contacts)} contacts, over whose orders there are more strikes"
             raise TooLargeError("contacts", count, f"at most {MOST_STRIKES_OVER_ORDERS} over all orders")
-        if verdict == SeveralVerdict.RESOLVED:
-            order = tuple(contact for contact, _ in strikes)
-            found[order] = np.concatenate([after.v_WB_W, after.w_WB_W])
-        elif priority is not None:
+        if turn.verdict == SeveralVerdict.RESOLVED:
+            found[turn.order] = _velocities(turn.states[0])
+        else:
             lost += 1
+    if not own.ties and own.verdict == SeveralVerdict.RESOLVED:
+        found[own.order] = _velocities(own.states[0])
     return OrderedOutcomes(
         orders=tuple(found),
         velocities_W=np.array(list(found.values())).reshape(-1, 6),
@@ -191,7 +196,7 @@ def outcomes_at_once(
     for order in (None, *islice(orders, most_orders)):
         _, (after,), verdict = strike_at_once(touching, [state], order=order)
         if verdict == SeveralVerdict.RESOLVED:
-            found[order or ()] = np.concatenate([after.v_WB_W, after.w_WB_W])
+            found[order or ()] = _velocities(after)
         else:
             lost += 1
     return OrderedOutcomes(
@@ -200,3 +205,7 @@ def outcomes_at_once(
         complete=next(orders, None) is None,
         not_converged=lost,
     )
+
+
+def _velocities(state: BodyState) -> FloatArray:
+    return np.concatenate([state.v_WB_W, state.w_WB_W])

@@ -45,7 +45,11 @@ class SeveralImpact(Record):
         impulses_W: (n, 3), N s, total impulses on the body.
         velocities_before_W: (n, 3), m/s, velocities of the contacts before.
         velocities_after_W: (n, 3), m/s, velocities of the contacts afterwards.
-        strikes: Each contact that was struck, in order, with its impact. SIMULTANEOUS has none.
+        strikes: Each contact that was struck, in order, with its impact. Contacts that approach equally fast
+            strike as one. They follow each other, each with its share of the impulse and the state after all
+            of them. SIMULTANEOUS has none.
+        order_is_open: Whether several contacts approached at one time under SEQUENTIAL, so that rigid-body
+            mechanics allows other orders. `outcomes_over_orders` gives what they lead to.
     """
 
     several_contacts_law: SeveralContactsLaw
@@ -56,6 +60,7 @@ class SeveralImpact(Record):
     velocities_before_W: FloatArray
     velocities_after_W: FloatArray
     strikes: tuple[tuple[int, SpatialImpact], ...]
+    order_is_open: bool = False
 
     @property
     def order(self) -> tuple[int, ...]:
@@ -75,7 +80,11 @@ class BodiesImpact(Record):
         impulses_W: (n, 3), N s, total impulses on the first body of each contact.
         velocities_before_W: (n, 3), m/s, velocities of the first body's points relative to the second's.
         velocities_after_W: (n, 3), m/s, the same velocities afterwards.
-        strikes: Each contact that was struck, in order, with its impact. SIMULTANEOUS has none.
+        strikes: Each contact that was struck, in order, with its impact. Contacts that approach equally fast
+            strike as one. They follow each other, each with its share of the impulse and the state after all
+            of them. SIMULTANEOUS has none.
+        order_is_open: Whether several contacts approached at one time under SEQUENTIAL, so that rigid-body
+            mechanics allows other orders. `outcomes_over_orders` gives what they lead to.
     """
 
     several_contacts_law: SeveralContactsLaw
@@ -86,6 +95,7 @@ class BodiesImpact(Record):
     velocities_before_W: FloatArray
     velocities_after_W: FloatArray
     strikes: tuple[tuple[int, SpatialImpact], ...]
+    order_is_open: bool = False
 
     @property
     def order(self) -> tuple[int, ...]:
@@ -98,7 +108,8 @@ class OrderedOutcomes(Record):
     """The outcomes that a law for several contacts reaches over orders. Row i belongs to order i.
 
     Attributes:
-        orders: The contacts struck in each sequence, or the order that led to a simultaneous solution.
+        orders: The contacts struck in each sequence, or the order that led to a simultaneous solution. It is
+            empty for the law's own answer where that has no order, because contacts strike at once.
         velocities_W: (m, 6), m/s and rad/s, linear then angular velocity afterwards, world axes.
         complete: Whether every order of the contacts was tried.
         not_converged: How many orders were left out because they reached the bound on strikes or iterations.

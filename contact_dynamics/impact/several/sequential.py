@@ -1,9 +1,9 @@
 """Several bodies strike each other and the fixed world at several contacts at once.
 
 The laws are those of one body (`orders`). SEQUENTIAL strikes one contact after the other, each as the impact
-of the two bodies that meet there (`impact.spatial`). SIMULTANEOUS solves one complementarity problem over all
-contacts and bodies (`simultaneous`). Momentum and angular momentum of bodies that do not touch the world are
-conserved to rounding.
+of the two bodies that meet there (`impact.spatial`), and contacts that tie as one (`tied`). SIMULTANEOUS
+solves one complementarity problem over all contacts and bodies (`simultaneous`). Momentum and angular
+momentum of bodies that do not touch the world are conserved to rounding.
 
 For Newton's cradle of equal balls at e = 1 the two laws differ, and rigid-body mechanics allows both. The
 sequential law lets the last ball leave, as ball bearings do. The simultaneous one moves all of them.
@@ -13,7 +13,6 @@ Not covered: moments at the contacts.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -22,10 +21,9 @@ from contact_dynamics.errors import NORMAL_HINT, InvalidFieldError, SeparatingCo
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import BodiesImpact, SeveralContactsLaw, SeveralVerdict
 from contact_dynamics.impact.several.simultaneous import simultaneous_impulses
+from contact_dynamics.impact.several.tied import next_to_strike, pushed, response_of, strike_as_one
 from contact_dynamics.impact.spatial.one_contact import check_striking, spatial_impact, spatial_pair_impact
-from contact_dynamics.numerics.vectors import point_jacobians
-from contact_dynamics.rigid_body.body import inverse_mass_matrix
-from contact_dynamics.tolerances import VELOCITY_TOLERANCE
+from contact_dynamics.tolerances import TIED_APPROACH, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
@@ -73,8 +71,10 @@ def bodies_impact(
     touching = Touching(bodies, contacts, pairs, restitution_law, tolerance)
     before = check_touching(touching, states)
     strikes: tuple[tuple[int, SpatialImpact], ...] = ()
+    order_is_open = False
     if several_contacts_law == SeveralContactsLaw.SEQUENTIAL:
-        strikes, after, verdict = strike_in_turn(touching, states)
+        turn = strike_in_turn(touching, states)
+        strikes, after, verdict, order_is_open = turn.strikes, turn.states, turn.verdict, turn.order_is_open
         impulses = np.zeros((len(contacts), 3))
         for contact, impact in strikes:
             impulses[contact] += impact.impulse_W
@@ -89,6 +89,7 @@ def bodies_impact(
         velocities_before_W=before,
         velocities_after_W=_relative_velocities(touching, after),
         strikes=strikes,
+        order_is_open=order_is_open,
     )
 
 
@@ -128,24 +129,75 @@ def check_touching(touching: Touching, states: Sequence[BodyState]) -> FloatArra
     return velocities
 
 
-def strike_in_turn(
-    touching: Touching, states: Sequence[BodyState], *, priority: tuple[int, ...] | None = None
-) -> tuple[tuple[tuple[int, SpatialImpact], ...], list[BodyState], SeveralVerdict]:
-    """Strike one contact after the other, by ``priority`` or, if that is None, the fastest approach first.
+class InTurn(NamedTuple):
+    """What striking in turn leads to.
 
-    Returns:
-        Each contact struck, in order, with its impact. Then the states afterwards, and whether no contact
-        approaches then.
+    Attributes:
+        strikes: Each contact struck, in order, with its impact. Tied contacts follow each other, each with
+            its share and the states after all of them.
+        states: The states afterwards.
+        verdict: Whether no contact approaches then.
+        order_is_open: Whether several contacts approached at one time, so that another could have come first.
+        ties: Whether tied contacts struck as one.
+    """
+
+    strikes: tuple[tuple[int, SpatialImpact], ...]
+    states: list[BodyState]
+    verdict: SeveralVerdict
+    order_is_open: bool
+    ties: bool
+
+    @property
+    def order(self) -> tuple[int, ...]:
+        """Return the contacts that were struck, in order."""
+        return tuple(contact for contact, _ in self.strikes)
+
+
+def strike_in_turn(
+    touching: Touching,
+    states: Sequence[BodyState],
+    *,
+    priority: tuple[int, ...] | None = None,
+    first: int | None = None,
+) -> InTurn:
+    """Strike one contact after the other until none approaches.
+
+    The order follows ``priority`` or, if that is None, the fastest approach comes first, and tied contacts
+    strike as one. If ``first`` is given, that contact, which approaches, is struck before.
     """
     now = list(states)
     strikes: list[tuple[int, SpatialImpact]] = []
-    for _ in range(MOST_STRIKES):
-        approach = np.einsum("ij,ij->i", _relative_velocities(touching, now), touching.contacts.normals_W)
-        contact = _next_contact(approach, touching.tolerance, priority)
-        if contact is None:
-            return tuple(strikes), now, SeveralVerdict.RESOLVED
-        strikes.append((contact, _strike(touching, now, contact)))
-    return tuple(strikes), now, SeveralVerdict.NOT_CONVERGED
+    tie, is_open, ties = 0.0, False, False
+    if first is not None:
+        strikes.append((first, _strike(touching, now, first)))
+    while len(strikes) < MOST_STRIKES:
+        velocities = _relative_velocities(touching, now)
+        tie = tie or TIED_APPROACH * float(np.abs(velocities).max())
+        approach = np.einsum("ij,ij->i", velocities, touching.contacts.normals_W)
+        is_open = is_open or int((approach < -touching.tolerance).sum()) > 1
+        group = _next_contacts(approach, touching, priority, tie)
+        if not group:
+            return InTurn(tuple(strikes), now, SeveralVerdict.RESOLVED, is_open, ties)
+        if len(group) == 1:
+            strikes.append((group[0], _strike(touching, now, group[0])))
+        else:
+            strikes += _tied(touching, now, group)
+            ties = True
+    return InTurn(tuple(strikes), now, SeveralVerdict.NOT_CONVERGED, is_open, ties)
+
+
+def _tied(touching: Touching, states: list[BodyState], group: list[int]) -> list[tuple[int, SpatialImpact]]:
+    """Return the share of each contact in an impact of tied ones, and replace the states."""
+    contacts, pairs = touching.contacts.subset(group), [touching.pairs[i] for i in group]
+    shares, states[:] = strike_as_one(
+        touching.bodies,
+        states,
+        contacts,
+        pairs,
+        law=touching.restitution_law,
+        tolerance=touching.tolerance,
+    )
+    return list(zip(group, shares, strict=True))
 
 
 def _strike(touching: Touching, states: list[BodyState], contact: int) -> SpatialImpact:
@@ -183,37 +235,17 @@ def strike_at_once(
     The solution is the one that an ``order`` of the contacts leads to. If ``order`` is None, it depends on no
     order.
     """
-    bodies, contacts, pairs, restitution_law, tolerance = touching
-    size = 6 * len(bodies)
-    jacobian = np.zeros((len(contacts), 3, size))  # contact velocity = jacobian @ (v, w of each body)
-    for i, pair in enumerate(pairs):
-        for index, sign in zip(pair, (1.0, -1.0), strict=True):
-            if index is not None:
-                arm = contacts.p_WC_W[i] - states[index].p_WB_W
-                jacobian[i, :, 6 * index : 6 * index + 6] = sign * point_jacobians(arm[None])[0]
-    inverse_mass = np.zeros((size, size))
-    for index, (body, state) in enumerate(zip(bodies, states, strict=True)):
-        own = slice(6 * index, 6 * index + 6)
-        inverse_mass[own, own] = inverse_mass_matrix(body.mass, body.inertia_in_world(state.R_WB))
-    twist = np.concatenate([part for state in states for part in (state.v_WB_W, state.w_WB_W)])
+    response = response_of(touching.bodies, states, touching.contacts.p_WC_W, touching.pairs)
     impulses, converged = simultaneous_impulses(
-        contacts,
-        restitution_law,
-        jacobian=jacobian,
-        inverse_mass=inverse_mass,
-        twist=twist,
-        tolerance=tolerance,
+        touching.contacts,
+        touching.restitution_law,
+        jacobian=response.jacobian,
+        inverse_mass=response.inverse_mass,
+        twist=response.twist,
+        tolerance=touching.tolerance,
         order=order,
     )
-    change = inverse_mass @ np.einsum("ijk,ij->k", jacobian, impulses)
-    after = [
-        replace(
-            state,
-            v_WB_W=state.v_WB_W + change[6 * i : 6 * i + 3],
-            w_WB_W=state.w_WB_W + change[6 * i + 3 : 6 * i + 6],
-        )
-        for i, state in enumerate(states)
-    ]
+    after = pushed(response, states, impulses)
     return impulses, after, SeveralVerdict.RESOLVED if converged else SeveralVerdict.NOT_CONVERGED
 
 
@@ -231,11 +263,13 @@ def _relative_velocities(touching: Touching, states: Sequence[BodyState]) -> Flo
     return velocities
 
 
-def _next_contact(approach: FloatArray, tolerance: float, priority: tuple[int, ...] | None) -> int | None:
-    if priority is None:
-        fastest = int(approach.argmin())
-        return fastest if approach[fastest] < -tolerance else None
-    return next((i for i in priority if approach[i] < -tolerance), None)
+def _next_contacts(
+    approach: FloatArray, touching: Touching, priority: tuple[int, ...] | None, tie: float
+) -> list[int]:
+    """Return the contacts that strike next, several if they tie, or none if none approaches."""
+    if priority is not None:
+        return [i for i in priority if approach[i] < -touching.tolerance][:1]
+    return next_to_strike(approach, touching.contacts, tolerance=touching.tolerance, tie=tie)
 
 
 def _check_pairs(

@@ -1,7 +1,6 @@
 """No answer about several contacts depends on the order in which contacts are listed, but where it says so.
 
-The bounds over interleavings are held in `test_interleavings.py`. Draws have no ties, since the sequential
-law takes the first in the list of contacts that approach alike.
+The bounds over interleavings are held in `test_interleavings.py`, and ties in `test_tied.py`.
 """
 
 from __future__ import annotations

@@ -127,25 +127,22 @@ def test_level_rod_on_two_supports(law: RestitutionLaw) -> None:
 
     By hand for half length l and I = m l^2/3: the first strike at the right takes J = 2 v m / 4 = m v / 2, so
     that the centre falls at v/2 and the left end at 2 v; the second strike takes J = 2 (2 v) m / 4 = m v. The
-    centre then rises at v/2, and the rod turns by (J_right - J_left) l / I = (1/2 - 1) m v l 3 / (m l^2)
-    about -y, that is by +3 v / (2 l).
+    centre then rises at v/2, and the rod turns by +3 v / (2 l), so that the right end falls at v. The third
+    takes m v / 2 again, and the rod rises level at v. The ends tie, so by default both strike as one, which
+    leads there at once.
     """
     rod = MassProperties(mass=2.0, I_B=np.diag([1e-4, 2.0 / 3.0, 2.0 / 3.0]))
     contacts = floor_contacts([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]], friction=0.0, restitution=1.0)
     state = falling(0.0, [0.0, 0.0, -1.0])
     answer = several_impact(rod, state, contacts, restitution_law=law)
-    assert answer.order[:2] == (0, 1)
-    first, second = answer.strikes[0][1], answer.strikes[1][1]
-    assert first.impulse_W == pytest.approx([0.0, 0.0, 1.0], rel=1e-12)
-    assert second.impulse_W == pytest.approx([0.0, 0.0, 2.0], rel=1e-12)
-    assert second.state.v_WB_W == pytest.approx([0.0, 0.0, 0.5], rel=1e-12)
-    assert second.state.w_WB_W == pytest.approx([0.0, 1.5, 0.0], rel=1e-12)
-    assert answer.verdict is SeveralVerdict.RESOLVED
-    assert kinetic_energy(rod, answer.state) == pytest.approx(kinetic_energy(rod, state), rel=1e-12)
+    assert answer.order_is_open
+    assert answer.impulses_W == pytest.approx(np.array([[0.0, 0.0, 2.0]] * 2), abs=1e-12)
+    assert answer.state.v_WB_W == pytest.approx([0.0, 0.0, 1.0], abs=1e-12)
+    assert answer.state.w_WB_W == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
     outcomes = outcomes_over_orders(rod, state, contacts, restitution_law=law)
     assert outcomes.complete
-    mirrored = outcomes.velocities_W * np.array([-1.0, 1.0, 1.0, 1.0, -1.0, 1.0])
-    assert np.sort(outcomes.velocities_W, axis=0) == pytest.approx(np.sort(mirrored, axis=0), abs=1e-12)
+    assert outcomes.orders == ((), (0, 1, 0), (1, 0, 1))
+    assert outcomes.velocities_W == pytest.approx(np.array([[0, 0, 1, 0, 0, 0]] * 3), abs=1e-12)
 
 
 def test_rocking_block() -> None:
@@ -269,12 +266,12 @@ def in_turn(priority: tuple[int, ...] | None) -> tuple[tuple[int, ...], list[flo
 
 @pytest.mark.parametrize("most", [1, 2, 4, 6])
 def test_orders_and_their_outcomes_are_those_of_exact_strikes(most: int) -> None:
-    """Priorities are tried as `permutations` lists them, then the fastest approach. Orders count once."""
+    """The law's own outcome comes first, of corners that tie, then those of priorities as they are listed."""
     body = MassProperties(mass=0.5, I_B=np.diag([1 / 1000, 1 / 800, 1 / 700]))
     contacts = floor_contacts([[float(x), float(y), 0.0] for x, y in CORNERS], friction=0.0, restitution=0.5)
     outcomes = outcomes_over_orders(body, falling(0.1, [0.0, 0.0, -1.0]), contacts, most_orders=most)
-    priorities = [*itertools.islice(itertools.permutations(range(3)), most), None]
-    expected = dict(in_turn(priority) for priority in priorities)
+    priorities = itertools.islice(itertools.permutations(range(3)), most)
+    expected = {(): in_turn(None)[1], **dict(in_turn(priority) for priority in priorities)}
     assert outcomes.orders == tuple(expected)
     assert outcomes.complete == (most == 6)
     # Each strike rounds; there are at most 60.

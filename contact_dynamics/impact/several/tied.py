@@ -1,0 +1,200 @@
+"""Contacts that approach equally fast strike as one, so that no order of the list decides between them.
+
+The law for one contact (`impact.spatial`) needs an order, and a tie has none. So tied contacts with the same
+friction and restitution share one impact. Each takes the same impulse in its own axes, which are the normal,
+the direction in which the contact slides, and the one across. Their mean velocity in these axes responds
+linearly to that impulse, with a positive definite matrix, so it obeys the equations of one contact, and the
+path is found as for one. A face that lands flat without sliding thus bounces level, by e under each law of
+restitution. What follows for any tie:
+
+* Each impulse is in its contact's friction cone, because all of them have the same components.
+* The energy changes by the whole impulse times the mean of the mean velocities before and after. So the law
+  gives energy only where it does so at one contact.
+* Momenta of pairs of bodies balance, because each impulse acts on both.
+* Another order of the list, or a mirror image, gives the same answer in that order, or its mirror image.
+
+Friction opposes the mean sliding. Afterwards contacts of the tie may approach again, at velocities that
+differ, and strike by themselves.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.impact.spatial.path import trace
+from contact_dynamics.impact.spatial.result import SpatialImpact
+from contact_dynamics.impact.spatial.sliding_law import SlidingLaw, followed_friction
+from contact_dynamics.numerics.vectors import point_jacobians, tangents_by_sign
+from contact_dynamics.rigid_body.body import inverse_mass_matrix
+from contact_dynamics.tolerances import NO_SHARED_RESPONSE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.impact.law import RestitutionLaw
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.validation import FloatArray
+
+
+class Response(NamedTuple):
+    """How bodies respond to impulses at contacts.
+
+    Attributes:
+        jacobian: (n, 3, 6 k), takes the velocities of the k bodies (v then w of each) into those of contacts.
+        inverse_mass: (6 k, 6 k), 1/kg and 1/(kg m^2), takes impulses and their moments into velocities.
+        twist: (6 k,), m/s and rad/s, the bodies' velocities.
+    """
+
+    jacobian: FloatArray
+    inverse_mass: FloatArray
+    twist: FloatArray
+
+
+def response_of(
+    bodies: Sequence[MassProperties],
+    states: Sequence[BodyState],
+    points_W: FloatArray,
+    pairs: Sequence[tuple[int, int | None]],
+) -> Response:
+    """Return how bodies respond to impulses at points, (n, 3), m, where pairs of them meet."""
+    size = 6 * len(bodies)
+    jacobian = np.zeros((len(points_W), 3, size))
+    for i, pair in enumerate(pairs):
+        for index, sign in zip(pair, (1.0, -1.0), strict=True):
+            if index is not None:
+                arm = points_W[i] - states[index].p_WB_W
+                jacobian[i, :, 6 * index : 6 * index + 6] = sign * point_jacobians(arm[None])[0]
+    inverse_mass = np.zeros((size, size))
+    for index, (body, state) in enumerate(zip(bodies, states, strict=True)):
+        own = slice(6 * index, 6 * index + 6)
+        inverse_mass[own, own] = inverse_mass_matrix(body.mass, body.inertia_in_world(state.R_WB))
+    twist = np.concatenate([part for state in states for part in (state.v_WB_W, state.w_WB_W)])
+    return Response(jacobian, inverse_mass, twist)
+
+
+def pushed(response: Response, states: Sequence[BodyState], impulses_W: FloatArray) -> list[BodyState]:
+    """Return the states after impulses, (n, 3), N s, world axes, at the contacts of a response."""
+    twist = response.twist + response.inverse_mass @ np.einsum("ijk,ij->k", response.jacobian, impulses_W)
+    return [
+        replace(state, v_WB_W=twist[6 * i : 6 * i + 3], w_WB_W=twist[6 * i + 3 : 6 * i + 6])
+        for i, state in enumerate(states)
+    ]
+
+
+def next_to_strike(approach: FloatArray, contacts: ContactSet, *, tolerance: float, tie: float) -> list[int]:
+    """Return the contact that approaches fastest with those that strike as one with it, or none.
+
+    Args:
+        approach: (n,), m/s, normal velocities, negative where contacts approach.
+        contacts: The contacts. Of tied ones that differ, those with the least restitution, then the least
+            friction, come first.
+        tolerance: m/s. A contact that approaches less fast does not strike.
+        tie: m/s. Contacts approach equally fast if their speeds differ by no more.
+    """
+    tied = np.flatnonzero(approach <= min(float(approach.min()) + tie, -tolerance)).tolist()
+    if len(tied) < 2:
+        return tied
+    materials = [(float(contacts.restitutions[i]), float(contacts.frictions[i])) for i in tied]
+    first = min(materials)
+    return [i for i, material in zip(tied, materials, strict=True) if material == first]
+
+
+def strike_as_one(
+    bodies: Sequence[MassProperties],
+    states: Sequence[BodyState],
+    contacts: ContactSet,
+    pairs: Sequence[tuple[int, int | None]],
+    *,
+    law: RestitutionLaw,
+    tolerance: float,
+) -> tuple[list[SpatialImpact], list[BodyState]]:
+    """Return the share that each of the tied ``contacts`` has in their impact, and all states after it.
+
+    Args:
+        bodies: Mass and angular inertia of each.
+        states: The states of all bodies just before.
+        contacts: The contacts, which approach equally fast and have the same friction and restitution.
+        pairs: The bodies that meet at each.
+        law: What the coefficient of restitution means.
+        tolerance: m/s. A contact that slides less fast does not slide.
+    """
+    k = len(contacts)
+    response = response_of(bodies, states, contacts.p_WC_W, pairs)
+    velocities = response.jacobian @ response.twist
+    axes = _axes(response, velocities, contacts.normals_W, tolerance)
+    shared = np.einsum("kaj,kjl->al", axes, response.jacobian) / k  # the mean velocity, in these axes
+    whole = shared @ response.inverse_mass @ shared.T
+    # The path needs tangents along which the response is diagonal.
+    _, turn = np.linalg.eigh(whole[:2, :2])
+    axes[:, :2] = np.einsum("ba,kbj->kaj", turn, axes[:, :2])
+    shared[:2] = turn.T @ shared[:2]
+    whole = shared @ response.inverse_mass @ shared.T
+    l1, l2, kn = float(whole[0, 0]), float(whole[1, 1]), float(whole[2, 2])
+    k1, k2 = float(whole[0, 2]), float(whole[1, 2])
+    u1, u2, v_n = (shared @ response.twist).tolist()
+    if l1 <= NO_SHARED_RESPONSE * kn:
+        l1, k1, u1 = kn, 0.0, 0.0  # equal impulses along this tangent move nothing
+    if l2 <= NO_SHARED_RESPONSE * kn:
+        l2, k2, u2 = kn, 0.0, 0.0
+    if float(np.hypot(u1, u2)) <= tolerance:
+        u1 = u2 = 0.0
+    sliding = SlidingLaw(l1, l2, k1, k2, kn, followed_friction(float(contacts.frictions[0])))
+    path = trace(sliding, (u1, u2), v_n, restitution=float(contacts.restitutions[0]), law=law)
+    impulses = np.einsum("a,kaj->kj", np.array(path.impulse), axes) / k
+    after = pushed(response, states, impulses)
+    velocities_after = velocities + response.jacobian @ response.inverse_mass @ np.einsum(
+        "ijk,ij->k", response.jacobian, impulses
+    )
+    vertices = np.array([vertex for _, vertex in path.vertices])
+    own = np.einsum("kil,lm,kjm->kij", response.jacobian, response.inverse_mass, response.jacobian)
+    shares = [
+        SpatialImpact(
+            restitution_law=law,
+            outcome=path.outcome,
+            jams=path.jams,
+            state=after[first],
+            impulse_W=impulses[i],
+            compression_W=np.array(path.compression) @ axes[i] / k,
+            path_W=vertices @ axes[i] / k,
+            path_events=tuple(event for event, _ in path.vertices),
+            velocity_before_W=velocities[i],
+            velocity_after_W=velocities_after[i],
+            inverse_inertia_W=own[i],
+            other_state=None if second is None else after[second],
+        )
+        for i, (first, second) in enumerate(pairs)
+    ]
+    return shares, after
+
+
+def _axes(response: Response, velocities: FloatArray, normals: FloatArray, tolerance: float) -> FloatArray:
+    """Return for each contact, as rows, (k, 3, 3), two tangents and the normal, which go with the contact.
+
+    The first tangent is the direction in which the contact slides, or would begin to slide if all normals had
+    the same impulse. Where there is none beside contacts that have one, tangents are zero: no friction acts.
+    Where no contact has one, no friction acts anywhere, and tangents do not matter.
+    """
+    pushed_by_normals = (
+        response.jacobian @ response.inverse_mass @ np.einsum("ijk,ij->k", response.jacobian, normals)
+    )
+    axes = np.zeros((len(normals), 3, 3))
+    for own, normal, velocity, tendency in zip(axes, normals, velocities, pushed_by_normals, strict=True):
+        own[2] = normal
+        for motion, least in (
+            (velocity, tolerance),
+            (tendency, NO_SHARED_RESPONSE * float(np.linalg.norm(tendency))),
+        ):
+            across = motion - (motion @ normal) * normal
+            size = float(np.linalg.norm(across))
+            if size > least:
+                own[0] = across / size
+                own[1] = np.cross(normal, own[0])
+                break
+    if not axes[:, 0].any():
+        for own, normal in zip(axes, normals, strict=True):
+            own[:2] = tangents_by_sign(tuple(normal.tolist()))
+    return axes
