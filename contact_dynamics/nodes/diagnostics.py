@@ -1,13 +1,19 @@
-"""Tells how the server is, once a second on /diagnostics, to people and to monitors."""
+"""Tells how the server is, once a second on /diagnostics, to people and to monitors.
+
+`situations` lists what makes a status a warning or an error.
+"""
 
 from __future__ import annotations
 
 import statistics
+import time
 from collections import deque
 from typing import TYPE_CHECKING, Final
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.qos import QoSProfile
+
+from contact_dynamics.nodes.situations import RECENT_S, Level, Part, Present, Situation
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -31,14 +37,31 @@ class AnswerTimes:
         self.answers = 0
         self.refusals = 0
         self.faults = 0
+        self.overloads = 0
         self._seconds: deque[float] = deque(maxlen=_REMEMBERED)
+        self._fault_at = self._overload_at = -RECENT_S  # s
 
-    def note(self, response: Response) -> None:
-        """Note a response that is sent."""
+    def note(self, response: Response, *, is_active: bool) -> None:
+        """Note a response that is sent. A server that is not active refuses all questions as BUSY."""
+        now = time.monotonic()
         self.answers += 1
         self.refusals += response.status != response.OK
-        self.faults += response.status == response.INTERNAL_ERROR  # type: ignore[attr-defined]
+        if response.status == response.INTERNAL_ERROR:  # type: ignore[attr-defined]
+            self.faults += 1
+            self._fault_at = now
+        if is_active and response.status in (response.BUSY, response.TIMEOUT):  # type: ignore[attr-defined]
+            self.overloads += 1
+            self._overload_at = now
         self._seconds.append(response.computation_time)
+
+    def look(self) -> list[Present]:
+        """Return what is wrong."""
+        now, present = time.monotonic(), list[Present]()
+        if now - self._fault_at < RECENT_S:
+            present.append(Situation.FAULT.present(count=self.faults))
+        if now - self._overload_at < RECENT_S:
+            present.append(Situation.OVERLOADED.present(count=self.overloads))
+        return present
 
     def values(self) -> dict[str, str]:
         """Return what is told of them."""
@@ -62,9 +85,20 @@ class Diagnostics:
         self._name = node.get_fully_qualified_name().lstrip("/")
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", QOS)
 
-    def publish(self, *statuses: DiagnosticStatus) -> None:
-        """Publish statuses, stamped by the node's clock."""
-        array = DiagnosticArray(status=list(statuses))
+    def publish(self, values: Mapping[Part, Mapping[str, str]], present: Iterable[Present]) -> None:
+        """Publish a status for each part, stamped by the node's clock.
+
+        Args:
+            values: what is reported of each part.
+            present: the situations that are present.
+        """
+        found = list(present)
+        array = DiagnosticArray(
+            status=[
+                self._status(part, of_part, [each for each in found if each.part is part])
+                for part, of_part in values.items()
+            ]
+        )
         array.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(array)
 
@@ -72,49 +106,43 @@ class Diagnostics:
         """End publishing."""
         self._node.destroy_publisher(self._publisher)
 
-    def of_topics(
-        self, topics: Iterable[TopicTraffic], faults: Mapping[tuple[str, str], int]
-    ) -> DiagnosticStatus:
-        """Return the state of the topics: a warning where one is silent or something was lost or refused."""
-        values, wrong = {}, []
-        for traffic in topics:
-            age = "never" if traffic.age is None else f"{traffic.age:.3f}"
-            values[f"{traffic.topic}: messages"] = str(traffic.received)
-            values[f"{traffic.topic}: rate, Hz"] = f"{traffic.rate:.1f}"
-            values[f"{traffic.topic}: age of the newest, s"] = age
-            values[f"{traffic.topic}: lost"] = str(traffic.lost)
-            if traffic.is_silent:
-                wrong.append(f"{traffic.topic} is silent")
-        for (topic, kind), count in faults.items():
-            values[f"{topic}: {kind}"] = str(count)
-        return self._status("states", values, wrong)
-
-    def of_answers(self, times: AnswerTimes, waiting: int) -> DiagnosticStatus:
-        """Return the state of the services: a warning where answers met faults of the server."""
-        values = {**times.values(), "hard questions that wait": str(waiting)}
-        return self._status("answers", values, [f"{times.faults} faults"] if times.faults else [])
-
-    def of_self_check(self, check: SelfCheck, successions: int) -> DiagnosticStatus:
-        """Return the state of the self-check: a warning where the last one failed."""
-        values = {
-            "checks heard": str(check.heard),
-            "checks in turn not heard": str(check.unheard),
-            "times that the server joined anew": str(successions),
-        }
-        return self._status("self-check", values, ["messages may not arrive"] if check.unheard else [])
-
-    def of_log(self, status: RecorderStatus | None) -> DiagnosticStatus:
-        """Return the state of the log: a warning where it met a problem."""
-        if status is None:
-            return self._status("log", {"log": "off"}, [])
-        values = {"written": str(status.written), "lost": str(status.lost), "waiting": str(status.waiting)}
-        return self._status("log", values, [status.problem] if status.problem else [])
-
-    def _status(self, part: str, values: Mapping[str, str], wrong: list[str]) -> DiagnosticStatus:
+    def _status(self, part: Part, values: Mapping[str, str], present: list[Present]) -> DiagnosticStatus:
+        present.sort(key=lambda each: -each.level)  # the worst first
+        level = present[0].level if present else Level.OK
         return DiagnosticStatus(
-            level=DiagnosticStatus.WARN if wrong else DiagnosticStatus.OK,
-            name=f"{self._name}: {part}",
-            message="; ".join(wrong) or "ok",
+            level=bytes([level]),
+            name=f"{self._name}: {part.value}",
+            message="; ".join(each.text for each in present) or "ok",
             hardware_id="",
             values=[KeyValue(key=key, value=value) for key, value in values.items()],
         )
+
+
+def values_of_topics(topics: Iterable[TopicTraffic], faults: Mapping[tuple[str, str], int]) -> dict[str, str]:
+    """Return what is reported of topics, with the faults that were counted on them."""
+    values = {}
+    for traffic in topics:
+        age = "never" if traffic.age is None else f"{traffic.age:.3f}"
+        values[f"{traffic.topic}: messages"] = str(traffic.received)
+        values[f"{traffic.topic}: rate, Hz"] = f"{traffic.rate:.1f}"
+        values[f"{traffic.topic}: age of the newest, s"] = age
+        values[f"{traffic.topic}: lost"] = str(traffic.lost)
+    for (topic, kind), count in faults.items():
+        values[f"{topic}: {kind}"] = str(count)
+    return values
+
+
+def values_of_self_check(check: SelfCheck, successions: int) -> dict[str, str]:
+    """Return what is reported of the self-check."""
+    return {
+        "checks heard": str(check.heard),
+        "checks in turn not heard": str(check.unheard),
+        "times that the server joined anew": str(successions),
+    }
+
+
+def values_of_log(status: RecorderStatus | None) -> dict[str, str]:
+    """Return what is reported of the log."""
+    if status is None:
+        return {"log": "off"}
+    return {"written": str(status.written), "lost": str(status.lost), "waiting": str(status.waiting)}

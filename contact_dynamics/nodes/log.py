@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
+from contact_dynamics.nodes.situations import Present, Situation
 from contact_dynamics.recording.bag_writer import BagWriter
 from contact_dynamics.recording.errors import LogExistsError
 from contact_dynamics.recording.recorder import Recorder, RecorderStatus
@@ -125,6 +126,13 @@ class Log:
         return RecorderStatus(
             written=0, lost=self._unlogged, waiting=0, most_waiting_bytes=0, problem=self._missing
         )
+
+    def present(self) -> list[Present]:
+        """Return what is wrong."""
+        status = self.status
+        if status is None or status.problem is None:
+            return []
+        return [Situation.LOG_PROBLEM.present(problem=status.problem)]
 
     def close(self) -> str:
         """Finish the file, and return in words where it is and whether messages are missing."""

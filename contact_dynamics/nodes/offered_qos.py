@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rclpy.node import Node
+    from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 
 class OfferedQosWatch:
@@ -24,10 +25,11 @@ class OfferedQosWatch:
         self._tell = tell
         self._told: list[Any] = []
 
-    def look(self) -> int:
-        """Look at who publishes, and return how many do. Those that left are remembered until others come."""
-        found = [info.qos_profile for info in self._node.get_publishers_info_by_topic(self._topic)]
+    def look(self) -> list[TopicEndpointInfo]:
+        """Look at who publishes, and return it. Those that left are remembered until others come."""
+        publishers: list[TopicEndpointInfo] = self._node.get_publishers_info_by_topic(self._topic)
+        found = [info.qos_profile for info in publishers]
         if found and found != self._told:
             self._told = found
             self._tell(self._topic, found)
-        return len(found)
+        return publishers

@@ -20,6 +20,8 @@ from diagnostic_msgs.msg import KeyValue
 from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 
+from contact_dynamics.nodes.situations import Present, Situation
+
 if TYPE_CHECKING:
     from contact_dynamics.nodes.inbox import InboxNode, Taken
 
@@ -45,6 +47,7 @@ class SelfCheck:
         unheard: How many checks in turn failed, up to now.
         heard: How many did not.
         is_deaf: Whether messages do not reach the node any more.
+        problem: What was wrong with the last check, in words, or nothing.
     """
 
     def __init__(self, node: InboxNode, period: float | None) -> None:
@@ -56,6 +59,7 @@ class SelfCheck:
         self._begun = time.monotonic()
         self.unheard = 0
         self.heard = 0
+        self.problem = ""
         self._tokens = node.subscribe(KeyValue, TOPIC, self._receive, QOS, in_rounds=False)
 
     @property
@@ -64,11 +68,24 @@ class SelfCheck:
         return self.unheard >= UNHEARD_CHECKS
 
     def look(self, *, is_suspicious: bool) -> str:
-        """Begin or end a check if it is time to; return in words what is wrong, or nothing.
+        """Begin or end a check if it is time to; return in words what has turned out wrong, or nothing.
 
         Args:
             is_suspicious: whether something looks as if the node were deaf, so that a check is due soon.
         """
+        heard = self.heard
+        found = self._look(is_suspicious=is_suspicious)
+        if found or self.heard > heard:
+            self.problem = found
+        return found
+
+    def present(self) -> list[Present]:
+        """Return what is wrong."""
+        if self.unheard:
+            return [Situation.UNHEARD.present(problem=self.problem)]
+        return [Situation.NOT_CHECKED.present(problem=self.problem)] if self.problem else []
+
+    def _look(self, *, is_suspicious: bool) -> str:
         if self._sender is None:
             return self._begin() if self._is_due(is_suspicious=is_suspicious) else ""
         self._node.empty(self._tokens)

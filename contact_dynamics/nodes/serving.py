@@ -12,7 +12,14 @@ from rclpy.duration import Duration
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 
 from contact_dynamics.nodes import parameter_event
-from contact_dynamics.nodes.diagnostics import AnswerTimes, Diagnostics
+from contact_dynamics.nodes.body_watch import BodyWatch
+from contact_dynamics.nodes.diagnostics import (
+    AnswerTimes,
+    Diagnostics,
+    values_of_log,
+    values_of_self_check,
+    values_of_topics,
+)
 from contact_dynamics.nodes.gone_clients import GoneClients
 from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.offered_qos import OfferedQosWatch
@@ -20,8 +27,9 @@ from contact_dynamics.nodes.reconfiguring import CONFIGURED_ANEW, bodies_read_ot
 from contact_dynamics.nodes.self_check import SelfCheck
 from contact_dynamics.nodes.service_front import ServiceFront
 from contact_dynamics.nodes.services import SERVICES
+from contact_dynamics.nodes.situations import Part, Present, Situation
 from contact_dynamics.nodes.state_sources import state_sources
-from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
+from contact_dynamics.nodes.state_subscriptions import present_ns, subscribe_to_states
 from contact_dynamics.nodes.topic_faults import TopicFaults
 from contact_dynamics.questions.knowledge import Knowledge
 from contact_dynamics.questions.state_store import CLOCK_SET_BACK, StateStore
@@ -111,6 +119,10 @@ class Serving:
             offered=self._note_offers,
             faults=self._faults,
         )
+        by_name = {topic.name: topic for topic in self._topics}
+        self._bodies = {
+            body.body_name: BodyWatch(body, by_name) for body in parameters.sources if body.sources
+        }
         self._log = Log(
             parameters.log_directory if parameters.log else None,
             run=run,
@@ -241,26 +253,47 @@ class Serving:
 
     def _look(self) -> None:
         """Look at topics and other nodes, and tell how everything is."""
-        for topic in self._topics:
-            topic.look(awake_for=self._looked - self._awake_since)
-        if self._clock_publishers is not None:
-            self._clock_publishers.look()
-        full_names = [(namespace, name) for name, namespace in self._node.get_node_names_and_namespaces()]
-        if full_names.count((self._node.get_namespace(), self._node.get_name())) > 1:
-            text = "another node has this name: both answer the same questions"
-            self._faults.add(self._node.get_fully_qualified_name(), "same name", 1, text)
-        suspicious = any(topic.traffic.is_silent for topic in self._topics)
-        problem = self._self_check.look(is_suspicious=suspicious)
+        of_states = self._look_at_states()
+        problem = self._self_check.look(is_suspicious=any(topic.traffic.is_silent for topic in self._topics))
         if problem:
             self._faults.add(self._node.get_fully_qualified_name(), "self-check", 1, problem)
+        present = [
+            *of_states,
+            *self._look_at_names(),
+            *self._answer_times.look(),
+            *self._log.present(),
+            *self._self_check.present(),
+        ]
+        waiting = 0 if self._workers is None else self._workers.waiting
         self._diagnostics.publish(
-            self._diagnostics.of_topics([topic.traffic for topic in self._topics], self._faults.counts),
-            self._diagnostics.of_answers(
-                self._answer_times, 0 if self._workers is None else self._workers.waiting
-            ),
-            self._diagnostics.of_log(self._log.status),
-            self._diagnostics.of_self_check(self._self_check, self._successions),
+            {
+                Part.STATES: values_of_topics([each.traffic for each in self._topics], self._faults.counts),
+                Part.ANSWERS: {**self._answer_times.values(), "hard questions that wait": str(waiting)},
+                Part.LOG: values_of_log(self._log.status),
+                Part.SELF_CHECK: values_of_self_check(self._self_check, self._successions),
+            },
+            present,
         )
+
+    def _look_at_states(self) -> list[Present]:
+        awake_for = self._looked - self._awake_since
+        present = [found for topic in self._topics for found in topic.look(awake_for=awake_for)]
+        for name, body in self._bodies.items():
+            silent_after = self._parameters.fault_limits.silent_after
+            present += body.look(self._states.arrivals(name), silent_after=silent_after, awake_for=awake_for)
+        if self._clock_publishers is not None:
+            self._clock_publishers.look()
+            if present_ns(self._node) is None:
+                present.append(Situation.NO_CLOCK.present())
+        return present
+
+    def _look_at_names(self) -> list[Present]:
+        full_names = [(namespace, name) for name, namespace in self._node.get_node_names_and_namespaces()]
+        if full_names.count((self._node.get_namespace(), self._node.get_name())) < 2:
+            return []
+        present = Situation.SAME_NAME.present()
+        self._faults.add(self._node.get_fully_qualified_name(), "same name", 1, present.text)
+        return [present]
 
     def _serve(self, served: Service) -> ServiceFront:
         front = ServiceFront(
@@ -307,7 +340,7 @@ class Serving:
         self._log.set_qos(topic, offers)
 
     def _note_answer(self, response: Response) -> None:
-        self._answer_times.note(response)
+        self._answer_times.note(response, is_active=self.is_active)
         self._publish_path(response)
 
     def _publish_path(self, response: Response) -> None:

@@ -11,12 +11,13 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.qos import DurabilityPolicy, QoSCompatibility, QoSProfile, qos_check_compatible
 from rclpy.serialization import deserialize_message
 
 from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes.offered_qos import OfferedQosWatch
+from contact_dynamics.nodes.situations import Present, Situation
 from contact_dynamics.nodes.state_sources import no_message
 from contact_dynamics.nodes.topic_faults import TopicFaults, TopicTraffic
 from contact_dynamics.questions.extent import check_believable
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from rclpy.node import Node
+    from rclpy.topic_endpoint_info import TopicEndpointInfo
 
     from contact_dynamics.nodes.inbox import InboxNode, Taken
     from contact_dynamics.nodes.state_sources import BodyReader, StateSource
@@ -86,6 +88,7 @@ class StateTopic:
         type_name: The type of its messages.
         source: What makes states of its messages. It may be replaced by another source of the same topic.
         traffic: What came on it.
+        publishers: How many publish on it, as of the last look, whose messages can be received.
     """
 
     def __init__(
@@ -109,6 +112,7 @@ class StateTopic:
         self._frame = b""  # and they have this frame
         self._examined_ns = 0
         self._anew_after = _ANEW_AFTER_S
+        self.publishers = 0
         qos = LATCHED_QOS if source.is_latched else STATE_QOS
         self._subscription = node.subscribe(
             self._msg_type, source.topic, self._receive, qos, may_override=True
@@ -117,11 +121,11 @@ class StateTopic:
         self.type_name = source.type_name
         self._publishers = OfferedQosWatch(node, self.name, offered)
         self.traffic = TopicTraffic(
-            topic=self.name, faults=faults, one_publisher=source.is_whole, may_rest=source.is_latched
+            topic=self.name, faults=faults, one_publisher=source.is_of_one_body, may_rest=source.is_latched
         )
 
-    def look(self, *, awake_for: float) -> None:
-        """Look, once a second, at who publishes and for how long nothing came.
+    def look(self, *, awake_for: float) -> list[Present]:
+        """Look, once a second, at who publishes and for how long nothing came; return what is wrong.
 
         Where somebody publishes and nothing comes, subscribe anew, after longer and longer times. A process
         that stood still does not do so at once. What was sent meanwhile still waits, or its publisher sends
@@ -130,8 +134,16 @@ class StateTopic:
         Args:
             awake_for: s, for how long this process has run without standing still.
         """
-        publishers = self._publishers.look()
-        self.traffic.look(publishers, awake_for=awake_for)
+        found = self._publishers.look()
+        mismatches = [text for text in map(self._mismatch, found) if text]
+        publishers = self.publishers = len(found) - len(mismatches)
+        present = self.traffic.look(publishers, awake_for=awake_for)
+        if mismatches:
+            present.append(
+                Situation.NO_MATCH.present(
+                    topic=self.name, count=len(mismatches), publishers=len(found), reason=mismatches[0]
+                )
+            )
         if not (self.traffic.is_silent and publishers):
             self._anew_after = _ANEW_AFTER_S
         elif self.traffic.silence > self._anew_after:
@@ -139,6 +151,17 @@ class StateTopic:
             text = f"{publishers} publish and nothing comes, so it is subscribed to anew"
             self._faults.add(self.name, "subscribed anew", 1, text)
             self._subscription = self._node.subscribe_anew(self._subscription)
+        return present
+
+    def _mismatch(self, publisher: TopicEndpointInfo) -> str:
+        """Return why what a publisher sends cannot be received, or nothing if it can."""
+        if publisher.topic_type != self.type_name:
+            return f"they send {publisher.topic_type}, and {self.type_name} is needed"
+        offered, asked = publisher.qos_profile, self._subscription.qos_profile
+        compatibility, reason = qos_check_compatible(offered, asked)
+        if compatibility != QoSCompatibility.ERROR:
+            return ""
+        return f"{reason.strip()} (see qos_overrides in config/server.yaml)"
 
     def _receive(self, taken: Taken) -> None:
         if not self.traffic.received:

@@ -11,6 +11,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from contact_dynamics.nodes.situations import RECENT_S, Present, Situation
 from msg_adapters.status import short
 
 if TYPE_CHECKING:
@@ -110,6 +111,7 @@ class TopicTraffic:
     _is_steady: bool = True
     _looked: float | None = None
     _received_before: int = 0
+    _lost_at: float | None = None
 
     def note(self, taken: Taken) -> None:
         """Note a message, and tell of those that are missing before it."""
@@ -124,23 +126,28 @@ class TopicTraffic:
         elif self._is_steady and self.one_publisher:
             missing = number - before - 1
             self.lost += missing
+            self._lost_at = self._newest
             self.faults.add(self.topic, "lost", missing, "messages were lost before they could be taken")
 
-    def look(self, publishers: int, *, awake_for: float) -> None:
-        """Look, once a second, at who publishes and for how long nothing came.
+    def look(self, publishers: int, *, awake_for: float) -> list[Present]:
+        """Look, once a second, at who publishes and for how long nothing came; return what is wrong.
 
         Args:
             publishers: how many publish on the topic.
             awake_for: s, for how long this process has run without standing still.
         """
+        present: list[Present] = []
         self._is_steady = publishers <= 1
         if self.one_publisher and publishers > 1:
             self.faults.add(
                 self.topic, "publishers", 1, f"{publishers} publishers tell the states of one body"
             )
+            present.append(Situation.SEVERAL_PUBLISHERS.present(topic=self.topic, publishers=publishers))
         if not self.received:
-            return
+            return present
         now = self.faults.clock()
+        if self._lost_at is not None and now - self._lost_at < RECENT_S:
+            present.append(Situation.LOST.present(topic=self.topic, count=self.lost))
         if self._looked is not None:
             self.rate = (self.received - self._received_before) / max(now - self._looked, 1e-9)
         self._looked, self._received_before = now, self.received
@@ -150,3 +157,6 @@ class TopicTraffic:
         was_silent, self.is_silent = self.is_silent, is_quiet and not self.may_rest
         if self.is_silent and not was_silent:
             self.faults.add(self.topic, "silent", 1, f"nothing came for {self.silence:.1f} s")
+        if self.is_silent:
+            present.append(Situation.SILENT.present(topic=self.topic))
+        return present

@@ -14,7 +14,8 @@ class Arrivals:
         rejected: How many of them were rejected, some of which were kept unread before.
         old: How many were too old for a question about now when they came.
         age: s. How old the last of these was.
-        reason: Why the last one was rejected, in words, if none was kept since; otherwise empty.
+        reason: Why the last one that was rejected was, in words.
+        newest_is_rejected: Whether none was kept since.
         fate: What happened to those that are not kept, or to the last of them, in words.
     """
 
@@ -23,6 +24,7 @@ class Arrivals:
     old: int = 0
     age: float = 0.0
     reason: str = ""
+    newest_is_rejected: bool = False
     fate: str = "they could not be read"
 
     def __str__(self) -> str:
@@ -34,13 +36,14 @@ class Arrivals:
     def keep(self) -> None:
         """Note a state that came and is kept."""
         self.came += 1
-        self.reason = ""
+        self.newest_is_rejected = False
 
     def refuse(self, reason: object, *, was_kept: bool) -> None:
         """Note a state that came and was not kept, or that was counted and kept, and cannot be read."""
         self.came += not was_kept
         self.rejected += 1
         self.reason = str(reason)
+        self.newest_is_rejected = True
         self.fate = f"the last was refused: {reason}"
 
     def throw_away(self, reason: str) -> None:

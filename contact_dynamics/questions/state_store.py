@@ -251,9 +251,9 @@ class StateStore:
                 f"state of {body_name!r}: the newest is {to_seconds(age_ns):.3f} s old, "
                 f"allowed is at most {to_seconds(self._timeout_ns):g} s (state_timeout)"
             )
-            reason = self.arrivals(body_name).reason
-            if reason:
-                message += f"; states that came since were rejected, the last because {reason}"
+            arrivals = self.arrivals(body_name)
+            if arrivals.newest_is_rejected:
+                message += f"; states that came since were rejected, the last because {arrivals.reason}"
             raise StaleStateError(message)
         return state
 

@@ -227,6 +227,7 @@ def test_what_got_lost_fell_silent_and_has_two_publishers_is_told(tmp_path: Path
             server.send_signal(signal.SIGCONT)
             told = wait_for(server, "/brick/odometry: messages were lost before they could be taken")
             client.spin_until(lambda: bool(reports) and counted(reports[-1], "lost") > 0)
+            assert "/brick/odometry: messages were lost" in reports[-1].status[0].message
             received = counted(reports[-1], "messages")
             assert received + counted(reports[-1], "lost") <= PUBLISHED + 1
             if "/brick/odometry: nothing came for " not in told:  # while DDS repeated what was not taken

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 import rclpy
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from nav_msgs.msg import Odometry
 from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.context import Context
@@ -24,6 +24,7 @@ from rclpy.publisher import Publisher
 from contact_dynamics.nodes import self_check
 from contact_dynamics.nodes.inbox import InboxNode
 from contact_dynamics.nodes.self_check import SelfCheck
+from contact_dynamics.nodes.situations import Situation
 from contact_dynamics.recording import BagReader
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 from running_server import DOMAIN_ID, PATIENCE_S, PATIENT, ROOT, Client, process, wait_for
@@ -65,8 +66,13 @@ def test_a_server_whose_ports_are_removed_joins_anew_with_its_parameters(tmp_pat
     with process("server", *arguments, ready="ready") as server:
         client = Client()
         set_parameter(client, Parameter("surface.floor.friction", value=0.125))
-        client.close()
+        reports: list[DiagnosticArray] = []
+        client.node.create_subscription(DiagnosticArray, "/diagnostics", reports.append, 10)
+        client.spin_until(lambda: reports)
         assert remove_ports(server.pid) == 1
+        client.spin_until(lambda: "messages may not arrive" in reports[-1].status[-1].message)
+        assert reports[-1].status[-1].level == DiagnosticStatus.ERROR
+        client.close()
         printed = wait_for(server, "joins the domain anew") + wait_for(server, "ready")
         assert "self_check" not in printed
         assert "a process that joined the domain sent a message, and it was not received" in printed
@@ -185,8 +191,10 @@ def test_a_machine_without_room_for_the_process_of_a_check_does_not_end_the_serv
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, before)
     assert said.startswith("the self-check could not be made: [Errno 24] Too many open files")
+    assert check.present() == [Situation.NOT_CHECKED.present(problem=said)]
     assert check.unheard == 0
     assert told(check, lambda: check.heard) == ""
+    assert check.present() == []
     check.end()
 
 

@@ -1,0 +1,159 @@
+"""The situations that `/diagnostics` reports: the level of each, what it says, and the test that shows it.
+
+A status is OK if none of its situations is present. Each of them ends when its cause does. What happens at an
+instant, such as the loss of a message, counts as present for `RECENT_S` after it last happened.
+`docs/diagnostics.md` has this table for users. This file imports no ROS.
+"""
+
+from __future__ import annotations
+
+from enum import Enum, IntEnum
+from typing import Final, NamedTuple
+
+RECENT_S: Final = 3.0
+"""s. A monitor that looks every few seconds sees what happened at an instant, and it is over soon after."""
+
+
+class Level(IntEnum):
+    """How bad a situation is, as `diagnostic_msgs/DiagnosticStatus` counts."""
+
+    OK = 0
+    WARN = 1
+    ERROR = 2
+
+
+class Part(Enum):
+    """What a status is about."""
+
+    STATES = "states"
+    ANSWERS = "answers"
+    LOG = "log"
+    SELF_CHECK = "self-check"
+
+
+class Present(NamedTuple):
+    """A situation that is present.
+
+    Attributes:
+        part: The status that reports it.
+        level: Its level.
+        text: What is reported.
+    """
+
+    part: Part
+    level: Level
+    text: str
+
+
+class _Row(NamedTuple):
+    part: Part
+    level: Level
+    text: str
+    test: str
+
+
+class Situation(Enum):
+    """A situation. The value has its status, its level, its text, and the test that shows it."""
+
+    NO_STATE_YET = _Row(
+        Part.STATES,
+        Level.WARN,
+        "no state of {body!r} has come on {topics}, where {publishers} publish",
+        "test_diagnostics.py::test_a_body_of_which_nothing_came",
+    )
+    NO_MATCH = _Row(
+        Part.STATES,
+        Level.ERROR,
+        "{topic}: {count} of {publishers} publishers cannot be received: {reason}",
+        "test_diagnostics.py::test_publishers_that_do_not_match",
+    )
+    ALL_REJECTED = _Row(
+        Part.STATES,
+        Level.ERROR,
+        "the states of {body!r} are rejected, the last because {reason}",
+        "test_diagnostics.py::test_states_that_are_all_rejected",
+    )
+    SOME_REJECTED = _Row(
+        Part.STATES,
+        Level.WARN,
+        "some states of {body!r} are rejected, the last because {reason}",
+        "test_diagnostics.py::test_states_that_are_rejected_now_and_then",
+    )
+    OLD = _Row(
+        Part.STATES,
+        Level.ERROR,
+        "the states of {body!r} are too old when they come, the last by {age:.3f} s (state_timeout): "
+        "do the clocks agree?",
+        "test_diagnostics.py::test_states_that_are_old_when_they_come",
+    )
+    SILENT = _Row(
+        Part.STATES,
+        Level.WARN,
+        "{topic} is silent",
+        "test_distrusted_states.py::test_what_got_lost_fell_silent_and_has_two_publishers_is_told",
+    )
+    BODY_SILENT = _Row(
+        Part.STATES,
+        Level.WARN,
+        "no state of {body!r} comes any more on {topics}",
+        "test_diagnostics.py::test_a_body_that_is_gone_from_a_shared_topic",
+    )
+    LOST = _Row(
+        Part.STATES,
+        Level.WARN,
+        "{topic}: messages were lost before they could be taken, {count} so far",
+        "test_distrusted_states.py::test_what_got_lost_fell_silent_and_has_two_publishers_is_told",
+    )
+    SEVERAL_PUBLISHERS = _Row(
+        Part.STATES,
+        Level.WARN,
+        "{topic}: {publishers} publishers tell the states of one body",
+        "test_diagnostics.py::test_a_second_publisher_of_a_body",
+    )
+    NO_CLOCK = _Row(
+        Part.STATES,
+        Level.WARN,
+        "use_sim_time is true and no time has come on /clock",
+        "test_diagnostics.py::test_a_simulated_clock_that_does_not_come",
+    )
+    SAME_NAME = _Row(
+        Part.ANSWERS,
+        Level.ERROR,
+        "another node has this name: both answer the same questions",
+        "test_diagnostics.py::test_a_second_server_of_the_same_name",
+    )
+    FAULT = _Row(
+        Part.ANSWERS,
+        Level.ERROR,
+        "answers met faults of the server, {count} so far",
+        "test_diagnostics.py::test_a_fault_of_the_server",
+    )
+    OVERLOADED = _Row(
+        Part.ANSWERS,
+        Level.WARN,
+        "questions were refused as BUSY or TIMEOUT, {count} so far",
+        "test_diagnostics.py::test_questions_that_take_too_long",
+    )
+    LOG_PROBLEM = _Row(
+        Part.LOG,
+        Level.ERROR,
+        "{problem}",
+        "test_self_check.py::test_a_server_joins_anew_without_surfaces_and_without_a_disk",
+    )
+    UNHEARD = _Row(
+        Part.SELF_CHECK,
+        Level.ERROR,
+        "messages may not arrive: {problem}",
+        "test_self_check.py::test_a_server_whose_ports_are_removed_joins_anew_with_its_parameters",
+    )
+    NOT_CHECKED = _Row(
+        Part.SELF_CHECK,
+        Level.WARN,
+        "{problem}",
+        "test_self_check.py::test_a_machine_without_room_for_the_process_of_a_check_does_not_end_the_server",
+    )
+
+    def present(self, **found: object) -> Present:
+        """Return that it is present, with what its text names."""
+        row = self.value
+        return Present(row.part, row.level, row.text.format(**found))

@@ -1,0 +1,328 @@
+"""/diagnostics over real DDS: each situation of the table is reported as long as its cause is there."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import os
+import re
+import signal
+import subprocess
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PoseStamped, TwistStamped
+from nav_msgs.msg import Odometry
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rosgraph_msgs.msg import Clock
+
+from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics.nodes.situations import Level, Part, Situation
+from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
+from msg_adapters.stamps import stamp_to_msg
+from running_server import ROOT, Client, process
+
+BEST_EFFORT = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
+HOUR_NS = 3_600_000_000_000
+OTHERS = ("pair", "late", "twice")
+FOUR_BODIES = {
+    "bodies": ["brick", *OTHERS],
+    **{f"body.{name}.mass": 1.0 for name in OTHERS},
+    **{f"body.{name}.inertia": [0.001, 0.001, 0.001, 0.0, 0.0, 0.0] for name in OTHERS},
+    "body.pair.pose_topic": "/pair/pose",
+    "body.pair.twist_topic": "/pair/twist",
+    "body.late.odometry_topic": "/late/odometry",
+    "body.twice.odometry_topic": "/twice/odometry",
+    "body.twice.pose_topic": "/twice/pose",
+    "state_timeout": 100.0,
+    "silent_after": 1.0,
+    "log": False,
+}
+
+
+def odometry(*, ahead_ns: int = 0, frame: str = "world", child: str = "brick", x: float = 0.0) -> Odometry:
+    msg = Odometry(child_frame_id=child)
+    msg.header.frame_id, msg.header.stamp = frame, stamp_to_msg(time.time_ns() + ahead_ns)
+    msg.pose.pose.position.x = x
+    return msg
+
+
+class Monitor:
+    """A client that listens to /diagnostics."""
+
+    def __init__(self, client: Client) -> None:
+        self.client = client
+        self._reports: list[DiagnosticArray] = []
+        client.node.create_subscription(DiagnosticArray, "/diagnostics", self._reports.append, 10)
+
+    def wait(self, situation: Situation, *words: str, work: Callable[[], object] = int) -> str:
+        """Wait until a situation is reported at its level, with such words; return the whole message.
+
+        ``work`` is done meanwhile, again and again.
+        """
+        pattern = re.escape(situation.value.text)
+        pattern = re.sub(r"\\\{.*?\\\}", ".*", pattern)
+        found: list[str] = []
+
+        def is_reported() -> bool:
+            work()
+            for level, message in self._statuses(situation.value.part):
+                if re.search(pattern, message) and all(each in message for each in words):
+                    assert level >= situation.value.level
+                    found.append(message)
+            return bool(found)
+
+        self.client.spin_until(is_reported)
+        return found[-1]
+
+    def wait_until_over(self, situation: Situation, words: str, *, work: Callable[[], object] = int) -> None:
+        """Wait until a report has no such words."""
+
+        def is_over() -> bool:
+            work()
+            statuses = self._statuses(situation.value.part)
+            return bool(statuses) and not any(words in message for _, message in statuses)
+
+        self.client.spin_until(is_over)
+
+    def wait_until_ok(self, part: Part, *, work: Callable[[], object] = int) -> None:
+        """Wait until a status is OK."""
+
+        def is_ok() -> bool:
+            work()
+            return (Level.OK, "ok") in self._statuses(part)
+
+        self.client.spin_until(is_ok)
+
+    def _statuses(self, part: Part) -> list[tuple[Level, str]]:
+        """The statuses of a part that came since the last look."""
+        reports, self._reports[:] = list(self._reports), []
+        return [
+            (Level(each.level[0]), each.message)
+            for report in reports
+            for each in report.status
+            if each.name.endswith(f": {part.value}")
+        ]
+
+
+@contextmanager
+def monitored(
+    folder: Path, *arguments: str, **changes: Any
+) -> Iterator[tuple[subprocess.Popen[str], Monitor]]:
+    """A server of the commented configuration with some changes, and a monitor of it."""
+    domain_id = claim_domain()  # since another server of the same name is a situation
+    settings = yaml.safe_load((ROOT / "config" / "server.yaml").read_text(encoding="utf-8"))
+    settings["/**"]["ros__parameters"] |= changes
+    path = folder / "server.yaml"
+    path.write_text(yaml.safe_dump(settings), encoding="utf-8")
+    given = ("--params-file", str(path), *arguments)
+    with process("server", *given, ready="ready", domain_id=domain_id) as server:
+        client = Client(domain_id=domain_id)
+        try:
+            yield server, Monitor(client)
+        finally:
+            client.close()
+
+
+@pytest.fixture(scope="module")
+def monitor(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Monitor]:
+    with monitored(tmp_path_factory.mktemp("config"), **FOUR_BODIES) as (_, monitor):
+        yield monitor
+
+
+@pytest.fixture
+def states(monitor: Monitor) -> Iterator[Any]:
+    """The one publisher of the brick's states."""
+    made = monitor.client.publisher(Odometry, "/brick/odometry")
+    yield made
+    monitor.client.node.destroy_publisher(made)
+
+
+def test_a_body_of_which_nothing_came(monitor: Monitor) -> None:
+    monitor.wait(Situation.NO_STATE_YET, "'late' has come on /late/odometry, where 0 publish")
+    states = monitor.client.publisher(Odometry, "/late/odometry")
+    monitor.wait_until_over(
+        Situation.NO_STATE_YET, "'late'", work=lambda: states.publish(odometry(child="late"))
+    )
+    monitor.client.node.destroy_publisher(states)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "reason"),
+    [
+        ({"frame": "map"}, "header.frame_id: found 'map'"),
+        ({"child": "cat"}, "child_frame_id: found 'cat'"),
+        ({"x": math.nan}, "nan"),
+        ({"ahead_ns": HOUR_NS}, "ahead of the clock"),
+    ],
+)
+def test_states_that_are_all_rejected(
+    monitor: Monitor, states: Any, wrong: dict[str, Any], reason: str
+) -> None:
+    monitor.wait(Situation.ALL_REJECTED, "'brick'", reason, work=lambda: states.publish(odometry(**wrong)))
+    monitor.wait_until_over(
+        Situation.ALL_REJECTED, "the states of 'brick' are", work=lambda: states.publish(odometry())
+    )
+
+
+def test_states_that_are_rejected_now_and_then(monitor: Monitor, states: Any) -> None:
+    def publish() -> None:
+        states.publish(odometry())
+        states.publish(odometry(frame="map"))
+        states.publish(odometry())
+
+    monitor.wait(Situation.SOME_REJECTED, "'brick'", "found 'map'", work=publish)
+    monitor.wait_until_over(Situation.SOME_REJECTED, "rejected", work=lambda: states.publish(odometry()))
+
+
+def test_states_that_are_old_when_they_come(monitor: Monitor, states: Any) -> None:
+    monitor.wait(Situation.OLD, "by 3600.", work=lambda: states.publish(odometry(ahead_ns=-HOUR_NS)))
+    monitor.wait_until_over(Situation.OLD, "too old", work=lambda: states.publish(odometry()))
+
+
+def test_publishers_that_do_not_match(monitor: Monitor, states: Any) -> None:
+    """The one cannot be received by a reliable subscription, and what the other sends is of another type."""
+    node = monitor.client.node
+    others = [
+        node.create_publisher(Odometry, "/brick/odometry", BEST_EFFORT),
+        node.create_publisher(PoseStamped, "/pair/twist", 10),
+    ]
+
+    def publish() -> None:
+        states.publish(odometry())
+
+    monitor.wait(Situation.NO_MATCH, "/brick/odometry: 1 of 2 publishers", "Best effort", work=publish)
+    monitor.wait(Situation.NO_MATCH, "/pair/twist: 1 of 1 publishers", "they send geometry", work=publish)
+    for each in others:
+        node.destroy_publisher(each)
+    monitor.wait_until_over(Situation.NO_MATCH, "cannot be received", work=publish)
+
+
+def test_a_second_publisher_of_a_body(monitor: Monitor, states: Any) -> None:
+    second = monitor.client.node.create_publisher(Odometry, "/brick/odometry", 10)
+    monitor.wait(Situation.SEVERAL_PUBLISHERS, "/brick/odometry: 2 publishers")
+    monitor.client.node.destroy_publisher(second)
+    monitor.wait_until_over(Situation.SEVERAL_PUBLISHERS, "publishers tell")
+    assert states.topic_name == "/brick/odometry"
+
+
+def test_a_body_with_two_sources_that_both_publish(monitor: Monitor) -> None:
+    states = monitor.client.publisher(Odometry, "/twice/odometry")
+    poses = monitor.client.publisher(PoseStamped, "/twice/pose")
+    monitor.wait(Situation.SEVERAL_PUBLISHERS, "/twice/odometry", " and ", "/twice/pose", ": 2 publishers")
+    monitor.client.node.destroy_publisher(poses)
+    monitor.wait_until_over(Situation.SEVERAL_PUBLISHERS, "publishers tell")
+    monitor.client.node.destroy_publisher(states)
+
+
+def test_a_body_that_is_gone_from_a_shared_topic(monitor: Monitor) -> None:
+    """Poses and twists come, and have no equal stamps any more, so that none of them makes a state."""
+    poses = monitor.client.publisher(PoseStamped, "/pair/pose")
+    twists = monitor.client.publisher(TwistStamped, "/pair/twist")
+
+    def publish(apart_ns: int) -> None:
+        pose, twist, now_ns = PoseStamped(), TwistStamped(), time.time_ns()
+        for msg, stamp_ns in ((pose, now_ns), (twist, now_ns - apart_ns)):
+            msg.header.frame_id, msg.header.stamp = "world", stamp_to_msg(stamp_ns)
+        poses.publish(pose)
+        twists.publish(twist)
+
+    monitor.wait_until_over(Situation.BODY_SILENT, "'pair'", work=lambda: publish(0))
+    monitor.wait(
+        Situation.BODY_SILENT, "'pair'", "/pair/pose and /pair/twist", work=lambda: publish(1_000_003)
+    )
+    monitor.wait_until_over(Situation.BODY_SILENT, "'pair'", work=lambda: publish(0))
+    for each in (poses, twists):
+        monitor.client.node.destroy_publisher(each)
+
+
+def test_a_second_server_of_the_same_name(monitor: Monitor) -> None:
+    domain_id = monitor.client.node.context.get_domain_id()
+    with process("server", "--ros-args", "-p", "log:=false", ready="ready", domain_id=domain_id):
+        monitor.wait(Situation.SAME_NAME)
+    monitor.wait_until_ok(Part.ANSWERS)
+
+
+def test_a_simulated_clock_that_does_not_come(tmp_path: Path) -> None:
+    arguments = ("--ros-args", "-p", "use_sim_time:=true")
+    with monitored(tmp_path, *arguments, log=False) as (_, monitor):
+        monitor.wait(Situation.NO_CLOCK)
+        clock = monitor.client.publisher(Clock, "/clock")
+        states = monitor.client.publisher(Odometry, "/brick/odometry")
+
+        def publish() -> None:
+            clock.publish(Clock(clock=stamp_to_msg(time.time_ns())))
+            states.publish(odometry())
+
+        monitor.wait_until_ok(Part.STATES, work=publish)
+
+
+def hard() -> Any:
+    """A landing of a body that spins so fast that the search for it takes seconds."""
+    request = PredictImpact.Request(body_name="brick", state_source=PredictImpact.Request.STATE_EXPLICIT)
+    request.state.pose.position.z = 1.0
+    spin = request.state.angular_velocity
+    spin.x, spin.y, spin.z = 1e9, 1e8, 1e8
+    return request
+
+
+def worker_of(server: subprocess.Popen[str]) -> int:
+    """The process of the only worker of a server, which is the only child of one of its children."""
+    parents = {}
+    for folder in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):  # it ended meanwhile
+            stat = (folder / "stat").read_text(encoding="ascii")
+            parents[int(folder.name)] = int(stat.rsplit(")", 1)[1].split()[1])
+    (worker,) = (pid for pid, parent in parents.items() if parents.get(parent) == server.pid)
+    return worker
+
+
+@pytest.fixture(scope="module")
+def overloaded(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Iterator[tuple[subprocess.Popen[str], Monitor]]:
+    """A server with one worker, for which no question waits."""
+    limits = {"workers": 1, "most_waiting": 0, "self_check_period": 0.0}
+    arguments = ("--ros-args", "-p", "answer_deadline:=10.0")
+    with monitored(tmp_path_factory.mktemp("config"), *arguments, log=False, **limits) as found:
+        yield found
+
+
+def test_a_fault_of_the_server(overloaded: tuple[subprocess.Popen[str], Monitor]) -> None:
+    """Its worker is killed while it answers, as a machine short of memory does it."""
+    server, monitor = overloaded
+    slowed = PredictTumbling.Request(body_name="brick", times=[0.1], linear_drag=0.1)
+    slowed.state_source = slowed.STATE_EXPLICIT
+    monitor.client.spin_until(lambda: monitor.client.ask(slowed).status == 0)  # the worker is there
+    answer = monitor.client.begin_to_ask(hard())
+    time.sleep(0.5)  # less than the answer takes
+    os.kill(worker_of(server), signal.SIGKILL)
+    monitor.wait(Situation.FAULT, "1 so far")
+    assert answer.result().status == answer.result().INTERNAL_ERROR
+    monitor.wait_until_ok(Part.ANSWERS)
+
+
+def test_questions_that_take_too_long(overloaded: tuple[subprocess.Popen[str], Monitor]) -> None:
+    _, monitor = overloaded
+    futures = [monitor.client.begin_to_ask(hard()) for _ in range(3)]
+    monitor.wait(Situation.OVERLOADED, "2 so far")
+    monitor.client.spin_until(lambda: all(each.done() for each in futures))
+    monitor.wait_until_ok(Part.ANSWERS)
+
+
+def test_the_table_in_the_documents_is_that_of_the_code() -> None:
+    page = (ROOT / "docs" / "diagnostics.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (\S+) \| (\S+) \| `([^|]*)` \| [^|]* \| `(\S+)` \|$", page, re.MULTILINE)
+    assert rows == [
+        (row.part.value, row.level.name, re.sub(r"\{(\w+)[^}]*\}", r"<\1>", row.text), row.test)
+        for row in (situation.value for situation in Situation)
+    ]
+    for situation in Situation:
+        file, _, name = situation.value.test.partition("::")
+        assert f"\ndef {name}(" in (ROOT / "test" / "nodes" / file).read_text(encoding="utf-8")
