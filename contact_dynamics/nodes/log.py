@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
-from contact_dynamics.nodes.situations import Present, Situation
+from contact_dynamics.nodes.situations import RECENT_S, Present, Situation
 from contact_dynamics.recording.bag_writer import BagWriter
 from contact_dynamics.recording.errors import LogExistsError
-from contact_dynamics.recording.recorder import Recorder, RecorderStatus
+from contact_dynamics.recording.recorder import LogProblem, Recorder, RecorderStatus
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -20,6 +20,11 @@ if TYPE_CHECKING:
 
     from contact_dynamics.recording.limits import LogLimits
 
+_SITUATIONS: Final = {
+    LogProblem.INTERRUPTED: Situation.LOG_INTERRUPTED,
+    LogProblem.DROPPING: Situation.LOG_DROPPING,
+    LogProblem.REJECTING: Situation.LOG_REJECTING,
+}
 _SETTLES_IN_S: Final = 1.0  # how long an answer waits for the disk
 _TRUSTS_AFTER_S: Final = 10.0  # how long answers do not wait for a disk that took longer
 
@@ -34,7 +39,7 @@ class Log:
         run: Mapping[str, str],
         limits: LogLimits,
         on_problem: Callable[[str], object],
-        on_deleted: Callable[[str], object],
+        on_notice: Callable[[str], object],
         is_needed: bool = True,
     ) -> None:
         """Create a folder in ``directory``, where empty means the current folder and None means no log.
@@ -43,8 +48,9 @@ class Log:
             directory: where the folder of the log is made.
             run: how the run is made.
             limits: what bounds the files of the log.
-            on_problem: told once, from the log's thread, what goes wrong first.
-            on_deleted: told, from the log's thread, of each file that ``limits`` cost.
+            on_problem: told, from the log's thread, what goes wrong.
+            on_notice: told, from the log's thread, of each file that ``limits`` cost, and of what is missing
+                when a log that was interrupted goes on.
             is_needed: whether it is an error that the folder cannot be made. Otherwise that is a problem.
 
         Raises:
@@ -56,7 +62,7 @@ class Log:
         self._unlogged = 0  # messages that it does not have for that reason
         if directory is not None:
             try:
-                self._writer = _new_bag(directory, run, limits, on_deleted)
+                self._writer = _new_bag(directory, run, limits, on_notice)
             except ConfigurationError as error:
                 if is_needed:
                     raise
@@ -65,6 +71,7 @@ class Log:
         self.folder = self._writer.folder if self._writer is not None else None
         self._recorder: Recorder | None = None
         self._on_problem = on_problem
+        self._on_notice = on_notice
         self._hung = -_TRUSTS_AFTER_S  # when the disk took too long, s
 
     def add_topic(self, topic: str, type_name: str, qos: QoSProfile | None = None) -> None:
@@ -80,7 +87,7 @@ class Log:
     def start(self) -> None:
         """Begin to record."""
         if self._writer is not None:
-            self._recorder = Recorder(self._writer, on_problem=self._on_problem)
+            self._recorder = Recorder(self._writer, on_problem=self._on_problem, on_resumed=self._on_notice)
 
     def record(
         self, topic: str, data: bytes, *, log_time_ns: int | None = None, publish_time_ns: int | None = None
@@ -102,14 +109,13 @@ class Log:
         """
         if self._recorder is None or time.monotonic() < self._hung + _TRUSTS_AFTER_S:
             return
-        if self._recorder.settle(timeout_s=_SETTLES_IN_S):
+        if self._recorder.settle(timeout_s=_SETTLES_IN_S) or self._recorder.status.is_interrupted:
             return
         self._hung = time.monotonic()
-        if self._recorder.status.problem is None:  # otherwise it has told why
-            self._on_problem(
-                f"the disk took longer than {_SETTLES_IN_S:g} s: for {_TRUSTS_AFTER_S:g} s, answers leave "
-                "before they are on it"
-            )
+        self._on_problem(
+            f"the disk took longer than {_SETTLES_IN_S:g} s: for {_TRUSTS_AFTER_S:g} s, answers leave "
+            "before they are on it"
+        )
 
     def change_run(self, run: Mapping[str, str]) -> None:
         """Let the files of the log that begin from now on say that the run is made so."""
@@ -124,15 +130,23 @@ class Log:
         if not self._missing:
             return None
         return RecorderStatus(
-            written=0, lost=self._unlogged, waiting=0, most_waiting_bytes=0, problem=self._missing
+            written=0, lost=self._unlogged, waiting=0, most_waiting_bytes=0, is_interrupted=True, problems={}
         )
 
     def present(self) -> list[Present]:
         """Return what is wrong."""
-        status = self.status
-        if status is None or status.problem is None:
+        if self._missing:
+            return [Situation.LOG_MISSING.present(problem=self._missing)]
+        if self._recorder is None:
             return []
-        return [Situation.LOG_PROBLEM.present(problem=status.problem)]
+        status, now, present = self._recorder.status, time.monotonic(), list[Present]()
+        for kind, problem in status.problems.items():
+            is_recent = now - problem.last < RECENT_S
+            if status.is_interrupted if kind is LogProblem.INTERRUPTED else is_recent:
+                present.append(_SITUATIONS[kind].present(problem=problem.text, lost=status.lost))
+        if now < self._hung + _TRUSTS_AFTER_S:
+            present.append(Situation.LOG_NOT_AWAITED.present())
+        return present
 
     def close(self) -> str:
         """Finish the file, and return in words where it is and whether messages are missing."""
@@ -144,7 +158,7 @@ class Log:
 
 
 def _new_bag(
-    directory: str, run: Mapping[str, str], limits: LogLimits, on_deleted: Callable[[str], object]
+    directory: str, run: Mapping[str, str], limits: LogLimits, on_notice: Callable[[str], object]
 ) -> BagWriter:
     """Return a bag in a folder named by the time. Servers that start at one time have different folders."""
     name = datetime.now(timezone.utc).astimezone().strftime("contact_dynamics_%Y_%m_%d-%H_%M_%S")
@@ -156,7 +170,7 @@ def _new_bag(
         while True:
             folder = parent / (name if number == 1 else f"{name}_{number}")
             try:
-                return BagWriter(folder, run=run, limits=limits, on_deleted=on_deleted)
+                return BagWriter(folder, run=run, limits=limits, on_deleted=on_notice)
             except LogExistsError:
                 number += 1
     except (OSError, RuntimeError) as error:  # the latter for the home of a user who is not there

@@ -129,7 +129,7 @@ class Serving:
             limits=parameters.log_limits,
             is_needed=must_log,
             on_problem=node.get_logger().error,
-            on_deleted=node.get_logger().warning,
+            on_notice=node.get_logger().warning,
         )
         for topic in self._topics:
             self._log.add_topic(topic.name, topic.type_name)

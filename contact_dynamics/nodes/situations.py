@@ -134,11 +134,35 @@ class Situation(Enum):
         "questions were refused as BUSY or TIMEOUT, {count} so far",
         "test_diagnostics.py::test_questions_that_take_too_long",
     )
-    LOG_PROBLEM = _Row(
+    LOG_MISSING = _Row(
         Part.LOG,
         Level.ERROR,
         "{problem}",
         "test_self_check.py::test_a_server_joins_anew_without_surfaces_and_without_a_disk",
+    )
+    LOG_INTERRUPTED = _Row(
+        Part.LOG,
+        Level.ERROR,
+        "{problem}; {lost} messages are missing so far",
+        "test_full_disk.py::test_the_log_goes_on_once_there_is_room_and_says_what_is_missing",
+    )
+    LOG_DROPPING = _Row(
+        Part.LOG,
+        Level.ERROR,
+        "{problem}; {lost} messages are missing so far",
+        "test_full_disk.py::test_each_kind_of_problem_of_the_log_is_reported_while_it_is_there",
+    )
+    LOG_REJECTING = _Row(
+        Part.LOG,
+        Level.WARN,
+        "{problem}",
+        "test_full_disk.py::test_each_kind_of_problem_of_the_log_is_reported_while_it_is_there",
+    )
+    LOG_NOT_AWAITED = _Row(
+        Part.LOG,
+        Level.WARN,
+        "the disk took too long, and answers leave before they are on it",
+        "test_log_before_answer.py::test_a_disk_that_hangs_is_told_of_and_not_waited_for_again",
     )
     UNHEARD = _Row(
         Part.SELF_CHECK,

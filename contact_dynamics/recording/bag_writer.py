@@ -21,6 +21,9 @@ survives that of the machine too.
 from __future__ import annotations
 
 import contextlib
+import errno
+import os
+import shutil
 import time
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -41,6 +44,7 @@ from contact_dynamics.recording.closing import ClosedAtTheEnd
 from contact_dynamics.recording.declared_topic import DeclaredTopic, qos_yaml
 from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.recording.errors import LogExistsError, LogFailedError
+from contact_dynamics.recording.gaps import Gap, record_of_gaps
 from contact_dynamics.recording.limits import UNLIMITED, LogLimits
 from contact_dynamics.version import version_of_this_package
 
@@ -50,6 +54,7 @@ if TYPE_CHECKING:
 _LATEST_NS: Final = 2**63 - 1  # rosbag2 keeps times as int64
 _SHORTEST_MESSAGE: Final = 5  # bytes: encapsulation and one of content, which even an empty message has
 _DELETED_KEY: Final = "deleted_files"  # in metadata.yaml: how many files the limit has cost
+_LEAST_ROOM: Final = 1_000_000  # bytes on the disk with which an interrupted log goes on
 _METADATA_EVERY_S: Final = 5.0  # how old the counts of metadata.yaml may grow while writing
 
 
@@ -90,6 +95,7 @@ class BagWriter(ClosedAtTheEnd):
         self._topics: dict[str, DeclaredTopic] = {}
         self._finished: list[_Finished] = []
         self._deleted = 0  # files
+        self._gaps: list[Gap] = []
         self._earlier_count = 0  # messages of the files before this one
         self._failure: str | None = None  # beside that of the file
         self._closed = False
@@ -178,6 +184,27 @@ class BagWriter(ClosedAtTheEnd):
         if time.monotonic() >= self._metadata_due_s:
             self._write_metadata_file()
 
+    def resume(self, gap: Gap) -> None:
+        """Go on in another file after the disk refused a write; its record says what is missing.
+
+        Args:
+            gap: the time of which the log has no messages.
+
+        Raises:
+            OSError: the disk still refuses. It may be tried again.
+        """
+        if shutil.disk_usage(self.folder).free < _LEAST_ROOM:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        before = self._gaps
+        self._gaps = [*(each for each in before if each.from_ns != gap.from_ns), gap]
+        try:
+            file = self._begun_file(self._deleted + len(self._finished) + 1)
+        except OSError:
+            self._gaps = before
+            raise
+        self._failure = None
+        self._leave(self._file, file)
+
     def sync(self) -> None:
         """Wait until the disk has all that was flushed, which then survives the death of the machine."""
         self._check_open()
@@ -212,7 +239,7 @@ class BagWriter(ClosedAtTheEnd):
     def _new_file(self, number: int) -> BagFile:
         return BagFile(
             self.folder / f"{self.folder.name}_{number}.mcap",
-            run=self._run,
+            run={**self._run, **record_of_gaps(self._gaps)},
             compression=self._limits.compression,
             opened_ns=time.time_ns(),
         )
@@ -235,11 +262,14 @@ class BagWriter(ClosedAtTheEnd):
     def _next_file(self) -> None:
         """Finish the file, begin another one, and delete the oldest ones if there is a limit."""
         self._finish_file()
-        file = self._begun_file(self._deleted + len(self._finished) + 1)
-        self._finished.append(_Finished(summary=self._file.summary, size=self._file.size))
-        self._earlier_count += sum(self._file.summary.counts.values())
-        self._file.close()
-        self._file = file
+        self._leave(self._file, self._begun_file(self._deleted + len(self._finished) + 1))
+
+    def _leave(self, file: BagFile, following: BagFile) -> None:
+        """Go on in another file."""
+        self._finished.append(_Finished(summary=file.summary, size=file.size))
+        self._earlier_count += sum(file.summary.counts.values())
+        file.close()
+        self._file = following
         self._delete_oldest()
 
     def _begun_file(self, number: int) -> BagFile:
@@ -286,7 +316,7 @@ class BagWriter(ClosedAtTheEnd):
         return BagSummary(
             files=files,
             topics=[topic.summary for topic in self._topics.values()],
-            custom_data={**self._run, **deleted},
+            custom_data={**self._run, **record_of_gaps(self._gaps), **deleted},
         )
 
     def _write_metadata_file(self) -> None:

@@ -7,13 +7,18 @@ costs little more. `Recorder.settle` returns when that is done for all that was 
 The queue has a limit in bytes. If the disk stalls, messages wait until there are `MAX_WAITING_BYTES`. Newer
 ones are then dropped and counted, to spare the server's memory.
 
-If a write fails (a full disk), the log ends where it was last whole, and messages from then on are counted as
-lost. ``on_problem`` is called once with the first problem, and `Recorder.status` can be read at any time.
+If the disk refuses a write (it is full), the file ends where it was last whole. Messages from then on are
+counted as lost until there is room again, which the thread looks for every second. The log then goes on in
+another file, whose record says what is missing.
+
+``on_problem`` is called when a problem of some kind begins, and again every minute while it goes on.
+`Recorder.status` can be read at any time.
 """
 
 from __future__ import annotations
 
 import contextlib
+import enum
 import logging
 import threading
 import time
@@ -22,6 +27,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.recording.closing import ClosedAtTheEnd
+from contact_dynamics.recording.gaps import Gap
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -30,11 +36,33 @@ if TYPE_CHECKING:
 
 FLUSH_EVERY_S: Final = 0.1
 SYNC_EVERY_S: Final = 1.0
+RESUME_EVERY_S: Final = 1.0
+TELL_EVERY_S: Final = 60.0
 MAX_WAITING_BYTES: Final = 64 * 1024 * 1024  # a minute of Odometry at 1 kHz
 
 _ITEM_BYTES: Final = 200  # what a message waiting costs beside its data
 _WAKE_BYTES: Final = 1024 * 1024  # waiting bytes that wake the thread before its time
 _SETTLE_WAITS: Final = 10  # in so many parts the disk is waited for; a process that stands still loses one
+
+
+class LogProblem(enum.Enum):
+    """The kinds of problems of a log."""
+
+    INTERRUPTED = "nothing is written"
+    DROPPING = "messages wait too long"
+    REJECTING = "messages are not fit to be written"
+
+
+class Problem(NamedTuple):
+    """A problem of a kind.
+
+    Attributes:
+        text: What was wrong the last time, in words.
+        last: s, by `time.monotonic`. When that was.
+    """
+
+    text: str
+    last: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,14 +74,21 @@ class RecorderStatus:
         lost: Number of messages dropped because the disk failed, the queue was full, or they were invalid.
         waiting: Number of messages that are not in the file yet.
         most_waiting_bytes: The most memory that waiting messages have taken so far, bytes.
-        problem: The first problem, or None if there was none.
+        is_interrupted: Whether nothing is written now, which is a problem of that kind.
+        problems: The problems so far, by their kind.
     """
 
     written: int
     lost: int
     waiting: int
     most_waiting_bytes: int
-    problem: str | None
+    is_interrupted: bool
+    problems: Mapping[LogProblem, Problem]
+
+    @property
+    def problem(self) -> str | None:
+        """All problems so far in words, or None if there was none."""
+        return "; ".join(each.text for each in self.problems.values()) or None
 
 
 class _Item(NamedTuple):
@@ -67,6 +102,12 @@ class _RunChange(NamedTuple):
     run: Mapping[str, str]
 
 
+class _Interruption(NamedTuple):
+    from_ns: int  # since the epoch: what was received from then on is missing
+    lost_before: int  # messages
+    again: float  # s, by a clock that nobody sets: when to try to go on
+
+
 class Recorder(ClosedAtTheEnd):
     """A thread that owns a `BagWriter` whose topics are declared. It is a context manager."""
 
@@ -75,19 +116,22 @@ class Recorder(ClosedAtTheEnd):
         writer: BagWriter,
         *,
         on_problem: Callable[[str], object] | None = None,
+        on_resumed: Callable[[str], object] | None = None,
         max_waiting_bytes: int = MAX_WAITING_BYTES,
     ) -> None:
         """Start the thread.
 
         Args:
             writer: the log. Nobody else may use it from here on.
-            on_problem: a function that the thread calls once, with the first problem. The default warns
-                through `logging`.
+            on_problem: a function that takes a problem in words, when one of its kind begins, and each minute
+                while it goes on. The default warns through `logging`.
+            on_resumed: the same for what is missing, when a log that was interrupted goes on.
             max_waiting_bytes: if this much waits, newer messages are dropped and counted.
         """
         self.folder = writer.folder
         self._writer = writer
         self._on_problem = on_problem or logging.getLogger(__name__).warning
+        self._on_resumed = on_resumed or logging.getLogger(__name__).warning
         self._max_waiting_bytes = max_waiting_bytes
         self._lock = threading.Lock()
         self._items: list[_Item | _RunChange] = []
@@ -97,12 +141,15 @@ class Recorder(ClosedAtTheEnd):
         self._given = 0
         self._written = 0
         self._lost = 0
-        self._problem: str | None = None
+        self._problems: dict[LogProblem, Problem] = {}
+        self._told: dict[LogProblem, float] = {}  # when `on_problem` was called, s
+        self._interruption: _Interruption | None = None
         self._dead = False
         self._closing = False
         self._wake = threading.Event()
         self._settled = threading.Condition(self._lock)
         self._asked_to_settle = False
+        self._synced = time.monotonic()
         self._on_disk = 0  # number of the messages given that are on the disk itself, or lost
         self._thread = threading.Thread(target=self._run, name="contact_dynamics log", daemon=True)
         self._thread.start()
@@ -116,7 +163,8 @@ class Recorder(ClosedAtTheEnd):
                 lost=self._lost,
                 waiting=self._given - self._written - self._lost,
                 most_waiting_bytes=self._most_waiting_bytes,
-                problem=self._problem,
+                is_interrupted=not self._is_writing(),
+                problems=dict(self._problems),
             )
 
     def record(
@@ -127,7 +175,7 @@ class Recorder(ClosedAtTheEnd):
         with self._lock:
             self._given += 1
             waiting = self._waiting_bytes + size
-            open_ = not self._dead and not self._closing
+            open_ = self._is_open()
             taken = open_ and waiting <= self._max_waiting_bytes
             if taken:
                 self._items.append(_Item(topic, data, log_time_ns, publish_time_ns))
@@ -139,11 +187,12 @@ class Recorder(ClosedAtTheEnd):
             self._wake.set()
         elif open_ and not taken:
             most = self._max_waiting_bytes
-            self._report(
-                f"the disk does not keep up: {most} bytes wait, newer messages are dropped"
-                if size <= most
-                else f"{topic}: a message of {size} bytes is not logged, since at most {most} may wait"
-            )
+            if size <= most:
+                text = f"the disk does not keep up: {most} bytes wait, newer messages are dropped"
+                self._report(LogProblem.DROPPING, text)
+            else:
+                text = f"{topic}: a message of {size} bytes is not logged, since at most {most} may wait"
+                self._report(LogProblem.REJECTING, text)
 
     def set_qos(self, topic: str, qos: Any) -> None:
         """Declare another quality of service of a topic; see `BagWriter.set_qos`. It never raises."""
@@ -156,11 +205,15 @@ class Recorder(ClosedAtTheEnd):
             if not self._dead and not self._closing:
                 self._items.append(_RunChange(run))
 
+    def _is_open(self) -> bool:
+        return not (self._dead or self._closing or self._interruption is not None)
+
     def settle(self, *, timeout_s: float = 10.0) -> bool:
         """Wait until the disk itself has all messages handed over so far. Return whether it has them.
 
-        It does not if the log has ended, or if the disk hangs for longer than ``timeout_s``. While the whole
-        process stands still, as on a starved machine, it is not the disk that hangs, and little time counts.
+        It does not if the log is interrupted, or if the disk hangs for longer than ``timeout_s``. While the
+        whole process stands still, as on a starved machine, it is not the disk that hangs, and little time
+        counts.
         """
         with self._lock:
             given = self._given
@@ -169,9 +222,9 @@ class Recorder(ClosedAtTheEnd):
         with self._settled:
             for _ in range(_SETTLE_WAITS):
                 part_s = timeout_s / _SETTLE_WAITS
-                if self._settled.wait_for(lambda: self._dead or self._on_disk >= given, part_s):
+                if self._settled.wait_for(lambda: not self._is_writing() or self._on_disk >= given, part_s):
                     break
-            return not self._dead and self._on_disk >= given
+            return self._is_writing() and self._on_disk >= given
 
     def close(self, *, timeout_s: float = 10.0) -> RecorderStatus:
         """Write all waiting messages, finish the file, and return the status. Later messages count as lost.
@@ -185,31 +238,64 @@ class Recorder(ClosedAtTheEnd):
         self._thread.join(timeout_s)
         return self.status
 
+    def _is_writing(self) -> bool:
+        return self._interruption is None and not self._dead
+
     def _run(self) -> None:
         try:
             closing = False
-            synced_s = time.monotonic()
             while not closing:
-                self._wake.wait(FLUSH_EVERY_S)
-                self._wake.clear()
-                with self._lock:
-                    closing = self._closing  # once it is set, nothing is added behind these items
-                    items, self._items = self._items, []
-                    qos, self._qos = self._qos, {}
-                    given = self._given
-                    must_sync, self._asked_to_settle = self._asked_to_settle, False
-                for topic, offers in qos.items():
-                    self._writer.set_qos(topic, offers)
-                if items or qos:
-                    self._write(items)
-                if given > self._on_disk and (must_sync or time.monotonic() >= synced_s + SYNC_EVERY_S):
-                    self._writer.sync()
-                    synced_s = time.monotonic()
-                    self._tell_settled(given)
+                closing = self._take() if self._interruption is None else self._resume()
             self._writer.close()
-            self._tell_settled(given)
+            self._tell_settled(self._given)
         except Exception as error:  # noqa: BLE001  whatever it is, it ends the log and not the server
             self._die(error)
+
+    def _take(self) -> bool:
+        """Write what waits, and return whether the log is to be closed now."""
+        self._wake.wait(FLUSH_EVERY_S)
+        self._wake.clear()
+        with self._lock:
+            closing = self._closing  # once it is set, nothing is added behind these items
+            items, self._items = self._items, []
+            qos, self._qos = self._qos, {}
+            given = self._given
+            must_sync, self._asked_to_settle = self._asked_to_settle, False
+        try:
+            for topic, offers in qos.items():
+                self._writer.set_qos(topic, offers)
+            if items or qos:
+                self._write(items)
+            if given > self._on_disk and (must_sync or time.monotonic() >= self._synced + SYNC_EVERY_S):
+                self._writer.sync()
+                self._synced = time.monotonic()
+                self._tell_settled(given)
+        except OSError as error:
+            with self._lock:
+                self._qos = {**qos, **self._qos}
+            self._interrupt(error, items)
+        return closing
+
+    def _resume(self) -> bool:
+        """Try to go on after an interruption, and return whether the log is to be closed now."""
+        self._wake.wait(FLUSH_EVERY_S)
+        self._wake.clear()
+        with self._lock:
+            interruption = self._interruption
+            if self._closing or interruption is None or time.monotonic() < interruption.again:
+                return self._closing
+            self._interruption = None  # so that messages wait again, which are lost only if it fails
+            lost = self._lost - interruption.lost_before
+        gap = Gap(from_ns=interruption.from_ns, until_ns=time.time_ns(), lost=lost)
+        try:
+            self._writer.resume(gap)
+        except OSError as error:
+            self._interrupt(error, [], interruption)
+            return False
+        del self._told[LogProblem.INTERRUPTED]
+        with contextlib.suppress(Exception):
+            self._on_resumed(f"the log goes on in {self._writer.path}: {gap}")
+        return False
 
     def _tell_settled(self, given: int) -> None:
         with self._settled:
@@ -233,30 +319,62 @@ class Recorder(ClosedAtTheEnd):
                 item.topic, item.data, log_time_ns=item.log_time_ns, publish_time_ns=item.publish_time_ns
             )
         except InvalidFieldError as error:
-            self._report(f"a message was not logged: {error}")
+            self._report(LogProblem.REJECTING, f"a message was not logged: {error}")
             return False
         return True
+
+    def _interrupt(
+        self, error: OSError, items: list[_Item | _RunChange], before: _Interruption | None = None
+    ) -> None:
+        """Write nothing until the disk takes it again.
+
+        Args:
+            error: why.
+            items: what was to be written.
+            before: the interruption that goes on, if it is not a new one.
+        """
+        with self._lock:
+            dropped = [*items, *self._items]
+            lost_before = self._lost
+            self._drop()
+            times = [each.log_time_ns for each in dropped if isinstance(each, _Item)]
+            again = time.monotonic() + RESUME_EVERY_S
+            self._interruption = (
+                _Interruption(min(times, default=time.time_ns()), lost_before, again)
+                if before is None
+                else before._replace(again=again)
+            )
+        for each in dropped:
+            if isinstance(each, _RunChange):
+                self._writer.change_run(each.run)
+        self._report(LogProblem.INTERRUPTED, f"the log {self._writer.path} is interrupted: {error}")
 
     def _die(self, error: Exception) -> None:
         with self._lock:
             self._dead = True
-            self._items = []
-            self._waiting_bytes = 0
-            self._written = self._writer.safe_count
-            self._lost = self._given - self._written
-            self._settled.notify_all()
-        self._report(f"the log {self.folder} ends here: {error}")
+            self._drop()
+        self._report(LogProblem.INTERRUPTED, f"the log {self.folder} ends here: {error}")
         with contextlib.suppress(Exception):
             self._writer.close()
 
-    def _report(self, problem: str) -> None:
+    def _drop(self) -> None:
+        """Count all that waits as lost."""
+        self._items = []
+        self._waiting_bytes = 0
+        self._written = self._writer.safe_count
+        self._lost = self._given - self._written
+        self._settled.notify_all()
+
+    def _report(self, kind: LogProblem, text: str) -> None:
+        now = time.monotonic()
         with self._lock:
-            first = self._problem is None
-            if first:
-                self._problem = problem
-        if first:
+            self._problems[kind] = Problem(text, now)
+            is_due = now >= self._told.get(kind, -TELL_EVERY_S) + TELL_EVERY_S
+            if is_due:
+                self._told[kind] = now
+        if is_due:
             with contextlib.suppress(Exception):
-                self._on_problem(problem)
+                self._on_problem(text)
 
 
 def _size(data: object) -> int:

@@ -159,7 +159,7 @@ def test_a_log_that_nobody_can_write_is_refused_by_name(where: str, tmp_path: Pa
     (tmp_path / "link").symlink_to(tmp_path / "gone")
     (tmp_path / "file").touch()
     with pytest.raises(ConfigurationError, match=r"log_directory: found .*, allowed is a folder to write to"):
-        Log(where.format(tmp_path), run={}, limits=UNLIMITED, on_problem=print, on_deleted=print)
+        Log(where.format(tmp_path), run={}, limits=UNLIMITED, on_problem=print, on_notice=print)
 
 
 def test_an_autostarted_server_is_active(tmp_path: Path) -> None:

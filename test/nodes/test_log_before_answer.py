@@ -14,6 +14,7 @@ from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 
 from contact_dynamics.nodes.log import Log
+from contact_dynamics.nodes.situations import Situation
 from contact_dynamics.recording import BagReader, service_calls
 from contact_dynamics.recording.cdr_stamp import EventType, event_info
 from contact_dynamics.recording.limits import UNLIMITED
@@ -103,7 +104,7 @@ def test_each_answer_is_logged_once_and_as_its_event_is(tmp_path: Path) -> None:
 
 def test_a_disk_that_hangs_is_told_of_and_not_waited_for_again(tmp_path: Path) -> None:
     told: list[str] = []
-    log = Log(str(tmp_path), run={}, limits=UNLIMITED, on_problem=told.append, on_deleted=pytest.fail)
+    log = Log(str(tmp_path), run={}, limits=UNLIMITED, on_problem=told.append, on_notice=pytest.fail)
     log.add_topic("/pose", "geometry_msgs/msg/Pose", QoSProfile(depth=1))
     log.start()
     log.settle()
@@ -121,6 +122,7 @@ def test_a_disk_that_hangs_is_told_of_and_not_waited_for_again(tmp_path: Path) -
     assert waited[0] >= 1.0
     assert min(waited[1:]) < 0.1  # the least of four, because a busy machine may let any of them wait
     assert told == ["the disk took longer than 1 s: for 10 s, answers leave before they are on it"]
+    assert log.present() == [Situation.LOG_NOT_AWAITED.present()]
     os.close(full)  # the write that hangs fails now
     os.close(writing)
     log.close()

@@ -321,7 +321,7 @@ WRONG = [
 
 def test_the_log_may_go_below_the_home_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("HOME", str(tmp_path))
-    log = Log("~/logs", run={}, limits=UNLIMITED, on_problem=pytest.fail, on_deleted=pytest.fail)
+    log = Log("~/logs", run={}, limits=UNLIMITED, on_problem=pytest.fail, on_notice=pytest.fail)
     assert log.folder is not None
     assert log.folder.parent == tmp_path / "logs"
     log.start()

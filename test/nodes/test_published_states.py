@@ -474,7 +474,7 @@ def test_logs_begun_at_the_same_moment_do_not_meet(tmp_path: Path) -> None:
             run={"number": str(number)},
             limits=LogLimits(),
             on_problem=problems.append,
-            on_deleted=problems.append,
+            on_notice=problems.append,
         )
         log.start()
         log.close()

@@ -101,13 +101,12 @@ def test_refused_message_is_counted_reported_once_and_the_rest_goes_on(
     assert (status.written, status.lost, status.waiting) == (1, 3, 0)
     assert len(problems) == 1
     assert "/unknown" in problems[0]
-    assert status.problem == problems[0]
+    assert "log_time_ns" in str(status.problem)  # the last one of the kind
+    assert not status.is_interrupted
 
 
-@pytest.mark.parametrize(
-    "error", [OSError(28, "No space left on device"), RuntimeError("a bug in a library")]
-)
-def test_failure_ends_the_log_and_not_the_caller(error: Exception) -> None:
+def test_failure_ends_the_log_and_not_the_caller() -> None:
+    error = RuntimeError("a bug in a library")
     writer = StuckWriter(error)
     writer.go.set()
     problems: list[str] = []

@@ -1,0 +1,104 @@
+"""A client that listens to /diagnostics of a server of its own, for tests that wait for a situation."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import yaml
+from diagnostic_msgs.msg import DiagnosticArray
+from nav_msgs.msg import Odometry
+
+from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics.nodes.situations import Level, Part, Situation
+from msg_adapters.stamps import stamp_to_msg
+from running_server import ROOT, Client, process
+
+
+def odometry(*, ahead_ns: int = 0, frame: str = "world", child: str = "brick", x: float = 0.0) -> Odometry:
+    msg = Odometry(child_frame_id=child)
+    msg.header.frame_id, msg.header.stamp = frame, stamp_to_msg(time.time_ns() + ahead_ns)
+    msg.pose.pose.position.x = x
+    return msg
+
+
+class Monitor:
+    """A client that listens to /diagnostics."""
+
+    def __init__(self, client: Client) -> None:
+        self.client = client
+        self._reports: list[DiagnosticArray] = []
+        client.node.create_subscription(DiagnosticArray, "/diagnostics", self._reports.append, 10)
+
+    def wait(self, situation: Situation, *words: str, work: Callable[[], object] = int) -> str:
+        """Wait until a situation is reported at its level, with such words; return the whole message.
+
+        ``work`` is done meanwhile, again and again.
+        """
+        pattern = re.escape(situation.value.text)
+        pattern = re.sub(r"\\\{.*?\\\}", ".*", pattern)
+        found: list[str] = []
+
+        def is_reported() -> bool:
+            work()
+            for level, message in self._statuses(situation.value.part):
+                if re.search(pattern, message) and all(each in message for each in words):
+                    assert level >= situation.value.level
+                    found.append(message)
+            return bool(found)
+
+        self.client.spin_until(is_reported)
+        return found[-1]
+
+    def wait_until_over(self, situation: Situation, words: str, *, work: Callable[[], object] = int) -> None:
+        """Wait until a report has no such words."""
+
+        def is_over() -> bool:
+            work()
+            statuses = self._statuses(situation.value.part)
+            return bool(statuses) and not any(words in message for _, message in statuses)
+
+        self.client.spin_until(is_over)
+
+    def wait_until_ok(self, part: Part, *, work: Callable[[], object] = int) -> None:
+        """Wait until a status is OK."""
+
+        def is_ok() -> bool:
+            work()
+            return (Level.OK, "ok") in self._statuses(part)
+
+        self.client.spin_until(is_ok)
+
+    def _statuses(self, part: Part) -> list[tuple[Level, str]]:
+        """The statuses of a part that came since the last look."""
+        reports, self._reports[:] = list(self._reports), []
+        return [
+            (Level(each.level[0]), each.message)
+            for report in reports
+            for each in report.status
+            if each.name.endswith(f": {part.value}")
+        ]
+
+
+@contextmanager
+def monitored(
+    folder: Path, *arguments: str, **changes: Any
+) -> Iterator[tuple[subprocess.Popen[str], Monitor]]:
+    """A server of the commented configuration with some changes, and a monitor of it."""
+    domain_id = claim_domain()  # since another server of the same name is a situation
+    settings = yaml.safe_load((ROOT / "config" / "server.yaml").read_text(encoding="utf-8"))
+    settings["/**"]["ros__parameters"] |= changes
+    path = folder / "server.yaml"
+    path.write_text(yaml.safe_dump(settings), encoding="utf-8")
+    given = ("--params-file", str(path), *arguments)
+    with process("server", *given, ready="ready", domain_id=domain_id) as server:
+        client = Client(domain_id=domain_id)
+        try:
+            yield server, Monitor(client)
+        finally:
+            client.close()
