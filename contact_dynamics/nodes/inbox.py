@@ -153,6 +153,11 @@ class InboxNode(Node):
         self.destroy_subscription(subscription)
         return made
 
+    def end_services(self) -> None:
+        """Take no more requests; see `RunnableNode`."""
+        for service in list(self.services):
+            self.destroy_service(service)
+
     def unsubscribe(self) -> None:
         """Give up all these subscriptions."""
         for subscription in self.inbox:

@@ -31,9 +31,8 @@ from contact_dynamics.nodes.unread_output import never_wait_for_readers
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterator
 
-    from rclpy.service import Service
 
 _SPIN_S: Final = 0.01
 _DRAIN_S: Final = 0.2  # for messages that have come and are not taken yet when the node is told to stop
@@ -42,12 +41,8 @@ _DRAIN_S: Final = 0.2  # for messages that have come and are not taken yet when 
 class RunnableNode(Protocol):
     """What a node needs to be run."""
 
-    @property
-    def services(self) -> Iterable[Service]:
-        """All services, as `rclpy.node.Node` has them."""
-
-    def destroy_service(self, service: Service) -> bool:
-        """End a service, as `rclpy.node.Node` does."""
+    def end_services(self) -> None:
+        """Take no more requests."""
 
     @property
     def successor(self) -> Callable[[], RunnableNode] | None:
@@ -146,8 +141,7 @@ def _spin(node: RunnableNode, stop: threading.Event) -> Callable[[], RunnableNod
     while not stop.is_set() and (successor := node.successor) is None:
         executor.spin_once(timeout_sec=_SPIN_S)
         node.attend()
-    for service in list(node.services):
-        node.destroy_service(service)
+    node.end_services()
     drained = time.monotonic() + _DRAIN_S
     while time.monotonic() < drained:
         with suppress(InvalidHandle):  # a request that came to one of these services before it was destroyed

@@ -79,6 +79,7 @@ class Server(InboxNode, LifecycleNode):
         self._configuration: ServerParameters | None = None
         self._ros_arguments = ros_arguments
         self._successions = 0 if predecessor is None else predecessor.successions + 1
+        self._says_ready = False  # once the workers are
         self._takes_over = predecessor is not None  # now, from a server that answered
         super().__init__(NODE_NAME, **node_options)
         refuse_lost_sections(self, ros_arguments)
@@ -148,7 +149,7 @@ class Server(InboxNode, LifecycleNode):
         """Answer questions from now on."""
         if self._serving is not None:
             self._serving.activate(is_active=True)
-            self.get_logger().info(f"ready: {self._serving}")
+            self._says_ready = True
         returned: TransitionCallbackReturn = super().on_activate(state)
         return returned
 
@@ -156,6 +157,7 @@ class Server(InboxNode, LifecycleNode):
         """Refuse questions from now on."""
         if self._serving is not None:
             self._serving.activate(is_active=False)
+            self._says_ready = False
         returned: TransitionCallbackReturn = super().on_deactivate(state)
         return returned
 
@@ -221,8 +223,18 @@ class Server(InboxNode, LifecycleNode):
     def attend(self) -> None:
         """Take messages and events, and look around once a second."""
         super().attend()
+        if self._serving is None:
+            return
+        self._serving.attend()
+        if self._says_ready and self._serving.is_ready:
+            self._says_ready = False
+            self.get_logger().info(f"ready: {self._serving}")
+
+    def end_services(self) -> None:
+        """Refuse the questions whose answers are not there yet, and take no more requests."""
         if self._serving is not None:
-            self._serving.attend()
+            self._serving.refuse_all()
+        super().end_services()
 
     def close(self) -> bool:
         """Finish the log and say where it is; return True, since a log that fails has been told."""

@@ -43,7 +43,7 @@ over with the request, and another DDS may be later."""
 _EVENT_POLL_S: Final = 0.001
 
 
-@dataclass(slots=True, kw_only=True)
+@dataclass(slots=True, kw_only=True, eq=False)
 class _Answering:
     """A call that is being answered.
 
@@ -114,6 +114,7 @@ class ServiceFront:
         self._record = record
         self._settle = settle
         self._event_bytes = EventBytes(f"contact_dynamics_interfaces/srv/{served.type_name}_Event")
+        self._under_way: set[_Answering] = set()  # that workers answer
         self._times = CallTimes(lambda: node.get_clock().now().nanoseconds)
         self.is_active = False
         self.gone = gone
@@ -133,6 +134,18 @@ class ServiceFront:
     def remove(self) -> None:
         """Take the service from the node."""
         self._node.destroy_service(self._service)
+
+    def refuse_all(self) -> None:
+        """Refuse the questions that workers answer at present, whose answers nobody will wait for."""
+        message = "the server ended, or was cleaned up, before the answer was there"
+
+        def refuse() -> None:
+            raise BusyError(message)
+
+        for answering in self._under_way:
+            self._finish(answering, refuse)
+            self._send(answering)
+        self._under_way.clear()
 
     def take_events(self) -> None:
         """Take the events of requests and responses that wait, for the log."""
@@ -164,11 +177,13 @@ class ServiceFront:
                     executor.create_task(finish, partial(_fill, fill, outcome))
 
             self._workers.ask(answer, question, excerpt(question, knowledge), done)
+            self._under_way.add(answering)
             return True
 
         def finish(fill: Callable[[], None]) -> None:
-            if not self._is_open():  # the node ends, or is cleaned up, while a worker answers
+            if answering not in self._under_way:  # the node has ended, or was cleaned up, and has refused it
                 return
+            self._under_way.remove(answering)
             self._finish(answering, fill)
             self._send(answering)
 

@@ -172,6 +172,11 @@ class Serving:
         """Whether messages do not reach the node any more, as its self-check has found."""
         return self._self_check.is_deaf
 
+    @property
+    def is_ready(self) -> bool:
+        """Whether all kinds of questions can be answered, for some of which workers have to be ready."""
+        return self._workers is None or self._workers.ready == self._workers.count
+
     def activate(self, *, is_active: bool) -> None:
         """Answer questions from now on, or refuse them."""
         for front in self._fronts:
@@ -223,8 +228,14 @@ class Serving:
                 self._awake_since = self._looked
             self._look()
 
+    def refuse_all(self) -> None:
+        """Refuse the questions whose answers are not there yet."""
+        for front in self._fronts:
+            front.refuse_all()
+
     def close(self) -> str:
         """End the workers, and finish the log; return in words where that is."""
+        self.refuse_all()
         self.end_workers()
         self._node.take_messages()
         self._take_events()
@@ -261,6 +272,7 @@ class Serving:
             *of_states,
             *self._look_at_names(),
             *self._answer_times.look(),
+            *self._look_at_workers(),
             *self._log.present(),
             *self._self_check.present(),
         ]
@@ -286,6 +298,11 @@ class Serving:
             if present_ns(self._node) is None:
                 present.append(Situation.NO_CLOCK.present())
         return present
+
+    def _look_at_workers(self) -> list[Present]:
+        if self.is_ready or self._workers is None:
+            return []
+        return [Situation.WORKERS.present(ready=self._workers.ready, count=self._workers.count)]
 
     def _look_at_names(self) -> list[Present]:
         full_names = [(namespace, name) for name, namespace in self._node.get_node_names_and_namespaces()]

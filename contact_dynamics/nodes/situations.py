@@ -134,6 +134,12 @@ class Situation(Enum):
         "questions were refused as BUSY or TIMEOUT, {count} so far",
         "test_diagnostics.py::test_questions_that_take_too_long",
     )
+    WORKERS = _Row(
+        Part.ANSWERS,
+        Level.WARN,
+        "{ready} of {count} workers are ready",
+        "test_hard_questions.py::test_a_server_is_ready_once_its_workers_are",
+    )
     LOG_MISSING = _Row(
         Part.LOG,
         Level.ERROR,

@@ -17,7 +17,7 @@ import threading
 import time
 import traceback
 from dataclasses import dataclass
-from multiprocessing import resource_tracker
+from multiprocessing import forkserver, resource_tracker
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypeVar
 
@@ -36,10 +36,8 @@ Answer = TypeVar("Answer")
 _NEEDED: Final = ("contact_dynamics.questions.asking", "scipy.linalg", "scipy.optimize", "scipy.spatial")
 """What a worker has imported before it is asked: an import of SciPy takes longer than most answers."""
 
-_START_AFTER_S: Final = 1.0
-"""s. Workers import for a second of processor time, which would delay the first answer of a server."""
-
 _NICER: Final = 5
+_LOOKS_EVERY_S: Final = 0.05  # whether a worker is ready, and whether there is a question for it
 _SPARE_S: Final = 1.0  # that a worker has to send its answer before it ends by itself
 _MEGABYTE: Final = 1_000_000
 
@@ -59,6 +57,10 @@ class WorkerLimits:
     deadline: float = 5.0
     memory: int = 1000
     most_waiting: int = 8
+
+
+class _Ready:
+    """What a worker says when it can be asked."""
 
 
 class WorkerFault(Exception):  # noqa: N818  it is no error of a question
@@ -82,10 +84,7 @@ class Workers:
     """
 
     def __init__(self, limits: WorkerLimits) -> None:
-        """Have the processes started, each with its first question, or after a second if there is none yet.
-
-        They need a second to be ready, and questions wait for that.
-        """
+        """Have the processes started. They need a second of processor time, and questions wait for that."""
         self.limits = limits
         self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
         self._lock = threading.Lock()
@@ -98,6 +97,16 @@ class Workers:
         ]
         for thread in self._threads:
             thread.start()
+
+    @property
+    def count(self) -> int:
+        """How many workers there are."""
+        return len(self._workers)
+
+    @property
+    def ready(self) -> int:
+        """How many of them are ready to be asked, or were so before they were killed."""
+        return sum(worker.is_ready for worker in self._workers)
 
     @property
     def waiting(self) -> int:
@@ -154,12 +163,16 @@ class Workers:
         with contextlib.suppress(OSError):  # the machine has no room for it
             resource_tracker.ensure_running()  # first, since its start unblocks the signal again
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-        asked: list[_Job | None] = []
-        with contextlib.suppress(queue.Empty):
-            asked.append(self._jobs.get(timeout=_START_AFTER_S))
-        if asked == [None]:  # closed meanwhile
-            return
+        # What starts the workers imports for a second. As each thread of Linux has a priority of its own, and
+        # its processes begin with that, this delays no answer.
+        starter = threading.Thread(target=_start_fork_server)
+        starter.start()
+        starter.join()
         worker.start()
+        asked: list[_Job | None] = []
+        while not asked and not worker.has_begun():
+            with contextlib.suppress(queue.Empty):
+                asked.append(self._jobs.get(timeout=_LOOKS_EVERY_S))
         while not self._closing and (job := asked.pop() if asked else self._jobs.get()) is not None:
             worker.restart_if_dead()
             outcome = worker.outcome(job)
@@ -172,10 +185,21 @@ class Workers:
         worker.close()
 
 
+def _start_fork_server() -> None:
+    os.nice(_NICER)
+    with contextlib.suppress(OSError):  # the machine has no room for it; the first worker tries again
+        forkserver.ensure_running()
+
+
 class _Worker:
-    """A process, and the pipe to it."""
+    """A process, and the pipe to it.
+
+    Attributes:
+        is_ready: Whether it has been ready to be asked.
+    """
 
     def __init__(self, memory: int) -> None:
+        self.is_ready = False
         self._memory = memory  # MB
         self._context = multiprocessing.get_context("forkserver")
         self._context.set_forkserver_preload(list(_NEEDED))
@@ -185,7 +209,8 @@ class _Worker:
         self._pipe, self._its_end = self._context.Pipe()
 
     def start(self) -> None:
-        arguments = (self._its_end, self._memory * _MEGABYTE)
+        priority = min(os.getpriority(os.PRIO_PROCESS, os.getpid()) + _NICER, 19)
+        arguments = (self._its_end, self._memory * _MEGABYTE, priority)
         process = self._context.Process(target=_answer_questions, args=arguments, daemon=True)
         try:
             process.start()
@@ -207,12 +232,28 @@ class _Worker:
         if self._process is not None:
             self._process.kill()
 
+    def has_begun(self) -> bool:
+        """Return whether it is ready to be asked, or will not be without being started again."""
+        try:
+            if self._pipe.poll():
+                self._received()
+        except (EOFError, OSError):
+            return True
+        return self.is_ready
+
+    def _received(self) -> object:
+        received = self._pipe.recv()
+        self.is_ready = True
+        return received
+
     def outcome(self, job: _Job) -> object:
         """Return the answer to a job, or the exception that it ends with. The process may be killed then."""
         try:
             self._pipe.send((*job.work, job.seconds + _SPARE_S))
-            if self._pipe.poll(max(0.0, job.until - time.monotonic())):
-                return self._pipe.recv()
+            while self._pipe.poll(max(0.0, job.until - time.monotonic())):
+                received = self._received()
+                if not isinstance(received, _Ready):
+                    return received
             message = f"no answer within {job.seconds:g} s, which is all that one may take (answer_deadline)"
             outcome: Exception = TookTooLongError(message)
         except (EOFError, OSError):
@@ -235,12 +276,14 @@ class _Worker:
             self.start()
 
 
-def _answer_questions(pipe: Connection, memory: int) -> None:
+def _answer_questions(pipe: Connection, memory: int, priority: int) -> None:
     """Answer one question after another: what a worker does."""
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
-    os.nice(_NICER)
+    os.setpriority(os.PRIO_PROCESS, 0, max(priority, os.getpriority(os.PRIO_PROCESS, 0)))
     limit = _address_space() + memory
     resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+    with contextlib.suppress(OSError):  # who asks is gone
+        pipe.send(_Ready())
     while True:
         try:
             answer, question, knowledge, seconds = pipe.recv()

@@ -87,7 +87,7 @@ class Monitor:
 
 @contextmanager
 def monitored(
-    folder: Path, *arguments: str, **changes: Any
+    folder: Path, *arguments: str, ready: str = "ready", **changes: Any
 ) -> Iterator[tuple[subprocess.Popen[str], Monitor]]:
     """A server of the commented configuration with some changes, and a monitor of it."""
     domain_id = claim_domain()  # since another server of the same name is a situation
@@ -96,7 +96,7 @@ def monitored(
     path = folder / "server.yaml"
     path.write_text(yaml.safe_dump(settings), encoding="utf-8")
     given = ("--params-file", str(path), *arguments)
-    with process("server", *given, ready="ready", domain_id=domain_id) as server:
+    with process("server", *given, ready=ready, domain_id=domain_id) as server:
         client = Client(domain_id=domain_id)
         try:
             yield server, Monitor(client)

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import select
 import signal
+import subprocess
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from contact_dynamics.nodes.situations import Part, Situation
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
-from running_server import PATIENCE_S, ROOT, Client, process
+from nodes.monitor import monitored
+from running_server import PATIENCE_S, ROOT, Client, process, wait_for
 
 DEADLINE_S = 0.4
 QUICKLY_S = 2.0  # far below what the hard questions would take, and far above what a busy machine takes
@@ -128,6 +134,10 @@ def test_answers_that_are_ready_while_the_server_ends_do_not_make_it_fail() -> N
             server.send_signal(signal.SIGINT)
             assert server.wait(PATIENCE_S) == 0
             assert not pending[-1].done()
+            client.spin_until(pending[-1].done)
+            refused = pending[-1].result()
+            assert refused.status == refused.BUSY
+            assert refused.message == "the server ended, or was cleaned up, before the answer was there"
         finally:
             client.close()
 
@@ -155,10 +165,46 @@ def test_a_signal_to_all_processes_meets_workers_that_still_start_without_a_trac
     number: signal.Signals,
 ) -> None:
     """Ctrl-C reaches all processes of a terminal, and a service manager stops all of a service."""
-    with process("server", *ARGUMENTS, *APART, ready="ready", group=True) as server:
-        # The workers need longer than the server.
+    with process("server", *ARGUMENTS, *APART, group=True) as server:
+        fork_server_of(server)
         os.killpg(server.pid, number)
         assert server.stdout is not None
         printed = server.stdout.read()
         assert server.wait(PATIENCE_S) == 0
         assert "Traceback" not in printed, printed
+
+
+def fork_server_of(server: subprocess.Popen[str]) -> int:
+    """The process from which the workers of a server are made, as soon as it is there."""
+    deadline = time.monotonic() + PATIENCE_S
+    while True:
+        assert time.monotonic() < deadline
+        for folder in Path("/proc").glob("[0-9]*"):
+            with contextlib.suppress(OSError):  # it ended meanwhile
+                parent = int((folder / "stat").read_text(encoding="ascii").rsplit(")", 1)[1].split()[1])
+                if parent == server.pid and b"forkserver" in (folder / "cmdline").read_bytes():
+                    return int(folder.name)
+        time.sleep(0.01)
+
+
+def test_a_server_is_ready_once_its_workers_are(tmp_path: Path) -> None:
+    """Quick questions are answered before. What starts the workers stands still here, as if it took long."""
+    with monitored(tmp_path, ready="", log=False) as (server, monitor):
+        fork_server = fork_server_of(server)
+        os.kill(fork_server, signal.SIGSTOP)
+        try:
+            monitor.wait(Situation.WORKERS, "0 of 2 workers are ready")
+            assert monitor.client.ask(quick()).status == 0
+            assert "ready" not in printed(server)
+        finally:
+            os.kill(fork_server, signal.SIGCONT)
+        wait_for(server, "ready: bodies brick")
+        monitor.wait_until_ok(Part.ANSWERS)
+
+
+def printed(server: subprocess.Popen[str]) -> str:
+    """What a server has printed so far."""
+    lines = ""
+    while server.stdout is not None and select.select([server.stdout], [], [], 0.0)[0]:
+        lines += server.stdout.readline()
+    return lines

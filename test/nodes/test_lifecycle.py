@@ -19,7 +19,7 @@ from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.recording import BagReader
 from contact_dynamics.recording.limits import UNLIMITED
-from contact_dynamics_interfaces.srv import PredictTumbling
+from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 from running_server import PATIENCE_S, ROOT, SERVICES, Client, process, wait_for
 
 
@@ -94,6 +94,25 @@ def test_a_manager_brings_the_server_up_and_down_and_up_again(manager: Manager, 
     logs = [BagReader(folder) for folder in tmp_path.iterdir()]
     assert all(any(message.topic == "/brick/odometry" for message in log.messages()) for log in logs)
     assert all(log.damage is None for log in logs)
+
+
+def test_a_question_that_is_being_answered_at_cleanup_is_refused(manager: Manager) -> None:
+    spinning = PredictImpact.Request(body_name="brick", state_source=PredictImpact.Request.STATE_EXPLICIT)
+    spinning.state.pose.position.z, spinning.state.angular_velocity.x = 1.0, 1e9  # it takes seconds
+    for _ in range(3):
+        assert manager.change(Transition.TRANSITION_CONFIGURE)
+        assert manager.change(Transition.TRANSITION_ACTIVATE)
+        manager.client.spin_until(lambda: manager.client.ready() == len(SERVICES))
+        manager.client.wait_until_found()
+        answers = [manager.client.begin_to_ask(spinning) for _ in range(4)]
+        quick = PredictTumbling.Request(body_name="brick", times=[0.0])
+        manager.client.ask(quick)  # the others came before it
+        assert manager.change(Transition.TRANSITION_DEACTIVATE)
+        assert manager.change(Transition.TRANSITION_CLEANUP)
+        manager.client.spin_until(lambda answers=answers: all(answer.done() for answer in answers))
+        for answer in answers:
+            assert answer.result().status == answer.result().BUSY
+            assert "was cleaned up" in answer.result().message
 
 
 def test_transitions_that_are_none_of_the_state_are_refused_and_the_server_goes_on(manager: Manager) -> None:
