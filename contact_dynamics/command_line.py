@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import gc
+import os
 import sys
 from importlib import import_module
 from importlib.util import find_spec
@@ -32,6 +33,9 @@ class Verb(NamedTuple):
 
 INTERRUPTED: Final = 130
 """The exit code after Ctrl-C, as shells have it."""
+
+DISCOVERY_RANGE: Final = "ROS_AUTOMATIC_DISCOVERY_RANGE"
+_SERVER_OF_DISCOVERY: Final = "ROS_DISCOVERY_SERVER"
 
 _ROS: Final = ("rclpy", "geometry_msgs.msg", "nav_msgs.msg", "contact_dynamics_interfaces.srv")
 
@@ -136,8 +140,15 @@ def _run(name: str, arguments: list[str]) -> int:
     if missing:
         print(_remedy(name, missing), file=sys.stderr)
         return 3
+    _stay_on_this_machine()
     exit_code: int = _imported(verb.module).main(arguments)
     return exit_code
+
+
+def _stay_on_this_machine() -> None:
+    """Let ROS find nodes of this machine alone, and be found by them, unless more is asked for."""
+    if not (os.environ.get(DISCOVERY_RANGE) or os.environ.get(_SERVER_OF_DISCOVERY)):
+        os.environ[DISCOVERY_RANGE] = "LOCALHOST"
 
 
 def _imported(module: str) -> Any:

@@ -6,7 +6,7 @@ The command is `ros2 launch contact_dynamics server.launch.py`.
 from __future__ import annotations
 
 from ament_index_python.packages import get_package_share_path
-from launch.actions import DeclareLaunchArgument, SetEnvironmentVariable
+from launch.actions import DeclareLaunchArgument
 from launch.conditions import IfCondition
 from launch.substitutions import EnvironmentVariable, LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
@@ -21,6 +21,7 @@ def generate_launch_description() -> LaunchDescription:
     share = get_package_share_path("contact_dynamics")
     namespace = LaunchConfiguration("namespace")
     parameters = LaunchConfiguration("params_file")
+    environment = {DISCOVERY: LaunchConfiguration("discovery_range")}  # of these nodes alone
     full_name = PathJoinSubstitution(["/", namespace, "contact_dynamics"])
     return LaunchDescription(
         [
@@ -43,12 +44,12 @@ def generate_launch_description() -> LaunchDescription:
                 choices=["LOCALHOST", "SUBNET", "OFF", "SYSTEM_DEFAULT"],
                 description=f"Who can find the server: this machine alone, or the network. Sets {DISCOVERY}.",
             ),
-            SetEnvironmentVariable(DISCOVERY, LaunchConfiguration("discovery_range")),
             Node(
                 package="contact_dynamics",
                 executable="server",
                 namespace=namespace,
                 output="screen",
+                additional_env=environment,
                 parameters=[parameters],
             ),
             Node(
@@ -56,6 +57,7 @@ def generate_launch_description() -> LaunchDescription:
                 executable="visualizer",
                 namespace=namespace,
                 output="screen",
+                additional_env=environment,
                 parameters=[parameters, {"spawn": True, "server": full_name}],
                 condition=IfCondition(LaunchConfiguration("view")),
             ),

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.nodes.run_record import NODE_NAME
-from contact_dynamics.nodes.unknown_parameters import likely_misspelling, refuse_unknown
+from contact_dynamics.nodes.unknown_parameters import likely_misspelling, qos_overrides_of, refuse_unknown
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -54,6 +54,7 @@ class GivenParameters:
         self._also_known = frozenset(also_known)
         self._resolve = resolve
         self.read: dict[str, ReadParameter] = {}
+        self._topics: set[str] = set()
 
     def value(
         self, name: str, default: Any, description: str, bounds: tuple[float, float] | None = None
@@ -77,14 +78,17 @@ class GivenParameters:
     def resolved_topic(self, name: str, topic: str) -> str:
         """Return the full name of a topic; see `ParameterSource`."""
         if self._resolve is not None:
-            return self._resolve(name, topic)
-        if topic.startswith("~"):
-            return f"/{NODE_NAME}{topic[1:]}"
-        return topic if topic.startswith("/") else f"/{topic}"
+            resolved = self._resolve(name, topic)
+        elif topic.startswith("~"):
+            resolved = f"/{NODE_NAME}{topic[1:]}"
+        else:
+            resolved = topic if topic.startswith("/") else f"/{topic}"
+        self._topics.add(resolved)
+        return resolved
 
     def refuse_unknown(self) -> None:
         """Refuse parameters that nothing has read; see `ParameterSource`."""
-        known = {*self.read, *self._also_known}
+        known = {*self.read, *self._also_known, *qos_overrides_of(self._topics)}
         try:
             refuse_unknown(self._values, known, lambda name: self._values.get(name, []))
         except ConfigurationError as error:

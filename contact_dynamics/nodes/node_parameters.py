@@ -18,7 +18,7 @@ from contact_dynamics.nodes.parameter_sections import (
     nodes_given,
     read_sections,
 )
-from contact_dynamics.nodes.unknown_parameters import likely_misspelling, refuse_unknown
+from contact_dynamics.nodes.unknown_parameters import likely_misspelling, qos_overrides_of, refuse_unknown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -104,7 +104,7 @@ class NodeParameters:
     def refuse_unknown(self) -> None:
         """Refuse parameters that are set and that the node lacks (see `ParameterSource`)."""
         # rclpy has no public way to ask what was given and not declared.
-        known = {*self._node._parameters, *self._also_known}  # noqa: SLF001
+        known = {*self._node._parameters, *self._also_known, *qos_overrides_of(self.topics.values())}  # noqa: SLF001
         refuse_unknown(self._node._parameter_overrides, known, self._listed)  # noqa: SLF001
 
     def _listed(self, name: str) -> list[str]:

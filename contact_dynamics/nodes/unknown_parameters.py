@@ -11,7 +11,10 @@ from contact_dynamics.nodes.parameter_reader import ConfigurationError
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable
 
-_OF_ROS: Final = re.compile(r"use_sim_time|start_type_description_service|qos_overrides\..*")
+_OF_ROS: Final = re.compile(r"use_sim_time|start_type_description_service")
+_QOS: Final = "qos_overrides"
+_POLICIES: Final = ("history", "depth", "reliability")
+"""What ROS lets parameters override of a subscription, unless a node asks for more."""
 _LIKELY: Final = 0.7
 """Similarity from which on a name counts as a misspelled one, by `difflib`. One letter in four makes 0.75."""
 _LISTED_BY: Final = {"body": "bodies", "surface": "surfaces"}
@@ -19,7 +22,12 @@ _LISTED_BY: Final = {"body": "bodies", "surface": "surfaces"}
 
 def is_of_ros(name: str) -> bool:
     """Tell whether a parameter is one that ROS gives every node."""
-    return _OF_ROS.fullmatch(name) is not None
+    return _OF_ROS.fullmatch(name) is not None or name.startswith(f"{_QOS}.")
+
+
+def qos_overrides_of(topics: Iterable[str]) -> set[str]:
+    """Return the parameters that override the quality of service of subscriptions to topics."""
+    return {f"{_QOS}.{topic}.subscription.{policy}" for topic in topics for policy in _POLICIES}
 
 
 def refuse_unknown(
@@ -29,13 +37,13 @@ def refuse_unknown(
 
     Args:
         given: the names.
-        known: those that somebody reads.
+        known: those that somebody reads, with `qos_overrides_of` the topics.
         listed: returns what the parameter of a name lists, `bodies` or `surfaces`.
 
     Raises:
         ConfigurationError: some are unknown. The message names each, with the most similar known one.
     """
-    unknown = sorted(name for name in given if name not in known and not is_of_ros(name))
+    unknown = sorted(name for name in given if name not in known and not _OF_ROS.fullmatch(name))
     if unknown:
         raise ConfigurationError("\n".join(_unknown(name, known, listed) for name in unknown))
 

@@ -458,6 +458,16 @@ QOS = "qos_overrides./brick/odometry.subscription"
         ("use_sim_time:=7", "'use_sim_time' to '7' of type 'INTEGER', expecting type 'BOOL'"),
         (f"{QOS}.reliability:=perhaps", f"{QOS}: "),
         (f"{QOS}.depth:=0", "depth: found 0, allowed is a whole number > 0"),
+        (f"{QOS}.reliabilty:=best_effort", f"there is no such parameter; the nearest is {QOS}.reliability"),
+        (
+            f"{QOS.replace('odometry', 'odometri')}.reliability:=best_effort",
+            f"there is no such parameter; the nearest is {QOS}.reliability",
+        ),
+        (f"{QOS}.durability:=volatile", f"{QOS}.durability: there is no such parameter"),
+        (
+            f"{QOS.replace('subscription', 'publisher')}.depth:=3",
+            "/brick/odometry.publisher.depth: there is no such parameter",
+        ),
     ],
 )
 def test_a_value_of_the_command_line_is_taken_or_refused_but_never_ignored(

@@ -51,7 +51,7 @@ def test_every_argument_has_a_default_and_says_what_it_is(path: Path) -> None:
 def test_the_server_is_found_on_this_machine_unless_something_else_is_asked(
     monkeypatch: pytest.MonkeyPatch, before: str | None, asked: str | None, after: str
 ) -> None:
-    actions = importlib.import_module("launch.actions")
+    launch_ros = importlib.import_module("launch_ros.actions")
     if before is None:
         monkeypatch.delenv(RANGE)
     else:
@@ -60,8 +60,16 @@ def test_the_server_is_found_on_this_machine_unless_something_else_is_asked(
     if asked is not None:
         service.context.launch_configurations["discovery_range"] = asked
     found = description_of(ROOT / "launch" / "server.launch.py")
-    wanted = (actions.DeclareLaunchArgument, actions.SetEnvironmentVariable)
+    nodes = [action for action in found.entities if isinstance(action, launch_ros.Node)]
     for action in found.entities:
-        if isinstance(action, wanted):
+        if action not in nodes:
             action.execute(service.context)
-    assert os.environ[RANGE] == after
+    assert os.environ.get(RANGE) == before  # of whoever includes this file
+    for node in nodes:
+        given = {
+            "".join(part.perform(service.context) for part in name): "".join(
+                part.perform(service.context) for part in value
+            )
+            for name, value in node.additional_env
+        }
+        assert given == {RANGE: after}
