@@ -30,6 +30,7 @@ class GivenParameters:
     """Values that are given; a `ParameterSource`.
 
     Attributes:
+        values: Plain values by the parameters' names.
         read: The parameters that were read from it, by name.
     """
 
@@ -49,7 +50,7 @@ class GivenParameters:
             also_known: names that may be given although nothing reads them.
             resolve: finds the full name of a topic, as `resolved_topic`. Without it, nothing is remapped.
         """
-        self._values = values
+        self.values = values
         self._before = f"{origin}: " if origin else ""
         self._also_known = frozenset(also_known)
         self._resolve = resolve
@@ -60,12 +61,12 @@ class GivenParameters:
         self, name: str, default: Any, description: str, bounds: tuple[float, float] | None = None
     ) -> Any:
         """Return a parameter's value; see `ParameterSource`."""
-        found = self._values.get(name)
+        found = self.values.get(name)
         if found is None and not isinstance(default, type):
             found = default
         wanted = default if isinstance(default, type) else type(default)
         if not isinstance(found, wanted) or (isinstance(found, bool) and wanted is not bool):
-            meant = likely_misspelling(name, self._values) if found is None else ""
+            meant = likely_misspelling(name, self.values) if found is None else ""
             message = f"{self._before}{name}: found {found!r}, needed is: {description}{meant}"
             raise ConfigurationError(message)
         number: Any = found  # it has the default's type, which is a number where there are bounds
@@ -90,7 +91,7 @@ class GivenParameters:
         """Refuse parameters that nothing has read; see `ParameterSource`."""
         known = {*self.read, *self._also_known, *qos_overrides_of(self._topics)}
         try:
-            refuse_unknown(self._values, known, lambda name: self._values.get(name, []))
+            refuse_unknown(self.values, known, lambda name: self.values.get(name, []))
         except ConfigurationError as error:
             message = f"{self._before}{error}"
             raise ConfigurationError(message) from None

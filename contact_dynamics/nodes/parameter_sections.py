@@ -159,11 +159,8 @@ def _content(path: Path) -> tuple[Any, tuple[RepeatedKey, ...]]:
         return json.loads(text, object_pairs_hook=_without_repeated_keys), ()
     except ValueError:
         pass
-    try:
-        import yaml  # comes with ROS, and with the extra [evaluate]
-    except ImportError:
-        message = f"{path}: to read YAML, PyYAML is needed: pip install '.[evaluate]'"
-        raise ConfigurationError(message) from None
+    import yaml  # only who is configured by a file needs it
+
     try:
         loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)(text)  # the former is ten times as fast
         root = loader.get_single_node()

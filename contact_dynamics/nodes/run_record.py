@@ -51,7 +51,11 @@ def run_record(parameters: Mapping[str, Any], topics: Mapping[str, str]) -> dict
 
 
 class LoggedParameters:
-    """The record of a run as the source of its parameters, as a `ParameterSource`."""
+    """The record of a run as the source of its parameters, as a `ParameterSource`.
+
+    Attributes:
+        record: The record.
+    """
 
     def __init__(self, run: Mapping[str, str]) -> None:
         """Read a record that `run_record` or an older server wrote.
@@ -59,7 +63,7 @@ class LoggedParameters:
         Raises:
             ConfigurationError: no server wrote this record.
         """
-        self._texts = run
+        self.record = run
         self._values: dict[str, Any] | None = None
         self._topics: dict[str, str] = {}
         try:
@@ -94,7 +98,7 @@ class LoggedParameters:
         if self._values is not None:
             found = self._values.get(name)
         else:
-            found = _from_text(name, self._texts[name], default) if name in self._texts else None
+            found = _from_text(name, self.record[name], default) if name in self.record else None
         if found is None and not isinstance(default, type):
             return default
         wanted = default if isinstance(default, type) else type(default)

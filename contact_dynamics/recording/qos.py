@@ -66,7 +66,7 @@ def offered_qos(text: str) -> list[OfferedQos]:
 
     What cannot be read is left out, as is what the list does not say.
     """
-    import yaml  # comes with ROS, and with the extra [evaluate]
+    import yaml  # only bags of others need it
 
     try:
         listed = yaml.safe_load(text)

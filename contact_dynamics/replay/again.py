@@ -7,7 +7,7 @@ answers, and responses are written by the same functions. It needs no ROS.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes import parameter_event
@@ -23,6 +23,7 @@ from contact_dynamics.questions.state_store import CLOCK_SET_BACK, StateStore
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr import decode_without_ros
 from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
+from contact_dynamics.replay.timeline import CLOCK
 from msg_adapters.field_names import renamed
 from msg_adapters.status import report_error
 from msg_adapters.transforms import TransformTree
@@ -36,8 +37,6 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.world import World
     from msg_adapters.state_adapter import Reader
-
-CLOCK: Final = "/clock"
 
 
 @dataclass(slots=True, kw_only=True)

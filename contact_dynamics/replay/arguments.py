@@ -36,7 +36,7 @@ def replay_parser() -> argparse.ArgumentParser:
         epilog="`contact-dynamics replay LOG` verifies. `contact-dynamics replay MODE --help` says more.",
     )
     modes = parser.add_subparsers(dest="mode", metavar="MODE", parser_class=argparse.ArgumentParser)
-    usage = "%(prog)s [-h] [--tolerance T] LOG [LOG ...]"
+    usage = "%(prog)s [-h] [--tolerance T] [--config FILE] [--set NAME:=VALUE] LOG [LOG ...]"
     _add_verify(
         modes.add_parser(VERIFY, usage=usage, help=MODES[VERIFY], description=_sentence(MODES[VERIFY]))
     )
@@ -89,6 +89,20 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
         metavar="T",
         help="how much a number may differ, relative to the larger of the two, or to 1 if both are smaller "
         "(default: 0, so that every bit counts)",
+    )
+
+    group = parser.add_argument_group(
+        "another configuration", "What would the answers have been? The report tells the largest differences."
+    )
+    group.add_argument(
+        "--config", metavar="FILE", help="parameters of the server that count instead of the logged ones"
+    )
+    group.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME:=VALUE",
+        help="one parameter that does, such as surface.floor.friction:=0.31; can be given several times",
     )
 
 

@@ -22,6 +22,7 @@ from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.errors import DamagedLogWarning
 from contact_dynamics.replay.events import OK, Answered, StateCame
 from contact_dynamics.replay.stand_ins import stand_in
+from contact_dynamics.replay.timeline import CLOCK
 from contact_dynamics.validation import check_not_negative
 from msg_adapters.status import code_name
 
@@ -112,6 +113,15 @@ class AskedEvents:
     def damage(self) -> str | None:
         """What of the recording could not be read, in words, or None if all was whole."""
         return self._reader.damage
+
+    @property
+    def why_empty(self) -> str:
+        """Why there is no question, in words, where there is none."""
+        if not self._asking.names:
+            return f"nothing is asked; --ask must be one of {', '.join(QUESTIONS)}"
+        bodies = ", ".join(self._asking.bodies or [body.name for body in self.world.bodies]) or "no body"
+        topics = ", ".join(sorted(self._server.topics - {CLOCK})) or "none"
+        return f"there is no state of {bodies} on the configured topics ({topics}); --topics names others"
 
     def __iter__(self) -> Iterator[Event]:
         """Read the recording, and ask after each state that it is time for."""

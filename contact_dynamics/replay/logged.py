@@ -60,6 +60,11 @@ class LoggedEvents:
         """What of the log could not be read, in words, or None if all was whole."""
         return self._reader.damage
 
+    @property
+    def why_empty(self) -> str:
+        """Why there is no question, in words, where there is none."""
+        return "the log has no question that was answered; --ask asks some"
+
     def __iter__(self) -> Iterator[Event]:
         """Read the log; each answer comes after the states that were known when its question came."""
         with warnings.catch_warnings():

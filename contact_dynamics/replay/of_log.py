@@ -3,24 +3,32 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from contact_dynamics.nodes.run_record import PARAMETERS, LoggedParameters
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.definitions import EVENT_SUFFIX
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
+from contact_dynamics.replay.configuration import ChangedRun
 from contact_dynamics.replay.same_definitions import check_definitions
 from contact_dynamics.replay.stand_ins import stand_in
 from contact_dynamics.replay.timeline import INTERFACES
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from contact_dynamics.replay.again import ServerAgain
 
 
-def server_of_log(path: Path) -> tuple[dict[str, str], ServerAgain]:
+def server_of_log(
+    path: Path, *, instead: Mapping[str, Any] | None = None
+) -> tuple[dict[str, str], ServerAgain]:
     """Return the record of a log's run, and a server that is configured by it.
+
+    Args:
+        path: The log.
+        instead: Values of parameters that count instead of those in the record.
 
     Raises:
         NotALogError: it is no log, or none of the server.
@@ -49,4 +57,4 @@ def server_of_log(path: Path) -> tuple[dict[str, str], ServerAgain]:
     stand_in(definitions.items())
     from contact_dynamics.replay.again import ServerAgain  # here, for it imports what now stands in for ROS
 
-    return run, ServerAgain(LoggedParameters(run))
+    return run, ServerAgain(ChangedRun(run, instead) if instead else LoggedParameters(run))

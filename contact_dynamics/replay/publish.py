@@ -32,11 +32,10 @@ from contact_dynamics.recording.definitions import EVENT_SUFFIX
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
 from contact_dynamics.recording.qos import FOREVER_NS, OfferedQos, offered_qos
 from contact_dynamics.recording.service_calls import EVENT_TOPIC_SUFFIX, ServiceCall
-from contact_dynamics.replay.again import CLOCK
 from contact_dynamics.replay.of_log import server_of_log
 from contact_dynamics.replay.pacing import Pacing, single_keys
 from contact_dynamics.replay.progress import Progress
-from contact_dynamics.replay.timeline import in_order
+from contact_dynamics.replay.timeline import CLOCK, in_order
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ _LONGEST_VALUE: Final = 120  # characters, since a message that an answer carrie
 
 
 def report(found: Verification) -> str:
-    """Return the table of one log, the first answers that differ, and what could not be read."""
+    """Return the table of one log, the answers that differ most, and what could not be read."""
     lines = [str(found.path)]
     changed = [
         f"{name} {text} (here {found.versions_now[name]})"
@@ -28,12 +28,15 @@ def report(found: Verification) -> str:
     ]
     if changed:
         lines.append(f"  written with {', '.join(changed)}: the last bits may differ (see --tolerance)")
+    if found.instead:
+        values = ", ".join(f"{name} {value}" for name, value in found.instead.items())
+        lines.append(f"  with other parameters than logged: {values}")
     lines += _table(found)
     for other in found.others:
         lines += _other(other)
     untold = sum(tally.different for tally in found.services.values()) - len(found.others)
     if untold > 0:
-        lines.append(f"  and {untold} questions more with other answers")
+        lines.append(f"  and {untold} questions more with smaller differences")
     lines += _gaps(found)
     return "\n".join(lines)
 

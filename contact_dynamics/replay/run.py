@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
 from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.constants import ns_after
-from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.constants import ns_after, to_seconds
+from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.nodes.run_record import LoggedParameters
 from contact_dynamics.recording.bag_reader import BagReader
+from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
 from contact_dynamics.recording.file_messages import Span
 from contact_dynamics.replay.arguments import PUBLISH, TABLE, VERIFY, VIEW, replay_parser
 from contact_dynamics.replay.asking import AskedEvents, Asking
-from contact_dynamics.replay.configuration import Configuration
+from contact_dynamics.replay.configuration import Configuration, values_of
 from contact_dynamics.replay.logged import LoggedEvents
 from contact_dynamics.replay.progress import Progress
 from contact_dynamics.replay.report import AS_LOGGED, report, summary
@@ -29,7 +31,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
 DIFFERENT: Final = 1
-"""This exit code says that an answer differs, that a call cannot be read, or that a viewer failed."""
+"""This exit code says that an answer differs, that a call cannot be read, that a viewer failed, or that
+there is nothing to write or to publish."""
 
 NO_LOG: Final = 2
 """This exit code says that a file cannot be replayed at all."""
@@ -67,6 +70,10 @@ def main(arguments: list[str]) -> int:
 
 
 def _verify(given: argparse.Namespace) -> int:
+    try:
+        instead = values_of(None if given.config is None else Path(given.config), given.set)
+    except (ContactDynamicsError, OSError) as error:
+        return _refused(str(error), NO_LOG)
     worst = 0
     results: list[tuple[str, str]] = []
     logs: list[Path] = []
@@ -78,7 +85,7 @@ def _verify(given: argparse.Namespace) -> int:
     for log in logs:
         progress = _progress(log)
         try:
-            found = verify_log(log, tolerance=given.tolerance, on_progress=progress.tell)
+            found = verify_log(log, tolerance=given.tolerance, instead=instead, on_progress=progress.tell)
         except (ContactDynamicsError, OSError) as error:
             progress.end()
             worst = _refused(str(error), NO_LOG)
@@ -113,6 +120,8 @@ def _table(given: argparse.Namespace) -> int:
             finally:
                 progress.end()
             _tell(name, f"{count} rows", events)
+            if count == 0:
+                worst = max(worst, _refused(f"{name}: no rows: {events.why_empty}", DIFFERENT))
     return worst
 
 
@@ -176,20 +185,42 @@ def _events(path: Path, given: argparse.Namespace) -> LoggedEvents | AskedEvents
     if given.config is not None:
         return AskedEvents(path, Configuration(Path(given.config), given.topics), asking=asking, span=span)
     if asking.names:
-        logged = LoggedParameters(BagReader(path).run())
+        run = BagReader(path).run()
+        if not run:
+            message = f"{path}: no record of how its run was configured, which --config gives"
+            raise NotALogError(message)
+        logged = LoggedParameters(run)
         return AskedEvents(path, logged, asking=asking, span=span)
     return LoggedEvents(path, span=span)
 
 
 def _span(path: Path, given: argparse.Namespace) -> Span:
-    """Return the part of a log between --start and --end, which count from its beginning."""
+    """Return the part of a log between --start and --end, which count from its beginning.
+
+    Raises:
+        InvalidFieldError: the log has nothing in this part. The message says how long it lasts.
+    """
     if given.start == 0.0 and given.end is None:
         return Span()
-    start_ns, _ = BagReader(path).extent()
-    return Span(
-        ns_after(start_ns, given.start) if given.start > 0.0 else None,
-        None if given.end is None else ns_after(start_ns, given.end),
-    )
+    log = BagReader(path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DamagedLogWarning)  # told when the log is read
+        start_ns, _ = log.extent()
+        span = Span(
+            ns_after(start_ns, given.start) if given.start > 0.0 else None,
+            None if given.end is None else ns_after(start_ns, given.end),
+        )
+        if next(log.messages(start_ns=span.start_ns, end_ns=span.end_ns), None) is None:
+            # A log that was cut short has no index that says when it ends.
+            end_ns = max((message.log_time_ns for message in log.messages()), default=start_ns)
+            end = "its end" if given.end is None else f"{given.end:g} s"
+            lasts = f"{to_seconds(end_ns - start_ns):.9g} s (log_time {start_ns} to {end_ns} ns)"
+            raise InvalidFieldError(
+                "--start and --end",
+                f"{given.start:g} s to {end}",
+                f"a part of {path}, which lasts {lasts}",
+            )
+    return span
 
 
 def _progress(path: Path) -> Progress:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import csv
+import json
 import sys
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Final, TextIO, TypeAlias
 
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.replay.rows import COLUMNS
@@ -23,10 +24,31 @@ PARQUET: Final = ".parquet"
 
 _BATCH: Final = 1000  # rows
 
+_FOR_PANDAS: Final = {
+    "pandas": json.dumps(
+        {
+            "columns": [
+                {
+                    "name": name,
+                    "field_name": name,
+                    "pandas_type": "int64",
+                    "numpy_type": "Int64",
+                    "metadata": None,
+                }
+                for name, kind in COLUMNS.items()
+                if kind is int
+            ],
+            "index_columns": [],
+            "column_indexes": [],
+        }
+    )
+}
+"""Lets pandas keep integers where a cell is empty, and not make floats of them, which have no room for ns."""
+
 
 @contextmanager
 def open_table(path: Path | None) -> Iterator[Write]:
-    """Yield a function that takes a row; the table is whole when the context ends.
+    """Yield a function that takes a row. The file is there when the context ends, unless it has no rows.
 
     Args:
         path: a file that ends in `CSV` or `PARQUET`, which is replaced. Without a file, CSV goes to
@@ -38,20 +60,43 @@ def open_table(path: Path | None) -> Iterator[Write]:
     """
     if path is None:
         yield _csv(sys.stdout)
-    elif path.suffix == CSV:
-        with path.open("w", encoding="utf-8", newline="") as stream:
-            yield _csv(stream)
-    elif path.suffix == PARQUET:
-        with _parquet(path) as write:
-            yield write
-    else:
+        return
+    if path.suffix not in {CSV, PARQUET}:
         raise InvalidFieldError("out", str(path), f"a file that ends in {CSV} or {PARQUET}")
+    part, count = path.with_name(f"{path.name}.part"), 0
+    try:
+        with _csv_file(part) if path.suffix == CSV else _parquet(part) as write:
+
+            def counted(row: dict[str, Cell]) -> None:
+                nonlocal count
+                count += 1
+                write(row)
+
+            yield counted
+        if count > 0:
+            part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
 
 
-def _csv(stream: Any) -> Write:
+@contextmanager
+def _csv_file(path: Path) -> Iterator[Write]:
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        yield _csv(stream)
+
+
+def _csv(stream: TextIO) -> Write:
     writer = csv.DictWriter(stream, list(COLUMNS))
-    writer.writeheader()
-    return writer.writerow
+    is_begun = False
+
+    def write(row: dict[str, Cell]) -> None:
+        nonlocal is_begun
+        if not is_begun:
+            is_begun = True
+            writer.writeheader()
+        writer.writerow(row)
+
+    return write
 
 
 @contextmanager
@@ -63,7 +108,7 @@ def _parquet(path: Path) -> Iterator[Write]:
         message = "out: pyarrow is not installed; the extra [evaluate] brings it: pip install '.[evaluate]'"
         raise NotSupportedError(message) from None
     types = {str: pa.string(), int: pa.int64(), float: pa.float64()}
-    schema = pa.schema([(name, types[kind]) for name, kind in COLUMNS.items()])
+    schema = pa.schema([(name, types[kind]) for name, kind in COLUMNS.items()], metadata=_FOR_PANDAS)
     waiting: list[dict[str, Cell]] = []
     with pq.ParquetWriter(path, schema) as writer:
 

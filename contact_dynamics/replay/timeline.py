@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.recording.bag_reader import BagReader, LoggedMessage
 
+CLOCK: Final = "/clock"
 INTERFACES: Final = "contact_dynamics_interfaces/srv/"
 EVERYTHING: Final = Span()
 """A log from its beginning to its end."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.nodes.run_record import versions_here
@@ -18,16 +18,16 @@ from contact_dynamics.replay.timeline import in_order
 from contact_dynamics.validation import check_not_negative
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Mapping
     from pathlib import Path
 
     from contact_dynamics.replay.again import ServerAgain
 
 MOST_TOLD: Final = 10
-"""The differences of this many questions are kept."""
+"""The differences of this many questions are kept, those of the largest ones."""
 
 MOST_FIELDS_TOLD: Final = 5
-"""This many different fields of one answer are kept."""
+"""This many fields of one answer are kept, those that differ most."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -60,7 +60,7 @@ class OtherAnswer:
         number: Number of the question among those to this service, from 1.
         asked_ns: When it came, ns since the epoch, by the machine's clock. It is the ``log_time`` of its
             event.
-        differences: The first fields that differ.
+        differences: The fields that differ most, the largest difference first.
     """
 
     service: str
@@ -78,8 +78,9 @@ class Verification:
         tolerance: How much a number may differ, relative to the larger one, or to 1 if both are smaller.
         versions: Versions of the libraries that wrote the log, by name.
         versions_now: Versions of the libraries that answered again, by name.
+        instead: Values of parameters that counted instead of those in the log, by name.
         services: Tallies by the service's name.
-        others: The first questions whose answers differ.
+        others: The questions whose answers differ most, the largest difference first.
         unreadable: The first reason why a call could not be read, or None if all could.
         damage: The damaged parts of the log, in words, or None if all was whole.
     """
@@ -88,6 +89,7 @@ class Verification:
     tolerance: float
     versions: dict[str, str]
     versions_now: dict[str, str]
+    instead: dict[str, Any] = field(default_factory=dict)
     services: dict[str, ServiceTally] = field(default_factory=dict)
     others: list[OtherAnswer] = field(default_factory=list)
     unreadable: str | None = None
@@ -100,7 +102,11 @@ class Verification:
 
 
 def verify_log(
-    path: Path, *, tolerance: float = 0.0, on_progress: Callable[[int, str], object] | None = None
+    path: Path,
+    *,
+    tolerance: float = 0.0,
+    instead: Mapping[str, Any] | None = None,
+    on_progress: Callable[[int, str], object] | None = None,
 ) -> Verification:
     """Ask every question of a log again and compare the answers field by field.
 
@@ -110,6 +116,8 @@ def verify_log(
         path: a log of the server, as its folder or as an ``.mcap`` file.
         tolerance: >= 0. How much a number may differ, relative to the larger one, or to 1 if both are
             smaller. With zero every bit counts.
+        instead: values of parameters that count instead of those in the log, by name: what would have been
+            answered with them?
         on_progress: a function that is called after each message, with its log time, ns, and with what was
             read so far, in words.
 
@@ -122,12 +130,13 @@ def verify_log(
     check_not_negative("tolerance", tolerance)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DamagedLogWarning)  # the result says it
-        run, server = server_of_log(path)
+        run, server = server_of_log(path, instead=instead)
         found = Verification(
             path=path,
             tolerance=tolerance,
             versions={name: run[name] for name in versions_here() if name in run},
             versions_now=versions_here(),
+            instead=dict(instead or {}),
         )
         log, again = BagReader(path), BagReader(path)
         states = questions = 0
@@ -164,34 +173,37 @@ def _ask(call: ServiceCall, server: ServerAgain, found: Verification) -> None:
     # The node's clock told this time when the question came.
     asked_ns = call.request_event.publish_time_ns
     recomputed = server.answer(call.service_type, request, make_response, asked_ns=asked_ns)
-    same, told = _beyond(differences(logged, recomputed), found.tolerance)
+    note_difference(
+        found,
+        call.service,
+        differences(logged, recomputed),
+        asked_ns=call.request_event.log_time_ns,
+    )
+
+
+def note_difference(
+    found: Verification, service: str, differing: Iterable[Difference], *, asked_ns: int
+) -> None:
+    """Note how an answer compares with the logged one, by the fields in which they differ."""
+    tally = found.services[service]
+    same, told = _beyond(differing, found.tolerance)
     if told:
         tally.different += 1
-        if len(found.others) < MOST_TOLD:
-            other = OtherAnswer(
-                service=call.service,
-                number=tally.questions,
-                asked_ns=call.request_event.log_time_ns,
-                differences=told,
-            )
-            found.others.append(other)
+        other = OtherAnswer(
+            service=service, number=tally.questions, asked_ns=asked_ns, differences=tuple(told)
+        )
+        found.others = sorted([*found.others, other], key=lambda each: -each.differences[0].size)[:MOST_TOLD]
     elif same:
         tally.equal += 1
     else:
         tally.within += 1
 
 
-def _beyond(found: Iterable[Difference], tolerance: float) -> tuple[bool, tuple[Difference, ...]]:
-    """Return whether there is no difference at all, and the first ones that the tolerance does not allow."""
-    same = True
-    told: list[Difference] = []
-    for difference in found:
-        same = False
-        if tolerance == 0.0 or difference.size > tolerance:
-            told.append(difference)
-            if len(told) == MOST_FIELDS_TOLD:
-                break
-    return same, tuple(told)
+def _beyond(found: Iterable[Difference], tolerance: float) -> tuple[bool, list[Difference]]:
+    """Return whether there is no difference at all, and the largest ones beyond the tolerance."""
+    listed = list(found)
+    told = [each for each in listed if tolerance == 0.0 or each.size > tolerance]
+    return not listed, sorted(told, key=lambda each: -each.size)[:MOST_FIELDS_TOLD]
 
 
 def _unreadable(found: Verification, tally: ServiceTally, reason: str) -> None:

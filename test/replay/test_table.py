@@ -7,6 +7,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pyarrow.csv as arrow_csv
 import pyarrow.parquet as pq
 import pytest
 from rosbags.rosbag2 import CompressionMode, StoragePlugin
@@ -133,6 +134,72 @@ def test_a_part_of_a_log(asked: Asked, tmp_path: Path) -> None:
     assert len(rows_of(out)) == 1
     assert main(["table", str(asked.log), "--end", str(seconds - 1.0), "--out", str(out)]) == 0
     assert len(rows_of(out)) == asked.rows - 1
+
+
+@pytest.mark.parametrize(
+    ("part", "range_told"),
+    [(("--start", "1000"), "1000 s to its end"), (("--start", "0.2", "--end", "0.1"), "0.2 s to 0.1 s")],
+)
+def test_a_part_that_the_log_does_not_have_is_an_error(
+    asked: Asked, tmp_path: Path, capsys: pytest.CaptureFixture[str], part: tuple[str, ...], range_told: str
+) -> None:
+    out = tmp_path / "table.csv"
+    begin, end = BagReader(asked.log).extent()
+    for mode in (["table", "--out", str(out)], ["view", "--rrd", str(tmp_path / "drawn.rrd")]):
+        assert main([*mode, str(asked.log), *part]) == 2
+        told = capsys.readouterr().err
+        assert f"--start and --end: found {range_told}, allowed is a part of {asked.log}" in told
+        assert f"lasts {(end - begin) / 1e9:.9g} s (log_time {begin} to {end} ns)" in told
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_log_that_was_cut_short_has_the_part_up_to_its_end(asked: Asked, tmp_path: Path) -> None:
+    """It has no index, so that its length is not known before it is read."""
+    (whole,) = asked.log.glob("*.mcap")
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(whole.read_bytes()[: whole.stat().st_size * 6 // 10])
+    assert BagReader(cut).extent()[0] == BagReader(cut).extent()[1]
+    out = tmp_path / "table.csv"
+    assert main(["table", str(cut), "--start", "0.05", "--out", str(out)]) == 0
+    assert len(rows_of(out)) > 0
+
+
+def test_a_table_without_rows_is_an_error_and_leaves_no_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_flight(tmp_path / "bag")
+    (tmp_path / "server.yaml").write_text(CONFIGURATION)
+    out = tmp_path / "table.csv"
+    out.write_text("before\n")
+    common = ["table", str(tmp_path / "bag"), "--config", str(tmp_path / "server.yaml"), "--out", str(out)]
+    assert main([*common, "--topics", "ball=/tracker/ball"]) == 1
+    assert "no rows: nothing is asked; --ask must be one of landing, impact, modes" in capsys.readouterr().err
+    assert main([*common, "--ask", "landing", "--topics", "ball=/tracker/bell"]) == 1
+    told = (
+        "no rows: there is no state of ball on the configured topics (/tracker/bell); --topics names others"
+    )
+    assert told in capsys.readouterr().err
+    assert main([*common[:-4], "--ask", "landing", "--out", str(out)]) == 2
+    assert "no record of how its run was configured, which --config gives" in capsys.readouterr().err
+    assert out.read_text() == "before\n"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bag", "server.yaml", "table.csv"]
+
+
+def test_times_keep_their_nanoseconds_beside_empty_cells(asked: Asked, tmp_path: Path) -> None:
+    """Read as the page says, or with the types of Parquet. pandas makes floats of integers else."""
+    out = tmp_path / "table.csv"
+    assert main(["table", str(asked.log), "--out", str(out)]) == 0
+    assert main(["table", str(asked.log), "--out", str(tmp_path / "table.parquet")]) == 0
+    rows, table = rows_of(out), pq.read_table(tmp_path / "table.parquet")
+    for name in ("state_stamp_ns", "predicted_ns", "states_fitted"):
+        cells = [row[name] for row in rows]
+        assert "" in cells
+        assert any(cells)
+        expected = [int(cell) if cell else None for cell in cells]
+        assert table.column(name).to_pylist() == expected
+        assert arrow_csv.read_csv(out).column(name).to_pylist() == expected
+    pandas = json.loads(table.schema.metadata[b"pandas"])
+    assert {each["name"] for each in pandas["columns"]} == {name for name in COLUMNS if COLUMNS[name] is int}
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -19,7 +20,8 @@ from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.replay.run import main
 from contact_dynamics.replay.same_definitions import digest
 from contact_dynamics.replay.verify import Verification, verify_log
-from replay.asked_log import Asked, without_ros
+from replay.asked_log import Asked, configured, without_ros
+from replay.flights import CONFIGURATION, write_flight
 from running_server import ROOT
 
 
@@ -101,6 +103,20 @@ def test_in_an_environment_with_the_library_alone(asked: Asked, tmp_path: Path) 
     assert sum(int(line.split()[2]) for line in done.stdout.splitlines() if "/predict_" in line) == sum(
         asked.counts.values()
     )
+    write_flight(tmp_path / "bag")
+    (tmp_path / "flights.yaml").write_text(CONFIGURATION)
+    command = [
+        environment / "bin" / "contact-dynamics",
+        "replay",
+        "table",
+        tmp_path / "bag",
+        "--ask",
+        "landing",
+    ]
+    command += ["--config", tmp_path / "flights.yaml", "--topics", "ball=/tracker/ball"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=outside, cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert len(done.stdout.splitlines()) == 1 + 10
 
 
 def test_a_record_without_types_is_read_too(asked: Asked, tmp_path: Path) -> None:
@@ -125,8 +141,53 @@ def test_a_changed_constant_is_found_with_question_and_field(
     printed = capsys.readouterr().out
     assert f"question {other.number}, asked" in printed
     for each in other.differences:
-        assert each.field.startswith("modes[0].")
+        assert re.match(r"(number of )?((refused_)?modes|refusals|refusal_details)|verdict", each.field)
         assert f"{each.field}: logged {each.logged!r}, recomputed {each.recomputed!r}" in printed
+
+
+def test_what_if_friction_had_been_another(
+    asked: Asked, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A value on the command line or in a file gives the answers that a log with this value in it gives."""
+    inside = verify_log(copied(asked, tmp_path, run=changed("surface.floor.friction", 0.31)))
+    given = verify_log(asked.log, instead={"surface.floor.friction": 0.31})
+    assert [other.differences for other in given.others] == [other.differences for other in inside.others]
+    assert given.services["/contact_dynamics/predict_contact_mode"].different > 0
+    sizes = [other.differences[0].size for other in given.others]
+    assert sizes == sorted(sizes, reverse=True)
+    for other in given.others:
+        fields = [each.size for each in other.differences]
+        assert fields == sorted(fields, reverse=True)
+    assert main(["verify", str(asked.log), "--set", "surface.floor.friction:=0.31"]) == 1
+    on_the_line = capsys.readouterr().out
+    assert "with other parameters than logged: surface.floor.friction 0.31" in on_the_line
+    text = configured(tmp_path).read_text(encoding="utf-8")
+    friction = json.loads(BagReader(asked.log).run()["parameters"])["surface.floor.friction"]
+    (tmp_path / "same.yaml").write_text(text, encoding="utf-8")
+    assert main(["verify", str(asked.log), "--config", str(tmp_path / "same.yaml")]) == 0
+    arguments = ["--config", str(tmp_path / "same.yaml"), "--set", "surface.floor.friction:=0.31"]
+    capsys.readouterr()
+    assert main(["verify", str(asked.log), *arguments]) == 1
+    assert on_the_line.splitlines()[2:] == capsys.readouterr().out.splitlines()[2:]
+    assert main(["verify", str(asked.log), "--set", f"surface.floor.friction:={friction}"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ("surface.flor.friction:=0.3", "surface.flor.friction"),
+        ("surface.floor.friction:=-1", "surface.floor.friction"),
+        ("surface.floor.friction:=much", "surface.floor.friction: found 'much'"),
+        ("surface.floor.friction=0.3", "--set must be NAME:=VALUE, got 'surface.floor.friction=0.3'"),
+    ],
+)
+def test_another_configuration_that_is_none_is_refused(
+    asked: Asked, capsys: pytest.CaptureFixture[str], given: str, told: str
+) -> None:
+    assert main(["verify", str(asked.log), "--set", given]) == 2
+    printed = capsys.readouterr()
+    assert told in printed.err
+    assert printed.out == ""
 
 
 def test_a_difference_within_the_tolerance_is_counted_apart(asked: Asked, tmp_path: Path) -> None:
